@@ -1,0 +1,1 @@
+//! Retune: optim.

@@ -1,0 +1,2 @@
+//! Retune: the command line.
+fn main() {}
