@@ -1,0 +1,72 @@
+//! The primary structure alone: equation (1) without a damper, one degree of freedom.
+
+use crate::{Drive, Forcing, Primary};
+use nalgebra::SMatrix;
+
+/// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
+#[derive(Clone, Copy, Debug)]
+pub struct Bare {
+    pub(crate) m1: f64,
+    pub(crate) c1: f64,
+    pub(crate) k1: f64,
+    pub(crate) p: f64,
+    pub(crate) omega: f64,
+}
+
+impl Bare {
+    /// Collects the numbers of a structure and its forcing.
+    pub fn new(primary: &Primary, forcing: &Forcing) -> Self {
+        Self {
+            m1: primary.mass.get(),
+            c1: primary.damping.get(),
+            k1: primary.stiffness.get(),
+            p: forcing.amplitude.get(),
+            omega: forcing.frequency.get(),
+        }
+    }
+
+    /// Angular frequency ω of the force, rad/s.
+    pub fn frequency(&self) -> f64 {
+        self.omega
+    }
+
+    /// `[P cos ωt, P sin ωt]` at time `t` (s), N.
+    pub fn drive(&self, t: f64) -> Drive {
+        let (sin, cos) = (self.omega * t).sin_cos();
+        [self.p * cos, self.p * sin]
+    }
+
+    /// State at rest, `[0, 0]`.
+    pub fn rest(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// Equation (1) without a damper: `[v1, a1]`, m/s and m/s².
+    pub fn derivative(&self, [cos, _]: Drive, &[x1, v1]: &[f64; 2]) -> [f64; 2] {
+        [v1, (cos - self.c1 * v1 - self.k1 * x1) / self.m1]
+    }
+
+    /// The system matrix `A` of `y' = A y + b P cos ωt`, and `b`.
+    pub fn linear_part(&self) -> (SMatrix<f64, 2, 2>, [f64; 2]) {
+        let a = SMatrix::<f64, 2, 2>::new(0.0, 1.0, -self.k1 / self.m1, -self.c1 / self.m1);
+        (a, [0.0, 1.0 / self.m1])
+    }
+
+    /// Energy of the primary structure, `E1 = (m1 v1² + k1 x1²) / 2`, J.
+    #[inline]
+    pub fn primary_energy(&self, x1: f64, v1: f64) -> f64 {
+        0.5 * (self.m1 * v1 * v1 + self.k1 * x1 * x1)
+    }
+
+    /// `[E1, dE1/dt, d²E1/dt²]` in J, W, W/s.
+    ///
+    /// With `G` the sum of all forces on the PS but its spring, `dE1/dt = v1 (m1 a1 + k1 x1) = v1 G` and
+    /// `d²E1/dt² = a1 G + v1 dG/dt`; here `G = P cos ωt - c1 v1`.
+    #[inline]
+    pub fn primary_energy_rates(&self, [cos, sin]: Drive, &[x1, v1]: &[f64; 2]) -> [f64; 3] {
+        let g = cos - self.c1 * v1;
+        let a1 = (g - self.k1 * x1) / self.m1;
+        let g_rate = -self.omega * sin - self.c1 * a1;
+        [self.primary_energy(x1, v1), v1 * g, a1 * g + v1 * g_rate]
+    }
+}

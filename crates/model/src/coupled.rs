@@ -1,0 +1,213 @@
+//! Equation (1): the primary structure and the damper in its cavity, with Hertz contact on both walls.
+
+use crate::{Bare, Damper, Drive, Forcing, Primary, hertz_energy, hertz_force, hertz_force_slope};
+use nalgebra::SMatrix;
+
+/// The two walls of the cavity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Direct contact with the primary structure: `z1 = x1 - x2 >= 0`.
+    Primary,
+    /// Contact with the obstacle: `z2 = x2 - x1 - (D + C) >= 0`.
+    Obstacle,
+}
+
+impl Side {
+    /// Both walls, in the order of every two-element array of this crate.
+    pub const BOTH: [Side; 2] = [Side::Primary, Side::Obstacle];
+
+    /// `∂z/∂(x2 - x1)`: -1 for the primary structure, +1 for the obstacle. The contact pushes the damper with `-sign F`.
+    pub const fn sign(self) -> f64 {
+        match self {
+            Side::Primary => -1.0,
+            Side::Obstacle => 1.0,
+        }
+    }
+}
+
+/// The coupled system. Its state is `[x1, v1, x2, v2]` (m, m/s).
+#[derive(Clone, Copy, Debug)]
+pub struct Coupled {
+    bare: Bare,
+    m2: f64,
+    k2: f64,
+    c2: f64,
+    d: f64,
+    span: f64,
+    hertz: [f64; 2],
+}
+
+impl Coupled {
+    /// Collects the numbers of a structure, its forcing and its damper.
+    pub fn new(primary: &Primary, forcing: &Forcing, damper: &Damper) -> Self {
+        Self {
+            bare: Bare::new(primary, forcing),
+            m2: damper.mass.get(),
+            k2: damper.stiffness.get(),
+            c2: damper.damping.get(),
+            d: damper.rest_distance.get(),
+            span: damper.rest_distance.get() + damper.clearance.get(),
+            hertz: damper.contact.stiffness(),
+        }
+    }
+
+    /// The same structure without its damper.
+    pub fn bare(&self) -> &Bare {
+        &self.bare
+    }
+
+    /// `[P cos ωt, P sin ωt]` at time `t` (s), N.
+    pub fn drive(&self, t: f64) -> Drive {
+        self.bare.drive(t)
+    }
+
+    /// The paper's initial state, `[0, 0, D, 0]`.
+    pub fn rest(&self) -> [f64; 4] {
+        [0.0, 0.0, self.d, 0.0]
+    }
+
+    /// Position `D` of the damper relative to the structure where its spring is at rest, m.
+    pub fn rest_distance(&self) -> f64 {
+        self.d
+    }
+
+    /// Position of a wall relative to the structure, m: 0 for the structure itself, `D + C` for the obstacle.
+    pub fn wall(&self, side: Side) -> f64 {
+        match side {
+            Side::Primary => 0.0,
+            Side::Obstacle => self.span,
+        }
+    }
+
+    /// Hertz stiffness of a wall, N/m^1.5.
+    pub fn hertz(&self, side: Side) -> f64 {
+        self.hertz[side as usize]
+    }
+
+    /// `1/m1 + 1/m2`, 1/kg: how a force between the two bodies accelerates them apart.
+    pub fn inverse_effective_mass(&self) -> f64 {
+        1.0 / self.bare.m1 + 1.0 / self.m2
+    }
+
+    /// Rapprochements `[z1, z2]`, m: positive where the damper presses into the structure, into the obstacle.
+    #[inline]
+    pub fn rapprochement(&self, y: &[f64; 4]) -> [f64; 2] {
+        let r = y[2] - y[0];
+        [-r, r - self.span]
+    }
+
+    /// Contact forces `[F_con(z1), F_con(z2)]`, N, none negative.
+    #[inline]
+    pub fn contact_forces(&self, y: &[f64; 4]) -> [f64; 2] {
+        let [z1, z2] = self.rapprochement(y);
+        [hertz_force(self.hertz[0], z1), hertz_force(self.hertz[1], z2)]
+    }
+
+    /// Equation (1): `[v1, a1, v2, a2]`.
+    #[inline]
+    pub fn derivative(&self, drive: Drive, y: &[f64; 4]) -> [f64; 4] {
+        let [f1, f2] = self.contact_forces(y);
+        self.derivative_under(drive, y, f1 - f2)
+    }
+
+    /// Equation (1) under a given net contact force on the damper, `contact = F_con(z1) - F_con(z2)`, N.
+    #[inline]
+    pub fn derivative_under(&self, [cos, _]: Drive, &[x1, v1, x2, v2]: &[f64; 4], contact: f64) -> [f64; 4] {
+        let Bare { m1, c1, k1, .. } = self.bare;
+        let on_damper = contact - self.c2 * (v2 - v1) - self.k2 * (x2 - x1 - self.d);
+        [v1, (cos - c1 * v1 - k1 * x1 - on_damper) / m1, v2, on_damper / self.m2]
+    }
+
+    /// The linear part: `A` of `y' = A (y - y0) + b P cos ωt` away from contacts, and `b`; `y0` is [`Self::rest`].
+    pub fn linear_part(&self) -> (SMatrix<f64, 4, 4>, [f64; 4]) {
+        (self.jacobian_with(0.0), [0.0, 1.0 / self.bare.m1, 0.0, 0.0])
+    }
+
+    /// Jacobian `∂y'/∂y` of equation (1), contacts included.
+    pub fn jacobian(&self, y: &[f64; 4]) -> SMatrix<f64, 4, 4> {
+        let [z1, z2] = self.rapprochement(y);
+        self.jacobian_with(hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2))
+    }
+
+    /// Both contact forces fall with the distance they push back, so `∂(F1 - F2)/∂(x2 - x1) = -slope`.
+    fn jacobian_with(&self, slope: f64) -> SMatrix<f64, 4, 4> {
+        let Bare { m1, c1, k1, .. } = self.bare;
+        let (k, c) = (self.k2 + slope, self.c2);
+        #[rustfmt::skip]
+        let rows = [
+            0.0, 1.0, 0.0, 0.0,
+            -(k1 + k) / m1, -(c1 + c) / m1, k / m1, c / m1,
+            0.0, 0.0, 0.0, 1.0,
+            k / self.m2, c / self.m2, -k / self.m2, -c / self.m2,
+        ];
+        SMatrix::<f64, 4, 4>::from_row_slice(&rows)
+    }
+
+    /// `∂y'/∂t` of equation (1), which only the force makes.
+    pub fn time_derivative(&self, [_, sin]: Drive) -> [f64; 4] {
+        [0.0, -self.bare.omega * sin / self.bare.m1, 0.0, 0.0]
+    }
+
+    /// `[E1, dE1/dt, d²E1/dt²]` of the primary structure in J, W, W/s (see [`Bare::primary_energy_rates`]);
+    /// here `G = P cos ωt - c1 v1 + c2 (v2 - v1) + k2 (x2 - x1 - D) - F_con(z1) + F_con(z2)`.
+    #[inline]
+    pub fn primary_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let (&[x1, v1, x2, v2], [cos, sin]) = (y, drive);
+        let [z1, z2] = self.rapprochement(y);
+        let contact = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
+        let contact_slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
+        let (stretch, stretch_rate) = (x2 - x1 - self.d, v2 - v1);
+        let on_damper = contact - self.c2 * stretch_rate - self.k2 * stretch;
+        let g = cos - c1 * v1 - on_damper;
+        let (a1, a2) = ((g - k1 * x1) / m1, on_damper / self.m2);
+        let on_damper_rate = -contact_slope * stretch_rate - self.c2 * (a2 - a1) - self.k2 * stretch_rate;
+        let g_rate = -omega * sin - c1 * a1 - on_damper_rate;
+        [self.bare.primary_energy(x1, v1), v1 * g, a1 * g + v1 * g_rate]
+    }
+
+    /// The paper's damper energy `E2 = (m2 v2² + k2 (x2 - D)²) / 2` with its first two time derivatives, in J, W, W/s.
+    ///
+    /// Not the energy the damper really holds: its spring is stretched by `x2 - x1 - D` (see [`Self::total_energy`]).
+    #[inline]
+    pub fn damper_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        let &[_, v1, x2, v2] = y;
+        let [_, a1, _, a2] = self.derivative(drive, y);
+        let [z1, z2] = self.rapprochement(y);
+        let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
+        let jerk = (-(slope + self.k2) * (v2 - v1) - self.c2 * (a2 - a1)) / self.m2;
+        let (m2, k2, x) = (self.m2, self.k2, x2 - self.d);
+        let net = m2 * a2 + k2 * x;
+        [0.5 * (m2 * v2 * v2 + k2 * x * x), v2 * net, a2 * net + v2 * (m2 * jerk + k2 * v2)]
+    }
+
+    /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².
+    #[inline]
+    pub fn stroke_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        let [v1, a1, v2, a2] = self.derivative(drive, y);
+        [y[2] - y[0], v2 - v1, a2 - a1]
+    }
+
+    /// True mechanical energy, J: kinetic, both springs (the damper's by its own stretch), and `(2/5) K z^(5/2)` a contact.
+    ///
+    /// Constant when `P = c1 = c2 = 0`.
+    pub fn total_energy(&self, y: &[f64; 4]) -> f64 {
+        let &[x1, v1, x2, v2] = y;
+        let [z1, z2] = self.rapprochement(y);
+        let stretch = x2 - x1 - self.d;
+        self.bare.primary_energy(x1, v1)
+            + 0.5 * (self.m2 * v2 * v2 + self.k2 * stretch * stretch)
+            + hertz_energy(self.hertz[0], z1)
+            + hertz_energy(self.hertz[1], z2)
+    }
+
+    /// Momentum `m1 v1 + m2 v2`, kg·m/s. Constant when `P = c1 = k1 = 0`.
+    pub fn momentum(&self, y: &[f64; 4]) -> f64 {
+        self.bare.m1 * y[1] + self.m2 * y[3]
+    }
+
+    /// The numbers of the steady response: `(m2, k2, c2)`.
+    pub(crate) fn damper(&self) -> (f64, f64, f64) {
+        (self.m2, self.k2, self.c2)
+    }
+}

@@ -1,0 +1,57 @@
+//! Hertz's quasi-static contact law: force against rapprochement, `F = K z^(3/2)` for `z > 0`.
+
+use std::f64::consts::PI;
+
+/// Hertz stiffness of a sphere of radius `radius` (m) on a plane, N/m^1.5 (the paper's section 2):
+///
+/// `K = (4/3) q / ((δa + δb) √(A + B))` with `δ = (1 - ν²) / (πE)` and `A = B = 1/(2R)`.
+///
+/// `surfaces` holds `(E, ν)` of the two bodies, E in N/m². With `q = 1/π` this is the textbook `(4/3) E* √R`
+/// (K. L. Johnson, Contact Mechanics, 1985, p. 93).
+pub fn hertz_stiffness(q: f64, radius: f64, surfaces: [(f64, f64); 2]) -> f64 {
+    let delta = |(young, poisson): (f64, f64)| (1.0 - poisson * poisson) / (PI * young);
+    let curvature = 1.0 / radius; // A + B
+    4.0 / 3.0 * q / ((delta(surfaces[0]) + delta(surfaces[1])) * curvature.sqrt())
+}
+
+/// Contact force `H(z) K z^(3/2)`, N; `z` (m) is the rapprochement, zero or negative where the bodies do not touch.
+#[inline]
+pub fn hertz_force(stiffness: f64, z: f64) -> f64 {
+    if z > 0.0 { stiffness * z * z.sqrt() } else { 0.0 }
+}
+
+/// `dF/dz = (3/2) K √z`, N/m; zero where the bodies do not touch.
+#[inline]
+pub fn hertz_force_slope(stiffness: f64, z: f64) -> f64 {
+    if z > 0.0 { 1.5 * stiffness * z.sqrt() } else { 0.0 }
+}
+
+/// Elastic energy stored in the contact, `(2/5) K z^(5/2)`, J.
+#[inline]
+pub fn hertz_energy(stiffness: f64, z: f64) -> f64 {
+    0.4 * z * hertz_force(stiffness, z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_stiffness_is_the_textbook_sphere_on_plane() {
+        let surfaces = [(2.1e11, 0.3), (2.21e7, 0.4)];
+        let e_star = 1.0 / surfaces.iter().map(|(e, nu)| (1.0 - nu * nu) / e).sum::<f64>();
+        let expected = 4.0 / 3.0 * e_star * 2.0_f64.sqrt();
+        let k = hertz_stiffness(1.0 / PI, 2.0, surfaces);
+        assert!((k / expected - 1.0).abs() < 1e-14, "{k} {expected}");
+    }
+
+    #[test]
+    fn exact_energy_and_slope_are_the_integral_and_derivative_of_the_force() {
+        let (k, z, h) = (5e7, 3e-3, 1e-7);
+        let slope = (hertz_force(k, z + h) - hertz_force(k, z - h)) / (2.0 * h);
+        assert!((slope / hertz_force_slope(k, z) - 1.0).abs() < 1e-8);
+        let force = (hertz_energy(k, z + h) - hertz_energy(k, z - h)) / (2.0 * h);
+        assert!((force / hertz_force(k, z) - 1.0).abs() < 1e-8);
+        assert_eq!([hertz_force(k, -z), hertz_force_slope(k, -z), hertz_energy(k, -z)], [0.0; 3]);
+    }
+}

@@ -1,0 +1,64 @@
+//! Steady response of the linear scenes in closed form: no damper, or a damper that never touches.
+
+use crate::{Bare, Coupled};
+use nalgebra::Complex;
+
+/// Amplitudes of a steady harmonic motion `x1 = Re(X1 e^{iωt})`, `x2 - D = Re(X2 e^{iωt})`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steady {
+    /// Complex amplitude of the primary structure, m.
+    pub x1: Complex<f64>,
+    /// Complex amplitude of the damper about `D`, m; zero without a damper.
+    pub x2: Complex<f64>,
+    /// Largest energy of the primary structure over a period, `|X1|² max(k1, m1 ω²) / 2`, J.
+    pub e1_max: f64,
+    /// Largest energy of the damper, the paper's E2, over a period, `|X2|² max(k2, m2 ω²) / 2`, J.
+    pub e2_max: f64,
+}
+
+impl Steady {
+    /// The largest distance of the damper from its rest position in the structure, `|X2 - X1|`, m.
+    pub fn stroke(&self) -> f64 {
+        (self.x2 - self.x1).norm()
+    }
+}
+
+/// Largest `(m v² + k x²)/2` of the motion `x = |X| cos(ωt + φ)`: both terms are turns of one another, so the larger wins.
+fn largest_energy(amplitude: Complex<f64>, k: f64, m_omega2: f64) -> f64 {
+    0.5 * amplitude.norm_sqr() * k.max(m_omega2)
+}
+
+impl Bare {
+    /// Steady response at the angular frequency `omega` (rad/s) under the force amplitude of this structure:
+    /// `X1 = P / (k1 - m1 ω² + iω c1)`. Infinite at the resonance of an undamped structure.
+    pub fn steady(&self, omega: f64) -> Steady {
+        let m_omega2 = self.m1 * omega * omega;
+        let x1 = Complex::from(self.p) / Complex::new(self.k1 - m_omega2, omega * self.c1);
+        Steady { x1, x2: Complex::ZERO, e1_max: largest_energy(x1, self.k1, m_omega2), e2_max: 0.0 }
+    }
+}
+
+impl Coupled {
+    /// Steady response at the angular frequency `omega` (rad/s) as long as the damper touches neither wall
+    /// (compare [`Steady::stroke`] with `D` and `C`).
+    ///
+    /// Equation (1) without contact, with `S = k1 - m1 ω² + iω c1`, `Q = k2 + iω c2`, `d = Q - m2 ω²`:
+    /// `X1 = P d / (S d - m2 ω² Q)`, `X2 = P Q / (S d - m2 ω² Q)`.
+    /// Infinite or NaN at the resonance of an undamped system.
+    pub fn steady(&self, omega: f64) -> Steady {
+        let Bare { m1, c1, k1, p, .. } = *self.bare();
+        let (m2, k2, c2) = self.damper();
+        let omega2 = omega * omega;
+        let spring = Complex::new(k2, omega * c2);
+        let dynamic = Complex::new(k2 - m2 * omega2, omega * c2);
+        let primary = Complex::new(k1 - m1 * omega2, omega * c1);
+        let scale = Complex::from(p) / (primary * dynamic - spring * (m2 * omega2));
+        let (x1, x2) = (dynamic * scale, spring * scale);
+        Steady {
+            x1,
+            x2,
+            e1_max: largest_energy(x1, k1, m1 * omega2),
+            e2_max: largest_energy(x2, k2, m2 * omega2),
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What a caller asks of a solver, and what it answers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An integration method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Exact linear flow between contacts, regularised Hertz contact: Retune's own and the default.
+    Hybrid,
+    /// Rosenbrock 2(3) of Shampine & Reichelt (1997), the paper's method.
+    Ode23s,
+    /// Dormand & Prince 5(4) (1980).
+    Ode45,
+}
+
+/// How a general-purpose method meets a contact. The hybrid always locates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Contacts {
+    /// Touch-down and lift-off are located as events and steps end there.
+    #[default]
+    Located,
+    /// Steps run over the kink of the force, as in the paper.
+    Stepped,
+}
+
+/// How a run is integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The method.
+    pub method: Method,
+    /// How contacts are met (`ode23s`, `ode45`).
+    pub contacts: Contacts,
+    /// Relative tolerance of a step.
+    pub rtol: f64,
+    /// Absolute tolerance of a step, in the units of each component of the state (m, m/s). The hybrid needs none.
+    pub atol: f64,
+    /// Most steps a run may take before it is refused as [`SolverError::TooManySteps`].
+    pub max_steps: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            method: Method::Hybrid,
+            contacts: Contacts::Located,
+            rtol: 1e-10,
+            atol: 1e-12,
+            max_steps: 20_000_000,
+        }
+    }
+}
+
+/// A span of time over which maxima are taken, `0 <= from <= to`, s. Every run starts at rest at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Start t0 of the observation; the motion before it is a transient that counts for nothing.
+    pub from: f64,
+    /// End T of the run.
+    pub to: f64,
+}
+
+/// A largest value and when it was reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// The value, in the unit of the quantity.
+    pub value: f64,
+    /// The time, s.
+    pub time: f64,
+}
+
+/// The smallest model that was exact for a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SceneKind {
+    /// No damper: one degree of freedom, exact flow.
+    Bare,
+    /// A damper that touched neither wall, checked on the trajectory: two degrees of freedom, exact flow.
+    Linear,
+    /// A damper that touched.
+    Contact,
+}
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Steps taken (of the hybrid: flight and contact steps).
+    pub steps: u64,
+    /// Steps tried and rejected.
+    pub rejected: u64,
+    /// Evaluations of a right-hand side (of the hybrid: of the contact equations; an exact flight step needs none).
+    pub evaluations: u64,
+}
+
+/// What was observed in a window of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Largest energy of the primary structure, J.
+    pub e1_max: Extreme,
+    /// Largest energy of the damper, the paper's E2, J; zero without a damper.
+    pub e2_max: Extreme,
+    /// Touch-downs on the primary structure and on the obstacle.
+    pub impacts: [u64; 2],
+    /// Largest contact forces on the primary structure and on the obstacle, N.
+    pub force_max: [f64; 2],
+    /// Largest `|x2 - x1|`, m.
+    pub stroke_max: f64,
+    /// State at the end of the window: `[x1, v1, x2, v2]`, or `[x1, v1, 0, 0]` without a damper.
+    pub final_state: [f64; 4],
+    /// The smallest model that was exact for the whole run.
+    pub scene: SceneKind,
+    /// What the run cost.
+    pub work: Work,
+}
+
+/// Why a run could not be finished. Every variant carries the time that was reached.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SolverError {
+    /// The step had to become smaller than the spacing of floating-point numbers allows.
+    #[error("the step became too small at t = {t} s (h = {h} s); loosen rtol, or choose the hybrid solver")]
+    StepTooSmall {
+        /// Time reached, s.
+        t: f64,
+        /// The step that was refused, s.
+        h: f64,
+    },
+    /// The run needs more steps than it may take.
+    #[error("the run needed more than {limit} steps (t = {t} s); shorten T, loosen rtol or raise max_steps")]
+    TooManySteps {
+        /// Time reached, s.
+        t: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// The state overflowed.
+    #[error(
+        "the motion is no longer a finite number at t = {t} s; the parameters are beyond what can be computed"
+    )]
+    NonFinite {
+        /// Time reached, s.
+        t: f64,
+    },
+}
