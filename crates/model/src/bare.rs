@@ -52,6 +52,17 @@ impl Bare {
         (a, [0.0, 1.0 / self.m1])
     }
 
+    /// `∂y'/∂t`, which only the force makes.
+    pub fn time_derivative(&self, [_, sin]: Drive) -> [f64; 2] {
+        [0.0, -self.omega * sin / self.m1]
+    }
+
+    /// A bound on how fast the motion can change, 1/s: the larger of ω and `√(k1/m1) + c1/m1`, which is no less than the
+    /// norm of the linear part in the energy norm.
+    pub fn rate(&self) -> f64 {
+        self.omega.max((self.k1 / self.m1).sqrt() + self.c1 / self.m1)
+    }
+
     /// Energy of the primary structure, `E1 = (m1 v1² + k1 x1²) / 2`, J.
     #[inline]
     pub fn primary_energy(&self, x1: f64, v1: f64) -> f64 {

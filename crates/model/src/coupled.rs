@@ -123,6 +123,35 @@ impl Coupled {
         (self.jacobian_with(0.0), [0.0, 1.0 / self.bare.m1, 0.0, 0.0])
     }
 
+    /// A bound on how fast the motion between contacts can change, 1/s: the larger of ω and `√(tr M⁻¹K) + tr M⁻¹C`, which is
+    /// no less than the norm of the linear part in the energy norm.
+    pub fn rate(&self) -> f64 {
+        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let inverse_m = self.inverse_effective_mass();
+        omega.max((k1 / m1 + self.k2 * inverse_m).sqrt() + c1 / m1 + self.c2 * inverse_m)
+    }
+
+    /// `√(2E)` of a state, √J, with `E` the mechanical energy of the linear part (no contact). Between contacts dampers only
+    /// take energy, so it grows by at most `P / √m1` a second.
+    pub fn energy_norm(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> f64 {
+        let stretch = x2 - x1 - self.d;
+        (2.0 * self.bare.primary_energy(x1, v1) + self.m2 * v2 * v2 + self.k2 * stretch * stretch).sqrt()
+    }
+
+    /// Largest growth of [`Self::energy_norm`], `P / √m1`, √J/s.
+    pub fn energy_norm_growth(&self) -> f64 {
+        self.bare.p / self.bare.m1.sqrt()
+    }
+
+    /// The largest `|row · (y - y0)|` over all states of energy norm 1 (the dual norm); infinite if `row` weighs a coordinate
+    /// that no spring holds.
+    pub fn dual_energy_norm(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> f64 {
+        // In the coordinates x1, v1, stretch, v2 the energy is a sum of squares.
+        let part = |weight: f64, scale: f64| if weight == 0.0 { 0.0 } else { weight * weight / scale };
+        let Bare { m1, k1, .. } = self.bare;
+        (part(x1 + x2, k1) + part(v1, m1) + part(x2, self.k2) + part(v2, self.m2)).sqrt()
+    }
+
     /// Jacobian `∂y'/∂y` of equation (1), contacts included.
     pub fn jacobian(&self, y: &[f64; 4]) -> SMatrix<f64, 4, 4> {
         let [z1, z2] = self.rapprochement(y);

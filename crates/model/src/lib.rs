@@ -8,6 +8,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod bare;
+mod compression;
 mod coupled;
 mod hertz;
 mod scene;
@@ -15,6 +16,7 @@ mod steady;
 mod value;
 
 pub use bare::Bare;
+pub use compression::{Compressed, Compression};
 pub use coupled::{Coupled, Side};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
 pub use scene::{Contact, Damper, Forcing, Primary, Scene};

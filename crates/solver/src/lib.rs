@@ -1,6 +1,24 @@
 //! How a state moves in time: the exact flight + regularised contact propagator, `ode23s`, `ode45`, and what they observe.
+//!
+//! [`simulate`], [`e1_max`] and [`trajectory`] run a scene. Below them, a method hands its motion over piece by piece
+//! ([`observe::Segment`]) to whatever was asked for ([`observe::Observer`]); nothing is stored on the way.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod bare;
+mod contact;
+pub mod dop853;
+mod flow;
+mod gap;
+mod hybrid;
+pub mod observe;
+pub mod ode23s;
+pub mod ode45;
+pub mod onestep;
+mod run;
 mod settings;
+mod system;
 
+pub use hybrid::{Hybrid, Motion, Phase};
+pub use run::{Sample, e1_max, simulate, trajectory};
 pub use settings::{Contacts, Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
+pub use system::{Linear, LinearSystem, System};

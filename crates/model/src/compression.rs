@@ -1,0 +1,125 @@
+//! Equation (1) during one contact, regularised: a polynomial system without the kink of `z^(3/2)`.
+//!
+//! While the damper presses into one wall, take `q = √z` for the rapprochement and a contact time `θ` with `dt = q dθ`
+//! (Levi-Civita's regularisation of a collision, for Hertz's law). Hertz's force is then `K q³`, and with `w = dz/dt`
+//!
+//! ```text
+//! dq/dθ = w/2      dw/dθ = q dw/dt      dx1/dθ = q v1      dv1/dθ = q a1      dt/dθ = q
+//! ```
+//!
+//! Every right-hand side is a polynomial, so the motion is analytic in `θ` from before touch-down (`q = 0`, `w > 0`)
+//! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
+//! The force enters as two more components that turn with `ωt`.
+
+use crate::{Coupled, Drive, Side};
+
+/// A regularised state: `[q, w, x1, v1, P cos ωt, P sin ωt, t, θ]` (√m, m/s, m, m/s, N, N, s, s/√m), `t` and `θ` since touch-down.
+///
+/// Eight components: every linear combination is a whole number of machine vectors.
+pub type Compressed = [f64; 8];
+
+/// Equation (1) in contact with one wall.
+#[derive(Clone, Copy, Debug)]
+pub struct Compression {
+    side: Side,
+    sign: f64,
+    wall: f64,
+    omega: f64,
+    // Accelerations per unit of each cause.
+    primary: [f64; 3], // 1/m1, c1/m1, k1/m1
+    hertz: [f64; 2],   // K/m1, K (1/m1 + 1/m2)
+    dashpot: [f64; 2], // c2/m1, c2 (1/m1 + 1/m2)
+    spring: [f64; 2],  // k2/m1, k2 (1/m1 + 1/m2)
+    stretch: f64,      // sign (wall - D): the spring's stretch at touch-down, towards the wall
+}
+
+impl Coupled {
+    /// The regularised equations of contact with `side`.
+    pub fn compression(&self, side: Side) -> Compression {
+        let (_, k2, c2) = self.damper();
+        let bare = self.bare();
+        let (inv_m1, inv_m) = (1.0 / bare.m1, self.inverse_effective_mass());
+        let pair = |factor: f64| [factor * inv_m1, factor * inv_m];
+        Compression {
+            side,
+            sign: side.sign(),
+            wall: self.wall(side),
+            omega: bare.omega,
+            primary: [inv_m1, bare.c1 * inv_m1, bare.k1 * inv_m1],
+            hertz: pair(self.hertz(side)),
+            dashpot: pair(c2),
+            spring: pair(k2),
+            stretch: side.sign() * (self.wall(side) - self.rest_distance()),
+        }
+    }
+}
+
+impl Compression {
+    /// The wall in contact.
+    pub fn side(&self) -> Side {
+        self.side
+    }
+
+    /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
+    /// and the net force on the damper `-s (K q³ + c2 w + k2 (z + s (wall - D)))`.
+    #[inline(always)]
+    fn accelerations(&self, &[q, w, x1, v1, cos, ..]: &Compressed) -> [f64; 2] {
+        let z = q * q;
+        let (cube, stretch) = (z * q, z + self.stretch);
+        let free = self.primary[0] * cos - self.primary[1] * v1 - self.primary[2] * x1;
+        let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
+        [-push(1) - self.sign * free, free + self.sign * push(0)]
+    }
+
+    /// Derivative with respect to `θ` of every component.
+    #[inline(always)]
+    pub fn derivative(&self, y: &Compressed) -> Compressed {
+        let &[q, w, _, v1, cos, sin, ..] = y;
+        let [rate, a1] = self.accelerations(y);
+        let turn = self.omega * q;
+        [0.5 * w, q * rate, q * v1, q * a1, -turn * sin, turn * cos, q, 1.0]
+    }
+
+    /// `dw/dt`, the acceleration into the wall, m/s².
+    pub fn acceleration(&self, y: &Compressed) -> f64 {
+        self.accelerations(y)[0]
+    }
+
+    /// `κ = K (1/m1 + 1/m2)`: the contact force accelerates the bodies apart by `κ z^(3/2)`; m^-0.5 s^-2.
+    pub fn hertz_rate(&self) -> f64 {
+        self.hertz[1]
+    }
+
+    /// The touch-down speed (m/s) of an undisturbed collision that reaches `q` (√m): `w = √(4 κ q⁵ / 5)`.
+    pub fn speed_at_depth(&self, q: f64) -> f64 {
+        (0.8 * self.hertz[1] * q.powi(5)).sqrt()
+    }
+
+    /// `(1/m1 + 1/m2) m1`: how many times faster a contact force accelerates the two bodies apart than it accelerates the PS.
+    pub fn mass_ratio(&self) -> f64 {
+        self.hertz[1] / self.hertz[0]
+    }
+
+    /// The state `[x1, v1, x2, v2]` as a regularised one, with no time elapsed. A damper that is not in contact with this
+    /// wall is taken to be just touching it.
+    pub fn compress(&self, [cos, sin]: Drive, &[x1, v1, x2, v2]: &[f64; 4]) -> Compressed {
+        let z = self.sign * (x2 - x1 - self.wall);
+        [z.max(0.0).sqrt(), self.sign * (v2 - v1), x1, v1, cos, sin, 0.0, 0.0]
+    }
+
+    /// The state `[x1, v1, x2, v2]` of a regularised one.
+    #[inline]
+    pub fn expand(&self, &[q, w, x1, v1, ..]: &Compressed) -> [f64; 4] {
+        [x1, v1, x1 + self.wall + self.sign * q * q, v1 + self.sign * w]
+    }
+
+    /// Length in `θ` (s/√m) of the undisturbed Hertz collision at touch-down speed `w` (m/s), and its largest `q` (√m).
+    ///
+    /// From `w² = w0² - (4/5) κ q⁵`, `κ = K (1/m1 + 1/m2)`: `q_max = (5 w0² / 4κ)^(1/5)` and
+    /// `Θ = (4 q_max / w0) ∫₀¹ dx / √(1 - x⁵)`.
+    pub fn collision(&self, w: f64) -> (f64, f64) {
+        const INTEGRAL: f64 = 1.253_730_624_817_206_9; // √π Γ(6/5) / Γ(7/10)
+        let q_max = (1.25 * w * w / self.hertz[1]).powf(0.2);
+        (4.0 * q_max / w * INTEGRAL, q_max)
+    }
+}

@@ -1,0 +1,136 @@
+//! The first contact of an exact flight: no crossing is skipped, however short, down to rounding.
+
+use crate::flow::TERMS;
+
+/// A polynomial `Σ c_k s^k` on one flight step: the gap to a wall, positive in flight.
+type Polynomial = [f64; TERMS];
+
+/// Least of the Bernstein coefficients of the cubic that meets `(value, slope)` at both ends of an interval of length `h`:
+/// the cubic stays above it.
+#[inline(always)]
+pub fn cubic_floor(h: f64, a: [f64; 2], b: [f64; 2]) -> f64 {
+    let third = h / 3.0;
+    a[0].min(a[0] + third * a[1]).min(b[0] - third * b[1]).min(b[0])
+}
+
+/// The first `s` in `(0, to]` at which the gap becomes negative, or `None`.
+///
+/// `Some(0.0)` means that the gap is closed at the start and closing. A gap of zero that opens is in flight.
+pub fn first_contact(gap: &Polynomial, to: f64) -> Option<f64> {
+    // At s = 0 the damper may just have left the wall (or rest on it): the root there is divided out.
+    let order = gap.iter().position(|&c| c != 0.0)?;
+    let mut p = [0.0; TERMS];
+    p[..TERMS - order].copy_from_slice(&gap[order..]);
+    if p[0] < 0.0 {
+        return Some(0.0);
+    }
+    let derivative = differentiated(&p);
+    let at = |s: f64| [horner(&p, s), horner(&derivative, s)];
+    search(&at, fourth_derivative_bound(&p, to), to * 1e-15, (0.0, at(0.0)), (to, at(to)))
+}
+
+/// Left half first, so that what is found is the first; an interval ends the search when it is certified open, when it holds
+/// one simple crossing, or when it is too short to matter.
+fn search(
+    at: &impl Fn(f64) -> [f64; 2],
+    fourth: f64,
+    shortest: f64,
+    (a, left): (f64, [f64; 2]),
+    (b, right): (f64, [f64; 2]),
+) -> Option<f64> {
+    let h = b - a;
+    // |p - cubic| <= h⁴/384 max|p⁗|
+    if cubic_floor(h, left, right) >= h.powi(4) / 384.0 * fourth {
+        return None;
+    }
+    // |p' - cubic'| <= √3 h³/216 max|p⁗|; the cubic's slope stays below the largest of its Bernstein coefficients.
+    let middle = 3.0 * (right[0] - left[0]) / h - left[1] - right[1];
+    let steepest = left[1].max(middle).max(right[1]) + 0.009 * h.powi(3) * fourth;
+    if right[0] < 0.0 && steepest < 0.0 {
+        return Some(root(at, a, b));
+    }
+    let mid = 0.5 * (a + b);
+    if h < shortest || mid <= a || mid >= b {
+        return (right[0] < 0.0).then_some(b); // else it touches to rounding, with no force
+    }
+    let centre = at(mid);
+    search(at, fourth, shortest, (a, left), (mid, centre))
+        .or_else(|| search(at, fourth, shortest, (mid, centre), (b, right)))
+}
+
+/// The root of a function that falls from positive to negative over `[a, b]`: Newton, kept inside by bisection.
+fn root(at: &impl Fn(f64) -> [f64; 2], mut a: f64, mut b: f64) -> f64 {
+    let mut s = 0.5 * (a + b);
+    for _ in 0..100 {
+        let [value, slope] = at(s);
+        if value > 0.0 {
+            a = s
+        } else {
+            b = s
+        }
+        let newton = s - value / slope;
+        let next = if newton > a && newton < b { newton } else { 0.5 * (a + b) };
+        if (next - s).abs() <= 2.0 * f64::EPSILON * s || next <= a || next >= b {
+            return next;
+        }
+        s = next;
+    }
+    s
+}
+
+fn horner(p: &Polynomial, s: f64) -> f64 {
+    p.iter().rev().fold(0.0, |sum, c| sum * s + c)
+}
+
+fn differentiated(p: &Polynomial) -> Polynomial {
+    std::array::from_fn(|k| p.get(k + 1).map_or(0.0, |c| (k + 1) as f64 * c))
+}
+
+/// A bound on `|p''''|` over `[0, to]` from the coefficients alone.
+fn fourth_derivative_bound(p: &Polynomial, to: f64) -> f64 {
+    (4..TERMS).rev().fold(0.0, |sum, k| {
+        let factor = (k * (k - 1) * (k - 2) * (k - 3)) as f64;
+        sum * to + factor * p[k].abs()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polynomial(c: &[f64]) -> Polynomial {
+        std::array::from_fn(|k| c.get(k).copied().unwrap_or(0.0))
+    }
+
+    #[test]
+    fn exact_first_of_two_crossings_inside_a_step() {
+        // (s - 0.3)(s - 0.3 - d): positive at both ends, below zero only for a moment.
+        for d in [1e-1, 1e-3, 1e-6] {
+            let p = polynomial(&[0.3 * (0.3 + d), -0.6 - d, 1.0]);
+            let s = first_contact(&p, 1.0).expect("a crossing");
+            assert!((s - 0.3).abs() < 1e-15 / d.max(1e-6) * 10.0, "{d} {s}");
+        }
+    }
+
+    #[test]
+    fn exact_no_contact_when_the_gap_only_nearly_closes() {
+        let p = polynomial(&[0.09 + 1e-14, -0.6, 1.0]);
+        assert_eq!(first_contact(&p, 1.0), None);
+    }
+
+    #[test]
+    fn exact_leaving_a_wall_is_not_a_contact_but_returning_is() {
+        assert_eq!(first_contact(&polynomial(&[0.0, 1.0]), 1.0), None);
+        let back = first_contact(&polynomial(&[0.0, 1.0, -4.0]), 1.0).expect("returns");
+        assert!((back - 0.25).abs() < 1e-15);
+        assert_eq!(first_contact(&polynomial(&[0.0, -1.0, 4.0]), 1.0), Some(0.0));
+        assert_eq!(first_contact(&polynomial(&[0.0, 0.0, -4.0]), 1.0), Some(0.0));
+        assert_eq!(first_contact(&polynomial(&[0.0]), 1.0), None);
+    }
+
+    #[test]
+    fn exact_tiny_bounces_are_found_at_their_own_scale() {
+        let back = first_contact(&polynomial(&[0.0, 1e-12, -1.0]), 0.1).expect("returns");
+        assert!((back / 1e-12 - 1.0).abs() < 1e-12, "{back}");
+    }
+}

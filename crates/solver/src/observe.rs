@@ -1,0 +1,187 @@
+//! What a run is looked at with. Methods hand over their motion piece by piece; observers keep what was asked for.
+
+use crate::settings::Extreme;
+use retune_model::{Drive, Side};
+
+/// A moment of the motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Knot<const N: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// `[P cos ωt, P sin ωt]`, N.
+    pub drive: Drive,
+    /// State.
+    pub y: [f64; N],
+    /// `[dt/dθ, d²t/dθ²]`: how time runs in the coordinate in which the piece is smooth. `[1, 0]` where that is time itself.
+    pub clock: [f64; 2],
+}
+
+/// A piece of the motion on which it is smooth in its own coordinate `θ`, from 0 to `length`.
+pub trait Segment<const N: usize> {
+    /// First and last moment.
+    fn ends(&self) -> [&Knot<N>; 2];
+    /// Length in `θ`.
+    fn length(&self) -> f64;
+    /// The moment at `θ`.
+    fn at(&self, theta: f64) -> Knot<N>;
+    /// The moment at time `t` (s) inside the piece.
+    fn at_time(&self, t: f64) -> Knot<N>;
+}
+
+/// Follows a run.
+pub trait Observer<const N: usize> {
+    /// A piece of the motion has been computed.
+    fn segment(&mut self, segment: &impl Segment<N>);
+    /// The damper has touched a wall.
+    fn touch_down(&mut self, _t: f64, _side: Side) {}
+    /// Nothing that can still happen will change what is kept: the run may end here.
+    fn satisfied(&self) -> bool {
+        false
+    }
+}
+
+/// Sees nothing: for the transient before a window.
+pub struct Unobserved;
+
+impl<const N: usize> Observer<N> for Unobserved {
+    fn segment(&mut self, _segment: &impl Segment<N>) {}
+}
+
+/// The largest value of a quantity, located where its rate of change is zero, to rounding.
+///
+/// `rates` gives the quantity with its first two time derivatives. On each segment the quintic that meets all three at both
+/// ends is the screen: only where it could exceed the record (its Bernstein coefficients bound it; [`SCREEN`] allows for
+/// the remainder) is the exact motion looked at.
+pub struct Peak<F> {
+    rates: F,
+    record: Extreme,
+    cutoff: f64,
+    last: Option<(f64, [f64; 3])>,
+}
+
+/// Share of the quantity's size by which the motion may leave the quintic of a segment.
+const SCREEN: f64 = 1e-3;
+
+impl<F> Peak<F> {
+    /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
+    /// the value exceeds `cutoff`.
+    pub fn new(rates: F, cutoff: f64) -> Self {
+        Self { rates, record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN }, cutoff, last: None }
+    }
+
+    /// The record so far.
+    pub fn record(&self) -> Extreme {
+        self.record
+    }
+
+    fn note(&mut self, value: f64, time: f64) {
+        if value > self.record.value {
+            self.record = Extreme { value, time };
+        }
+    }
+}
+
+/// Value, slope and curvature with respect to `θ`, from those with respect to time.
+#[inline(always)]
+fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2]) -> [f64; 3] {
+    [value, slope * rate, curvature * rate * rate + slope * rate_slope]
+}
+
+/// The largest Bernstein coefficient of the quintic that meets value, slope and curvature at both ends: it stays below.
+#[inline(always)]
+fn quintic_ceiling(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
+    let (fifth, twentieth) = (h / 5.0, h * h / 20.0);
+    let inner_a = a[0] + fifth * a[1];
+    let inner_b = b[0] - fifth * b[1];
+    let deep_a = inner_a + fifth * a[1] + twentieth * a[2];
+    let deep_b = inner_b - fifth * b[1] + twentieth * b[2];
+    a[0].max(inner_a).max(deep_a).max(deep_b).max(inner_b).max(b[0])
+}
+
+impl<F> Peak<F> {
+    /// Looks for a maximum above the record on `[a, b]` in `θ`, given `[value, slope, curvature]` there.
+    ///
+    /// Branch and bound: an interval whose quintic stays below the record is dropped; one with a simple maximum is solved by
+    /// Newton steps on the slope; any other is halved.
+    fn search<const N: usize>(
+        &mut self,
+        segment: &impl Segment<N>,
+        a: f64,
+        at_a: [f64; 3],
+        b: f64,
+        at_b: [f64; 3],
+        depth: u32,
+    ) where
+        F: Fn(Drive, &[f64; N]) -> [f64; 3],
+    {
+        let h = b - a;
+        let screen = SCREEN * 0.015_625_f64.powi(depth.min(8) as i32) * at_a[0].abs().max(at_b[0].abs());
+        if quintic_ceiling(h, at_a, at_b) + screen <= self.record.value {
+            return;
+        }
+        let exact = |theta: f64| {
+            let knot = segment.at(theta);
+            (knot.t, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
+        };
+        if at_a[1] > 0.0 && at_b[1] < 0.0 && at_a[2] < 0.0 && at_b[2] < 0.0 {
+            // Concave at both ends: one maximum. The quantity is flat there, so an error δ of its place costs δ².
+            let (mut lower, mut upper) = (a, b);
+            let mut theta = a + h * at_a[1] / (at_a[1] - at_b[1]);
+            for _ in 0..30 {
+                let (t, [value, slope, curvature]) = exact(theta);
+                if slope > 0.0 {
+                    lower = theta
+                } else {
+                    upper = theta
+                }
+                let step = -slope / curvature;
+                // What is left to gain, slope² / 2|curvature|, is below rounding.
+                if 0.5 * slope * step <= 1e-16 * value.abs() || upper - lower <= 4.0 * f64::EPSILON * upper {
+                    return self.note(value, t);
+                }
+                let newton = theta + step;
+                theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+            }
+            let (t, [value, ..]) = exact(theta);
+            return self.note(value, t);
+        }
+        if depth >= 40 {
+            return;
+        }
+        let middle = 0.5 * (a + b);
+        let (t, at_middle) = exact(middle);
+        self.note(at_middle[0], t);
+        self.search(segment, a, at_a, middle, at_middle, depth + 1);
+        self.search(segment, middle, at_middle, b, at_b, depth + 1);
+    }
+}
+
+impl<const N: usize, F> Observer<N> for Peak<F>
+where
+    F: Fn(Drive, &[f64; N]) -> [f64; 3],
+{
+    #[inline(always)]
+    fn segment(&mut self, segment: &impl Segment<N>) {
+        let [a, b] = segment.ends();
+        let rates_a = match self.last {
+            Some((t, rates)) if t == a.t => rates,
+            _ => {
+                let rates = (self.rates)(a.drive, &a.y);
+                self.note(rates[0], a.t);
+                rates
+            }
+        };
+        let rates_b = (self.rates)(b.drive, &b.y);
+        self.last = Some((b.t, rates_b));
+        self.note(rates_b[0], b.t);
+        let (at_a, at_b) = (in_theta(rates_a, a.clock), in_theta(rates_b, b.clock));
+        let ceiling = quintic_ceiling(segment.length(), at_a, at_b);
+        if ceiling + SCREEN * rates_a[0].abs().max(rates_b[0].abs()) > self.record.value {
+            self.search(segment, 0.0, at_a, segment.length(), at_b, 0);
+        }
+    }
+
+    fn satisfied(&self) -> bool {
+        self.record.value > self.cutoff
+    }
+}

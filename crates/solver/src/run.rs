@@ -1,0 +1,302 @@
+//! A run: a scene, a window of time and a method in; what was observed out.
+
+use crate::hybrid::{Hybrid, Motion, Phase};
+use crate::observe::{Knot, Observer, Peak, Segment, Unobserved};
+use crate::onestep::{OneStep, Run};
+use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
+use crate::{bare, ode23s::Ode23s, ode45::Ode45};
+use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
+
+/// Largest energy of the primary structure over the window, J, and when.
+///
+/// The run may end early, with any value above `cutoff` (J), once the maximum exceeds `cutoff`; pass infinity for the exact
+/// maximum.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn e1_max(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    cutoff: f64,
+) -> Result<Extreme, SolverError> {
+    match &scene.damper {
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            let mut peak =
+                Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), cutoff);
+            follow_bare(&system, window, settings, &mut Unobserved, &mut peak)?;
+            Ok(peak.record())
+        }
+        Some(damper) => {
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            let mut peak =
+                Peak::new(|drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), cutoff);
+            follow_coupled(&system, window, settings, &mut Unobserved, &mut peak)?;
+            Ok(peak.record())
+        }
+    }
+}
+
+/// Everything that [`Response`] reports of a run.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+    match &scene.damper {
+        None => simulate_bare(&Bare::new(&scene.primary, &scene.forcing), window, settings),
+        Some(damper) => {
+            simulate_coupled(&Coupled::new(&scene.primary, &scene.forcing, damper), window, settings)
+        }
+    }
+}
+
+fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+    let mut peak =
+        Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), f64::INFINITY);
+    let (state, work) = follow_bare(system, window, settings, &mut Unobserved, &mut peak)?;
+    Ok(Response {
+        e1_max: peak.record(),
+        e2_max: Extreme { value: 0.0, time: window.from },
+        impacts: [0; 2],
+        force_max: [0.0; 2],
+        stroke_max: 0.0,
+        final_state: [state[0], state[1], 0.0, 0.0],
+        scene: SceneKind::Bare,
+        work,
+    })
+}
+
+fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+    let stroke =
+        |sign: f64| move |drive: Drive, y: &[f64; 4]| system.stroke_rates(drive, y).map(|v| sign * v);
+    let mut before = Touches::default();
+    let mut seen = Everything {
+        e1: Peak::new(|drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), f64::INFINITY),
+        e2: Peak::new(|drive: Drive, y: &[f64; 4]| system.damper_energy_rates(drive, y), f64::INFINITY),
+        farthest: Peak::new(stroke(1.0), f64::INFINITY),
+        nearest: Peak::new(stroke(-1.0), f64::INFINITY),
+        touches: Touches::default(),
+    };
+    let (final_state, work) = follow_coupled(system, window, settings, &mut before, &mut seen)?;
+    let (nearest, farthest) = (-seen.nearest.record().value, seen.farthest.record().value);
+    let force = |side: Side, z: f64| hertz_force(system.hertz(side), z);
+    let touched = before.0 != [0; 2] || seen.touches.0 != [0; 2];
+    Ok(Response {
+        e1_max: seen.e1.record(),
+        e2_max: seen.e2.record(),
+        impacts: seen.touches.0,
+        force_max: [
+            force(Side::Primary, -nearest),
+            force(Side::Obstacle, farthest - system.wall(Side::Obstacle)),
+        ],
+        stroke_max: farthest.abs().max(nearest.abs()),
+        final_state,
+        scene: if touched { SceneKind::Contact } else { SceneKind::Linear },
+        work,
+    })
+}
+
+/// Touch-downs on each wall.
+#[derive(Default)]
+struct Touches([u64; 2]);
+
+impl Observer<4> for Touches {
+    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn touch_down(&mut self, _t: f64, side: Side) {
+        self.0[side as usize] += 1;
+    }
+}
+
+struct Everything<E1, E2, F, G> {
+    e1: Peak<E1>,
+    e2: Peak<E2>,
+    farthest: Peak<F>,
+    nearest: Peak<G>,
+    touches: Touches,
+}
+
+impl<E1, E2, F, G> Observer<4> for Everything<E1, E2, F, G>
+where
+    E1: Fn(Drive, &[f64; 4]) -> [f64; 3],
+    E2: Fn(Drive, &[f64; 4]) -> [f64; 3],
+    F: Fn(Drive, &[f64; 4]) -> [f64; 3],
+    G: Fn(Drive, &[f64; 4]) -> [f64; 3],
+{
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.e1.segment(segment);
+        self.e2.segment(segment);
+        self.farthest.segment(segment);
+        self.nearest.segment(segment);
+    }
+    fn touch_down(&mut self, t: f64, side: Side) {
+        self.touches.touch_down(t, side);
+    }
+}
+
+/// A moment of a recorded trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time, s.
+    pub t: f64,
+    /// `[x1, v1, x2, v2]` (m, m/s); `[x1, v1, 0, 0]` without a damper.
+    pub state: [f64; 4],
+    /// Energy of the primary structure, J.
+    pub e1: f64,
+    /// Energy of the damper, the paper's E2, J.
+    pub e2: f64,
+    /// Contact forces on the primary structure and on the obstacle, N.
+    pub forces: [f64; 2],
+}
+
+/// Visits the motion at `window.from + k interval` (s) for `k = 0, 1, …` up to the end of the window.
+///
+/// # Errors
+/// [`SolverError`] with the time reached; samples before that have been visited.
+pub fn trajectory(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    interval: f64,
+    visit: &mut dyn FnMut(&Sample),
+) -> Result<(), SolverError> {
+    match &scene.damper {
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            let sample = |knot: &Knot<2>| {
+                let [x1, v1] = knot.y;
+                visit(&Sample {
+                    t: knot.t,
+                    state: [x1, v1, 0.0, 0.0],
+                    e1: system.primary_energy(x1, v1),
+                    e2: 0.0,
+                    forces: [0.0; 2],
+                });
+            };
+            let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
+            follow_bare(&system, window, settings, &mut Unobserved, &mut recorder)?;
+        }
+        Some(damper) => {
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            let sample = |knot: &Knot<4>| {
+                visit(&Sample {
+                    t: knot.t,
+                    state: knot.y,
+                    e1: system.bare().primary_energy(knot.y[0], knot.y[1]),
+                    e2: system.damper_energy_rates(knot.drive, &knot.y)[0],
+                    forces: system.contact_forces(&knot.y),
+                });
+            };
+            let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
+            follow_coupled(&system, window, settings, &mut Unobserved, &mut recorder)?;
+        }
+    }
+    Ok(())
+}
+
+struct Recorder<F> {
+    start: f64,
+    interval: f64,
+    next: f64,
+    visit: F,
+}
+
+impl<const N: usize, F: FnMut(&Knot<N>)> Observer<N> for Recorder<F> {
+    fn segment(&mut self, segment: &impl Segment<N>) {
+        let [from, to] = segment.ends();
+        loop {
+            let t = self.start + self.next * self.interval;
+            if t > to.t {
+                return;
+            }
+            (self.visit)(&if t <= from.t {
+                *from
+            } else if t == to.t {
+                *to
+            } else {
+                segment.at_time(t)
+            });
+            self.next += 1.0;
+        }
+    }
+}
+
+fn follow_bare(
+    system: &Bare,
+    window: Window,
+    settings: &Settings,
+    before: &mut impl Observer<2>,
+    observer: &mut impl Observer<2>,
+) -> Result<([f64; 2], Work), SolverError> {
+    let steps = |run: Run<'_, Bare, 2>| (run.state(), run.work);
+    match settings.method {
+        Method::Hybrid => {
+            let mut work = Work::default();
+            let y = bare::propagate(
+                system,
+                (0.0, system.rest()),
+                window.from,
+                settings.max_steps,
+                &mut work,
+                before,
+            )?;
+            let y = bare::propagate(
+                system,
+                (window.from, y),
+                window.to,
+                settings.max_steps,
+                &mut work,
+                observer,
+            )?;
+            Ok((y, work))
+        }
+        Method::Ode23s => {
+            one_step::<Ode23s, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
+        }
+        Method::Ode45 => {
+            one_step::<Ode45, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
+        }
+    }
+}
+
+#[inline(always)]
+fn follow_coupled(
+    system: &Coupled,
+    window: Window,
+    settings: &Settings,
+    before: &mut impl Observer<4>,
+    observer: &mut impl Observer<4>,
+) -> Result<([f64; 4], Work), SolverError> {
+    let steps = |run: Run<'_, Coupled, 4>| (run.state(), run.work);
+    match settings.method {
+        Method::Hybrid => {
+            let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
+            let start = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+            let middle =
+                if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
+            let end = hybrid.propagate(middle, window.to, observer)?;
+            Ok((end.y, hybrid.work))
+        }
+        Method::Ode23s => {
+            one_step::<Ode23s, _, 4>(system, system.rest(), window, settings, before, observer).map(steps)
+        }
+        Method::Ode45 => {
+            one_step::<Ode45, _, 4>(system, system.rest(), window, settings, before, observer).map(steps)
+        }
+    }
+}
+
+fn one_step<'a, M: OneStep<N>, S: crate::System<N>, const N: usize>(
+    system: &'a S,
+    rest: [f64; N],
+    window: Window,
+    settings: &Settings,
+    before: &mut impl Observer<N>,
+    observer: &mut impl Observer<N>,
+) -> Result<Run<'a, S, N>, SolverError> {
+    let longest = 0.1 * window.to; // MATLAB's
+    let mut run = Run::new(system, settings, 0.0, rest, longest);
+    run.integrate::<M>(window.from, before)?;
+    run.integrate::<M>(window.to, observer)?;
+    Ok(run)
+}
