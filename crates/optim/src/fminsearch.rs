@@ -18,6 +18,7 @@
 //! # Saving a run
 //! The solver is the whole state of a run and serialises. [`Fminsearch::run`] continues where it was: break from
 //! `watch`, save the solver, and run it again, now or in another process. The rows are those of an unbroken run.
+//! (In an `Executor` of your own the observers' `observe_init` sees the last row of a continued run again.)
 
 mod options;
 mod saved;

@@ -4,7 +4,7 @@
 mod problems;
 
 use problems::{PROBLEMS, quadratic, rosenbrock};
-use retune_optim::{Bounds, Error, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
+use retune_optim::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
 
@@ -134,6 +134,11 @@ fn exact_limits_end_the_run() {
     let (reason, _, evaluations) = stop(limited(None, Some(20)));
     assert_eq!(reason, Stop::MaxFunEvals);
     assert!((20..20 + 6).contains(&evaluations), "{evaluations}: the last iteration is finished");
+    // MATLAB's own run of Rosenbrock's function has 27 evaluations after iteration 13.
+    for (max_iter, max_fun_evals) in [(None, 26), (None, 27), (Some(13), 27)] {
+        let (found, _) = run(|x, _| rosenbrock(x), &[-1.2, 1.0], limited(max_iter, Some(max_fun_evals)));
+        assert_eq!((found.stop, found.iterations, found.func_count), (Stop::MaxFunEvals, 13, 27));
+    }
     // An objective that falls for ever has no other end than 200 iterations for each coordinate.
     let (found, _) = run(|x, _| -x[0], &[1.0], Options { max_fun_evals: Some(10_000), ..Options::default() });
     assert_eq!((found.stop, found.iterations), (Stop::MaxIter, 200));
@@ -225,6 +230,15 @@ fn exact_invalid_input_is_refused_by_index_and_value() {
     let no_value =
         minimize(|_, _| f64::NEG_INFINITY, &[1.0], Options::default(), |_| ControlFlow::Continue(()));
     assert_eq!(no_value, Err(Error::StartValue { value: f64::NEG_INFINITY }));
+}
+
+#[test]
+fn exact_a_start_without_a_value_leaves_the_run_as_new() {
+    let mut solver = Fminsearch::new(&[1.0], Options::default()).expect("a valid start");
+    let new = solver.clone();
+    let failed = solver.run(|_, _| f64::INFINITY, |row| panic!("told {row:?}"));
+    assert_eq!(failed, Err(Error::StartValue { value: f64::INFINITY }));
+    assert_eq!(solver, new);
 }
 
 #[test]

@@ -111,6 +111,12 @@ mod tests {
     }
 
     #[test]
+    fn exact_shrink_is_matlabs_formula_to_the_last_bit() {
+        assert_eq!(shrunk(&[0.1], &[0.7], 0.5), [0.4]);
+        assert_ne!(0.5 * 0.1 + 0.5 * 0.7, 0.4, "the same point written otherwise");
+    }
+
+    #[test]
     fn exact_ties_keep_their_order() {
         let mut simplex =
             vec![vertex(&[1.0], 2.0), vertex(&[2.0], 0.0), vertex(&[3.0], -0.0), vertex(&[4.0], 0.0)];
