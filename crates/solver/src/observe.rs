@@ -98,6 +98,19 @@ fn quintic(h: f64, a: [f64; 3], b: [f64; 3]) -> [f64; 6] {
     [a[0], inner_a, deep_a, deep_b, inner_b, b[0]]
 }
 
+/// Where the slope is zero on an interval of length `h` at whose ends it is positive, then negative: a root of the cubic that
+/// meets slope and curvature at both ends.
+fn slope_root(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
+    let (c0, c1) = (a[1], h * a[2]);
+    let (c2, c3) = (3.0 * (b[1] - a[1]) - h * (2.0 * a[2] + b[2]), 2.0 * (a[1] - b[1]) + h * (a[2] + b[2]));
+    let mut s = a[1] / (a[1] - b[1]);
+    for _ in 0..3 {
+        let (value, slope) = (c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2.0 * c2 + s * 3.0 * c3));
+        s = (s - value / slope).clamp(0.0, 1.0);
+    }
+    if s.is_nan() { 0.5 * h } else { s * h }
+}
+
 /// A place in a segment with `[value, slope, curvature]` there.
 type Place = (f64, [f64; 3]);
 
@@ -125,17 +138,18 @@ impl<F> Peak<F> {
             (knot.t, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
         };
         if at_a[1] > 0.0 && at_b[1] < 0.0 && at_a[2] < 0.0 && at_b[2] < 0.0 {
-            // Concave at both ends: one maximum. The quantity is flat there, so an error δ of its place costs δ².
+            // Concave at both ends: one maximum. The quantity is flat there: an error δ of its place costs δ², and that is
+            // put right by the parabola, `slope² / 2|curvature|` more, which leaves an error of order δ³.
             let (mut lower, mut upper) = (a, b);
-            let mut theta = a + h * at_a[1] / (at_a[1] - at_b[1]);
+            let mut theta = a + slope_root(h, at_a, at_b);
             for _ in 0..60 {
                 let (t, [value, slope, curvature]) = exact(theta);
                 note(&mut self.record, value, t);
                 if slope > 0.0 { lower = theta } else { upper = theta }
                 let step = -slope / curvature;
-                // Nothing is left when what a Newton step would gain, slope² / 2|curvature|, is below rounding.
-                if curvature < 0.0 && 0.5 * slope * step <= 1e-16 * value.abs() || upper - lower <= f64::EPSILON * upper {
-                    return;
+                let gain = 0.5 * slope * step;
+                if curvature < 0.0 && gain <= 1e-10 * value.abs() {
+                    return note(&mut self.record, value + gain, t);
                 }
                 let newton = theta + step;
                 theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
