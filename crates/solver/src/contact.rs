@@ -72,7 +72,11 @@ fn at_elapsed(
     let mut y = step(equations, from, slope, theta).y;
     for _ in 0..100 {
         let excess = y[TIME] - elapsed;
-        if excess < 0.0 { lower = theta } else { upper = theta }
+        if excess < 0.0 {
+            lower = theta
+        } else {
+            upper = theta
+        }
         let newton = theta - excess / y[Q];
         let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
         if (next - theta).abs() <= 2.0 * f64::EPSILON * length {
@@ -190,7 +194,14 @@ pub fn integrate(
             end.t = to;
         }
         let length = next[THETA] - y[THETA];
-        observer.segment(&Piece { equations, touch_down, from: &y, slope: &slope, length, ends: [start, end] });
+        observer.segment(&Piece {
+            equations,
+            touch_down,
+            from: &y,
+            slope: &slope,
+            length,
+            ends: [start, end],
+        });
         if over || observer.satisfied() {
             return Ok(End::Pressed(end));
         }

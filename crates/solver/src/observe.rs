@@ -120,8 +120,13 @@ impl<F> Peak<F> {
     /// Branch and bound: an interval on which the quantity stays below the record, or is monotone, is dropped; one with a
     /// simple maximum is solved by Newton steps on the slope; any other is halved. `remainder` bounds how far the quantity
     /// leaves its quintic; its slope leaves the quintic's by at most 3.5 times that over `h` (a sixth-order remainder).
-    fn search<const N: usize>(&mut self, segment: &impl Segment<N>, (a, at_a): Place, (b, at_b): Place, remainder: f64)
-    where
+    fn search<const N: usize>(
+        &mut self,
+        segment: &impl Segment<N>,
+        (a, at_a): Place,
+        (b, at_b): Place,
+        remainder: f64,
+    ) where
         F: Fn(Drive, &[f64; N]) -> [f64; 3],
     {
         let h = b - a;
@@ -145,7 +150,11 @@ impl<F> Peak<F> {
             for _ in 0..60 {
                 let (t, [value, slope, curvature]) = exact(theta);
                 note(&mut self.record, value, t);
-                if slope > 0.0 { lower = theta } else { upper = theta }
+                if slope > 0.0 {
+                    lower = theta
+                } else {
+                    upper = theta
+                }
                 let step = -slope / curvature;
                 let gain = 0.5 * slope * step;
                 if curvature < 0.0 && gain <= 1e-10 * value.abs() {
