@@ -64,6 +64,9 @@ pub struct Peak<F> {
 /// the motion) the remainder is `2⁶ / 46080` of its amplitude.
 const SCREEN: f64 = 2e-3;
 
+/// Share of a segment below which an interval is not halved: its square is a rounding error.
+const SHORTEST: f64 = 1e-8;
+
 impl<F> Peak<F> {
     /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
     /// the value exceeds `cutoff`.
@@ -168,7 +171,9 @@ impl<F> Peak<F> {
             return;
         }
         let middle = 0.5 * (a + b);
-        if remainder < 1e-15 * self.record.value.abs() || middle <= a || middle >= b {
+        // An interval this short adds less than rounding to what the quantity varies over the segment: a place where it only
+        // touches the record (a stroke of 0 at each lift-off) ends here.
+        if remainder < 1e-15 * self.record.value.abs() || h <= SHORTEST * segment.length() {
             return;
         }
         let (t, at_middle) = exact(middle);
