@@ -1,1 +1,17 @@
-//! Retune: optim.
+//! Searches for the parameters that make an objective small.
+//!
+//! The methods receive a closure and know nothing of what it computes: no springs, no files, no clocks.
+//! What happens on the way is told to the caller's observers; nothing is printed.
+//!
+//! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
+//!   number of threads; [`best_separated`] picks starts for a refinement from it.
+//! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998) as an argmin solver, [`Fminsearch`], which logs
+//!   each iteration and can be saved and continued.
+
+pub mod fminsearch;
+pub mod grid;
+pub mod surf;
+
+pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
+pub use grid::{Axis, AxisError, Grid, GridError, Scale};
+pub use surf::{best_separated, surf};

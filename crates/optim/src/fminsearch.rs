@@ -1,0 +1,244 @@
+//! MATLAB's `fminsearch`: the Nelder–Mead simplex method as Lagarias, Reeds, Wright & Wright (1998) state it,
+//! "Convergence properties of the Nelder–Mead simplex method in low dimensions", SIAM J. Optim. 9(1), 112–147,
+//! with MATLAB's initial simplex, stop test, names and order of arithmetic.
+//!
+//! - The simplex starts at the given point and 5 % along each coordinate (0.00025 where it is zero).
+//! - Points outside the box are not evaluated. They, and points where the objective is NaN or infinite (either
+//!   sign), count as +∞: they are never accepted and push the simplex back.
+//! - A run stops once the simplex is small in *both* x and value, or at MaxIter or MaxFunEvals iterations and
+//!   evaluations. As in MATLAB the limits are looked at between iterations, so the last one may pass MaxFunEvals.
+//! - The objective is given a cutoff and may stop early above it; see [`minimize`].
+//!
+//! # With argmin
+//! [`Fminsearch`] is an [`argmin::core::Solver`] over [`State`]; [`minimize`] and [`Fminsearch::run`] drive it with
+//! argmin's `Executor`. Observers of an `Executor` of your own receive the same rows: the parameters and cost of
+//! the state are the best vertex, and the key-value store holds `iteration`, `func_count` and `procedure`. They must
+//! be `'static` and cannot end a run, which is why `run` has a `watch` closure instead: it may borrow and may break.
+//!
+//! # Saving a run
+//! The solver is the whole state of a run and serialises. [`Fminsearch::run`] continues where it was: break from
+//! `watch`, save the solver, and run it again, now or in another process. The rows are those of an unbroken run.
+//! (In an `Executor` of your own the observers' `observe_init` sees the last row of a continued run again.)
+
+mod options;
+mod saved;
+mod simplex;
+mod solver;
+mod start;
+
+pub use options::{Bounds, Error, Options, Scaling};
+pub use solver::Fminsearch;
+
+use argmin::core::{
+    Error as ArgminError, Executor, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus,
+};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// The argmin state of a run: its parameters and cost are the best vertex.
+pub type State = IterState<Vec<f64>, (), (), (), (), f64>;
+
+/// What an iteration did, by MATLAB's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Procedure {
+    /// Evaluated the start (iteration 0).
+    #[serde(rename = "")]
+    Start,
+    /// Evaluated the other vertices of the first simplex (iteration 1).
+    #[serde(rename = "initial simplex")]
+    InitialSimplex,
+    /// Took the reflected point, be it because it was good enough or because expanding it did not help.
+    #[serde(rename = "reflect")]
+    Reflect,
+    /// Took the expanded point.
+    #[serde(rename = "expand")]
+    Expand,
+    /// Took a point between the centroid and the worst vertex.
+    #[serde(rename = "contract inside")]
+    ContractInside,
+    /// Took a point between the centroid and the reflected point.
+    #[serde(rename = "contract outside")]
+    ContractOutside,
+    /// Moved all vertices halfway to the best one.
+    #[serde(rename = "shrink")]
+    Shrink,
+}
+
+impl Procedure {
+    /// MATLAB's name: empty for the start, then `initial simplex`, `reflect`, `expand`, `contract inside`,
+    /// `contract outside`, `shrink`.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Start => "",
+            Self::InitialSimplex => "initial simplex",
+            Self::Reflect => "reflect",
+            Self::Expand => "expand",
+            Self::ContractInside => "contract inside",
+            Self::ContractOutside => "contract outside",
+            Self::Shrink => "shrink",
+        }
+    }
+}
+
+impl std::fmt::Display for Procedure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.label())
+    }
+}
+
+/// One line of the log: the state after an iteration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// 0 for the start, 1 for the initial simplex, then one for each step.
+    pub iteration: u64,
+    /// Evaluations of the objective so far.
+    pub func_count: u64,
+    /// What the iteration did.
+    pub procedure: Procedure,
+    /// The best parameters so far, as the objective receives them (never scaled).
+    pub best: Vec<f64>,
+    /// The objective there.
+    pub value: f64,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Stop {
+    /// The simplex is smaller than both tolerances.
+    Converged,
+    /// The number of iterations reached [`Options::max_iter`].
+    MaxIter,
+    /// The number of evaluations reached [`Options::max_fun_evals`].
+    MaxFunEvals,
+    /// `watch` broke off before any of the other reasons held.
+    Interrupted,
+}
+
+/// The best point of a run and how it was reached.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Minimum {
+    /// The best parameters, as the objective receives them (never scaled).
+    pub x: Vec<f64>,
+    /// The objective there.
+    pub value: f64,
+    /// Iterations done, the initial simplex included.
+    pub iterations: u64,
+    /// Evaluations of the objective.
+    pub func_count: u64,
+    /// Why the run ended.
+    pub stop: Stop,
+    /// The coordinates the simplex moved in, and so the meaning of `tol_x`.
+    pub scaling: Scaling,
+}
+
+/// Minimises `objective` from `start` with MATLAB's `fminsearch`.
+///
+/// `objective(parameters, cutoff)` returns the value at `parameters` (as many as `start`, in its order and units).
+/// As soon as it knows that the value exceeds `cutoff` it may stop and return any larger number instead, NaN and
+/// infinities included: the run is the same to the last bit. A value of at most `cutoff` must be exact. `cutoff` is
+/// +∞ where the value is needed whatever it is.
+///
+/// `watch` sees each [`Row`] as it happens and may end the run with [`ControlFlow::Break`]. A break on the row that
+/// ends the run anyway leaves that row's own reason.
+///
+/// # Errors
+/// Invalid options, a start that is empty, not finite or outside its bounds ([`Fminsearch::new`]), or one where the
+/// objective is not finite ([`Error::StartValue`]).
+///
+/// # Example
+/// ```
+/// use retune_optim::{Options, Stop, minimize};
+/// use std::ops::ControlFlow;
+///
+/// let bowl = |x: &[f64], _cutoff: f64| (x[0] - 3.0).powi(2) + (x[1] + 1.0).powi(2);
+/// let found = minimize(bowl, &[1.0, 1.0], Options::default(), |_row| ControlFlow::Continue(()))?;
+/// assert_eq!(found.stop, Stop::Converged);
+/// assert!((found.x[0] - 3.0).abs() < 1e-3 && (found.x[1] + 1.0).abs() < 1e-3);
+/// # Ok::<(), retune_optim::Error>(())
+/// ```
+pub fn minimize(
+    objective: impl Fn(&[f64], f64) -> f64,
+    start: &[f64],
+    options: Options,
+    watch: impl FnMut(&Row) -> ControlFlow<()>,
+) -> Result<Minimum, Error> {
+    Fminsearch::new(start, options)?.run(objective, watch)
+}
+
+impl Fminsearch {
+    /// Runs, or continues, until a stop test holds or `watch` breaks; see [`minimize`] for both closures.
+    ///
+    /// After an interruption the solver can be saved, and run again to go on with the next row.
+    ///
+    /// # Errors
+    /// [`Error::StartValue`] where the objective is not finite at the start; the solver is then as new.
+    pub fn run(
+        &mut self,
+        objective: impl Fn(&[f64], f64) -> f64,
+        watch: impl FnMut(&Row) -> ControlFlow<()>,
+    ) -> Result<Minimum, Error> {
+        Executor::new(objective, Watched { solver: self, watch, broken: false })
+            .ctrlc(false)
+            .run()
+            .map_err(|error| error.downcast().unwrap_or_else(|other| Error::Executor(other.to_string())))?;
+        let Row { iteration, func_count, best, value, .. } = self.row();
+        let stop = self.stop().unwrap_or(Stop::Interrupted);
+        Ok(Minimum {
+            x: best,
+            value,
+            iterations: iteration,
+            func_count,
+            stop,
+            scaling: self.options().scaling,
+        })
+    }
+}
+
+/// A run that tells `watch` each new row and ends once it has broken.
+struct Watched<'a, W> {
+    solver: &'a mut Fminsearch,
+    watch: W,
+    broken: bool,
+}
+
+impl<W: FnMut(&Row) -> ControlFlow<()>> Watched<'_, W> {
+    fn tell(&mut self) {
+        self.broken = (self.watch)(&self.solver.row()).is_break();
+    }
+}
+
+impl<O, W> Solver<O, State> for Watched<'_, W>
+where
+    O: Fn(&[f64], f64) -> f64,
+    W: FnMut(&Row) -> ControlFlow<()>,
+{
+    fn name(&self) -> &str {
+        Solver::<O, State>::name(self.solver)
+    }
+
+    fn init(&mut self, problem: &mut Problem<O>, state: State) -> Result<(State, Option<KV>), ArgminError> {
+        let fresh = !self.solver.has_begun();
+        let answer = self.solver.init(problem, state)?;
+        if fresh {
+            self.tell();
+        }
+        Ok(answer)
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<O>,
+        state: State,
+    ) -> Result<(State, Option<KV>), ArgminError> {
+        let answer = self.solver.next_iter(problem, state)?;
+        self.tell();
+        Ok(answer)
+    }
+
+    fn terminate(&mut self, state: &State) -> TerminationStatus {
+        if self.broken {
+            return TerminationStatus::Terminated(TerminationReason::Interrupt);
+        }
+        Solver::<O, State>::terminate(self.solver, state)
+    }
+}

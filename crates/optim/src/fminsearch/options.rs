@@ -1,0 +1,184 @@
+//! What a run of [`fminsearch`](super) may be told, and what is wrong with it.
+
+use serde::{Deserialize, Serialize};
+
+/// Why a run cannot start. Coordinates are counted from 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The start has no coordinate.
+    #[error("the start has no coordinate")]
+    EmptyStart,
+    /// A coordinate of the start is NaN or infinite.
+    #[error("coordinate {index} of the start is {value}: it must be finite")]
+    StartNotFinite {
+        /// Which coordinate.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The start lies outside the box.
+    #[error("coordinate {index} of the start is {value}, outside its bounds {bounds}")]
+    StartOutside {
+        /// Which coordinate.
+        index: usize,
+        /// Its value.
+        value: f64,
+        /// The bounds it violates.
+        bounds: Bounds,
+    },
+    /// The objective has no finite value at the start.
+    #[error("the objective is {value} at the start: it must be finite there")]
+    StartValue {
+        /// What the objective returned.
+        value: f64,
+    },
+    /// Bounds were given for another number of coordinates.
+    #[error("{given} bounds for {expected} coordinates: give one for each, or none")]
+    BoundsCount {
+        /// Coordinates of the start.
+        expected: usize,
+        /// Bounds given.
+        given: usize,
+    },
+    /// Bounds that leave no room: the lower is not below the upper, or one is NaN or infinite.
+    #[error("the bounds of coordinate {index} are {bounds}: the lower must be below the upper, both finite")]
+    EmptyBounds {
+        /// Which coordinate.
+        index: usize,
+        /// Its bounds.
+        bounds: Bounds,
+    },
+    /// A tolerance is negative, NaN or infinite.
+    #[error("`{name}` is {value}: it must be finite and not negative")]
+    Tolerance {
+        /// `tol_x` or `tol_fun`.
+        name: &'static str,
+        /// The tolerance.
+        value: f64,
+    },
+    /// argmin's executor failed in a way this solver does not know.
+    #[error("argmin: {0}")]
+    Executor(String),
+}
+
+/// The range a coordinate may take, both ends included; `None` is no bound.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bounds {
+    /// Smallest value allowed.
+    pub lower: Option<f64>,
+    /// Largest value allowed.
+    pub upper: Option<f64>,
+}
+
+impl Bounds {
+    /// The closed range from `lower` to `upper`.
+    pub fn between(lower: f64, upper: f64) -> Self {
+        Self { lower: Some(lower), upper: Some(upper) }
+    }
+
+    /// Whether `x` is a finite number within the bounds.
+    pub fn contain(&self, x: f64) -> bool {
+        x.is_finite()
+            && self.lower.is_none_or(|lower| lower <= x)
+            && self.upper.is_none_or(|upper| x <= upper)
+    }
+
+    fn have_room(&self) -> bool {
+        let finite = [self.lower, self.upper].into_iter().flatten().all(f64::is_finite);
+        let ordered = self.lower.zip(self.upper).is_none_or(|(lower, upper)| lower < upper);
+        finite && ordered
+    }
+}
+
+impl std::fmt::Display for Bounds {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (self.lower, self.upper) {
+            (Some(lower), Some(upper)) => write!(f, "[{lower}, {upper}]"),
+            (Some(lower), None) => write!(f, "[{lower}, ∞)"),
+            (None, Some(upper)) => write!(f, "(−∞, {upper}]"),
+            (None, None) => write!(f, "(−∞, ∞)"),
+        }
+    }
+}
+
+/// The coordinates in which the simplex moves and [`Options::tol_x`] is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scaling {
+    /// The parameters as given, as MATLAB does it: one absolute `tol_x` for all of them, whatever their sizes.
+    #[default]
+    None,
+    /// Each parameter divided by the magnitude of its start (by 1 where that is zero): `tol_x` is relative.
+    Start,
+}
+
+/// Settings of a run; the default is MATLAB's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// TolX: largest distance of a vertex from the best one, along any coordinate, at which a run may stop.
+    pub tol_x: f64,
+    /// TolFun: largest difference of a vertex's value from the best one at which a run may stop.
+    pub tol_fun: f64,
+    /// MaxIter: iterations after which a run stops; `None` is 200 for each coordinate.
+    pub max_iter: Option<u64>,
+    /// MaxFunEvals: evaluations after which a run stops, at the end of the iteration that reaches them; `None` is
+    /// 200 for each coordinate.
+    pub max_fun_evals: Option<u64>,
+    /// The box to stay in: bounds for each coordinate, or empty for none.
+    pub bounds: Vec<Bounds>,
+    /// The coordinates to work in.
+    pub scaling: Scaling,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tol_x: 1e-4,
+            tol_fun: 1e-4,
+            max_iter: None,
+            max_fun_evals: None,
+            bounds: Vec::new(),
+            scaling: Scaling::None,
+        }
+    }
+}
+
+impl Options {
+    /// Checks these options and `start` against each other.
+    ///
+    /// # Errors
+    /// Every variant of [`Error`] but [`Error::StartValue`] and [`Error::Executor`].
+    pub(super) fn check(&self, start: &[f64]) -> Result<(), Error> {
+        if start.is_empty() {
+            return Err(Error::EmptyStart);
+        }
+        for (name, value) in [("tol_x", self.tol_x), ("tol_fun", self.tol_fun)] {
+            if !value.is_finite() || value < 0.0 {
+                return Err(Error::Tolerance { name, value });
+            }
+        }
+        if !self.bounds.is_empty() && self.bounds.len() != start.len() {
+            return Err(Error::BoundsCount { expected: start.len(), given: self.bounds.len() });
+        }
+        for (index, &value) in start.iter().enumerate() {
+            if !value.is_finite() {
+                return Err(Error::StartNotFinite { index, value });
+            }
+            let bounds = self.bounds_of(index);
+            if !bounds.have_room() {
+                return Err(Error::EmptyBounds { index, bounds });
+            }
+            if !bounds.contain(value) {
+                return Err(Error::StartOutside { index, value, bounds });
+            }
+        }
+        Ok(())
+    }
+
+    /// The bounds of coordinate `index`.
+    pub(super) fn bounds_of(&self, index: usize) -> Bounds {
+        self.bounds.get(index).copied().unwrap_or_default()
+    }
+}

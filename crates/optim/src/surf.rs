@@ -1,0 +1,70 @@
+//! The `surf` stage: an objective on every point of a grid, and the best points of it.
+
+use crate::grid::Grid;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// The objective at every point of `grid`, in the grid's order.
+///
+/// Points are shared among the threads of the current rayon pool. Each value depends on its point alone and goes
+/// to its own place, so the result is the same to the last bit at any number of threads. NaN and infinite values
+/// are kept as they are.
+///
+/// `progress` is told the number of points done, once for each point and from any thread, so numbers may arrive
+/// out of order; each of `1..=grid.len()` arrives once.
+pub fn surf(
+    grid: &Grid,
+    objective: impl Fn(&[f64]) -> f64 + Sync,
+    progress: impl Fn(u64) + Sync,
+) -> Vec<f64> {
+    let done = AtomicU64::new(0);
+    (0..grid.len())
+        .into_par_iter()
+        .map_init(
+            || vec![0.0; grid.dim()], // once for a run of points, not once for a point
+            |point, i| {
+                grid.point(i, point);
+                let value = objective(point);
+                progress(done.fetch_add(1, Relaxed) + 1);
+                value
+            },
+        )
+        .collect()
+}
+
+/// Numbers of the `count` best (smallest) points, best first, any two at least `min_steps` grid steps apart along
+/// some axis (the Chebyshev distance).
+///
+/// Each next point is the smallest finite value far enough from those already taken; of equal values the one with
+/// the lowest number. Points that are not finite are never taken. The list is shorter than `count` where the grid
+/// has no more such points.
+///
+/// # Panics
+/// If `values` is not one value for each point of `grid`.
+pub fn best_separated(grid: &Grid, values: &[f64], count: usize, min_steps: usize) -> Vec<usize> {
+    assert_eq!(values.len(), grid.len(), "one value for each point of the grid");
+    let mut ranked: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
+    // The sort is stable, so equal values (−0 and 0 among them) stay in the order of their numbers.
+    ranked.sort_by(|&a, &b| values[a].partial_cmp(&values[b]).unwrap_or(Ordering::Equal));
+
+    let mut taken: Vec<usize> = Vec::new();
+    let mut taken_steps: Vec<Vec<usize>> = Vec::new();
+    let mut steps = vec![0; grid.dim()];
+    for i in ranked {
+        if taken.len() == count {
+            break;
+        }
+        grid.steps(i, &mut steps);
+        if taken_steps.iter().all(|other| chebyshev(other, &steps) >= min_steps) {
+            taken.push(i);
+            taken_steps.push(steps.clone());
+        }
+    }
+    taken
+}
+
+/// Largest number of steps between two grid points along any axis.
+fn chebyshev(a: &[usize], b: &[usize]) -> usize {
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+}
