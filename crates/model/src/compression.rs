@@ -113,13 +113,26 @@ impl Compression {
         [x1, v1, x1 + self.wall + self.sign * q * q, v1 + self.sign * w]
     }
 
-    /// Length in `θ` (s/√m) of the undisturbed Hertz collision at touch-down speed `w` (m/s), and its largest `q` (√m).
+    /// The largest `q` (√m) of an undisturbed collision at touch-down speed `w` (m/s): `(5 w² / 4κ)^(1/5)`.
+    pub fn greatest_depth(&self, w: f64) -> f64 {
+        (1.25 * w * w / self.hertz[1]).powf(0.2)
+    }
+
+    /// A prediction of the `θ` (s/√m) in which a damper that moves away from the wall will leave it; infinite if it will not.
     ///
-    /// From `w² = w0² - (4/5) κ q⁵`, `κ = K (1/m1 + 1/m2)`: `q_max = (5 w0² / 4κ)^(1/5)` and
-    /// `Θ = (4 q_max / w0) ∫₀¹ dx / √(1 - x⁵)`.
-    pub fn collision(&self, w: f64) -> (f64, f64) {
-        const INTEGRAL: f64 = 1.253_730_624_817_206_9; // √π Γ(6/5) / Γ(7/10)
-        let q_max = (1.25 * w * w / self.hertz[1]).powf(0.2);
-        (4.0 * q_max / w * INTEGRAL, q_max)
+    /// With the acceleration beside Hertz's, `a = dw/dt + κ q³`, held constant, `w² = v² - (4/5) κ q⁵ + 2 a q²`, and
+    /// `θ = ∫₀^q 2 dq / |w|` is expanded in `x = (4/5) κ q⁵ / v²` and `y = 2 a q² / v²`.
+    pub fn theta_to_wall(&self, y: &Compressed) -> f64 {
+        let &[q, w, ..] = y;
+        let depth = 0.8 * self.hertz[1] * q.powi(5);
+        let steady = 2.0 * (self.acceleration(y) + self.hertz[1] * q.powi(3)) * q * q;
+        let v2 = w * w + depth - steady;
+        if v2 <= 0.0 {
+            return f64::INFINITY;
+        }
+        let (x, y) = (depth / v2, steady / v2);
+        let series = 1.0 + x * (1.0 / 12.0 + x * (3.0 / 88.0 + x * (5.0 / 256.0 + x * (5.0 / 384.0))))
+            - y * (1.0 / 6.0 + x * 3.0 / 32.0 - y * 3.0 / 40.0);
+        2.0 * q / v2.sqrt() * series
     }
 }

@@ -1,7 +1,9 @@
-//! One contact, from touch-down to lift-off, in regularised time (see `retune_model::Compression`).
+//! One contact, from touch-down to lift-off, in regularised time (equations: `retune_model::Compression`).
 //!
-//! The equations are polynomial there, so DOP853 keeps its order through both ends of the contact, and lift-off is a simple
-//! root of `q`, reached without iteration by one step with `q` as the independent variable (M. Hénon, Physica D 5, 1982).
+//! The equations are polynomial there, so DOP853 keeps its order through both ends of the contact. Steps are planned from the
+//! undisturbed Hertz collision, whose shape is the same for every speed, and the error estimate checks each. Lift-off is a
+//! simple root of `q`: a step aimed at it and a last short one with `q` as the independent variable (M. Hénon, Physica D 5,
+//! 1982) reach it without iteration.
 
 use crate::dop853::{self, EVALUATIONS, Step};
 use crate::observe::{Knot, Observer, Segment};
@@ -36,6 +38,11 @@ fn knot(equations: &Compression, touch_down: f64, y: &Compressed) -> Knot<4> {
     Knot { t: touch_down + y[TIME], drive: [y[4], y[5]], y: equations.expand(y), clock: [y[Q], 0.5 * y[W]] }
 }
 
+#[inline(always)]
+fn step(equations: &Compression, y: &Compressed, slope: &Compressed, h: f64) -> Step<8> {
+    dop853::step(|y| equations.derivative(y), y, slope, h)
+}
+
 impl Segment<4> for Piece<'_> {
     fn ends(&self) -> [&Knot<4>; 2] {
         [&self.ends[0], &self.ends[1]]
@@ -48,25 +55,12 @@ impl Segment<4> for Piece<'_> {
     }
     fn at_time(&self, t: f64) -> Knot<4> {
         let y = at_elapsed(self.equations, self.from, self.slope, self.length, t - self.touch_down);
-        knot(self.equations, self.touch_down, &y)
+        Knot { t, ..knot(self.equations, self.touch_down, &y) }
     }
 }
 
-/// A step of length `h` in `θ`.
-#[inline(always)]
-fn step(equations: &Compression, y: &Compressed, slope: &Compressed, h: f64) -> Step<8> {
-    dop853::step(|y| equations.derivative(y), y, slope, h)
-}
-
-/// The step to the wall, with `q` as the independent variable: `dy/dq = (dy/dθ) / (w/2)`, from `q` to 0.
-fn step_to_wall(equations: &Compression, y: &Compressed, slope: &Compressed) -> Step<8> {
-    let by_q = |slope: Compressed| slope.map(|s| s / slope[Q]);
-    let mut step = dop853::step(|y| by_q(equations.derivative(y)), y, &by_q(*slope), -y[Q]);
-    step.y[Q] = 0.0;
-    step
-}
-
-/// The state when `elapsed` seconds have passed since touch-down, within the step of `length` from `from`: time grows with θ.
+/// The state when `elapsed` seconds have passed since touch-down, within the step of `length` from `from`: time grows with
+/// θ, so Newton's iteration kept inside by bisection finds it.
 fn at_elapsed(
     equations: &Compression,
     from: &Compressed,
@@ -91,40 +85,53 @@ fn at_elapsed(
         theta = next;
         y = step(equations, from, slope, theta).y;
     }
-    y[TIME] = elapsed;
     y
 }
 
-/// The natural sizes of a contact: errors are measured against the largest `q` and `|w|` that it has seen.
-struct Scale {
+/// The natural sizes of a contact, and the steps planned for it.
+struct Plan {
+    /// Largest `q` (√m) and speed (m/s) seen or expected: errors are measured against them.
     q: f64,
     w: f64,
-    collision: f64,
+    /// `(1/m1 + 1/m2) m1`: errors in `v1` are measured against `w` over this.
+    mass_ratio: f64,
+    /// Step at the deepest point, s/√m.
+    h: f64,
 }
 
-impl Scale {
-    fn new(equations: &Compression, y: &Compressed) -> Self {
-        // A contact that begins pressed in, or at rest, is as long as the collision that would reach as deep.
-        let speed = y[W].abs().max(equations.speed_at_depth(y[Q]));
-        let (collision, q) = equations.collision(speed);
-        Self { q, w: speed, collision }
+impl Plan {
+    /// The step at the deepest point that an error of 1e-9 allows, in units of `2 q_max / w`: where the error estimate of
+    /// DOP853 on the undisturbed collision puts it.
+    const DEEPEST: f64 = 0.115;
+
+    fn new(equations: &Compression, y: &Compressed, rtol: f64) -> Self {
+        // A contact that begins pressed in is as long as the collision that would reach as deep.
+        let w = y[W].abs().max(equations.speed_at_depth(y[Q]));
+        let q = equations.greatest_depth(w);
+        let h = Self::DEEPEST * (rtol / 1e-9).powf(1.0 / 8.0) * 2.0 * q / w;
+        Self { q, w, mass_ratio: equations.mass_ratio(), h }
     }
 
-    fn see(&mut self, y: &Compressed) {
+    /// The step from a state: the nearest singularity of a collision lies above its deepest point, so steps may be longer
+    /// towards the wall, about twice as long at the wall itself.
+    fn step(&self, y: &Compressed) -> f64 {
+        let height = 1.0 - (y[Q] / self.q).min(1.0);
+        self.h * (1.0 + 1.1 * height * height)
+    }
+
+    /// The error of a step over what is allowed, `rtol` of the largest `q` and speeds.
+    #[inline(always)]
+    fn error(&self, h: f64, step: &Step<8>, rtol: f64) -> f64 {
+        let (q, w) = (1.0 / (rtol * self.q), 1.0 / (rtol * self.w));
+        step.error(h, &[q, w, 0.0, w * self.mass_ratio, 0.0, 0.0, 0.0, 0.0], 3.0)
+    }
+
+    /// Learns from a step that had this error.
+    fn adapt(&mut self, error: f64, y: &Compressed) {
+        self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.8, 1.1);
         self.q = self.q.max(y[Q].abs());
         self.w = self.w.max(y[W].abs());
     }
-
-    /// The error of a step over what is allowed.
-    fn error(&self, h: f64, step: &Step<8>, rtol: f64, mass_ratio: f64) -> f64 {
-        let (q, w) = (1.0 / (rtol * self.q), 1.0 / (rtol * self.w));
-        step.error(h, &[q, w, 0.0, w * mass_ratio, 0.0, 0.0, 0.0, 0.0], 3.0)
-    }
-}
-
-/// Steps that a collision takes at a tolerance, from the error constant measured on undisturbed Hertz collisions.
-fn steps_of_a_collision(rtol: f64) -> f64 {
-    (0.35 * rtol.powf(-1.0 / 8.0)).max(2.0)
 }
 
 /// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
@@ -144,41 +151,39 @@ pub fn integrate(
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
     let touch_down = from.t;
-    let mass_ratio = equations.mass_ratio();
-    let mut scale = Scale::new(equations, &y);
-    let shortest = scale.collision * 1e-12;
-    let mut h = scale.collision / steps_of_a_collision(rtol);
+    let mut plan = Plan::new(equations, &y, rtol);
+    let shortest = plan.h * 1e-12;
     let mut start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
     loop {
+        // A step aimed at the wall if it is near enough; the aim need not be good (see `reach_wall`).
+        let planned = plan.step(&y);
+        let left = if y[W] < 0.0 { equations.theta_to_wall(&y) } else { f64::INFINITY };
+        let h = if left < 1.2 * planned { left } else { planned };
         let slope = equations.derivative(&y);
-        let lifting = y[W] < 0.0 && y[Q] < -1.1 * h * slope[Q];
-        let tried =
-            if lifting { step_to_wall(equations, &y, &slope) } else { step(equations, &y, &slope, h) };
+        let tried = step(equations, &y, &slope, h);
         work.evaluations += EVALUATIONS + 1;
-        let length = if lifting { tried.y[THETA] - y[THETA] } else { h };
-        let error = scale.error(if lifting { y[Q] } else { h }, &tried, rtol, mass_ratio);
-        if !(error <= 1.0 && length > 0.0 && (!lifting || tried.y[W] < 0.0)) {
+        let error = plan.error(h, &tried, rtol);
+        let t = touch_down + y[TIME];
+        if error.is_nan() || error > 1.0 {
             work.rejected += 1;
-            h *= if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.7) } else { 0.1 };
-            let t = touch_down + y[TIME];
+            let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
+            plan.h *= factor * (h / planned).min(1.0);
             if !y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t });
             }
-            if h < shortest {
-                return Err(SolverError::StepTooSmall { t, h: h * y[Q] });
+            if plan.h < shortest {
+                return Err(SolverError::StepTooSmall { t, h: plan.h * y[Q] });
             }
             continue;
         }
         work.steps += 1;
         if work.steps > max_steps {
-            return Err(SolverError::TooManySteps { t: touch_down + y[TIME], limit: max_steps });
+            return Err(SolverError::TooManySteps { t, limit: max_steps });
         }
-        let (mut next, mut lifted) = (tried.y, lifting);
-        if next[Q] < 0.0 {
-            // The step ran past lift-off, where the polynomial equations still hold: step back to the wall.
-            next = step_to_wall(equations, &next, &equations.derivative(&next)).y;
-            work.evaluations += EVALUATIONS + 1;
-            lifted = true;
+        let mut next = tried.y;
+        let lifted = next[W] < 0.0 && next[Q] < 0.02 * plan.q;
+        if lifted {
+            next = reach_wall(equations, &next, 0.02 * plan.q, work);
         }
         let over = touch_down + next[TIME] >= to;
         if over {
@@ -188,26 +193,46 @@ pub fn integrate(
         if over {
             end.t = to;
         }
-        let piece = Piece {
+        let length = next[THETA] - y[THETA];
+        observer.segment(&Piece {
             equations,
             touch_down,
             from: &y,
             slope: &slope,
-            length: next[THETA] - y[THETA],
+            length,
             ends: [start, end],
-        };
-        observer.segment(&piece);
+        });
         if over || observer.satisfied() {
             return Ok(End::Pressed(end));
         }
         if lifted {
             return Ok(End::LiftOff(end));
         }
-        if !lifting {
-            h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.3, 3.0);
-        }
-        scale.see(&next);
+        plan.adapt(error, &next);
         y = next;
         start = end;
     }
+}
+
+/// The state at the wall, `q = 0`, from one near it on either side (past lift-off the polynomial equations still hold), with
+/// `q` as the independent variable: one step of the classical Runge–Kutta method if `|q| < short`, else one of DOP853.
+fn reach_wall(equations: &Compression, y: &Compressed, short: f64, work: &mut Work) -> Compressed {
+    let by_q = |y: &Compressed| {
+        let slope = equations.derivative(y);
+        slope.map(|s| s / slope[Q])
+    };
+    let (k1, h) = (by_q(y), -y[Q]);
+    let mut end = if h.abs() < short {
+        work.evaluations += 4;
+        let along = |k: &Compressed, h: f64| std::array::from_fn::<f64, 8, _>(|i| y[i] + h * k[i]);
+        let k2 = by_q(&along(&k1, 0.5 * h));
+        let k3 = by_q(&along(&k2, 0.5 * h));
+        let k4 = by_q(&along(&k3, h));
+        along(&std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0), h)
+    } else {
+        work.evaluations += EVALUATIONS + 1;
+        dop853::step(by_q, y, &k1, h).y
+    };
+    end[Q] = 0.0;
+    end
 }

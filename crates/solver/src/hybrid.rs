@@ -129,7 +129,10 @@ impl<'a> Hybrid<'a> {
             match self.flight(now, phase, to, observer)? {
                 FlightEnd::Stopped(end) => return stopped(end, Phase::Flight),
                 FlightEnd::TouchDown(side, touch) => {
-                    observer.touch_down(touch.t, side);
+                    // A damper that rests on a wall from the start has not struck it.
+                    if touch.t > from.t {
+                        observer.touch_down(touch.t, side);
+                    }
                     let equations = self.contacts[side as usize];
                     let (begin, pressed) = self.press_in(&equations, touch, observer)?;
                     match self.contact(&equations, &begin, pressed, to, observer)? {

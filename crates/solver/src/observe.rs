@@ -73,11 +73,11 @@ impl<F> Peak<F> {
     pub fn record(&self) -> Extreme {
         self.record
     }
+}
 
-    fn note(&mut self, value: f64, time: f64) {
-        if value > self.record.value {
-            self.record = Extreme { value, time };
-        }
+fn note(record: &mut Extreme, value: f64, time: f64) {
+    if value > record.value {
+        *record = Extreme { value, time };
     }
 }
 
@@ -87,72 +87,92 @@ fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2]) -
     [value, slope * rate, curvature * rate * rate + slope * rate_slope]
 }
 
-/// The largest Bernstein coefficient of the quintic that meets value, slope and curvature at both ends: it stays below.
+/// The quintic that meets value, slope and curvature at both ends of an interval, by its Bernstein coefficients: it stays
+/// between the least and the largest of them, and its slope between those of their differences times `5/h`.
 #[inline(always)]
-fn quintic_ceiling(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
+fn quintic(h: f64, a: [f64; 3], b: [f64; 3]) -> [f64; 6] {
     let (fifth, twentieth) = (h / 5.0, h * h / 20.0);
-    let inner_a = a[0] + fifth * a[1];
-    let inner_b = b[0] - fifth * b[1];
+    let (inner_a, inner_b) = (a[0] + fifth * a[1], b[0] - fifth * b[1]);
     let deep_a = inner_a + fifth * a[1] + twentieth * a[2];
     let deep_b = inner_b - fifth * b[1] + twentieth * b[2];
-    a[0].max(inner_a).max(deep_a).max(deep_b).max(inner_b).max(b[0])
+    [a[0], inner_a, deep_a, deep_b, inner_b, b[0]]
 }
 
+/// Where the slope is zero on an interval of length `h` at whose ends it is positive, then negative: a root of the cubic that
+/// meets slope and curvature at both ends.
+fn slope_root(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
+    let (c0, c1) = (a[1], h * a[2]);
+    let (c2, c3) = (3.0 * (b[1] - a[1]) - h * (2.0 * a[2] + b[2]), 2.0 * (a[1] - b[1]) + h * (a[2] + b[2]));
+    let mut s = a[1] / (a[1] - b[1]);
+    for _ in 0..3 {
+        let (value, slope) = (c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2.0 * c2 + s * 3.0 * c3));
+        s = (s - value / slope).clamp(0.0, 1.0);
+    }
+    if s.is_nan() { 0.5 * h } else { s * h }
+}
+
+/// A place in a segment with `[value, slope, curvature]` there.
+type Place = (f64, [f64; 3]);
+
 impl<F> Peak<F> {
-    /// Looks for a maximum above the record on `[a, b]` in `θ`, given `[value, slope, curvature]` there.
+    /// Looks for a maximum above the record between two places.
     ///
-    /// Branch and bound: an interval whose quintic stays below the record is dropped; one with a simple maximum is solved by
-    /// Newton steps on the slope; any other is halved.
+    /// Branch and bound: an interval on which the quantity stays below the record, or is monotone, is dropped; one with a
+    /// simple maximum is solved by Newton steps on the slope; any other is halved. `remainder` bounds how far the quantity
+    /// leaves its quintic; its slope leaves the quintic's by at most 3.5 times that over `h` (a sixth-order remainder).
     fn search<const N: usize>(
         &mut self,
         segment: &impl Segment<N>,
-        a: f64,
-        at_a: [f64; 3],
-        b: f64,
-        at_b: [f64; 3],
-        depth: u32,
+        (a, at_a): Place,
+        (b, at_b): Place,
+        remainder: f64,
     ) where
         F: Fn(Drive, &[f64; N]) -> [f64; 3],
     {
         let h = b - a;
-        let screen = SCREEN * 0.015_625_f64.powi(depth.min(8) as i32) * at_a[0].abs().max(at_b[0].abs());
-        if quintic_ceiling(h, at_a, at_b) + screen <= self.record.value {
+        let coefficients = quintic(h, at_a, at_b);
+        if coefficients.into_iter().fold(f64::NEG_INFINITY, f64::max) + remainder <= self.record.value {
             return;
+        }
+        let steps = || coefficients.windows(2).map(|pair| pair[1] - pair[0]);
+        if steps().all(|step| step > 0.7 * remainder) || steps().all(|step| step < -0.7 * remainder) {
+            return; // the larger end has been noted
         }
         let exact = |theta: f64| {
             let knot = segment.at(theta);
             (knot.t, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
         };
         if at_a[1] > 0.0 && at_b[1] < 0.0 && at_a[2] < 0.0 && at_b[2] < 0.0 {
-            // Concave at both ends: one maximum. The quantity is flat there, so an error δ of its place costs δ².
+            // Concave at both ends: one maximum. The quantity is flat there: an error δ of its place costs δ², and that is
+            // put right by the parabola, `slope² / 2|curvature|` more, which leaves an error of order δ³.
             let (mut lower, mut upper) = (a, b);
-            let mut theta = a + h * at_a[1] / (at_a[1] - at_b[1]);
-            for _ in 0..30 {
+            let mut theta = a + slope_root(h, at_a, at_b);
+            for _ in 0..60 {
                 let (t, [value, slope, curvature]) = exact(theta);
+                note(&mut self.record, value, t);
                 if slope > 0.0 {
                     lower = theta
                 } else {
                     upper = theta
                 }
                 let step = -slope / curvature;
-                // What is left to gain, slope² / 2|curvature|, is below rounding.
-                if 0.5 * slope * step <= 1e-16 * value.abs() || upper - lower <= 4.0 * f64::EPSILON * upper {
-                    return self.note(value, t);
+                let gain = 0.5 * slope * step;
+                if curvature < 0.0 && gain <= 1e-10 * value.abs() {
+                    return note(&mut self.record, value + gain, t);
                 }
                 let newton = theta + step;
                 theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
             }
-            let (t, [value, ..]) = exact(theta);
-            return self.note(value, t);
-        }
-        if depth >= 40 {
             return;
         }
         let middle = 0.5 * (a + b);
+        if remainder < 1e-15 * self.record.value.abs() || middle <= a || middle >= b {
+            return;
+        }
         let (t, at_middle) = exact(middle);
-        self.note(at_middle[0], t);
-        self.search(segment, a, at_a, middle, at_middle, depth + 1);
-        self.search(segment, middle, at_middle, b, at_b, depth + 1);
+        note(&mut self.record, at_middle[0], t);
+        self.search(segment, (a, at_a), (middle, at_middle), remainder / 64.0);
+        self.search(segment, (middle, at_middle), (b, at_b), remainder / 64.0);
     }
 }
 
@@ -167,18 +187,16 @@ where
             Some((t, rates)) if t == a.t => rates,
             _ => {
                 let rates = (self.rates)(a.drive, &a.y);
-                self.note(rates[0], a.t);
+                note(&mut self.record, rates[0], a.t);
                 rates
             }
         };
         let rates_b = (self.rates)(b.drive, &b.y);
         self.last = Some((b.t, rates_b));
-        self.note(rates_b[0], b.t);
+        note(&mut self.record, rates_b[0], b.t);
         let (at_a, at_b) = (in_theta(rates_a, a.clock), in_theta(rates_b, b.clock));
-        let ceiling = quintic_ceiling(segment.length(), at_a, at_b);
-        if ceiling + SCREEN * rates_a[0].abs().max(rates_b[0].abs()) > self.record.value {
-            self.search(segment, 0.0, at_a, segment.length(), at_b, 0);
-        }
+        let remainder = SCREEN * rates_a[0].abs().max(rates_b[0].abs());
+        self.search(segment, (0.0, at_a), (segment.length(), at_b), remainder);
     }
 
     fn satisfied(&self) -> bool {
