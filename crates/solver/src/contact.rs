@@ -101,26 +101,31 @@ struct Plan {
     mass_ratio: f64,
     /// Step at the deepest point, s/√m.
     h: f64,
+    taken: u32,
 }
 
 impl Plan {
     /// The step at the deepest point that an error of 1e-9 allows, in units of `2 q_max / w`: where the error estimate of
     /// DOP853 on the undisturbed collision puts it.
-    const DEEPEST: f64 = 0.115;
+    const DEEPEST: f64 = 0.118;
+
+    /// Steps of a collision; a contact with more is a long press, and its steps follow the error estimate alone.
+    const COLLISION: u32 = 40;
 
     fn new(equations: &Compression, y: &Compressed, rtol: f64) -> Self {
         // A contact that begins pressed in is as long as the collision that would reach as deep.
         let w = y[W].abs().max(equations.speed_at_depth(y[Q]));
         let q = equations.greatest_depth(w);
         let h = Self::DEEPEST * (rtol / 1e-9).powf(1.0 / 8.0) * 2.0 * q / w;
-        Self { q, w, mass_ratio: equations.mass_ratio(), h }
+        Self { q, w, mass_ratio: equations.mass_ratio(), h, taken: 0 }
     }
 
     /// The step from a state: the nearest singularity of a collision lies above its deepest point, so steps may be longer
     /// towards the wall, about twice as long at the wall itself.
     fn step(&self, y: &Compressed) -> f64 {
         let height = 1.0 - (y[Q] / self.q).min(1.0);
-        self.h * (1.0 + 1.1 * height * height)
+        let farther = if y[W] > 0.0 { height.powi(3) } else { height * height };
+        self.h * (1.0 + 1.1 * farther)
     }
 
     /// The error of a step over what is allowed, `rtol` of the largest `q` and speeds.
@@ -130,9 +135,12 @@ impl Plan {
         step.error(h, &[q, w, 0.0, w * self.mass_ratio, 0.0], 3.0)
     }
 
-    /// Learns from a step that had this error.
+    /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate.
     fn adapt(&mut self, error: f64, y: &Compressed) {
-        self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.8, 1.1);
+        self.taken += 1;
+        if self.taken > Self::COLLISION {
+            self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.7, 1.5);
+        }
         self.q = self.q.max(y[Q].abs());
         self.w = self.w.max(y[W].abs());
     }
