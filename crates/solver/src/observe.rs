@@ -74,7 +74,13 @@ impl<F> Peak<F> {
     /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
     /// the value exceeds `cutoff`.
     pub fn new(rates: F, cutoff: f64) -> Self {
-        Self { rates, record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN }, cutoff, last: None, halvings: 0 }
+        Self {
+            rates,
+            record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN },
+            cutoff,
+            last: None,
+            halvings: 0,
+        }
     }
 
     /// The record so far.
