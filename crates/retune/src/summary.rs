@@ -39,6 +39,7 @@ pub struct Summary {
 pub struct MadeBy {
     retune: &'static str,
     study: String,
+    omega: f64,
     window: Span,
     solver: Solver,
 }
@@ -62,28 +63,26 @@ impl MadeBy {
     /// What makes the results of `study`.
     pub fn new(study: &Study) -> Self {
         let (window, solver) = (study.window, study.solver);
-        Self { retune: env!("CARGO_PKG_VERSION"), study: study.name().to_owned(), window, solver }
+        let omega = study.scene.forcing.frequency.get();
+        Self { retune: env!("CARGO_PKG_VERSION"), study: study.name().to_owned(), omega, window, solver }
     }
 }
 
 impl std::fmt::Display for MadeBy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { retune, study, window, solver } = self;
+        let Self { retune, study, omega, window, solver } = self;
         let method = format!("{:?}", solver.method).to_lowercase();
         let (t0, end) = (window.t0.get(), window.end.get());
-        write!(
-            f,
-            "study {study}, t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {:e}",
-            solver.rtol
-        )
+        let rtol = solver.rtol;
+        write!(f, "study {study}, omega = {omega} rad/s, t0 = {t0} s, T = {end} s; ")?;
+        write!(f, "Retune {retune}, {method}, rtol {rtol:e}")
     }
 }
 
 impl Summary {
     /// Collects the observations of a run of `scene` with the window and solver of `study`.
     pub fn new(study: &Study, scene: Scene, response: &Response) -> Self {
-        let Response { e1_max, e2_max, impacts, force_max, stroke_max, final_state, scene: kind, work } =
-            *response;
+        let Response { e1_max, e2_max, impacts, force_max, stroke_max, final_state, scene: kind, work } = *response;
         let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
         let [x1, v1, x2, v2] = final_state;
         Self {
@@ -132,19 +131,11 @@ impl std::fmt::Display for Summary {
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
-        writeln!(
-            f,
-            "impacts     {} on the primary structure, {} on the obstacle",
-            self.impacts.primary, self.impacts.obstacle
-        )?;
+        writeln!(f, "impacts     {} on the primary structure, {} on the obstacle", self.impacts.primary, self.impacts.obstacle)?;
         let Walls { primary, obstacle } = self.force_max;
         writeln!(f, "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle")?;
         writeln!(f, "stroke max  {:.6} m, the largest |x2 - x1|", self.stroke_max)?;
         writeln!(f, "model       {model}")?;
-        write!(
-            f,
-            "work        {} steps, {} rejected, {} evaluations",
-            self.steps, self.rejected, self.evaluations
-        )
+        write!(f, "work        {} steps, {} rejected, {} evaluations", self.steps, self.rejected, self.evaluations)
     }
 }

@@ -21,6 +21,7 @@ pub enum End {
 // Components of a regularised state.
 const Q: usize = 0;
 const W: usize = 1;
+const V1: usize = 3;
 const TIME: usize = 4;
 
 /// One step. Its interior is reached by shorter steps from its start.
@@ -138,7 +139,7 @@ impl Plan {
     fn error(&self, h: f64, step: &Step<5>, rtol: f64) -> f64 {
         let rtol = rtol * (self.rounding / self.w).max(1.0);
         let (q, w) = (1.0 / (rtol * self.q), 1.0 / (rtol * self.w));
-        step.error(h, &[q, w, 0.0, w * self.mass_ratio, 0.0], 3.0)
+        step.error(h, [(Q, q), (W, w), (V1, w * self.mass_ratio)])
     }
 
     /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate.
