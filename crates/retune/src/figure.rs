@@ -58,7 +58,9 @@ fn with_subscripts(svg: &str) -> String {
     for part in parts {
         match part.split_once('}') {
             Some((low, rest)) => {
-                out += &format!("<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}");
+                out += &format!(
+                    "<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}"
+                );
             }
             None => out += part,
         }

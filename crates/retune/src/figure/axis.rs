@@ -149,7 +149,10 @@ mod tests {
         let share = |scale, value| Axis::new(String::new(), scale, 2.0, 200.0).share(value);
         assert!((share(Scale::Linear, 101.0) - 0.5).abs() < 1e-14);
         assert!((share(Scale::Log, 20.0) - 0.5).abs() < 1e-14);
-        assert_eq!([share(Scale::Log, 1.0), share(Scale::Log, 300.0), share(Scale::Log, f64::NAN)], [0.0, 1.0, 0.0]);
+        assert_eq!(
+            [share(Scale::Log, 1.0), share(Scale::Log, 300.0), share(Scale::Log, f64::NAN)],
+            [0.0, 1.0, 0.0]
+        );
     }
 
     #[test]
