@@ -113,6 +113,7 @@ impl<'a> Hybrid<'a> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
+        self.flow.check_step(from.t, to)?;
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });

@@ -53,7 +53,7 @@ impl Default for Settings {
     }
 }
 
-/// A span of time over which maxima are taken, `0 <= from <= to`, s. Every run starts at rest at t = 0.
+/// A span of time over which maxima are taken, `0 <= from < to`, s. Every run starts at rest at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Start t0 of the observation; the motion before it is a transient that counts for nothing.
@@ -119,7 +119,7 @@ pub struct Response {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolverError {
     /// The step had to become smaller than the spacing of floating-point numbers allows.
-    #[error("the step became too small at t = {t} s (h = {h} s); loosen rtol, or choose the hybrid solver")]
+    #[error("the step became too small at t = {t} s (h = {h:e} s); loosen rtol, or choose the hybrid solver")]
     StepTooSmall {
         /// Time reached, s.
         t: f64,
