@@ -53,7 +53,11 @@ impl<const N: usize> Flow<N> {
     /// # Errors
     /// [`SolverError::StepTooSmall`].
     pub fn check_step(&self, t: f64, to: f64) -> Result<(), SolverError> {
-        if to + self.step > to { Ok(()) } else { Err(SolverError::StepTooSmall { t, h: self.step }) }
+        if to <= t || to + self.step > to {
+            Ok(())
+        } else {
+            Err(SolverError::StepTooSmall { t, h: self.step })
+        }
     }
 
     /// The flow's numbers.
