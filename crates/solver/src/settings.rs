@@ -46,8 +46,8 @@ impl Default for Settings {
         Self {
             method: Method::Hybrid,
             contacts: Contacts::Located,
-            rtol: 1e-8,
-            atol: 1e-10,
+            rtol: 1e-10,
+            atol: 1e-12,
             max_steps: 20_000_000,
         }
     }
