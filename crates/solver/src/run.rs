@@ -1,10 +1,11 @@
 //! A run: a scene, a window of time and a method in; what was observed out.
 
+use crate::free::Free;
 use crate::hybrid::{Hybrid, Motion, Phase};
 use crate::observe::{Knot, Observer, Peak, Segment, Unobserved};
 use crate::onestep::{OneStep, Run};
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
-use crate::{bare, ode23s::Ode23s, ode45::Ode45};
+use crate::{ode23s::Ode23s, ode45::Ode45};
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -20,11 +21,16 @@ pub fn e1_max(
     settings: &Settings,
     cutoff: f64,
 ) -> Result<Extreme, SolverError> {
+    let hybrid = settings.method == Method::Hybrid;
     match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
             let mut peak =
                 Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), cutoff);
+            if hybrid {
+                let steady = system.steady(system.frequency()).e1_max;
+                return Free::new(&system, window.to, settings.max_steps).e1_max(window, peak, steady);
+            }
             follow_bare(&system, window, settings, &mut Unobserved, &mut peak)?;
             Ok(peak.record())
         }
@@ -32,6 +38,12 @@ pub fn e1_max(
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
             let mut peak =
                 Peak::new(|drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), cutoff);
+            if hybrid {
+                let mut free = Free::new(&system, window.to, settings.max_steps);
+                if free.clears_walls() {
+                    return free.e1_max(window, peak, system.steady(system.bare().frequency()).e1_max);
+                }
+            }
             follow_coupled(&system, window, settings, &mut Unobserved, &mut peak)?;
             Ok(peak.record())
         }
@@ -231,24 +243,10 @@ fn follow_bare(
     let steps = |run: Run<'_, Bare, 2>| (run.state(), run.work);
     match settings.method {
         Method::Hybrid => {
-            let mut work = Work::default();
-            let y = bare::propagate(
-                system,
-                (0.0, system.rest()),
-                window.from,
-                settings.max_steps,
-                &mut work,
-                before,
-            )?;
-            let y = bare::propagate(
-                system,
-                (window.from, y),
-                window.to,
-                settings.max_steps,
-                &mut work,
-                observer,
-            )?;
-            Ok((y, work))
+            let mut free = Free::new(system, window.to, settings.max_steps);
+            free.propagate(window.from, before)?;
+            free.propagate(window.to, observer)?;
+            Ok((free.state(), free.work))
         }
         Method::Ode23s => {
             one_step::<Ode23s, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
