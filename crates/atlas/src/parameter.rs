@@ -17,7 +17,7 @@ impl Parameter {
     ///
     /// # Errors
     /// A value that the parameter cannot have.
-    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, OutOfRange> {
+    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, Error> {
         let value = NonNegative::new(value)?;
         match self {
             Self::Omega => scene.forcing.frequency = value,

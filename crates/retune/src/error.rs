@@ -46,6 +46,9 @@ pub enum Error {
     /// A run could not be finished.
     #[error("the run failed: {0}")]
     Run(#[from] SolverError),
+    /// A motion could not be followed.
+    #[error("the run failed: {0}")]
+    Atlas(#[from] retune_atlas::Error),
     /// A design that was found cannot be run.
     #[error("a design that was found cannot be run: {0}")]
     Unusable(#[from] Unusable),
@@ -82,7 +85,7 @@ impl Error {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Study(_) | Self::Setting(_) | Self::Rule { .. } | Self::Interval { .. } | Self::Output { .. } => 2,
-            Self::Threads(_) | Self::Run(_) | Self::Unusable(_) | Self::NoStart(_) | Self::Search { .. } | Self::Figure { .. } => 1,
+            Self::Threads(_) | Self::Run(_) | Self::Atlas(_) | Self::Unusable(_) | Self::NoStart(_) | Self::Search { .. } | Self::Figure { .. } => 1,
         }
         .into()
     }
