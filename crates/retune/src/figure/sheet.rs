@@ -69,7 +69,7 @@ pub fn sheet(charts: &[Chart], columns: usize, height: f64, legend: &[(Key, &str
     let mut y = 26.0;
     let mut x = 30.0;
     for (key, words) in legend {
-        let length = 70.0 + 14.5 * words.chars().count() as f64 + 30.0;
+        let length = 74.0 + 15.5 * words.chars().count() as f64 + 36.0;
         if x + length > WIDTH {
             (x, y) = (30.0, y + 44.0);
         }
@@ -135,7 +135,7 @@ fn draw_chart(out: &mut String, chart: &Chart, (left, top): (f64, f64), (width, 
         Axis::new(chart.labels[side].clone(), scale, chart.ranges[side].0, chart.ranges[side].1)
     };
     let (x, y) = (axis(0, Scale::Linear), axis(1, if chart.log { Scale::Log } else { Scale::Linear }));
-    let place = Place { x: &x, y: &y, left: left + 135.0, top: top + 46.0, width: width - 165.0, height: height - 136.0 };
+    let place = Place { x: &x, y: &y, left: left + 135.0, top: top + 46.0, width: width - 190.0, height: height - 136.0 };
     words(out, &chart.title, (place.left + 0.5 * place.width, place.top - 16.0), "middle", "");
     for layer in &chart.layers {
         draw_layer(out, layer, &place);

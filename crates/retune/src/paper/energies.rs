@@ -54,7 +54,7 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
         (Key::Line(VERMILION, ""), "E₁, PS with damper"),
         (Key::Line(ORANGE, ""), "E₂, damper"),
     ];
-    item.picture("figure6", sheet(&charts, 1, 520.0, &legend), "Energies from rest. The energy swings twice a period, so the curves are dense.");
+    item.picture("figure6", sheet(&charts, 1, 520.0, &legend), "Energies from rest.");
     let rows = none.iter().zip(&ssvi).zip(&tmd).map(|((n, s), t)| vec![(n.t * 1e6).round() / 1e6, n.e1, s.e1, s.e2, t.e1, t.e2]);
     item.data.push(("figure6.csv".into(), numbers("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J", rows)));
     let late = |samples: &[Sample], energy: fn(&Sample) -> f64| {

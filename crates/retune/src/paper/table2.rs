@@ -12,8 +12,11 @@ use retune_solver::{Window, e1_max};
 use std::ops::ControlFlow;
 
 /// Frequencies of the worst case, rad/s, for the impacting damper; the linear one is looked at in closed form, finely.
-const COARSE: Range = Range { from: 5.2, to: 7.2, points: 41 };
+const COARSE: Range = Range { from: 5.6, to: 7.0, points: 141 };
 const FINE: Range = Range { from: 5.0, to: 8.0, points: 1501 };
+
+/// The best node of Figure 2's surface over k2 and c2, rounded: another start for the SSVI NES.
+const STIFFER: [f64; 4] = [500.0, 160.0, 0.06, 0.36];
 
 struct Row {
     damper: &'static str,
@@ -30,9 +33,9 @@ pub fn table2(plan: &Plan) -> Result<Item, Error> {
         "table2",
         "Table 2. The optimised dampers",
         "SSVI NES: k2 = 215 N/m, c2 = 232 N·s/m, D = 0.06 m, C = 0.36 m. TMD: k2 = 600 N/m, c2 = 262 N·s/m, D = 2.08 m, C = 4.7 m.",
-        plan.made_by("fminsearch from the paper's rows, parameters scaled by the start; worst case: E1max over ω, on 41 frequencies in 5.2–7.2 rad/s while the SSVI NES is tuned, 1501 in 5–8 for the linear TMD, steady state."),
+        plan.made_by("fminsearch from the paper's rows, parameters scaled by the start; worst case: E1max over ω, on 141 frequencies in 5.6–7.0 rad/s while the SSVI NES is tuned, 1501 in 5–8 for the linear TMD, steady state."),
     );
-    let bar = plan.screen.progress("table 2", 7);
+    let bar = plan.screen.progress("table 2", 8);
     let tmd = [Variable::K2, Variable::C2];
     let mut rows = Vec::new();
     let mut push = |damper, origin: &str, design| {
@@ -42,6 +45,9 @@ pub fn table2(plan: &Plan) -> Result<Item, Error> {
     push("SSVI NES", "the paper's", designed(&plan.ssvi)?);
     push("SSVI NES", "re-optimised, ω = 6.28", tuned(&plan.ssvi, &Variable::ALL, &|scene| at_omega(plan, scene), 400)?);
     push("SSVI NES", "re-optimised, worst ω", tuned(&plan.ssvi, &Variable::ALL, &|scene| worst(plan, scene, COARSE), 250)?);
+    let stiffer = at(&plan.ssvi, &Variable::ALL, &STIFFER).map(|scene| Study { scene, ..plan.ssvi.clone() });
+    let stiffer = stiffer.as_ref().unwrap_or(&plan.ssvi);
+    push("SSVI NES", "from Figure 2's best node, worst ω", tuned(stiffer, &Variable::ALL, &|scene| worst(plan, scene, COARSE), 250)?);
     push("TMD", "the paper's", designed(&plan.tmd)?);
     push("TMD", "best c2 at k2 = 600, worst ω", tuned(&plan.tmd, &tmd[1..], &|scene| linear_worst(scene), 200)?);
     push("TMD", "re-optimised, worst ω", tuned(&plan.tmd, &tmd, &|scene| linear_worst(scene), 400)?);
@@ -76,17 +82,17 @@ fn statements(worths: &[[f64; 3]], rows: &[Row], item: &mut Item) {
     );
     item.statement(
         "The SSVI NES's row is optimal: no smaller worst case over ω",
-        verdict(ssvi[2], at_all[2]),
-        format!("worst case {:.0} J; tuned for it {:.0} J", ssvi[2], at_all[2]),
+        verdict(ssvi[2], at_all[2].min(worths[3][2])),
+        format!("worst case {:.0} J; tuned for it from there {:.0} J, from the best node of Figure 2 {:.0} J", ssvi[2], at_all[2], worths[3][2]),
     );
-    let tmd = worths[3];
-    let c2 = rows[4].design[1];
+    let tmd = worths[4];
+    let c2 = rows[5].design[1];
     item.statement(
         "The TMD's row is optimal",
-        if verdict(tmd[2], worths[4][2]) == Verdict::Holds { Verdict::Partly } else { Verdict::Fails },
+        if verdict(tmd[2], worths[5][2]) == Verdict::Holds { Verdict::Partly } else { Verdict::Fails },
         format!(
             "its c2 is the best for k2 = 600 N/m in the worst case over ω (ours {c2:.1} N·s/m, {:.1} J against {:.1} J); but with k2 free as well, k2 = {:.0} N/m and c2 = {:.0} N·s/m give {:.0} J, {:.1} times less; at ω = 6.28 alone the best TMD has hardly any damping ({:.0} J there, {:.0} J at its worst)",
-            worths[4][2], tmd[2], rows[5].design[0], rows[5].design[1], worths[5][2], tmd[2] / worths[5][2], worths[6][0], worths[6][2]
+            worths[5][2], tmd[2], rows[6].design[0], rows[6].design[1], worths[6][2], tmd[2] / worths[6][2], worths[7][0], worths[7][2]
         ),
     );
     item.statement(
