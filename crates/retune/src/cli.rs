@@ -125,7 +125,7 @@ pub struct Table2 {
 #[derive(Debug, Args)]
 pub struct Retune {
     /// Stiffnesses of the primary structure, N/m
-    #[arg(required = true, value_name = "K1", value_parser = stiffness)]
+    #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
     pub k1: Vec<Setting>,
     /// The table that names the study of each damper
     #[arg(long, value_name = "FILE", default_value = "studies/table2.json")]

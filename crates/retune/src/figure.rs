@@ -53,7 +53,22 @@ fn figure(
         }
         canvas.present().map_err(|error| error.to_string())?;
     }
-    Ok(svg + "\n")
+    Ok(with_subscripts(&svg) + "\n")
+}
+
+/// Sets `_{...}` in the text of an SVG as a subscript.
+fn with_subscripts(svg: &str) -> String {
+    let mut parts = svg.split("_{");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once('}') {
+            Some((low, rest)) => {
+                out += &format!("<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}");
+            }
+            None => out += part,
+        }
+    }
+    out
 }
 
 /// A rectangle of the canvas with two axes.
@@ -78,7 +93,7 @@ impl Frame<'_> {
     /// Draws the frame with ticks; tick labels and the label of the x axis only where asked for.
     fn draw(&self, canvas: &Canvas, with_x_labels: bool) -> Drawn {
         let (left, right, top, bottom) = (self.left, self.right, self.top, self.bottom);
-        for (value, label) in self.x.ticks() {
+        for (value, label) in self.x.ticks((right - left) / 180) {
             let (x, _) = self.pixel(value, f64::NAN);
             line(canvas, &[(x, bottom), (x, bottom - TICK)], 3, &BLACK)?;
             line(canvas, &[(x, top), (x, top + TICK)], 3, &BLACK)?;
@@ -86,7 +101,7 @@ impl Frame<'_> {
                 text(canvas, &label, (x, bottom + 38), TEXT, HPos::Center, &BLACK)?;
             }
         }
-        for (value, label) in self.y.ticks() {
+        for (value, label) in self.y.ticks(3 + (bottom - top) / 250) {
             let (_, y) = self.pixel(f64::NAN, value);
             line(canvas, &[(left, y), (left + TICK, y)], 3, &BLACK)?;
             line(canvas, &[(right, y), (right - TICK, y)], 3, &BLACK)?;

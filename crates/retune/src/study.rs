@@ -182,7 +182,7 @@ impl Default for Solver {
 impl Default for Refine {
     fn default() -> Self {
         let Options { tol_x, tol_fun, max_iter, max_fun_evals, .. } = Options::default();
-        Self { starts: 1, apart: 2, tol_x, tol_fun, scaled: false, max_iter, max_fun_evals }
+        Self { starts: 1, apart: 3, tol_x, tol_fun, scaled: false, max_iter, max_fun_evals }
     }
 }
 

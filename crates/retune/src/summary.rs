@@ -39,6 +39,7 @@ pub struct Summary {
 pub struct MadeBy {
     retune: &'static str,
     study: String,
+    omega: f64,
     window: Span,
     solver: Solver,
 }
@@ -62,16 +63,19 @@ impl MadeBy {
     /// What makes the results of `study`.
     pub fn new(study: &Study) -> Self {
         let (window, solver) = (study.window, study.solver);
-        Self { retune: env!("CARGO_PKG_VERSION"), study: study.name().to_owned(), window, solver }
+        let omega = study.scene.forcing.frequency.get();
+        Self { retune: env!("CARGO_PKG_VERSION"), study: study.name().to_owned(), omega, window, solver }
     }
 }
 
 impl std::fmt::Display for MadeBy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { retune, study, window, solver } = self;
+        let Self { retune, study, omega, window, solver } = self;
         let method = format!("{:?}", solver.method).to_lowercase();
         let (t0, end) = (window.t0.get(), window.end.get());
-        write!(f, "study {study}, t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {:e}", solver.rtol)
+        let rtol = solver.rtol;
+        write!(f, "study {study}, omega = {omega} rad/s, t0 = {t0} s, T = {end} s; ")?;
+        write!(f, "Retune {retune}, {method}, rtol {rtol:e}")
     }
 }
 

@@ -17,8 +17,6 @@ const VIRIDIS: [[f64; 3]; 9] = [
 
 /// Blue of M. Okabe and K. Ito's palette (2008).
 pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-/// Vermilion of the same palette.
-pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
 /// Where there is no value.
 pub const NOTHING: RGBColor = RGBColor(200, 200, 200);
 

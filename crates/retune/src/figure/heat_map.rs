@@ -65,16 +65,21 @@ pub fn heat_map(
         for (i, &value) in values.iter().enumerate() {
             let (column, row) = (i % columns, i / columns);
             let corner = frame.pixel(edges[0][column], edges[1][row]);
-            let opposite = frame.pixel(edges[0][column + 1], edges[1][row + 1]);
+            let (right, top) = frame.pixel(edges[0][column + 1], edges[1][row + 1]);
             let colour = if value.is_finite() { viridis(colours.share(value)) } else { NOTHING };
-            canvas
-                .draw(&Rectangle::new([corner, opposite], colour.filled()))
-                .map_err(|error| error.to_string())?;
+            cell(canvas, corner, (right + SEAM, top - SEAM), &colour)?;
         }
         frame.draw(canvas, true)?;
         colour_bar(canvas, &colours, &frame)?;
         marks.iter().enumerate().try_for_each(|(i, mark)| draw_mark(canvas, &frame, mark, i))
     })
+}
+
+/// By how much a cell reaches under the next one, so that no viewer shows a seam between them, px. The frame hides it outside.
+const SEAM: i32 = 1;
+
+fn cell(canvas: &Canvas, corner: (i32, i32), opposite: (i32, i32), colour: &impl Color) -> Drawn {
+    canvas.draw(&Rectangle::new([corner, opposite], colour.filled())).map_err(|error| error.to_string())
 }
 
 /// The edges of the cells around the nodes: halfway to the next node, on the scale of the side.
@@ -100,16 +105,14 @@ fn colour_bar(canvas: &Canvas, colours: &Axis, frame: &Frame) -> Drawn {
     for i in 0..bands {
         let [below, above] = [i, i + 1].map(|edge| frame.bottom - height * edge / bands);
         let colour = viridis((f64::from(i) + 0.5) / f64::from(bands));
-        canvas
-            .draw(&Rectangle::new([(left, above), (right, below)], colour.filled()))
-            .map_err(|error| error.to_string())?;
+        cell(canvas, (left, below), (right, above - SEAM), &colour)?;
     }
-    for (value, label) in colours.ticks() {
+    for (value, label) in colours.ticks(6) {
         let y = frame.bottom - (f64::from(height) * colours.share(value)).round() as i32;
         line(canvas, &[(right, y), (right + TICK, y)], 3, &BLACK)?;
         text(canvas, &label, (right + 24, y), TEXT, HPos::Left, &BLACK)?;
     }
-    upright(canvas, colours.label(), (frame.right + 320, (frame.top + frame.bottom) / 2))?;
+    upright(canvas, colours.label(), (frame.right + 290, (frame.top + frame.bottom) / 2))?;
     let (top, bottom) = (frame.top, frame.bottom);
     line(canvas, &[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], 3, &BLACK)
 }
@@ -133,12 +136,12 @@ fn symbol(canvas: &Canvas, mark: &Mark, (x, y): (i32, i32)) -> Drawn {
         Mark::Grid { .. } => {
             let square = |half: i32| [(x - half, y - half), (x + half, y + half)];
             canvas
-                .draw(&Rectangle::new(square(19), BLACK.filled()))
-                .and_then(|()| canvas.draw(&Rectangle::new(square(14), WHITE.filled())))
+                .draw(&Rectangle::new(square(24), BLACK.filled()))
+                .and_then(|()| canvas.draw(&Rectangle::new(square(19), WHITE.filled())))
         }
         Mark::Optimum { .. } => canvas
-            .draw(&Circle::new((x, y), 20, WHITE.filled()))
-            .and_then(|()| canvas.draw(&Circle::new((x, y), 15, BLACK.filled()))),
+            .draw(&Circle::new((x, y), 15, WHITE.filled()))
+            .and_then(|()| canvas.draw(&Circle::new((x, y), 11, BLACK.filled()))),
     };
     drawn.map_err(|error| error.to_string())
 }

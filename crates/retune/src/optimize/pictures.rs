@@ -10,6 +10,9 @@ use crate::study::{Search, Study};
 use crate::summary::MadeBy;
 use retune_optim::{Scale, Variable};
 
+/// The label of E1max.
+const ENERGY: &str = "E_{1max}, J";
+
 /// Draws all figures.
 pub(super) fn draw(
     study: &Study,
@@ -58,11 +61,11 @@ fn heat_map(
     };
     let others: Vec<&str> = (0..surf.variables.len())
         .filter(|axis| *axis != x && *axis != y)
-        .map(|axis| surf.variables[axis].symbol())
+        .map(|axis| symbol(surf.variables[axis]))
         .collect();
     let what = match others.as_slice() {
-        [] => "E1max at each point of the grid.".to_owned(),
-        others => format!("Least E1max over the grid in {}.", others.join(" and ")),
+        [] => "E_{1max} at each point of the grid.".to_owned(),
+        others => format!("Least E_{{1max}} over the grid in {}.", others.join(" and ")),
     };
     let marks = [
         Mark::Grid { x: best[x], y: best[y], label: format!("best of the grid, {} J", short(surf.values[surf.best])) },
@@ -72,7 +75,7 @@ fn heat_map(
             label: format!("refined, {} J", short(refined.best().minimum.value)),
         },
     ];
-    figure::heat_map(&[x, y].map(|axis| nodes(surf, axis)), &least, "E1max, J", &marks, &[what, made_by.to_owned()])
+    figure::heat_map(&[x, y].map(|axis| nodes(surf, axis)), &least, ENERGY, &marks, &[what, made_by.to_owned()])
 }
 
 /// An axis of the grid as an axis of a figure.
@@ -87,7 +90,7 @@ fn convergence(search: &Search, refined: &Refined, made_by: &str) -> Result<Stri
     let rows = &refined.best().rows;
     let x: Vec<f64> = rows.iter().map(|row| row.iteration as f64).collect();
     let energies: Vec<f64> = rows.iter().map(|row| row.value).collect();
-    let mut panels = vec![Panel::new("E1max, J".to_owned(), figure::scale_for(&energies), energies)];
+    let mut panels = vec![Panel::new(ENERGY.to_owned(), figure::scale_for(&energies), energies)];
     for (i, &variable) in search.variables.iter().enumerate() {
         let values = rows.iter().map(|row| row.best[i]).collect();
         panels.push(Panel::new(label(variable), Scale::Linear, values));
@@ -96,6 +99,17 @@ fn convergence(search: &Search, refined: &Refined, made_by: &str) -> Result<Stri
     figure::panels("iteration", &x, &panels, &[what, made_by.to_owned()])
 }
 
+/// A parameter's symbol and unit, for an axis.
 fn label(variable: Variable) -> String {
-    format!("{}, {}", variable.symbol(), variable.unit())
+    format!("{}, {}", symbol(variable), variable.unit())
+}
+
+/// A parameter's symbol as figures set it.
+fn symbol(variable: Variable) -> &'static str {
+    match variable {
+        Variable::K2 => "k_{2}",
+        Variable::C2 => "c_{2}",
+        Variable::D => "D",
+        Variable::C => "C",
+    }
 }

@@ -5,7 +5,7 @@ use serde_json::error::Category;
 /// Says what is wrong at the field `path` (`scene.damper.k2`), if the text came as far as a field.
 pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
     let message = message_only(error);
-    let field = path.filter(|path| !matches!(*path, "." | "?"));
+    let field = path.map(|path| path.strip_suffix(".?").unwrap_or(path)).filter(|path| !matches!(*path, "." | "?"));
     if matches!(error.classify(), Category::Syntax | Category::Eof) {
         let place = field.map(|field| format!(" at {field}")).unwrap_or_default();
         return format!("not valid JSON{place}: {}", syntax(&message));
@@ -23,7 +23,7 @@ pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
             format!("{full}: missing, and it has no default")
         }
         Some((name, _)) if message.starts_with("duplicate field") => {
-            let full = field.filter(|f| f.ends_with(name)).unwrap_or(name);
+            let full = field.map_or_else(|| (*name).to_owned(), |parent| format!("{parent}.{name}"));
             format!("{full}: given twice")
         }
         _ => prefixed(field, &plain(&message)),
@@ -52,10 +52,12 @@ fn quoted(message: &str) -> Vec<&str> {
 
 /// What was probably meant by `name`, and all that is allowed.
 pub(super) fn suggestion(name: &str, allowed: &[&str]) -> String {
-    let likeness = |other: &str| strsim::jaro_winkler(&name.to_lowercase(), &other.to_lowercase());
-    let nearest = allowed.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let typed = name.to_lowercase();
+    let slips = |other: &str| strsim::damerau_levenshtein(&typed, &other.to_lowercase());
+    // Of two that are equally near the one of the same length: c3 meant c2, not C.
+    let nearest = allowed.iter().min_by_key(|other| (slips(other), other.len().abs_diff(name.len())));
     let meant = match nearest {
-        Some(nearest) if likeness(nearest) >= 0.65 => format!("did you mean `{nearest}`? "),
+        Some(nearest) if slips(nearest) <= 1.max(name.len() / 3) => format!("did you mean `{nearest}`? "),
         _ => String::new(),
     };
     format!("; {meant}allowed: {}", allowed.join(", "))
@@ -72,7 +74,6 @@ fn plain(message: &str) -> String {
         ("expected usize", "expected a whole number not below 0"),
         ("expected struct PerVariable", "expected an object with some of k2, c2, D, C"),
         ("expected a tuple of size 2", "expected [smallest, largest]"),
-        ("expected struct", "expected an object:"),
         ("invalid type: map", "invalid type: object"),
         ("invalid type: sequence", "invalid type: list"),
         ("expected a sequence", "expected a list"),
@@ -80,7 +81,11 @@ fn plain(message: &str) -> String {
     ] {
         text = text.replace(rust, words);
     }
-    text
+    // "expected struct Damper with 6 elements" names what is no concern of the reader's.
+    match text.split_once("expected struct") {
+        Some((before, _)) => format!("{before}expected an object"),
+        None => text,
+    }
 }
 
 /// serde_json's syntax messages, where they can be more helpful.
@@ -92,6 +97,7 @@ fn syntax(message: &str) -> String {
                 .to_owned()
         }
         "trailing characters" => "there is more text after the end of the study".to_owned(),
+        other if other.starts_with("EOF") => format!("the text ends too early ({other})"),
         other => other.to_owned(),
     }
 }

@@ -2,7 +2,9 @@
 
 use super::explain::explain;
 use super::{Rule, Study};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::path::Path;
 use thiserror::Error;
 
@@ -36,6 +38,14 @@ pub enum StudyError {
         column: usize,
         /// The field's path and what is wrong there.
         problem: String,
+    },
+    /// Values without their names.
+    #[error("{file}: {field}: wrong type: list, expected an object")]
+    List {
+        /// The file.
+        file: String,
+        /// The field's path.
+        field: String,
     },
     /// Each field is right but they contradict one another.
     #[error("{file}: {rule}")]
@@ -94,7 +104,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
 ///
 /// # Errors
 /// [`StudyError::Field`].
-pub(super) fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, StudyError> {
+pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> Result<T, StudyError> {
     let refuse = |path: Option<String>, error: &serde_json::Error| StudyError::Field {
         file: file.to_owned(),
         line: error.line(),
@@ -105,5 +115,22 @@ pub(super) fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, St
     let value = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| refuse(Some(error.path().to_string()), error.inner()))?;
     json.end().map_err(|error| refuse(None, &error))?;
-    Ok(value)
+    let given = serde_json::from_str(text).map_err(|error| refuse(None, &error))?;
+    let meant = serde_json::to_value(&value).map_err(|error| refuse(None, &error))?;
+    match list_for_object(&given, &meant) {
+        Some(field) => Err(StudyError::List { file: file.to_owned(), field }),
+        None => Ok(value),
+    }
+}
+
+/// The first field that was given as a list of values where they should be named. (Serde takes both.)
+fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
+    match (given, meant) {
+        (Value::Array(_), Value::Object(_)) => Some(String::new()),
+        (Value::Object(given), Value::Object(meant)) => given.iter().find_map(|(key, value)| {
+            let inner = list_for_object(value, meant.get(key)?)?;
+            Some(if inner.is_empty() { key.clone() } else { format!("{key}.{inner}") })
+        }),
+        _ => None,
+    }
 }
