@@ -16,7 +16,8 @@ const FAMILY: [f64; 5] = [2.00e4, 3.00e4, TUNED, 5.00e4, 6.00e4];
 fn curve(k1: f64, design: Option<[f64; 4]>) -> Vec<Point> {
     let natural = (k1 / 1000.0_f64).sqrt();
     let omega = evenly(0.8 * natural, 1.2 * natural, 121);
-    fresh(&scene(k1, natural, design), Parameter::Omega, &omega, WINDOW, &Settings::default(), || ()).expect("runs")
+    fresh(&scene(k1, natural, design), Parameter::Omega, &omega, WINDOW, &Settings::default(), || ())
+        .expect("runs")
 }
 
 fn highest(points: &[Point]) -> Point {
@@ -53,7 +54,8 @@ fn paper_figure_3_ssvi_has_two_peaks() {
     let largest = |from: f64, to: f64| {
         points.iter().filter(|p| (from..to).contains(&p.value)).map(|p| p.e1_max).fold(0.0, f64::max)
     };
-    let least = points.iter().filter(|p| (6.02..6.3).contains(&p.value)).map(|p| p.e1_max).fold(f64::MAX, f64::min);
+    let least =
+        points.iter().filter(|p| (6.02..6.3).contains(&p.value)).map(|p| p.e1_max).fold(f64::MAX, f64::min);
     assert!(least < 0.8 * largest(5.9, 6.1).min(largest(6.25, 6.5)));
 }
 
@@ -109,7 +111,9 @@ fn paper_figure_5_ssvi_holds_the_larger_share() {
         let natural = (k1 / 1000.0_f64).sqrt();
         let share = |design| {
             let scene = scene(k1, natural, Some(design));
-            fresh(&scene, Parameter::Omega, &[natural], WINDOW, &Settings::default(), || ()).expect("a run")[0].ratios()[1]
+            fresh(&scene, Parameter::Omega, &[natural], WINDOW, &Settings::default(), || ()).expect("a run")
+                [0]
+            .ratios()[1]
         };
         assert!(share(SSVI) > share(TMD), "{k1}");
     }

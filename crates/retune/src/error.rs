@@ -25,7 +25,9 @@ pub enum Error {
         rule: Rule,
     },
     /// The interval of a trajectory is none, or makes a file that nobody can read.
-    #[error("--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows")]
+    #[error(
+        "--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows"
+    )]
     Interval {
         /// The interval as given.
         value: f64,
@@ -84,8 +86,18 @@ impl Error {
     /// 2 where the user can mend it (an input, a place to write to), 1 where the computation failed.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Study(_) | Self::Setting(_) | Self::Rule { .. } | Self::Interval { .. } | Self::Output { .. } => 2,
-            Self::Threads(_) | Self::Run(_) | Self::Atlas(_) | Self::Unusable(_) | Self::NoStart(_) | Self::Search { .. } | Self::Figure { .. } => 1,
+            Self::Study(_)
+            | Self::Setting(_)
+            | Self::Rule { .. }
+            | Self::Interval { .. }
+            | Self::Output { .. } => 2,
+            Self::Threads(_)
+            | Self::Run(_)
+            | Self::Atlas(_)
+            | Self::Unusable(_)
+            | Self::NoStart(_)
+            | Self::Search { .. }
+            | Self::Figure { .. } => 1,
         }
         .into()
     }

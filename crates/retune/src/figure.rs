@@ -36,11 +36,7 @@ type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), String>;
 
 /// A figure of `height` px, drawn by `draw`, with `caption` below it; as SVG text.
-fn figure(
-    height: u32,
-    caption: &[String],
-    draw: impl FnOnce(&Canvas) -> Drawn,
-) -> Result<String, String> {
+fn figure(height: u32, caption: &[String], draw: impl FnOnce(&Canvas) -> Drawn) -> Result<String, String> {
     let mut svg = String::new();
     let foot = CAPTION_LINE * caption.len() as i32 + 20;
     {
@@ -63,7 +59,9 @@ fn with_subscripts(svg: &str) -> String {
     for part in parts {
         match part.split_once('}') {
             Some((low, rest)) => {
-                out += &format!("<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}");
+                out += &format!(
+                    "<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}"
+                );
             }
             None => out += part,
         }
@@ -116,8 +114,16 @@ impl Frame<'_> {
 }
 
 /// A line of text, its vertical middle at `place`.
-fn text(canvas: &Canvas, words: &str, place: (i32, i32), size: i32, anchor: HPos, colour: &impl Color) -> Drawn {
-    let style = TextStyle::from(("sans-serif", size).into_font()).color(colour).pos(Pos::new(anchor, VPos::Center));
+fn text(
+    canvas: &Canvas,
+    words: &str,
+    place: (i32, i32),
+    size: i32,
+    anchor: HPos,
+    colour: &impl Color,
+) -> Drawn {
+    let style =
+        TextStyle::from(("sans-serif", size).into_font()).color(colour).pos(Pos::new(anchor, VPos::Center));
     canvas.draw_text(words, &style, place).map_err(|error| error.to_string())
 }
 

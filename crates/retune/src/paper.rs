@@ -59,7 +59,8 @@ fn run(arguments: &Reproduce, wanted: impl Fn(&str) -> bool + Sync, page: bool) 
     let screen = Screen::new(running.quiet);
     let plan = Plan::read(&arguments.study, screen)?;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/paper"));
-    let results = Directory::create(&out, |file| ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name)))?;
+    let results =
+        Directory::create(&out, |file| ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name)))?;
     with_threads(running.threads, || {
         results.write_json("study.json", &plan.file)?;
         let mut items = Vec::new();
@@ -95,6 +96,7 @@ fn write(item: &Item, results: &Directory) -> Result<(), Error> {
 
 /// The verdicts of an item, for the screen.
 fn report(item: &Item) -> String {
-    let lines = item.statements.iter().map(|s| format!("\n  {:<14} {} ({})", s.verdict.words(), s.paper, s.found));
+    let lines =
+        item.statements.iter().map(|s| format!("\n  {:<14} {} ({})", s.verdict.words(), s.paper, s.found));
     format!("{}{}", item.title, lines.collect::<String>())
 }

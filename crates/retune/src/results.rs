@@ -85,7 +85,8 @@ impl Pending {
         if path.is_dir() {
             return Err(refuse(std::io::ErrorKind::IsADirectory.into()));
         }
-        let temporary = path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
+        let temporary =
+            path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
         let file = BufWriter::new(File::create(&temporary).map_err(refuse)?);
         Ok(Self { path: path.to_owned(), temporary, file, finished: false })
     }

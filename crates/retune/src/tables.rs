@@ -69,7 +69,8 @@ struct Table {
 
 impl Table {
     fn new(name: &'static str, column: &'static str, out: &Path) -> Result<Self, Error> {
-        let directory = Directory::create(out, |file| file == format!("{name}.csv") || file == format!("{name}.txt"))?;
+        let directory =
+            Directory::create(out, |file| file == format!("{name}.csv") || file == format!("{name}.txt"))?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
         Ok(Self { name, directory, csv, text })
@@ -91,5 +92,9 @@ impl Table {
 
 /// A text as a CSV field.
 fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
 }

@@ -21,6 +21,7 @@ pub enum End {
 // Components of a regularised state.
 const Q: usize = 0;
 const W: usize = 1;
+const V1: usize = 3;
 const TIME: usize = 4;
 
 /// One step. Its interior is reached by shorter steps from its start.
@@ -132,7 +133,7 @@ impl Plan {
     #[inline(always)]
     fn error(&self, h: f64, step: &Step<5>, rtol: f64) -> f64 {
         let (q, w) = (1.0 / (rtol * self.q), 1.0 / (rtol * self.w));
-        step.error(h, &[q, w, 0.0, w * self.mass_ratio, 0.0], 3.0)
+        step.error(h, [(Q, q), (W, w), (V1, w * self.mass_ratio)])
     }
 
     /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate.
@@ -198,7 +199,7 @@ pub fn integrate(
         let (mut next, mut length) = (tried.y, h);
         let lifted = next[W] < 0.0 && next[Q] < 0.02 * plan.q;
         if lifted {
-            next = reach_wall(&equations, &tried.y, 0.02 * plan.q, work);
+            next = reach_wall(&equations, &tried.y, work);
             length -= 4.0 * tried.y[Q] / (tried.y[W] + next[W]); // dq/dθ = w/2
         }
         let over = touch_down + next[TIME] >= to;
@@ -225,14 +226,17 @@ pub fn integrate(
 }
 
 /// The state at the wall, `q = 0`, from one near it on either side (past lift-off the polynomial equations still hold), with
-/// `q` as the independent variable: one step of the classical Runge–Kutta method if `|q| < short`, else one of DOP853.
-fn reach_wall(equations: &Compression, y: &Compressed, short: f64, work: &mut Work) -> Compressed {
+/// `q` as the independent variable: one step of the classical Runge–Kutta method if the speed and the force hardly change on
+/// the way, else one of DOP853.
+fn reach_wall(equations: &Compression, y: &Compressed, work: &mut Work) -> Compressed {
     let by_q = |y: &Compressed| {
         let slope = equations.derivative(y);
         slope.map(|s| s / slope[Q])
     };
     let (k1, h) = (by_q(y), -y[Q]);
-    let mut end = if h.abs() < short {
+    let (z, speed) = (h * h, y[W].abs());
+    let change = z * (equations.acceleration(y).abs() / speed + equations.frequency());
+    let mut end = if change < 1e-3 * speed {
         work.evaluations += 4;
         let along = |k: &Compressed, h: f64| std::array::from_fn::<f64, 5, _>(|i| y[i] + h * k[i]);
         let k2 = by_q(&along(&k1, 0.5 * h));

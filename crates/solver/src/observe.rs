@@ -145,7 +145,7 @@ impl<F> Peak<F> {
         }
         let exact = |theta: f64| {
             let knot = segment.at(theta);
-            (knot.t, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
+            (knot, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
         };
         if at_a[1] > 0.0 && at_b[1] < 0.0 && at_a[2] < 0.0 && at_b[2] < 0.0 {
             // Concave at both ends: one maximum. The quantity is flat there: an error δ of its place costs δ², and that is
@@ -153,7 +153,7 @@ impl<F> Peak<F> {
             let (mut lower, mut upper) = (a, b);
             let mut theta = a + slope_root(h, at_a, at_b);
             for _ in 0..60 {
-                let (t, [value, slope, curvature]) = exact(theta);
+                let (Knot { t, clock: [rate, rate_slope], .. }, [value, slope, curvature]) = exact(theta);
                 note(&mut self.record, value, t);
                 if slope > 0.0 {
                     lower = theta
@@ -163,7 +163,7 @@ impl<F> Peak<F> {
                 let step = -slope / curvature;
                 let gain = 0.5 * slope * step;
                 if curvature < 0.0 && gain <= 1e-10 * value.abs() {
-                    return note(&mut self.record, value + gain, t);
+                    return note(&mut self.record, value + gain, t + step * (rate + 0.5 * step * rate_slope));
                 }
                 let newton = theta + step;
                 theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
@@ -176,8 +176,8 @@ impl<F> Peak<F> {
         if remainder < 1e-15 * self.record.value.abs() || h <= SHORTEST * segment.length() {
             return;
         }
-        let (t, at_middle) = exact(middle);
-        note(&mut self.record, at_middle[0], t);
+        let (knot, at_middle) = exact(middle);
+        note(&mut self.record, at_middle[0], knot.t);
         self.search(segment, (a, at_a), (middle, at_middle), remainder / 64.0);
         self.search(segment, (middle, at_middle), (b, at_b), remainder / 64.0);
     }

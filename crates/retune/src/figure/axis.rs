@@ -136,7 +136,10 @@ mod tests {
     #[test]
     fn exact_ticks_are_round_numbers() {
         assert_eq!(labels(Scale::Linear, 0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(Scale::Linear, 0.02, 0.14), ["0.02", "0.04", "0.06", "0.08", "0.10", "0.12", "0.14"]);
+        assert_eq!(
+            labels(Scale::Linear, 0.02, 0.14),
+            ["0.02", "0.04", "0.06", "0.08", "0.10", "0.12", "0.14"]
+        );
         assert_eq!(labels(Scale::Log, 30.0, 3000.0), ["50", "100", "200", "500", "1000", "2000"]);
         assert_eq!(labels(Scale::Log, 1e-3, 1e3), ["0.001", "0.01", "0.1", "1", "10", "100", "1000"]);
     }
@@ -146,7 +149,10 @@ mod tests {
         let share = |scale, value| Axis::new(String::new(), scale, 2.0, 200.0).share(value);
         assert!((share(Scale::Linear, 101.0) - 0.5).abs() < 1e-14);
         assert!((share(Scale::Log, 20.0) - 0.5).abs() < 1e-14);
-        assert_eq!([share(Scale::Log, 1.0), share(Scale::Log, 300.0), share(Scale::Log, f64::NAN)], [0.0, 1.0, 0.0]);
+        assert_eq!(
+            [share(Scale::Log, 1.0), share(Scale::Log, 300.0), share(Scale::Log, f64::NAN)],
+            [0.0, 1.0, 0.0]
+        );
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub fn viridis(share: f64) -> RGBColor {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let i = (place as usize).min(VIRIDIS.len() - 2);
     let part = place - i as f64;
-    let [r, g, b] = [0, 1, 2].map(|c| (VIRIDIS[i][c] + part * (VIRIDIS[i + 1][c] - VIRIDIS[i][c])).round() as u8);
+    let [r, g, b] =
+        [0, 1, 2].map(|c| (VIRIDIS[i][c] + part * (VIRIDIS[i + 1][c] - VIRIDIS[i][c])).round() as u8);
     RGBColor(r, g, b)
 }

@@ -39,8 +39,7 @@ pub fn panels(x_label: &str, x: &[f64], panels: &[Panel], caption: &[String]) ->
     figure((next - gap + foot) as u32, caption, |canvas| {
         for (i, (panel, (top, bottom))) in panels.iter().zip(&frames_top).enumerate() {
             let y_axis = Axis::around(panel.label.clone(), panel.scale, &panel.values);
-            let frame =
-                Frame { x: &x_axis, y: &y_axis, left: 270, right: 1560, top: *top, bottom: *bottom };
+            let frame = Frame { x: &x_axis, y: &y_axis, left: 270, right: 1560, top: *top, bottom: *bottom };
             frame.draw(canvas, i + 1 == panels.len())?;
             let points = x.iter().zip(&panel.values).filter(|(_, v)| v.is_finite());
             let points: Vec<_> = points.map(|(x, value)| frame.pixel(*x, *value)).collect();

@@ -95,7 +95,10 @@ fn escape(text: &str) -> String {
 
 fn words(out: &mut String, text: &str, (x, y): (f64, f64), anchor: &str, extra: &str) {
     let text = escape(text);
-    let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"{BLACK}\"{extra}>{text}</text>");
+    let _ = writeln!(
+        out,
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"{BLACK}\"{extra}>{text}</text>"
+    );
 }
 
 fn draw_key(out: &mut String, key: &Key, text: &str, x: f64, y: f64) {
@@ -104,7 +107,9 @@ fn draw_key(out: &mut String, key: &Key, text: &str, x: f64, y: f64) {
             out,
             "<path d=\"M{x} {y}h56\" stroke=\"{colour}\" stroke-width=\"5\" stroke-dasharray=\"{dash}\" fill=\"none\"/>"
         ),
-        Key::Dot(colour) => writeln!(out, "<circle cx=\"{}\" cy=\"{y}\" r=\"8\" fill=\"{colour}\"/>", x + 40.0),
+        Key::Dot(colour) => {
+            writeln!(out, "<circle cx=\"{}\" cy=\"{y}\" r=\"8\" fill=\"{colour}\"/>", x + 40.0)
+        }
         Key::Area(colour, opacity) => writeln!(
             out,
             "<rect x=\"{x}\" y=\"{}\" width=\"56\" height=\"26\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>",
@@ -135,19 +140,26 @@ fn draw_chart(out: &mut String, chart: &Chart, (left, top): (f64, f64), (width, 
         Axis::new(chart.labels[side].clone(), scale, chart.ranges[side].0, chart.ranges[side].1)
     };
     let (x, y) = (axis(0, Scale::Linear), axis(1, if chart.log { Scale::Log } else { Scale::Linear }));
-    let place = Place { x: &x, y: &y, left: left + 135.0, top: top + 46.0, width: width - 190.0, height: height - 136.0 };
+    let place = Place {
+        x: &x,
+        y: &y,
+        left: left + 135.0,
+        top: top + 46.0,
+        width: width - 190.0,
+        height: height - 136.0,
+    };
     words(out, &chart.title, (place.left + 0.5 * place.width, place.top - 16.0), "middle", "");
     for layer in &chart.layers {
         draw_layer(out, layer, &place);
     }
     let (right, bottom) = (place.left + place.width, place.top + place.height);
     let mut ticks = String::new();
-    for (value, label) in x.ticks() {
+    for (value, label) in x.ticks(5) {
         let (at, _) = place.pixel((value, f64::NAN));
         let _ = write!(ticks, "M{at:.1} {bottom:.1}v-9M{at:.1} {:.1}v9", place.top);
         words(out, &label, (at, bottom + 32.0), "middle", "");
     }
-    for (value, label) in y.ticks() {
+    for (value, label) in y.ticks(5) {
         let (_, at) = place.pixel((f64::NAN, value));
         let _ = write!(ticks, "M{:.1} {at:.1}h9M{right:.1} {at:.1}h-9", place.left);
         words(out, &label, (place.left - 10.0, at + 9.0), "end", "");
@@ -181,12 +193,16 @@ fn draw_layer(out: &mut String, layer: &Layer, place: &Place) {
             for (x, y) in pixels {
                 let _ = write!(path, "M{} {}h0", 0.5 * x as f64, 2 * y);
             }
-            writeln!(out, "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"{size}\" stroke-linecap=\"round\" fill=\"none\"/>")
+            writeln!(
+                out,
+                "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"{size}\" stroke-linecap=\"round\" fill=\"none\"/>"
+            )
         }
         Layer::Band { from, to, colour, opacity, height } => {
             let (left, _) = place.pixel((*from, f64::NAN));
             let (right, _) = place.pixel((*to, f64::NAN));
-            let (top, tall) = (place.top + place.height * (1.0 - height.1), place.height * (height.1 - height.0));
+            let (top, tall) =
+                (place.top + place.height * (1.0 - height.1), place.height * (height.1 - height.0));
             writeln!(
                 out,
                 "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{tall:.1}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>",
@@ -196,7 +212,10 @@ fn draw_layer(out: &mut String, layer: &Layer, place: &Place) {
         Layer::Upright { x } => {
             let (at, _) = place.pixel((*x, f64::NAN));
             let (top, height) = (place.top, place.height);
-            writeln!(out, "<path d=\"M{at:.1} {top:.1}v{height:.1}\" stroke=\"{BLACK}\" stroke-width=\"2.5\" fill=\"none\"/>")
+            writeln!(
+                out,
+                "<path d=\"M{at:.1} {top:.1}v{height:.1}\" stroke=\"{BLACK}\" stroke-width=\"2.5\" fill=\"none\"/>"
+            )
         }
         Layer::Words { x, share, text } => {
             let (at, _) = place.pixel((*x, f64::NAN));

@@ -166,9 +166,12 @@ impl Optimum {
 
 /// The header of the paper's Table 2.
 pub fn table2_header() -> String {
-    format!("{:<24}{:<10}{:<12}{:<14}{:<12}{:<12}", "Damper type", "m2, kg", "k2, N/m", "c2, N·s/m", "D, m", "C, m")
-        .trim_end()
-        .to_owned()
+    format!(
+        "{:<24}{:<10}{:<12}{:<14}{:<12}{:<12}",
+        "Damper type", "m2, kg", "k2, N/m", "c2, N·s/m", "D, m", "C, m"
+    )
+    .trim_end()
+    .to_owned()
 }
 
 /// A row of the paper's Table 2.

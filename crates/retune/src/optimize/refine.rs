@@ -1,8 +1,8 @@
 //! The fine stage: `fminsearch` from each start, logged as it happens.
 
 use super::log::{self, CSV_HEADER, TXT_HEADER};
-use super::surf::design;
 use super::objective;
+use super::surf::design;
 use crate::error::Error;
 use crate::results::{Directory, Pending};
 use crate::screen::Screen;
@@ -54,7 +54,12 @@ pub(super) fn refine(
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
-        screen.log(format!("\nfminsearch, start {} of {}\n{}", number + 1, starts.len(), log::SCREEN_HEADER))?;
+        screen.log(format!(
+            "\nfminsearch, start {} of {}\n{}",
+            number + 1,
+            starts.len(),
+            log::SCREEN_HEADER
+        ))?;
         let run = run(&objective, search, start, |row, design| {
             all.push_line(&format!("{},{}", number + 1, log::csv(row, design)))?;
             screen.log(log::screen(row, design))
@@ -88,7 +93,10 @@ fn run(
         search.options.clone(),
         |row| {
             rows.push(row.clone());
-            told = objective.damper(&row.best).map_err(Error::from).and_then(|damper| tell(row, &design(&damper)));
+            told = objective
+                .damper(&row.best)
+                .map_err(Error::from)
+                .and_then(|damper| tell(row, &design(&damper)));
             if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         },
     );

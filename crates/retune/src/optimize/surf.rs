@@ -37,7 +37,12 @@ pub(super) fn surf(
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
     let objective = objective(study, search, &variables);
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
-    screen.log(format!("surf: {} = {} points over {}", axes.join(" x "), grid.len(), joined(&variables, " ")))?;
+    screen.log(format!(
+        "surf: {} = {} points over {}",
+        axes.join(" x "),
+        grid.len(),
+        joined(&variables, " ")
+    ))?;
 
     let begun = Instant::now();
     let bar = screen.progress("surf", grid.len() as u64);
@@ -100,9 +105,14 @@ impl Surf {
             0 => String::new(),
             count => format!("; {count} could not be computed"),
         };
-        let point: Vec<String> = self.point(self.best).iter().map(|value| super::log::short(*value)).collect();
-        let at: Vec<String> =
-            self.variables.iter().zip(point).map(|(variable, value)| format!("{variable} = {value}")).collect();
+        let point: Vec<String> =
+            self.point(self.best).iter().map(|value| super::log::short(*value)).collect();
+        let at: Vec<String> = self
+            .variables
+            .iter()
+            .zip(point)
+            .map(|(variable, value)| format!("{variable} = {value}"))
+            .collect();
         let least = super::log::short(self.values[self.best]);
         format!("surf: {seconds:.1} s; least E1max {least} J at {}{failed}", at.join(", "))
     }

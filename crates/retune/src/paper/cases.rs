@@ -19,9 +19,27 @@ struct Case {
 }
 
 const CASES: [Case; 3] = [
-    Case { letter: "a", k1: 3.95e4, omega: 6.65, paper: "Intermittency with unilateral impacts", zone: Zone::PrimaryOnly },
-    Case { letter: "b", k1: 3.00e4, omega: 6.10, paper: "Transient chaos with unilateral impacts", zone: Zone::PrimaryOnly },
-    Case { letter: "c", k1: 5.00e4, omega: 7.10, paper: "Chaotic motion with bilateral impacts", zone: Zone::Bilateral },
+    Case {
+        letter: "a",
+        k1: 3.95e4,
+        omega: 6.65,
+        paper: "Intermittency with unilateral impacts",
+        zone: Zone::PrimaryOnly,
+    },
+    Case {
+        letter: "b",
+        k1: 3.00e4,
+        omega: 6.10,
+        paper: "Transient chaos with unilateral impacts",
+        zone: Zone::PrimaryOnly,
+    },
+    Case {
+        letter: "c",
+        k1: 5.00e4,
+        omega: 7.10,
+        paper: "Chaotic motion with bilateral impacts",
+        zone: Zone::Bilateral,
+    },
 ];
 
 /// Radii with which the judgement is repeated, m: the paper does not give its own.
@@ -69,7 +87,10 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
         "x2(t), phase trajectory and contact forces (on the PS blue, on the obstacle green): (a) intermittency, (b) transient chaos, (c) chaos.",
         plan.made_by("Shown from t0 to T + 100 s of a run from rest; judged over 2000 periods, of which the last 1000 count as settled."),
     );
-    let mut grid = Grid::new("Our judgement of each case, and how it depends on what the paper leaves out", &["case", "R, m", "ω, rad/s", "motion", "largest exponent, 1/s", "laminar share", "confidence"]);
+    let mut grid = Grid::new(
+        "Our judgement of each case, and how it depends on what the paper leaves out",
+        &["case", "R, m", "ω, rad/s", "motion", "largest exponent, 1/s", "laminar share", "confidence"],
+    );
     let near = [-0.02, -0.01, 0.01, 0.02];
     let bar = plan.screen.progress("figure 7", (CASES.len() * (RADII.len() + near.len())) as u64);
     for case in &CASES {
@@ -113,11 +134,24 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-fn state(case: &Case, scene: &Scene, variants: &[(f64, f64)], judged: &[Regime], plan: &Plan, item: &mut Item) -> Result<(), Error> {
+fn state(
+    case: &Case,
+    scene: &Scene,
+    variants: &[(f64, f64)],
+    judged: &[Regime],
+    plan: &Plan,
+    item: &mut Item,
+) -> Result<(), Error> {
     let window = plan.window();
     let run = retune_solver::simulate(scene, window, &plan.settings())?;
     let zone = Zone::of(run.impacts);
-    let elsewhere: Vec<String> = variants.iter().zip(judged).skip(1).filter(|(_, r)| case.agrees(r)).map(|((radius, omega), _)| format!("R = {radius} m, ω = {omega:.2}")).collect();
+    let elsewhere: Vec<String> = variants
+        .iter()
+        .zip(judged)
+        .skip(1)
+        .filter(|(_, r)| case.agrees(r))
+        .map(|((radius, omega), _)| format!("R = {radius} m, ω = {omega:.2}"))
+        .collect();
     let own = &judged[0];
     let verdict = match (case.agrees(own), zone == case.zone) {
         (true, true) => Verdict::Holds,
@@ -126,11 +160,32 @@ fn state(case: &Case, scene: &Scene, variants: &[(f64, f64)], judged: &[Regime],
     };
     let found = format!(
         "{} (exponent {:.3} ± {:.3} /s, laminar {:.0} % of the time, confidence {:.2}); {} impacts on the PS and {} on the obstacle in {}–{} s; the paper's word fits also at: {}",
-        own.label(), own.exponent.value, own.exponent.error, 100.0 * own.laminar, own.confidence,
-        run.impacts[0], run.impacts[1], window.from, window.to,
-        if elsewhere.is_empty() { "none of the other settings tried".to_owned() } else { elsewhere.join("; ") }
+        own.label(),
+        own.exponent.value,
+        own.exponent.error,
+        100.0 * own.laminar,
+        own.confidence,
+        run.impacts[0],
+        run.impacts[1],
+        window.from,
+        window.to,
+        if elsewhere.is_empty() {
+            "none of the other settings tried".to_owned()
+        } else {
+            elsewhere.join("; ")
+        }
     );
-    item.statement(&format!("({}) {} at ω = {:.2} rad/s, k1 = {} N/m", case.letter, case.paper, case.omega, stiffness(case.k1)), verdict, found);
+    item.statement(
+        &format!(
+            "({}) {} at ω = {:.2} rad/s, k1 = {} N/m",
+            case.letter,
+            case.paper,
+            case.omega,
+            stiffness(case.k1)
+        ),
+        verdict,
+        found,
+    );
     Ok(())
 }
 
@@ -139,7 +194,10 @@ fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), 
     let mut samples: Vec<Sample> = Vec::new();
     trajectory(scene, window, &plan.settings(), INTERVAL, &mut |sample| samples.push(*sample))?;
     let range = |value: fn(&Sample) -> f64| {
-        let (low, high) = samples.iter().map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = samples
+            .iter()
+            .map(value)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let room = 0.06 * (high - low).max(1e-9);
         (low - room, high + room)
     };
@@ -156,17 +214,60 @@ fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), 
         dash: "",
     };
     let time = (window.from, window.to);
-    let x2 = Layer::Line { points: some.iter().map(|s| (s.t, s.state[2])).collect(), colour: BLACK, width: 1.8, dash: "" };
-    let phase = Layer::Line { points: samples.iter().step_by(2).map(|s| (s.state[2], s.state[3])).collect(), colour: BLACK, width: 0.9, dash: "" };
-    let chart = |title: &str, labels: [&str; 2], ranges, layers| Chart { title: title.into(), labels: labels.map(str::to_owned), ranges, log: false, layers };
+    let x2 = Layer::Line {
+        points: some.iter().map(|s| (s.t, s.state[2])).collect(),
+        colour: BLACK,
+        width: 1.8,
+        dash: "",
+    };
+    let phase = Layer::Line {
+        points: samples.iter().step_by(2).map(|s| (s.state[2], s.state[3])).collect(),
+        colour: BLACK,
+        width: 0.9,
+        dash: "",
+    };
+    let chart = |title: &str, labels: [&str; 2], ranges, layers| Chart {
+        title: title.into(),
+        labels: labels.map(str::to_owned),
+        ranges,
+        log: false,
+        layers,
+    };
     let charts = [
-        chart(&format!("({}) ω = {:.2} rad/s, k₁ = {} N/m", case.letter, case.omega, stiffness(case.k1)), ["t, s", "x₂, m"], [time, range(|s| s.state[2])], vec![x2]),
+        chart(
+            &format!("({}) ω = {:.2} rad/s, k₁ = {} N/m", case.letter, case.omega, stiffness(case.k1)),
+            ["t, s", "x₂, m"],
+            [time, range(|s| s.state[2])],
+            vec![x2],
+        ),
         chart("Contact forces", ["t, s", "F, N"], [time, (0.0, top)], vec![force(0, BLUE), force(1, GREEN)]),
-        chart("Phase trajectory", ["x₂, m", "v₂, m/s"], [range(|s| s.state[2]), range(|s| s.state[3])], vec![phase]),
+        chart(
+            "Phase trajectory",
+            ["x₂, m", "v₂, m/s"],
+            [range(|s| s.state[2]), range(|s| s.state[3])],
+            vec![phase],
+        ),
     ];
     let legend = [(Key::Line(BLUE, ""), "force on the PS"), (Key::Line(GREEN, ""), "force on the obstacle")];
-    item.picture(&format!("figure7-{}", case.letter), sheet(&charts, 1, 440.0, &legend), &format!("({}) The paper: {}.", case.letter, case.paper));
-    let rows = some.iter().map(|s| vec![(1e6 * s.t).round() / 1e6, s.state[0], s.state[1], s.state[2], s.state[3], s.forces[0], s.forces[1]]);
-    item.data.push((format!("figure7-{}.csv", case.letter), numbers("t_s,x1_m,v1_m_per_s,x2_m,v2_m_per_s,F_PS_N,F_obstacle_N", rows)));
+    item.picture(
+        &format!("figure7-{}", case.letter),
+        sheet(&charts, 1, 440.0, &legend),
+        &format!("({}) The paper: {}.", case.letter, case.paper),
+    );
+    let rows = some.iter().map(|s| {
+        vec![
+            (1e6 * s.t).round() / 1e6,
+            s.state[0],
+            s.state[1],
+            s.state[2],
+            s.state[3],
+            s.forces[0],
+            s.forces[1],
+        ]
+    });
+    item.data.push((
+        format!("figure7-{}.csv", case.letter),
+        numbers("t_s,x1_m,v1_m_per_s,x2_m,v2_m_per_s,F_PS_N,F_obstacle_N", rows),
+    ));
     Ok(())
 }

@@ -92,7 +92,8 @@ const SMOOTH: usize = 9;
 
 const NAMES: [&str; 3] = ["without damper", "with SSVI NES", "with TMD"];
 /// One colour and dash for each stiffness; the tuned one is red, as in the paper.
-const OTHERS: [(&str, &str); 5] = [(BLUE, ""), (SKY, "18 8"), (GREEN, "6 6"), (PURPLE, "22 6 6 6"), (ORANGE, "12 6")];
+const OTHERS: [(&str, &str); 5] =
+    [(BLUE, ""), (SKY, "18 8"), (GREEN, "6 6"), (PURPLE, "22 6 6 6"), (ORANGE, "12 6")];
 
 /// Makes Figure 3.
 ///
@@ -107,13 +108,27 @@ pub fn figure3(plan: &Plan) -> Result<Item, Error> {
         paper,
         plan.made_by("One run from rest at each frequency."),
     );
-    item.picture("figure3", picture(plan, &families), "Largest energy of the primary structure after the transient. The tuned stiffness is red.");
+    item.picture(
+        "figure3",
+        picture(plan, &families),
+        "Largest energy of the primary structure after the transient. The tuned stiffness is red.",
+    );
     let header = "k1_N_per_m,omega_rad_per_s,E1max_none_J,E1max_SSVI_J,E1max_TMD_J,E2max_SSVI_J,E2max_TMD_J,impacts_PS,impacts_obstacle";
     let rows = families.iter().flat_map(|f| {
         (0..f.points[0].len()).map(move |i| {
             let [none, ssvi, tmd] = [0, 1, 2].map(|s| f.points[s][i]);
             let [ps, obstacle] = ssvi.impacts.map(|n| n as f64);
-            vec![f.k1, none.value, none.e1_max, ssvi.e1_max, tmd.e1_max, ssvi.e2_max, tmd.e2_max, ps, obstacle]
+            vec![
+                f.k1,
+                none.value,
+                none.e1_max,
+                ssvi.e1_max,
+                tmd.e1_max,
+                ssvi.e2_max,
+                tmd.e2_max,
+                ps,
+                obstacle,
+            ]
         })
     });
     item.data.push(("figure3.csv".into(), numbers(header, rows)));
@@ -123,13 +138,17 @@ pub fn figure3(plan: &Plan) -> Result<Item, Error> {
 }
 
 fn picture(plan: &Plan, families: &[Family]) -> String {
-    let style = |i: usize, k1: f64| if k1 == plan.tuned() { (VERMILION, "") } else { OTHERS[i % OTHERS.len()] };
+    let style =
+        |i: usize, k1: f64| if k1 == plan.tuned() { (VERMILION, "") } else { OTHERS[i % OTHERS.len()] };
     let top = families.iter().map(|f| f.highest(0).energy).fold(0.0, f64::max) * 1.06;
     let charts: Vec<Chart> = (0..3)
         .map(|scene| Chart {
             title: format!("({}) {}", ["a", "b", "c"][scene], NAMES[scene]),
             labels: ["ω, rad/s".into(), "E₁max, J".into()],
-            ranges: [(plan.file.omega.from, plan.file.omega.to), (0.0, if scene == 0 { top } else { 0.7 * top })],
+            ranges: [
+                (plan.file.omega.from, plan.file.omega.to),
+                (0.0, if scene == 0 { top } else { 0.7 * top }),
+            ],
             log: false,
             layers: families
                 .iter()
@@ -155,7 +174,18 @@ fn picture(plan: &Plan, families: &[Family]) -> String {
 }
 
 fn highest(families: &[Family]) -> super::item::Grid {
-    let head = ["k1, N/m", "ω₀, rad/s", "no damper: E1max, J", "at ω", "SSVI NES: E1max, J", "at ω", "reduced", "TMD: E1max, J", "at ω", "reduced"];
+    let head = [
+        "k1, N/m",
+        "ω₀, rad/s",
+        "no damper: E1max, J",
+        "at ω",
+        "SSVI NES: E1max, J",
+        "at ω",
+        "reduced",
+        "TMD: E1max, J",
+        "at ω",
+        "reduced",
+    ];
     let mut grid = super::item::Grid::new("Highest points of the curves", &head);
     for f in families {
         let [none, ssvi, tmd] = [0, 1, 2].map(|scene| f.highest(scene));
@@ -173,7 +203,9 @@ fn highest(families: &[Family]) -> super::item::Grid {
 
 fn statements(plan: &Plan, families: &[Family], item: &mut Item) {
     let Some(tuned) = families.iter().find(|f| f.k1 == plan.tuned()) else {
-        item.notes.push("The tuned stiffness is not among those of the study, so no statement can be checked.".into());
+        item.notes.push(
+            "The tuned stiffness is not among those of the study, so no statement can be checked.".into(),
+        );
         return;
     };
     let softer: Vec<&Family> = families.iter().filter(|f| f.k1 < tuned.k1).collect();
@@ -182,7 +214,11 @@ fn statements(plan: &Plan, families: &[Family], item: &mut Item) {
         families.iter().map(|f| format!("{:.2}", f.reduction(scene))).collect::<Vec<_>>().join(", ")
     };
     let humps = tuned.humps(1, 0.05);
-    let place = humps.iter().map(|p| format!("{:.0} J at ω = {:.2}", p.energy, p.omega)).collect::<Vec<_>>().join(", ");
+    let place = humps
+        .iter()
+        .map(|p| format!("{:.0} J at ω = {:.2}", p.energy, p.omega))
+        .collect::<Vec<_>>()
+        .join(", ");
     item.statement(
         "The SSVI NES provides two resonant peaks",
         Verdict::of(humps.len() == 2),
@@ -194,10 +230,17 @@ fn statements(plan: &Plan, families: &[Family], item: &mut Item) {
         Verdict::of(ssvi < tmd),
         format!("highest E1max {ssvi:.0} J against {tmd:.0} J, of {:.0} J without damper", tuned.highest(0).energy),
     );
-    let best = |scene: usize| families.iter().all(|f| f.reduction(scene) <= tuned.reduction(scene) * (1.0 + 1e-9));
+    let best =
+        |scene: usize| families.iter().all(|f| f.reduction(scene) <= tuned.reduction(scene) * (1.0 + 1e-9));
     item.statement(
         "In the version corresponding to the tuning the oscillation suppression is achieved best",
-        if best(1) && best(2) { Verdict::Holds } else if best(1) || best(2) { Verdict::Partly } else { Verdict::Fails },
+        if best(1) && best(2) {
+            Verdict::Holds
+        } else if best(1) || best(2) {
+            Verdict::Partly
+        } else {
+            Verdict::Fails
+        },
         format!(
             "reduction of the highest energy, k1 rising: SSVI NES {}; TMD {}",
             list(&families.iter().collect::<Vec<_>>(), 1),
@@ -209,14 +252,36 @@ fn statements(plan: &Plan, families: &[Family], item: &mut Item) {
     let differ = stiffer.iter().map(|f| (f.reduction(1) / f.reduction(2) - 1.0).abs()).fold(0.0, f64::max);
     item.statement(
         "With increasing k1 the reduction remains virtually unchanged and identical for SSVI NES and TMD",
-        if change < 0.12 && differ < 0.06 { Verdict::Holds } else if change < 0.25 { Verdict::Partly } else { Verdict::Fails },
-        format!("it changes by at most {:.0} %, and the two dampers differ by at most {:.0} %", 100.0 * change, 100.0 * differ),
+        if change < 0.12 && differ < 0.06 {
+            Verdict::Holds
+        } else if change < 0.25 {
+            Verdict::Partly
+        } else {
+            Verdict::Fails
+        },
+        format!(
+            "it changes by at most {:.0} %, and the two dampers differ by at most {:.0} %",
+            100.0 * change,
+            100.0 * differ
+        ),
     );
     let worse = |scene: usize| softer.iter().all(|f| f.reduction(scene) < tuned.reduction(scene));
     item.statement(
         "When k1 decreases the reduction worsens",
-        if worse(1) && worse(2) { Verdict::Holds } else if worse(1) || worse(2) { Verdict::Partly } else { Verdict::Fails },
-        format!("softer: SSVI NES {} (tuned {:.2}); TMD {} (tuned {:.2})", list(&softer, 1), tuned.reduction(1), list(&softer, 2), tuned.reduction(2)),
+        if worse(1) && worse(2) {
+            Verdict::Holds
+        } else if worse(1) || worse(2) {
+            Verdict::Partly
+        } else {
+            Verdict::Fails
+        },
+        format!(
+            "softer: SSVI NES {} (tuned {:.2}); TMD {} (tuned {:.2})",
+            list(&softer, 1),
+            tuned.reduction(1),
+            list(&softer, 2),
+            tuned.reduction(2)
+        ),
     );
     let loss = |f: &&Family, scene: usize| f.reduction(scene) / tuned.reduction(scene);
     let more = softer.iter().all(|f| loss(f, 1) < loss(f, 2));
@@ -225,18 +290,36 @@ fn statements(plan: &Plan, families: &[Family], item: &mut Item) {
         Verdict::of(more),
         softer
             .iter()
-            .map(|f| format!("k1 = {}: {:.0} % of the tuned reduction is left to the SSVI NES, {:.0} % to the TMD", stiffness(f.k1), 100.0 * loss(f, 1), 100.0 * loss(f, 2)))
+            .map(|f| {
+                format!(
+                    "k1 = {}: {:.0} % of the tuned reduction is left to the SSVI NES, {:.0} % to the TMD",
+                    stiffness(f.k1),
+                    100.0 * loss(f, 1),
+                    100.0 * loss(f, 2)
+                )
+            })
             .collect::<Vec<_>>()
             .join("; "),
     );
     let mut by_k1: Vec<&Family> = families.iter().collect();
     by_k1.sort_by(|a, b| a.k1.total_cmp(&b.k1));
-    let left = by_k1.windows(2).all(|pair| (0..3).all(|scene| pair[0].highest(scene).omega < pair[1].highest(scene).omega));
-    item.statement("The resonance peak shifts to the left with falling k1", Verdict::of(left), "the frequency of the highest point rises with k1 on all three curves (table)".into());
+    let left = by_k1
+        .windows(2)
+        .all(|pair| (0..3).all(|scene| pair[0].highest(scene).omega < pair[1].highest(scene).omega));
+    item.statement(
+        "The resonance peak shifts to the left with falling k1",
+        Verdict::of(left),
+        "the frequency of the highest point rises with k1 on all three curves (table)".into(),
+    );
     let low = by_k1[0];
     item.statement(
         "The energy reduction is maintained even at a significantly low stiffness",
         Verdict::of(low.reduction(1) > 1.0 && low.reduction(2) > 1.0),
-        format!("k1 = {}: {:.2} times smaller with the SSVI NES, {:.2} times with the TMD", stiffness(low.k1), low.reduction(1), low.reduction(2)),
+        format!(
+            "k1 = {}: {:.2} times smaller with the SSVI NES, {:.2} times with the TMD",
+            stiffness(low.k1),
+            low.reduction(1),
+            low.reduction(2)
+        ),
     );
 }

@@ -55,8 +55,13 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
         (Key::Line(ORANGE, ""), "E₂, damper"),
     ];
     item.picture("figure6", sheet(&charts, 1, 520.0, &legend), "Energies from rest.");
-    let rows = none.iter().zip(&ssvi).zip(&tmd).map(|((n, s), t)| vec![(n.t * 1e6).round() / 1e6, n.e1, s.e1, s.e2, t.e1, t.e2]);
-    item.data.push(("figure6.csv".into(), numbers("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J", rows)));
+    let rows = none
+        .iter()
+        .zip(&ssvi)
+        .zip(&tmd)
+        .map(|((n, s), t)| vec![(n.t * 1e6).round() / 1e6, n.e1, s.e1, s.e2, t.e1, t.e2]);
+    item.data
+        .push(("figure6.csv".into(), numbers("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J", rows)));
     let late = |samples: &[Sample], energy: fn(&Sample) -> f64| {
         samples.iter().filter(|s| s.t >= plan.window().from).map(energy).fold(0.0, f64::max)
     };
@@ -65,12 +70,18 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
     item.statement(
         "Both dampers effectively reduce the maximum energy of the PS at resonance",
         Verdict::of(e1[1] < 0.5 * e1[0] && e1[2] < 0.5 * e1[0]),
-        format!("after the transient {:.0} J without damper, {:.0} J with the SSVI NES, {:.0} J with the TMD", e1[0], e1[1], e1[2]),
+        format!(
+            "after the transient {:.0} J without damper, {:.0} J with the SSVI NES, {:.0} J with the TMD",
+            e1[0], e1[1], e1[2]
+        ),
     );
     item.statement(
         "The SSVI NES takes energy from the PS somewhat better than the TMD",
         Verdict::of(e1[1] < e1[2] && e2[0] / (e1[1] + e2[0]) > e2[1] / (e1[2] + e2[1])),
-        format!("largest E1 {:.0} J against {:.0} J, largest E2 {:.0} J against {:.0} J", e1[1], e1[2], e2[0], e2[1]),
+        format!(
+            "largest E1 {:.0} J against {:.0} J, largest E2 {:.0} J against {:.0} J",
+            e1[1], e1[2], e2[0], e2[1]
+        ),
     );
     Ok(item)
 }

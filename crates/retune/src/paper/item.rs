@@ -55,13 +55,21 @@ pub struct Grid {
 impl Grid {
     /// An empty table.
     pub fn new(caption: &str, head: &[&str]) -> Self {
-        Self { caption: caption.to_owned(), head: head.iter().map(|&name| name.to_owned()).collect(), rows: Vec::new() }
+        Self {
+            caption: caption.to_owned(),
+            head: head.iter().map(|&name| name.to_owned()).collect(),
+            rows: Vec::new(),
+        }
     }
 
     /// The table as CSV.
     pub fn csv(&self) -> String {
         let quoted = |text: &String| {
-            if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.clone() }
+            if text.contains([',', '"']) {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            } else {
+                text.clone()
+            }
         };
         let line = |cells: &Vec<String>| cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n";
         std::iter::once(&self.head).chain(&self.rows).map(line).collect()

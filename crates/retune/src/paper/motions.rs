@@ -65,7 +65,9 @@ impl Motions {
     fn coexisting(&self) -> usize {
         let pairs = self.orbits[1].iter().zip(&self.orbits[2]).zip(&self.regimes);
         let regular = |regime: &Regime| regime.kind == Kind::Periodic;
-        pairs.filter(|((up, down), regime)| regular(regime) && (up.e1_max / down.e1_max - 1.0).abs() > 0.02).count()
+        pairs
+            .filter(|((up, down), regime)| regular(regime) && (up.e1_max / down.e1_max - 1.0).abs() > 0.02)
+            .count()
     }
 }
 
@@ -170,18 +172,29 @@ fn zone_chart(family: &Family) -> Chart {
 
 fn orbit_chart(family: &Family, motions: &Motions) -> Chart {
     let dots = |start: usize, colour, size| Layer::Dots {
-        points: motions.orbits[start].iter().flat_map(|o| o.samples.iter().map(|y| (o.value, y[2]))).collect(),
+        points: motions.orbits[start]
+            .iter()
+            .flat_map(|o| o.samples.iter().map(|y| (o.value, y[2])))
+            .collect(),
         colour,
         size,
     };
-    let half = |i: usize| 0.5 * (motions.omega[(i + 1).min(motions.omega.len() - 1)] - motions.omega[i.saturating_sub(1)]) * 0.5;
+    let half = |i: usize| {
+        0.5 * (motions.omega[(i + 1).min(motions.omega.len() - 1)] - motions.omega[i.saturating_sub(1)]) * 0.5
+    };
     let mut layers: Vec<Layer> = motions
         .regimes
         .iter()
         .enumerate()
         .map(|(i, regime)| {
             let (omega, half) = (motions.omega[i], half(i));
-            Layer::Band { from: omega - half, to: omega + half, colour: colour(regime.kind), opacity: 1.0, height: (0.95, 1.0) }
+            Layer::Band {
+                from: omega - half,
+                to: omega + half,
+                colour: colour(regime.kind),
+                opacity: 1.0,
+                height: (0.95, 1.0),
+            }
         })
         .collect();
     layers.extend([dots(0, BLACK, 6.0), dots(2, ORANGE, 4.5), dots(1, BLUE, 3.0)]);
@@ -189,11 +202,19 @@ fn orbit_chart(family: &Family, motions: &Motions) -> Chart {
     widest.retain(|(label, ..)| label.contains(','));
     widest.sort_by_key(|(_, from, to)| std::cmp::Reverse(to - from));
     let step = motions.omega.len() as f64;
-    for (label, from, to) in widest.into_iter().filter(|(label, from, to)| (to - from) as f64 > 0.011 * step * label.chars().count() as f64) {
-        layers.push(Layer::Words { x: 0.5 * (motions.omega[from] + motions.omega[to]), share: 0.89, text: label });
+    for (label, from, to) in widest
+        .into_iter()
+        .filter(|(label, from, to)| (to - from) as f64 > 0.011 * step * label.chars().count() as f64)
+    {
+        layers.push(Layer::Words {
+            x: 0.5 * (motions.omega[from] + motions.omega[to]),
+            share: 0.89,
+            text: label,
+        });
     }
     let values = motions.orbits.iter().flatten().flat_map(|o| o.samples.iter().map(|y| y[2]));
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     Chart {
         title: "x₂ at the crests of the force".into(),
         labels: ["ω, rad/s".into(), "x₂, m".into()],
@@ -202,13 +223,19 @@ fn orbit_chart(family: &Family, motions: &Motions) -> Chart {
             (low - 0.05 * (high - low), high + 0.25 * (high - low)),
         ],
         log: false,
-        layers: { layers.push(Layer::Upright { x: family.natural }); layers },
+        layers: {
+            layers.push(Layer::Upright { x: family.natural });
+            layers
+        },
     }
 }
 
 fn names(families: &[Family], all: &[Motions]) -> Grid {
     let head = ["k1, N/m", "ω, rad/s", "motion", "largest exponent, 1/s", "confidence"];
-    let mut grid = Grid::new("The motions from rest, as the frequency rises (windows of three frequencies or more)", &head);
+    let mut grid = Grid::new(
+        "The motions from rest, as the frequency rises (windows of three frequencies or more)",
+        &head,
+    );
     for (family, motions) in families.iter().zip(all) {
         for (label, from, to) in motions.windows().into_iter().filter(|(_, from, to)| to - from >= 2) {
             let part = &motions.regimes[from..=to];
@@ -235,7 +262,12 @@ fn regimes_csv(families: &[Family], all: &[Motions]) -> String {
             let _ = writeln!(
                 text,
                 "{},{omega:.6},\"{}\",{n},{m},{k},{:.5},{:.5},{:.3},{until},{:.3}",
-                family.k1, r.label(), exponent.value, exponent.error, r.laminar, r.confidence
+                family.k1,
+                r.label(),
+                exponent.value,
+                exponent.error,
+                r.laminar,
+                r.confidence
             );
         }
     }
@@ -247,7 +279,8 @@ fn orbits_csv(families: &[Family], all: &[Motions]) -> String {
     for (family, motions) in families.iter().zip(all) {
         for (start, orbits) in STARTS.iter().zip(&motions.orbits) {
             for orbit in orbits {
-                let distinct: BTreeSet<i64> = orbit.samples.iter().map(|y| (1e4 * y[2]).round() as i64).collect();
+                let distinct: BTreeSet<i64> =
+                    orbit.samples.iter().map(|y| (1e4 * y[2]).round() as i64).collect();
                 let list: Vec<String> = distinct.iter().map(|x| format!("{}", *x as f64 / 10.0)).collect();
                 let _ = writeln!(text, "{},{start},{:.6},{}", family.k1, orbit.value, list.join(" "));
             }
@@ -257,10 +290,14 @@ fn orbits_csv(families: &[Family], all: &[Motions]) -> String {
 }
 
 fn statements(families: &[Family], all: &[Motions], item: &mut Item) {
-    let both = |family: &Family| zones(&family.points[1]).into_iter().filter(|(zone, ..)| *zone == Zone::Bilateral).collect::<Vec<_>>();
-    let around = families.iter().all(|f| both(f).iter().any(|(_, from, to)| (*from..=*to).contains(&f.natural)));
+    let both = |family: &Family| {
+        zones(&family.points[1]).into_iter().filter(|(zone, ..)| *zone == Zone::Bilateral).collect::<Vec<_>>()
+    };
+    let around =
+        families.iter().all(|f| both(f).iter().any(|(_, from, to)| (*from..=*to).contains(&f.natural)));
     let places = |family: &Family| {
-        let list: Vec<String> = both(family).iter().map(|(_, from, to)| format!("{from:.2}–{to:.2}")).collect();
+        let list: Vec<String> =
+            both(family).iter().map(|(_, from, to)| format!("{from:.2}–{to:.2}")).collect();
         format!("k1 = {}: {}", stiffness(family.k1), list.join(", "))
     };
     item.statement(
@@ -270,9 +307,12 @@ fn statements(families: &[Family], all: &[Motions], item: &mut Item) {
     );
     let kinds = [Kind::Periodic, Kind::Chaotic, Kind::AmplitudeModulated, Kind::Intermittent];
     let count = |motions: &Motions, kind: Kind| motions.regimes.iter().filter(|r| r.kind == kind).count();
-    let alternate = all.iter().all(|m| count(m, Kind::Periodic) > 0 && m.regimes.iter().any(|r| r.kind != Kind::Periodic));
+    let alternate = all
+        .iter()
+        .all(|m| count(m, Kind::Periodic) > 0 && m.regimes.iter().any(|r| r.kind != Kind::Periodic));
     let found = families.iter().zip(all).map(|(f, m)| {
-        let list: Vec<String> = kinds.iter().map(|&kind| format!("{} {}", count(m, kind), kind.words())).collect();
+        let list: Vec<String> =
+            kinds.iter().map(|&kind| format!("{} {}", count(m, kind), kind.words())).collect();
         format!("k1 = {}: {}", stiffness(f.k1), list.join(", "))
     });
     let found = found.collect::<Vec<_>>().join("; ");
@@ -282,13 +322,24 @@ fn statements(families: &[Family], all: &[Motions], item: &mut Item) {
         format!("of {} frequencies each: {found}", all.first().map_or(0, |m| m.omega.len())),
     );
     let seen = |kind: Kind| all.iter().map(|m| count(m, kind)).sum::<usize>();
-    let missing: Vec<&str> = kinds[1..].iter().filter(|&&kind| seen(kind) == 0).map(|kind| kind.words()).collect();
+    let missing: Vec<&str> =
+        kinds[1..].iter().filter(|&&kind| seen(kind) == 0).map(|kind| kind.words()).collect();
     item.statement(
         "The irregular regimes are chaotic, amplitude-modulated and intermittent",
         if missing.is_empty() { Verdict::Holds } else { Verdict::Partly },
-        format!("{} chaotic, {} amplitude-modulated, {} intermittent{}", seen(kinds[1]), seen(kinds[2]), seen(kinds[3]), if missing.is_empty() { String::new() } else { format!("; not seen: {}", missing.join(", ")) }),
+        format!(
+            "{} chaotic, {} amplitude-modulated, {} intermittent{}",
+            seen(kinds[1]),
+            seen(kinds[2]),
+            seen(kinds[3]),
+            if missing.is_empty() { String::new() } else { format!("; not seen: {}", missing.join(", ")) }
+        ),
     );
-    let list: Vec<String> = families.iter().zip(all).map(|(f, m)| format!("{} at k1 = {}", m.coexisting(), stiffness(f.k1))).collect();
+    let list: Vec<String> = families
+        .iter()
+        .zip(all)
+        .map(|(f, m)| format!("{} at k1 = {}", m.coexisting(), stiffness(f.k1)))
+        .collect();
     item.notes.push(format!(
         "Coexisting motions: frequencies at which the sweep up and the sweep down end in motions whose E1max differ by more than 2 %: {}. The paper shows one motion at each frequency.",
         list.join(", ")

@@ -7,7 +7,9 @@ const STYLE: &str = include_str!("page.css");
 
 /// The whole page.
 pub fn page(items: &[Item]) -> String {
-    let count = |verdict: Verdict| items.iter().flat_map(|item| &item.statements).filter(|s| s.verdict == verdict).count();
+    let count = |verdict: Verdict| {
+        items.iter().flat_map(|item| &item.statements).filter(|s| s.verdict == verdict).count()
+    };
     let [holds, partly, fails] = [Verdict::Holds, Verdict::Partly, Verdict::Fails].map(count);
     let markup = html! {
         (DOCTYPE)

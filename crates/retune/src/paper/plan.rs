@@ -53,6 +53,9 @@ pub struct Plan {
     pub screen: Screen,
 }
 
+/// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
+const MOST_STEPS: u64 = 1_000_000;
+
 impl Range {
     /// The values.
     pub fn values(self) -> Vec<f64> {
@@ -60,7 +63,11 @@ impl Range {
     }
 
     fn is_sound(self) -> bool {
-        self.from.is_finite() && self.to.is_finite() && 0.0 < self.from && self.from < self.to && (2..=100_000).contains(&self.points)
+        self.from.is_finite()
+            && self.to.is_finite()
+            && 0.0 < self.from
+            && self.from < self.to
+            && (2..=100_000).contains(&self.points)
     }
 }
 
@@ -85,7 +92,8 @@ impl Plan {
         let directory = path.parent().unwrap_or(Path::new(""));
         let rows = read_table2(&directory.join(&file.table2))?;
         let studies: Result<[PaperStudy; 2], _> = rows.try_into();
-        let [ssvi, tmd] = studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
+        let [ssvi, tmd] =
+            studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
         Ok(Self { file, ssvi: ssvi.study, tmd: tmd.study, screen })
     }
 
@@ -94,7 +102,8 @@ impl Plan {
     /// # Errors
     /// A stiffness that cannot be.
     pub fn scenes(&self, k1: f64) -> Result<[Scene; 3], Error> {
-        let at = |study: &Study| -> Result<Scene, Error> { Ok(retune_atlas::Parameter::K1.at(study.scene, k1)?) };
+        let at =
+            |study: &Study| -> Result<Scene, Error> { Ok(retune_atlas::Parameter::K1.at(study.scene, k1)?) };
         let (ssvi, tmd) = (at(&self.ssvi)?, at(&self.tmd)?);
         Ok([Scene { damper: None, ..ssvi }, ssvi, tmd])
     }
@@ -111,13 +120,16 @@ impl Plan {
 
     /// How runs are integrated.
     pub fn settings(&self) -> Settings {
-        self.ssvi.solver.settings()
+        let settings = self.ssvi.solver.settings();
+        Settings { max_steps: settings.max_steps.min(MOST_STEPS), ..settings }
     }
 
     /// What made an item, in words.
     pub fn made_by(&self, more: &str) -> String {
         let contact = self.ssvi.scene.damper.map(|damper| damper.contact);
-        let radius = contact.map_or(String::new(), |contact| format!("R = {} m, q = {}; ", contact.radius.get(), contact.coefficient.get()));
+        let radius = contact.map_or(String::new(), |contact| {
+            format!("R = {} m, q = {}; ", contact.radius.get(), contact.coefficient.get())
+        });
         format!("{radius}{}. {more}", crate::summary::MadeBy::new(&self.ssvi))
     }
 }

@@ -37,9 +37,24 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
     );
     let omega = (plan.file.omega.from, plan.file.omega.to);
     let charts = [
-        chart("(a) at resonance", "k₁, N/m", (plan.file.k1_range.from, plan.file.k1_range.to), [&at_resonance[0], &at_resonance[1]]),
-        chart(&format!("(b) k₁ = {} N/m", stiffness(soft.k1)), "ω, rad/s", omega, [&soft.points[1], &soft.points[2]]),
-        chart(&format!("(c) k₁ = {} N/m", stiffness(tuned.k1)), "ω, rad/s", omega, [&tuned.points[1], &tuned.points[2]]),
+        chart(
+            "(a) at resonance",
+            "k₁, N/m",
+            (plan.file.k1_range.from, plan.file.k1_range.to),
+            [&at_resonance[0], &at_resonance[1]],
+        ),
+        chart(
+            &format!("(b) k₁ = {} N/m", stiffness(soft.k1)),
+            "ω, rad/s",
+            omega,
+            [&soft.points[1], &soft.points[2]],
+        ),
+        chart(
+            &format!("(c) k₁ = {} N/m", stiffness(tuned.k1)),
+            "ω, rad/s",
+            omega,
+            [&tuned.points[1], &tuned.points[2]],
+        ),
     ];
     let legend = [
         (Key::Line(VERMILION, ""), "R₁, SSVI NES"),
@@ -47,9 +62,16 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
         (Key::Line(BLUE, ""), "R₁, TMD"),
         (Key::Line(BLUE, "10 7"), "R₂, TMD"),
     ];
-    item.picture("figure5", sheet(&charts, 1, 430.0, &legend), "Energy ratios; red the SSVI NES, blue the TMD; dashed the damper's share R₂.");
+    item.picture(
+        "figure5",
+        sheet(&charts, 1, 430.0, &legend),
+        "Energy ratios; red the SSVI NES, blue the TMD; dashed the damper's share R₂.",
+    );
     let csv = |ssvi: &[Point], tmd: &[Point], name: &str| {
-        let rows = ssvi.iter().zip(tmd).map(|(s, t)| [vec![s.value], s.ratios().to_vec(), t.ratios().to_vec()].concat());
+        let rows = ssvi
+            .iter()
+            .zip(tmd)
+            .map(|(s, t)| [vec![s.value], s.ratios().to_vec(), t.ratios().to_vec()].concat());
         numbers(&format!("{name},R1_SSVI,R2_SSVI,R1_TMD,R2_TMD"), rows)
     };
     item.data.push(("figure5a.csv".into(), csv(&at_resonance[0], &at_resonance[1], "k1_N_per_m")));
@@ -61,7 +83,8 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
     };
     let band = |family: &Family| {
         let near = |p: &&Point| (p.value / family.natural - 1.0).abs() < 0.05;
-        let [s, t] = [1, 2].map(|scene| family.points[scene].iter().filter(near).copied().collect::<Vec<_>>());
+        let [s, t] =
+            [1, 2].map(|scene| family.points[scene].iter().filter(near).copied().collect::<Vec<_>>());
         above(&s, &t)
     };
     let shares = [above(&at_resonance[0], &at_resonance[1]), band(&soft), band(&tuned)];
@@ -90,5 +113,11 @@ fn chart(title: &str, label: &str, range: (f64, f64), dampers: [&[Point]; 2]) ->
             layers.push(Layer::Line { points, colour, width: 4.0, dash });
         }
     }
-    Chart { title: title.to_owned(), labels: [label.to_owned(), "R₁, R₂".to_owned()], ranges: [range, (0.0, 1.0)], log: false, layers }
+    Chart {
+        title: title.to_owned(),
+        labels: [label.to_owned(), "R₁, R₂".to_owned()],
+        ranges: [range, (0.0, 1.0)],
+        log: false,
+        layers,
+    }
 }

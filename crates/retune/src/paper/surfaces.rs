@@ -18,10 +18,25 @@ struct Surface {
 }
 
 const POINTS: usize = 41;
-const TMD: Surface = Surface { name: "figure2-tmd", title: "TMD", variables: [Variable::K2, Variable::C2], ranges: [(100.0, 4000.0), (20.0, 500.0)] };
+const TMD: Surface = Surface {
+    name: "figure2-tmd",
+    title: "TMD",
+    variables: [Variable::K2, Variable::C2],
+    ranges: [(100.0, 4000.0), (20.0, 500.0)],
+};
 const SSVI: [Surface; 2] = [
-    Surface { name: "figure2-ssvi-k2-c2", title: "SSVI NES", variables: [Variable::K2, Variable::C2], ranges: [(50.0, 800.0), (40.0, 440.0)] },
-    Surface { name: "figure2-ssvi-D-C", title: "SSVI NES", variables: [Variable::D, Variable::C], ranges: [(0.01, 0.2), (0.05, 0.65)] },
+    Surface {
+        name: "figure2-ssvi-k2-c2",
+        title: "SSVI NES",
+        variables: [Variable::K2, Variable::C2],
+        ranges: [(50.0, 800.0), (40.0, 440.0)],
+    },
+    Surface {
+        name: "figure2-ssvi-D-C",
+        title: "SSVI NES",
+        variables: [Variable::D, Variable::C],
+        ranges: [(0.01, 0.2), (0.05, 0.65)],
+    },
 ];
 
 /// What was found on a surface.
@@ -41,7 +56,9 @@ pub fn figure2(plan: &Plan) -> Result<Item, Error> {
         "figure2",
         "Figure 2. The surf surfaces",
         "Two surfaces of E1max at k1 = 3.95e4 N/m on which approximate optima were read with the Data Tip. Axes and ranges are not in the text.",
-        plan.made_by(&format!("{POINTS} × {POINTS} runs a surface; the other two parameters at the paper's optimum.")),
+        plan.made_by(&format!(
+            "{POINTS} × {POINTS} runs a surface; the other two parameters at the paper's optimum."
+        )),
     );
     let bar = plan.screen.progress("figure 2", (3 * POINTS * POINTS) as u64);
     let done = || bar.inc(1);
@@ -58,7 +75,11 @@ pub fn figure2(plan: &Plan) -> Result<Item, Error> {
             found.best[0], found.best[1], found.best_value, found.paper[0], found.paper[1], found.paper_value
         )
     };
-    item.statement("The surface gives the approximate optimum of the TMD", Verdict::of(near(&tmd)), words(&tmd));
+    item.statement(
+        "The surface gives the approximate optimum of the TMD",
+        Verdict::of(near(&tmd)),
+        words(&tmd),
+    );
     let verdict = match ssvi.iter().filter(|found| near(found)).count() {
         2 => Verdict::Holds,
         1 => Verdict::Partly,
@@ -70,10 +91,17 @@ pub fn figure2(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-fn surface(plan: &Plan, study: &Study, surface: &Surface, item: &mut Item, done: &(impl Fn() + Sync)) -> Result<Found, Error> {
+fn surface(
+    plan: &Plan,
+    study: &Study,
+    surface: &Surface,
+    item: &mut Item,
+    done: &(impl Fn() + Sync),
+) -> Result<Found, Error> {
     let refuse = |problem: String| Error::Figure { name: surface.name.to_owned(), problem };
     let damper = study.scene.damper.ok_or_else(|| refuse("the study has no damper".into()))?;
-    let objective = PeakEnergy::new(study.scene, damper, surface.variables.to_vec(), plan.window(), plan.settings());
+    let objective =
+        PeakEnergy::new(study.scene, damper, surface.variables.to_vec(), plan.window(), plan.settings());
     let [xs, ys] = surface.ranges.map(|(from, to)| evenly(from, to, POINTS));
     let designs: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
     let value = |design: &[f64; 2]| {
@@ -91,10 +119,17 @@ fn surface(plan: &Plan, study: &Study, surface: &Surface, item: &mut Item, done:
         paper_value: objective.value(&paper, f64::INFINITY),
     };
     let label = |variable: Variable| format!("{variable}, {}", variable.unit());
-    let sides = [(0, &xs), (1, &ys)]
-        .map(|(side, nodes)| Nodes { label: label(surface.variables[side]), scale: Scale::Linear, values: nodes.clone() });
+    let sides = [(0, &xs), (1, &ys)].map(|(side, nodes)| Nodes {
+        label: label(surface.variables[side]),
+        scale: Scale::Linear,
+        values: nodes.clone(),
+    });
     let marks = [
-        Mark::Grid { x: found.best[0], y: found.best[1], label: format!("best node, {:.0} J", found.best_value) },
+        Mark::Grid {
+            x: found.best[0],
+            y: found.best[1],
+            label: format!("best node, {:.0} J", found.best_value),
+        },
         Mark::Optimum { x: paper[0], y: paper[1], label: format!("the paper's, {:.0} J", found.paper_value) },
     ];
     let svg = heat_map(&sides, &values, "E1max, J", &marks, &[]).map_err(refuse)?;

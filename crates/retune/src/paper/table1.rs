@@ -30,7 +30,9 @@ struct Spread {
 impl Spread {
     fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
-        let at = |share: f64| values.get((share * (values.len() - 1) as f64).round() as usize).copied().unwrap_or(f64::NAN);
+        let at = |share: f64| {
+            values.get((share * (values.len() - 1) as f64).round() as usize).copied().unwrap_or(f64::NAN)
+        };
         Self { least: at(0.0), median: at(0.5), largest: at(1.0) }
     }
 
@@ -64,8 +66,25 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-fn worth(plan: &Plan, objective: &(impl Fn(Window, Settings) -> PeakEnergy + Sync), item: &mut Item) -> Result<(), Error> {
-    let head = ["row", "k2, N/m", "c2, N·s/m", "D, m", "C, m", "paper: E1max, J", "ours, J", "whole run, J", "parameters ±0.1 %, J", "rtol 1e-6 … 1e-12, J", "motion", "exponent, 1/s"];
+fn worth(
+    plan: &Plan,
+    objective: &(impl Fn(Window, Settings) -> PeakEnergy + Sync),
+    item: &mut Item,
+) -> Result<(), Error> {
+    let head = [
+        "row",
+        "k2, N/m",
+        "c2, N·s/m",
+        "D, m",
+        "C, m",
+        "paper: E1max, J",
+        "ours, J",
+        "whole run, J",
+        "parameters ±0.1 %, J",
+        "rtol 1e-6 … 1e-12, J",
+        "motion",
+        "exponent, 1/s",
+    ];
     let mut grid = Grid::new("The paper's rows, computed again", &head);
     let whole = Window { from: 0.0, to: plan.window().to };
     let own = objective(plan.window(), plan.settings());
@@ -118,13 +137,18 @@ fn worth(plan: &Plan, objective: &(impl Fn(Window, Settings) -> PeakEnergy + Syn
     );
     let medians: Vec<f64> = fits.iter().map(|(_, near, _)| near.median).collect();
     let better = medians[2].max(medians[3]) < medians[0].min(medians[1]);
-    item.statement("The refined designs (rows 3 and 4) are better than the first (rows 1 and 2)", Verdict::of(better), "by the medians above".into());
+    item.statement(
+        "The refined designs (rows 3 and 4) are better than the first (rows 1 and 2)",
+        Verdict::of(better),
+        "by the medians above".into(),
+    );
     Ok(())
 }
 
 /// A design moved by up to 0.1 % in each parameter, in a fixed low-discrepancy sequence (additive recurrence); the first is itself.
 fn perturbed(design: &[f64; 4], n: usize) -> [f64; 4] {
-    const STEPS: [f64; 4] = [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_719_147_146_4, 0.538_597_247_228_474_5];
+    const STEPS: [f64; 4] =
+        [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_719_147_146_4, 0.538_597_247_228_474_5];
     std::array::from_fn(|i| {
         let share = (0.5 + n as f64 * STEPS[i]).fract();
         design[i] * (1.0 + 1e-3 * (2.0 * share - 1.0))
@@ -179,7 +203,8 @@ fn row_3(item: &mut Item) -> Result<(), Error> {
         third = Some(row.clone());
         if row.iteration == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    minimize(stub, &PAPER[3].0, Options::default(), watch).map_err(|source| Error::Search { source, failures: Failures::default() })?;
+    minimize(stub, &PAPER[3].0, Options::default(), watch)
+        .map_err(|source| Error::Search { source, failures: Failures::default() })?;
     let printed = third.as_ref().map(|row| design(row).map(scientific).join("  ")).unwrap_or_default();
     let paper = PAPER[2].0.map(scientific).join("  ");
     item.statement(

@@ -69,7 +69,7 @@ pub enum StudyError {
 ///
 /// # Errors
 /// [`StudyError`]: the file, the field, its value and what is allowed.
-pub fn read_paper<T: DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
+pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, StudyError> {
     parse(&read_text(path)?, &path.display().to_string())
 }
 
@@ -93,10 +93,8 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
 pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     let file = || path.display().to_string();
     let bytes = std::fs::read(path).map_err(|source| StudyError::Unreadable { file: file(), source })?;
-    let text = String::from_utf8(bytes).map_err(|error| StudyError::NotText {
-        file: file(),
-        byte: error.utf8_error().valid_up_to(),
-    })?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| StudyError::NotText { file: file(), byte: error.utf8_error().valid_up_to() })?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 

@@ -61,7 +61,9 @@ pub enum Rule {
         variable: Variable,
     },
     /// Bounds that leave no room, or allow what cannot be.
-    #[error("optimize.bounds.{variable}: {bounds} is not allowed here: give [smallest, largest] with 0 <= smallest < largest")]
+    #[error(
+        "optimize.bounds.{variable}: {bounds} is not allowed here: give [smallest, largest] with 0 <= smallest < largest"
+    )]
     Bounds {
         /// The parameter.
         variable: Variable,
@@ -92,7 +94,9 @@ pub enum Rule {
     #[error("optimize.surf: {0}")]
     Grid(#[from] GridError),
     /// The start lies outside its bounds.
-    #[error("scene.damper.{variable}: {value} is where the refinement starts, but lies outside the bounds {bounds}")]
+    #[error(
+        "scene.damper.{variable}: {value} is where the refinement starts, but lies outside the bounds {bounds}"
+    )]
     StartOutside {
         /// The parameter.
         variable: Variable,
@@ -240,7 +244,8 @@ fn varied(vary: &[Variable]) -> Result<Vec<Variable>, Rule> {
 fn bounds(given: &PerVariable<(f64, Option<f64>)>, variable: Variable) -> Result<Bounds, Rule> {
     let (lower, upper) = given.get(variable).unwrap_or((0.0, None));
     let bounds = Bounds { lower: Some(lower), upper };
-    let room = lower >= 0.0 && lower.is_finite() && upper.is_none_or(|upper| lower < upper && upper.is_finite());
+    let room =
+        lower >= 0.0 && lower.is_finite() && upper.is_none_or(|upper| lower < upper && upper.is_finite());
     if room { Ok(bounds) } else { Err(Rule::Bounds { variable, bounds }) }
 }
 
@@ -251,7 +256,8 @@ fn grid(
     let axis = |variable: Variable| -> Option<Result<Axis, Rule>> {
         let GridAxis { from, to, points, scale } = axes.get(variable)?;
         Some(bounds_of(variable).and_then(|bounds| {
-            let axis = Axis::new(from, to, points, scale).map_err(|source| Rule::Axis { variable, source })?;
+            let axis =
+                Axis::new(from, to, points, scale).map_err(|source| Rule::Axis { variable, source })?;
             match bounds.contain(from) && bounds.contain(to) {
                 true => Ok(axis),
                 false => Err(Rule::GridOutside { variable, from, to, bounds }),
