@@ -57,6 +57,8 @@ pub struct Peak<F> {
     record: Extreme,
     cutoff: f64,
     last: Option<(f64, [f64; 3])>,
+    /// Halvings left in the segment being searched.
+    halvings: u32,
 }
 
 /// Share of what a quantity varies over a segment, `h |slope| + h² |curvature|` at both ends, by which it may leave its
@@ -64,14 +66,21 @@ pub struct Peak<F> {
 /// the motion) the remainder is `2⁶ / 46080` of its amplitude.
 const SCREEN: f64 = 2e-3;
 
-/// Share of a segment below which an interval is not halved: its square is a rounding error.
-const SHORTEST: f64 = 1e-8;
+/// Most halvings in a segment. A motion needs a few; only where a quantity is level to rounding (a stroke that touches its
+/// record of 0 at each lift-off, the energy of a damper that does not move yet) is there no end of them.
+const HALVINGS: u32 = 200;
 
 impl<F> Peak<F> {
     /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
     /// the value exceeds `cutoff`.
     pub fn new(rates: F, cutoff: f64) -> Self {
-        Self { rates, record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN }, cutoff, last: None }
+        Self {
+            rates,
+            record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN },
+            cutoff,
+            last: None,
+            halvings: 0,
+        }
     }
 
     /// The record so far.
@@ -171,11 +180,10 @@ impl<F> Peak<F> {
             return;
         }
         let middle = 0.5 * (a + b);
-        // An interval this short adds less than rounding to what the quantity varies over the segment: a place where it only
-        // touches the record (a stroke of 0 at each lift-off) ends here.
-        if remainder < 1e-15 * self.record.value.abs() || h <= SHORTEST * segment.length() {
+        if remainder < 1e-15 * self.record.value.abs() || self.halvings == 0 {
             return;
         }
+        self.halvings -= 1;
         let (knot, at_middle) = exact(middle);
         note(&mut self.record, at_middle[0], knot.t);
         self.search(segment, (a, at_a), (middle, at_middle), remainder / 64.0);
@@ -205,6 +213,7 @@ where
         let h = segment.length();
         let variation = |[_, slope, curvature]: [f64; 3]| h * (slope.abs() + h * curvature.abs());
         let remainder = SCREEN * (variation(at_a) + variation(at_b));
+        self.halvings = HALVINGS;
         self.search(segment, (0.0, at_a), (h, at_b), remainder);
     }
 
