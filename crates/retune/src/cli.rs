@@ -26,6 +26,26 @@ pub enum Command {
     Table2(Table2),
     /// Tune both dampers anew for other stiffnesses k1 of the primary structure
     Retune(Retune),
+    /// Make every table and figure of the paper, on one page beside what the paper says
+    Reproduce(Reproduce),
+    /// Make one figure of the paper
+    Figure {
+        /// Its number in the paper
+        #[arg(value_parser = clap::value_parser!(u8).range(2..=7))]
+        number: u8,
+        /// How it is made.
+        #[command(flatten)]
+        paper: Reproduce,
+    },
+    /// Make one table of the paper
+    Table {
+        /// Its number in the paper
+        #[arg(value_parser = clap::value_parser!(u8).range(1..=2))]
+        number: u8,
+        /// How it is made.
+        #[command(flatten)]
+        paper: Reproduce,
+    },
     /// Check a study file and say what it asks for
     Check {
         /// The study file
@@ -51,6 +71,8 @@ pub enum Kind {
     Study,
     /// The paper's Table 2
     Table2,
+    /// The whole paper
+    Paper,
 }
 
 /// How a search is run.
@@ -73,6 +95,17 @@ pub struct Optimize {
     /// The study file
     pub study: PathBuf,
     /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `reproduce`, `figure`, `table`.
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// The study of the whole paper
+    #[arg(long, value_name = "FILE", default_value = "studies/paper.json")]
+    pub study: PathBuf,
+    /// How it is run; results go to results/paper unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
 }

@@ -7,6 +7,7 @@ mod axis;
 mod colour;
 mod heat_map;
 mod panels;
+pub mod sheet;
 
 pub use axis::scale_for;
 pub use heat_map::{Mark, Nodes, heat_map};

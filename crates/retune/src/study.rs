@@ -8,7 +8,7 @@ mod search;
 mod set;
 mod table2;
 
-pub use read::{StudyError, read};
+pub use read::{StudyError, read, read_paper};
 pub use search::{Rule, Search};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, is_table2, read_table2};
