@@ -1,4 +1,5 @@
 //! Exponents of systems whose exponents are known.
+#![allow(clippy::approx_constant, reason = "6.28 and 0.318 are the paper's inputs, not 2π and 1/π")]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! Sweeps: closed forms, the order of points, the number of threads.
+#![allow(clippy::approx_constant, reason = "6.28 and 0.318 are the paper's inputs, not 2π and 1/π")]
 
 mod common;
 

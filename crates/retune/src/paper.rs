@@ -12,7 +12,7 @@ mod surfaces;
 mod table1;
 mod table2;
 
-pub use plan::PaperPlan;
+pub use plan::{PaperPlan, Plan};
 
 use crate::cli::Reproduce;
 use crate::error::Error;
@@ -20,7 +20,6 @@ use crate::optimize::{where_results_are, with_threads};
 use crate::results::Directory;
 use crate::screen::Screen;
 use item::Item;
-use plan::Plan;
 use std::path::PathBuf;
 
 /// What makes an item.

@@ -11,7 +11,7 @@ mod table2;
 pub use read::{StudyError, read, read_paper};
 pub use search::{Rule, Search};
 pub use set::{Setting, SettingError};
-pub use table2::{PaperStudy, Table2, is_table2, read_table2};
+pub use table2::{PaperStudy, Table2, is_paper, is_table2, read_table2};
 
 use retune_model::{NonNegative, Positive, Scene};
 use retune_optim::{Options, Scale, Variable};

@@ -128,7 +128,7 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     item.notes.push(
         "Case (b): the motion from rest creeps towards a period-2 motion, and its exponent is the rate of that: with -0.014 /s it takes \
          70 s to come e times nearer, so in a run of 100 s it never looks periodic; but neighbours do not part at any time, which \
-         transient chaos would need. A tolerance of 1e-3, the paper's solver's default, adds noise to each impact that may look like chaos."
+         transient chaos would need."
             .into(),
     );
     Ok(item)

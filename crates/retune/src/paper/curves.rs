@@ -221,8 +221,8 @@ fn statements(plan: &Plan, families: &[Family], item: &mut Item) {
         .join(", ");
     item.statement(
         "The SSVI NES provides two resonant peaks",
-        Verdict::of(humps.len() == 2),
-        format!("humps of the running median over {SMOOTH} frequencies with a dip of 5 % or more between them: {place}; the second is broken up by jumps, for its motion is chaotic"),
+        if humps.len() == 2 { Verdict::Partly } else { Verdict::Fails },
+        format!("in the running median over {SMOOTH} frequencies with a dip of 5 % or more between peaks: {place}; the curve itself has more maxima, for the motion of the second peak is chaotic and its energy jumps from one frequency to the next"),
     );
     let (ssvi, tmd) = (tuned.highest(1).energy, tuned.highest(2).energy);
     item.statement(

@@ -111,9 +111,10 @@ fn statements(worths: &[[f64; 3]], rows: &[Row], item: &mut Item) {
     );
     item.statement(
         "The SSVI NES's row is optimal: no smaller worst case over ω",
-        verdict(ssvi[2], at_all[2].min(worths[3][2])),
+        // The search is coarse and single runs scatter: a gain of a few per cent decides nothing.
+        if ssvi[2] < 1.1 * at_all[2].min(worths[3][2]) { Verdict::Partly } else { Verdict::Fails },
         format!(
-            "worst case {:.0} J; tuned for it from there {:.0} J, from the best node of Figure 2 {:.0} J",
+            "worst case {:.0} J; tuned for it from there {:.0} J, from the best node of Figure 2 {:.0} J, by a coarse search: a difference of a few per cent is within the scatter of single runs, so this says only that the row is near a local optimum",
             ssvi[2], at_all[2], worths[3][2]
         ),
     );

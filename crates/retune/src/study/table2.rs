@@ -95,3 +95,12 @@ pub fn is_table2(path: &Path) -> Result<bool, StudyError> {
     let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
     Ok(json.is_ok_and(|json| json.get("rows").is_some()))
 }
+
+/// Whether a file is a plan of the whole paper, by its field `table2`.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn is_paper(path: &Path) -> Result<bool, StudyError> {
+    let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
+    Ok(json.is_ok_and(|json| json.get("table2").is_some()))
+}
