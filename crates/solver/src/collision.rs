@@ -14,9 +14,9 @@
 //! integrated step by step (see `contact`).
 
 use crate::contact::Piece;
-use crate::flow::Flow;
+use crate::flow::{Expansion, Flow};
 use crate::observe::{Knot, Observer, Path};
-use crate::rule::{DURATION, MOMENTS, Rule, dot, product};
+use crate::rule::{DURATION, MOMENTS, Rule, dot, each, product};
 use retune_model::{Compression, Coupled, Side};
 use std::sync::LazyLock;
 
@@ -54,7 +54,7 @@ struct Collision<'a, const N: usize> {
     turns: u32,
 }
 
-/// Terms of the free motion's Taylor series, and the largest `rate t` for which they are exact: `0.3¹² / 12! = 1e-15`.
+/// Most terms of the free motion's Taylor series, and the largest `rate t` for which they are exact: `0.3¹² / 12! = 1e-15`.
 const FREE: usize = 12; // even
 const BRIEF: f64 = 0.3;
 
@@ -99,7 +99,7 @@ impl Collisions {
     }
 
     /// Computes the contact that begins at `touch` and shows it to the observer, if it is nearly an undisturbed collision
-    /// and over before `to`. Returns lift-off and the number of evaluations of the force.
+    /// and over before `to`. Returns time and state of lift-off and the number of evaluations of the force.
     #[inline(always)]
     pub fn collide(
         &self,
@@ -107,21 +107,21 @@ impl Collisions {
         touch: Knot<4>,
         to: f64,
         observer: &mut impl Observer<4>,
-    ) -> Option<(Knot<4>, u64)> {
+    ) -> Option<(f64, [f64; 4], u64)> {
         let (few, some, many) = &*RULES;
         // From these tolerances on, common contacts pass the test of the rule, and their insides, for which quadrature by Gauss gains
         // nothing, are accurate enough for the energy of the much heavier structure.
         if self.rtol >= 1e-7
             && let Some(collision) = self.solve(few, flow, touch, to)
         {
-            return Some(collision.show(observer));
+            return Some(collision.finish(observer));
         }
         if self.rtol >= 1e-9
             && let Some(collision) = self.solve(some, flow, touch, to)
         {
-            return Some(collision.show(observer));
+            return Some(collision.finish(observer));
         }
-        self.solve(many, flow, touch, to).map(|collision| collision.show(observer))
+        self.solve(many, flow, touch, to).map(|collision| collision.finish(observer))
     }
 
     /// The contact by one rule; `None` if it is not of the kind that the rule is for.
@@ -136,19 +136,23 @@ impl Collisions {
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         let depth = self.equations.greatest_depth(speed).powi(2);
         let undisturbed = DURATION * depth / speed;
-        if !(speed > 0.0) {
+        if speed.is_nan() || speed <= 0.0 {
             return None;
         }
         let terms = self.longest.iter().position(|&longest| undisturbed < longest)?;
+        let free_terms = terms + 4; // their error is about the square of the response's
         let free = flow.expand::<FREE>(touch.drive, &touch.y);
         let (x1, x2) = (free.component(0), free.component(2));
         // z_free / depth, without the constant term, which is zero.
-        let approach: [f64; FREE - 1] =
-            std::array::from_fn(|k| self.side.sign() * (x2[k + 1] - x1[k + 1]) / depth);
+        let mut approach = [0.0; FREE - 1];
+        for k in 1..FREE {
+            approach[k - 1] = self.side.sign() / depth * (x2[k] - x1[k]);
+        }
         let (mut depths, mut stretch) = (rule.depths, 1.0);
         let (mut moments, mut last) = (rule.undisturbed, rule.undisturbed_last);
-        let (mut force, mut before, mut turns) = (depths, 1.0, 0);
-        loop {
+        let mut shares = [0.0; 2];
+        let (mut before, mut turns) = (1.0, 0);
+        let force = loop {
             let duration = stretch * undisturbed;
             let (mut pushed, mut pushed_last) = ([0.0; N], 0.0);
             for k in (1..=terms).rev() {
@@ -158,74 +162,92 @@ impl Collisions {
                 pushed_last = pushed_last * duration + self.gains[k] * last[k];
             }
             let scale = duration * duration * depth.sqrt();
-            let times = rule.times.map(|tau| tau * duration);
+            let times = each::<N>(|i| rule.times[i] * duration);
             let (mut free, mut free_last) = ([0.0; N], 0.0);
-            for a in approach.iter().rev() {
+            for a in approach[..free_terms - 1].iter().rev() {
                 for i in 0..N {
                     free[i] = (free[i] + a) * times[i];
                 }
                 free_last = (free_last + a) * duration;
             }
-            let residual = std::array::from_fn(|i| depths[i] - free[i] + scale * pushed[i]);
-            let (change, lengthening) = rule.inverse.times(&residual, scale * pushed_last - free_last);
+            let residual = each(|i| depths[i] - free[i] + scale * pushed[i]);
+            let (change, lengthening) =
+                rule.newton.change(shares, &residual, scale * pushed_last - free_last);
             for i in 0..N {
                 depths[i] -= change[i];
             }
             stretch -= lengthening;
             turns += 1;
             let size = change.iter().fold(lengthening.abs(), |size, c| size.max(c.abs()));
-            // Each turn gains as much as the last: what is left is about `size² / before`.
-            let settled = size * size <= self.rtol * before;
-            if !(size < 0.5 * before) || turns == TURNS {
+            // Each turn gains about as much as the last: what is left is some `size² / before`.
+            let settled = size * size <= 0.3 * self.rtol * before;
+            if size.is_nan() || size >= 0.5 * before || turns == TURNS {
                 return None;
             }
+            if turns == 1 {
+                shares = rule.newton.shares(&change, lengthening);
+            }
             before = size;
-            force = depths.map(|z| z * z.sqrt());
+            let force = each::<N>(|i| depths[i] * depths[i].sqrt());
             for k in usize::from(!settled)..=terms {
                 moments[k] = product(&rule.moments[k], &force);
                 last[k] = dot(&rule.last[k], &force);
             }
             if settled {
-                break;
+                break force;
             }
-        }
-        let tail = dot(&rule.tails[0], &force).hypot(dot(&rule.tails[1], &force));
+        };
+        let tail = (dot(&rule.tails[0], &force).powi(2) + dot(&rule.tails[1], &force).powi(2)).sqrt();
         let duration = stretch * undisturbed;
         let error = TAIL[N / 4 - 2] * tail * tail.sqrt().sqrt();
-        if !(error <= self.rtol && touch.t + duration < to) {
+        if error.is_nan() || error > self.rtol || touch.t + duration >= to {
             return None;
         }
-        let times = rule.times.map(|tau| tau * duration);
-        let mut nodes = [[0.0; N]; 4];
-        let mut end = free.at(duration);
-        for (c, component) in nodes.iter_mut().enumerate() {
-            for coefficient in free.component(c).into_iter().rev() {
+        let (nodes, mut end) =
+            self.states(rule, &free, [terms, free_terms], (depth, duration), (&moments, &last));
+        end[2] = end[0] + self.wall;
+        let roots = each(|i| (depth * depths[i]).sqrt());
+        Some(Collision { of: self, rule, flow, touch, duration, roots, nodes, end, turns })
+    }
+
+    /// The states `[x1, v1, x2, v2]` at the nodes and at the end, from the free motion and the moments of the force.
+    #[inline(always)]
+    fn states<const N: usize>(
+        &self,
+        rule: &Rule<N>,
+        free: &Expansion<4, FREE>,
+        [terms, free_terms]: [usize; 2],
+        (depth, duration): (f64, f64),
+        (moments, last): (&[[f64; N]; MOMENTS], &[f64; MOMENTS]),
+    ) -> ([[f64; N]; 4], [f64; 4]) {
+        let times = each::<N>(|i| rule.times[i] * duration);
+        let (mut nodes, mut end) = ([[0.0; N]; 4], free.at(duration));
+        for c in 0..4 {
+            for coefficient in free.component(c)[..free_terms].iter().rev() {
                 for i in 0..N {
-                    component[i] = component[i] * times[i] + coefficient;
+                    nodes[c][i] = nodes[c][i] * times[i] + coefficient;
                 }
             }
             let mut power = duration * depth * depth.sqrt();
             for k in 0..=terms {
                 let kick = self.kicks[k][c] * power;
                 for i in 0..N {
-                    component[i] += kick * moments[k][i];
+                    nodes[c][i] += kick * moments[k][i];
                 }
                 end[c] += kick * last[k];
                 power *= duration;
             }
         }
-        end[2] = end[0] + self.wall;
-        let roots = depths.map(|z| (depth * z).sqrt());
-        Some(Collision { of: self, rule, flow, touch, duration, roots, nodes, end, turns })
+        (nodes, end)
     }
 }
 
 impl<const N: usize> Collision<'_, N> {
-    /// Shows the motion to an observer. Returns lift-off and the number of evaluations of the force.
+    /// Shows the motion to an observer. Returns time and state of lift-off and the number of evaluations of the force.
     #[inline(always)]
-    fn show(&self, observer: &mut impl Observer<4>) -> (Knot<4>, u64) {
+    fn finish(&self, observer: &mut impl Observer<4>) -> (f64, [f64; 4], u64) {
         observer.path(self);
-        (self.knot(N + 1), u64::from(self.turns) * N as u64)
+        (self.touch.t + self.duration, self.end, u64::from(self.turns) * N as u64)
     }
 
     /// `τ` of a knot: touch-down, the nodes, lift-off.
@@ -262,7 +284,7 @@ impl<const N: usize> Path<4> for Collision<'_, N> {
     fn states(&self, mut visit: impl FnMut(&[f64; 4])) {
         visit(&self.touch.y);
         for i in 0..N {
-            visit(&self.nodes.each_ref().map(|component| component[i]));
+            visit(&[self.nodes[0][i], self.nodes[1][i], self.nodes[2][i], self.nodes[3][i]]);
         }
         visit(&self.end);
     }

@@ -5,6 +5,7 @@
 //! are not used: near critical damping they are nearly parallel. The force is two more components that turn with `ωt`, so
 //! resonance is no special case.
 
+use crate::rule::each;
 use crate::settings::SolverError;
 use crate::system::Linear;
 use retune_model::Drive;
@@ -203,13 +204,13 @@ impl<const N: usize, const K: usize> Expansion<N, K> {
                 odd[i] = odd[i] * square + pair[1][i];
             }
         }
-        std::array::from_fn(|i| even[i] + s * odd[i])
+        each(|i| even[i] + s * odd[i])
     }
 
     /// The coefficients of one component.
     #[inline(always)]
     pub fn component(&self, i: usize) -> [f64; K] {
-        self.coefficients.map(|c| c[i])
+        each(|k| self.coefficients[k][i])
     }
 }
 

@@ -1,6 +1,7 @@
 //! The first contact of an exact flight: no crossing is skipped, however short, down to rounding.
 
 use crate::flow::TERMS;
+use crate::rule::each;
 
 /// A polynomial `Σ c_k s^k` on one flight step: the gap to a wall, positive in flight.
 type Polynomial = [f64; TERMS];
@@ -114,15 +115,24 @@ fn value(p: &Polynomial, s: f64) -> f64 {
 }
 
 fn differentiated(p: &Polynomial) -> Polynomial {
-    std::array::from_fn(|k| p.get(k + 1).map_or(0.0, |c| (k + 1) as f64 * c))
+    each(|k| if k + 1 < TERMS { (k + 1) as f64 * p[k + 1] } else { 0.0 })
 }
 
 /// A bound on `|p''''|` over `[0, to]` from the coefficients alone.
 fn fourth_derivative_bound(p: &Polynomial, to: f64) -> f64 {
-    (4..TERMS).rev().fold(0.0, |sum, k| {
-        let factor = (k * (k - 1) * (k - 2) * (k - 3)) as f64;
-        sum * to + factor * p[k].abs()
-    })
+    const FACTORS: Polynomial = {
+        let (mut factors, mut k) = ([0.0; TERMS], 0);
+        while k + 4 < TERMS {
+            factors[k] = ((k + 4) * (k + 3) * (k + 2) * (k + 1)) as f64;
+            k += 1;
+        }
+        factors
+    };
+    let mut sizes = [0.0; TERMS];
+    for k in 4..TERMS {
+        sizes[k - 4] = FACTORS[k - 4] * p[k].abs();
+    }
+    value(&sizes, to)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::contact;
 use crate::flow::{Expansion, Flow, Series, TERMS};
 use crate::gap::{cubic_floor, first_contact};
 use crate::observe::{Knot, Observer, Segment};
+use crate::rule::each;
 use crate::settings::{SolverError, Work};
 use crate::system::{Linear, LinearSystem, gap};
 use retune_model::{Compression, Coupled, Side};
@@ -139,12 +140,12 @@ impl<'a> Hybrid<'a> {
                     if touch.t > from.t || closing > 0.0 {
                         observer.touch_down(touch.t, side);
                     }
-                    if let Some((lift_off, evaluations)) =
+                    if let Some((t, y, evaluations)) =
                         self.collisions[side as usize].collide(&self.flow, touch, to, observer)
                     {
                         self.work.steps += 1;
                         self.work.evaluations += evaluations;
-                        now = lift_off;
+                        now = self.knot(t, y);
                         phase = Phase::Leaving(side);
                         if observer.satisfied() {
                             return stopped(now, phase);
@@ -269,7 +270,7 @@ impl<'a> Hybrid<'a> {
 
     /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.
     fn gap_polynomial(&self, stroke: &[f64; TERMS], side: Side, leaving: Option<Side>) -> [f64; TERMS] {
-        let mut p = stroke.map(|c| -side.sign() * c);
+        let mut p: [f64; TERMS] = each(|k| -side.sign() * stroke[k]);
         p[0] =
             if leaving == Some(side) { 0.0 } else { (p[0] + side.sign() * self.system.wall(side)).max(0.0) };
         p

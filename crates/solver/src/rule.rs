@@ -10,8 +10,13 @@
 //! converges like `2.95^-n`. With the impulse `∫ F dτ`, whose weight is `u⁴ (1 - u)⁴`, in mind, the nodes are Gauss's for
 //! that weight.
 
-use crate::dop853;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+mod newton;
+mod quadrature;
+
+pub use newton::Newton;
+
+use nalgebra::DMatrix;
+use quadrature::{clock, gauss, legendre, undisturbed_force};
 
 /// Duration of the undisturbed collision, in units of greatest depth over touch-down speed: `(4/5) B(2/5, 1/2)`.
 pub const DURATION: f64 = 2.943_275_184_324_705;
@@ -42,59 +47,50 @@ pub struct Rule<const N: usize> {
     pub running: [[f64; N]; N],
     /// The same at `u = 1`.
     pub whole: [f64; N],
-    /// Inverse Jacobian, at the undisturbed collision, of the residuals (at the nodes, then at the end) with respect to the
-    /// depths at the nodes and the duration in units of that collision's.
-    pub inverse: Bordered<N>,
+    /// The iteration for depths and duration.
+    pub newton: Newton<N>,
     /// Rows that give the two highest Legendre coefficients of `c`, from the force `ζ^(3/2) c` at the nodes.
     pub tails: [[f64; N]; 2],
 }
 
-/// A matrix of `N + 1` rows and columns: `body[j][i]`, the last column `column[i]`, the last row `row[j]`, and the corner.
-pub struct Bordered<const N: usize> {
-    body: [[f64; N]; N],
-    column: [f64; N],
-    row: [f64; N],
-    corner: f64,
-}
-
-impl<const N: usize> Bordered<N> {
-    /// The product with a vector and its last component.
-    #[inline(always)]
-    pub fn times(&self, vector: &[f64; N], last: f64) -> ([f64; N], f64) {
-        let body = product(&self.body, vector);
-        let column = self.column.map(|c| c * last);
-        (std::array::from_fn(|i| body[i] + column[i]), dot(&self.row, vector) + self.corner * last)
+/// An array by its components. Unlike `std::array::from_fn` it is a plain loop, which becomes vector instructions.
+#[inline(always)]
+pub fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
+    let mut array = [0.0; N];
+    for i in 0..N {
+        array[i] = f(i);
     }
+    array
 }
 
 /// `Σ_j columns[j] vector[j]`, in two chains of dependent operations.
 #[inline(always)]
 pub fn product<const N: usize>(columns: &[[f64; N]; N], vector: &[f64; N]) -> [f64; N] {
-    let mut sums = [[0.0; N]; 2];
-    for j in (0..N).step_by(2) {
+    let (mut sum, mut other) = ([0.0; N], [0.0; N]);
+    for j in 0..N / 2 {
         for i in 0..N {
-            sums[0][i] += columns[j][i] * vector[j];
-            sums[1][i] += columns[j + 1][i] * vector[j + 1];
+            sum[i] += columns[j][i] * vector[j];
+        }
+        for i in 0..N {
+            other[i] += columns[N / 2 + j][i] * vector[N / 2 + j];
         }
     }
-    std::array::from_fn(|i| sums[0][i] + sums[1][i])
+    for i in 0..N {
+        sum[i] += other[i];
+    }
+    sum
 }
 
 /// `Σ a b`, in four chains.
 #[inline(always)]
 pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     let mut lanes = [0.0; 4];
-    for i in (0..N).step_by(4) {
+    for block in 0..N / 4 {
         for lane in 0..4 {
-            lanes[lane] += a[i + lane] * b[i + lane];
+            lanes[lane] += a[4 * block + lane] * b[4 * block + lane];
         }
     }
     (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
-}
-
-/// `τ` and `dτ/du` of the clock.
-fn clock(u: f64) -> [f64; 2] {
-    [u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)]
 }
 
 impl<const N: usize> Rule<N> {
@@ -137,7 +133,7 @@ impl<const N: usize> Rule<N> {
             times,
             rates: nodes.map(|u| clock(u)[1]),
             depths,
-            inverse: inverse_jacobian(&times, &depths, &moments[1], &last[1]),
+            newton: Newton::new(&times, &depths, &moments, &last),
             running,
             whole,
             undisturbed: moments.each_ref().map(|moment| product(moment, &forces)),
@@ -147,109 +143,6 @@ impl<const N: usize> Rule<N> {
             last,
         }
     }
-}
-
-/// Of the residual `ζ - DURATION σ τ + Λ σ² ∬ ζ^(3/2)` with respect to `ζ` at the nodes and `σ`, where `σ = 1`.
-fn inverse_jacobian<const N: usize>(
-    times: &[f64; N],
-    depths: &[f64; N],
-    twice: &[[f64; N]; N],
-    twice_last: &[f64; N],
-) -> Bordered<N> {
-    let weight = |i: usize, j: usize| if i < N { twice[j][i] } else { twice_last[j] };
-    let time = |i: usize| if i < N { times[i] } else { 1.0 };
-    let jacobian = DMatrix::from_fn(N + 1, N + 1, |i, j| {
-        if j < N {
-            f64::from(i == j) + STIFFNESS * weight(i, j) * 1.5 * depths[j].sqrt()
-        } else {
-            let force = (0..N).map(|j| weight(i, j) * depths[j].powf(1.5)).sum::<f64>();
-            2.0 * STIFFNESS * force - DURATION * time(i)
-        }
-    });
-    let inverse = jacobian.try_inverse().expect("the undisturbed collision is an isolated solution");
-    Bordered {
-        body: std::array::from_fn(|j| std::array::from_fn(|i| inverse[(i, j)])),
-        column: std::array::from_fn(|i| inverse[(i, N)]),
-        row: std::array::from_fn(|j| inverse[(N, j)]),
-        corner: inverse[(N, N)],
-    }
-}
-
-/// The force `ζ^(3/2)` of the undisturbed collision as a function of the clock, to rounding: `u³ (1 - u)³` times a polynomial
-/// that meets it on 40 nodes.
-fn undisturbed_force() -> impl Fn(f64) -> f64 {
-    const NODES: usize = 40;
-    let ends = |u: f64| (u * (1.0 - u)).powi(3);
-    let (nodes, _) = gauss(NODES, 0);
-    // In units of Z and Z/w the regularised collision is q' = w/2, w' = -(5/4) q⁴, t' = q (see `retune_model::Compression`).
-    let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4), q];
-    let advance = |y: &[f64; 3], h: f64| dop853::step(slope, y, &slope(y), h).y;
-    let mut y = [0.0, 1.0, 0.0];
-    // It is the same backwards: what leaves is the mirror image of what came.
-    let mut values: Vec<f64> = nodes[..NODES / 2]
-        .iter()
-        .map(|&u| {
-            let time = DURATION * clock(u)[0];
-            // Newton's iteration for the end of the last of some short steps; time grows at the rate q.
-            while time - y[2] > 0.05 * y[0].max(0.05) {
-                y = advance(&y, 0.04);
-            }
-            let mut h = 0.0;
-            let mut at = y;
-            for _ in 0..50 {
-                let correction = (time - at[2]) / at[0].max(1e-3);
-                h += correction;
-                at = advance(&y, h);
-                if correction.abs() < 1e-16 {
-                    break;
-                }
-            }
-            y = at;
-            y[0].powi(3) / ends(u)
-        })
-        .collect();
-    values.extend(values.clone().into_iter().rev());
-    let weights: Vec<f64> = (0..NODES)
-        .map(|j| (0..NODES).filter(|&i| i != j).map(|i| 0.25 / (nodes[j] - nodes[i])).product())
-        .collect();
-    move |u| {
-        let (mut above, mut below) = (0.0, 0.0);
-        for ((node, weight), value) in nodes.iter().zip(&weights).zip(&values) {
-            if u == *node {
-                return ends(u) * value;
-            }
-            above += weight / (u - node) * value;
-            below += weight / (u - node);
-        }
-        ends(u) * above / below
-    }
-}
-
-/// Gauss's rule for the weight `(4u (1 - u))^power` on `[0, 1]` (weights for `power` 0 only), by the eigenvalues of the
-/// recurrence of Gegenbauer's polynomials (G. H. Golub & J. H. Welsch, Mathematics of Computation 23, 1969).
-fn gauss(count: usize, power: u32) -> (Vec<f64>, Vec<f64>) {
-    let beta = |n: f64| {
-        let a = f64::from(power);
-        (n * (n + 2.0 * a) / ((2.0 * n + 2.0 * a - 1.0) * (2.0 * n + 2.0 * a + 1.0))).sqrt()
-    };
-    let recurrence =
-        DMatrix::from_fn(count, count, |i, j| if i.abs_diff(j) == 1 { beta(i.max(j) as f64) } else { 0.0 });
-    let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(recurrence);
-    let first: DVector<f64> = eigenvectors.row(0).transpose();
-    let mut rule: Vec<_> =
-        eigenvalues.iter().zip(first.iter()).map(|(x, v)| (0.5 * (1.0 + x), v * v)).collect();
-    rule.sort_by(|a, b| a.0.total_cmp(&b.0));
-    rule.into_iter().unzip()
-}
-
-/// Legendre's polynomial of a degree.
-fn legendre(degree: usize, x: f64) -> f64 {
-    let (mut before, mut now) = (0.0, 1.0);
-    for n in 0..degree {
-        let n = n as f64;
-        (before, now) = (now, ((2.0 * n + 1.0) * x * now - n * before) / (n + 1.0));
-    }
-    now
 }
 
 #[cfg(test)]
