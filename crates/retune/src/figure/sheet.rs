@@ -239,7 +239,7 @@ fn draw_layer(out: &mut String, layer: &Layer, place: &Place) {
                 (place.top + place.height * (1.0 - height.1), place.height * (height.1 - height.0));
             writeln!(
                 out,
-                "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{tall:.1}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>",
+                "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{tall:.1}\" fill=\"{colour}\" fill-opacity=\"{opacity}\" shape-rendering=\"crispEdges\"/>",
                 right - left
             )
         }
