@@ -24,14 +24,19 @@ const W: usize = 1;
 const V1: usize = 3;
 const TIME: usize = 4;
 
-/// One step. Its interior is reached by shorter steps from its start.
-struct Piece<'a> {
-    equations: &'a Compression,
-    touch_down: f64,
-    from: &'a Compressed,
-    slope: &'a Compressed,
-    length: f64,
-    ends: [Knot<4>; 2],
+/// A piece of a contact. Its interior is reached by steps from its start, shorter than those that would reach its end.
+pub struct Piece<'a> {
+    pub equations: &'a Compression,
+    /// Time from which the regularised state counts, s.
+    pub touch_down: f64,
+    pub from: &'a Compressed,
+    /// Derivative there.
+    pub slope: &'a Compressed,
+    /// Length in θ.
+    pub length: f64,
+    /// Steps in which it is reached.
+    pub steps: u32,
+    pub ends: [Knot<4>; 2],
 }
 
 fn knot(equations: &Compression, touch_down: f64, y: &Compressed) -> Knot<4> {
@@ -56,25 +61,30 @@ impl Segment<4> for Piece<'_> {
         self.length
     }
     fn at(&self, theta: f64) -> Knot<4> {
-        knot(self.equations, self.touch_down, &step(self.equations, self.from, self.slope, theta).y)
+        knot(self.equations, self.touch_down, &self.advance(theta))
     }
     fn at_time(&self, t: f64) -> Knot<4> {
-        let (_, y) = at_elapsed(self.equations, self.from, self.slope, self.length, t - self.touch_down);
+        let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
         Knot { t, ..knot(self.equations, self.touch_down, &y) }
     }
 }
 
-/// The `θ` and the state when `elapsed` seconds have passed since touch-down, within the step of `length` from `from`: time grows with
+impl Piece<'_> {
+    fn advance(&self, theta: f64) -> Compressed {
+        let h = theta / f64::from(self.steps);
+        let mut y = step(self.equations, self.from, self.slope, h).y;
+        for _ in 1..self.steps {
+            y = step(self.equations, &y, &self.equations.derivative(&y), h).y;
+        }
+        y
+    }
+}
+
+/// The `θ` and the state when `elapsed` seconds have passed since touch-down, within a piece of `length`: time grows with
 /// θ, so Newton's iteration kept inside by bisection finds it.
-fn at_elapsed(
-    equations: &Compression,
-    from: &Compressed,
-    slope: &Compressed,
-    length: f64,
-    elapsed: f64,
-) -> (f64, Compressed) {
+fn at_elapsed(advance: impl Fn(f64) -> Compressed, length: f64, elapsed: f64) -> (f64, Compressed) {
     let (mut lower, mut upper, mut theta) = (0.0, length, 0.5 * length);
-    let mut y = step(equations, from, slope, theta).y;
+    let mut y = advance(theta);
     for _ in 0..100 {
         let excess = y[TIME] - elapsed;
         if excess < 0.0 {
@@ -88,7 +98,7 @@ fn at_elapsed(
             break;
         }
         theta = next;
-        y = step(equations, from, slope, theta).y;
+        y = advance(theta);
     }
     (theta, y)
 }
@@ -211,14 +221,22 @@ pub fn integrate(
         }
         let over = touch_down + next[TIME] >= to;
         if over {
-            (length, next) = at_elapsed(&equations, &y, &slope, length, to - touch_down);
+            let advance = |theta: f64| step(&equations, &y, &slope, theta).y;
+            (length, next) = at_elapsed(advance, length, to - touch_down);
         }
         let mut end = knot(&equations, touch_down, &next);
         if over {
             end.t = to;
         }
-        let piece =
-            Piece { equations: &equations, touch_down, from: &y, slope: &slope, length, ends: [start, end] };
+        let piece = Piece {
+            equations: &equations,
+            touch_down,
+            from: &y,
+            slope: &slope,
+            length,
+            steps: 1,
+            ends: [start, end],
+        };
         observer.segment(&piece);
         if over || observer.satisfied() {
             return Ok(End::Pressed(end));

@@ -1,7 +1,7 @@
 //! The exact flow of a forced linear system: Taylor series over one step of a fixed length.
 //!
 //! The step is no longer than the inverse of the flow's fastest rate, so the series of the matrix exponential needs no
-//! scaling, loses nothing to cancellation and has converged to rounding after [`TERMS`] terms (`1/19! = 8e-18`). Eigenvectors
+//! scaling, loses nothing to cancellation and has converged to rounding after [`TERMS`] terms (`1/20! = 4e-19`). Eigenvectors
 //! are not used: near critical damping they are nearly parallel. The force is two more components that turn with `ωt`, so
 //! resonance is no special case.
 
@@ -10,7 +10,7 @@ use crate::system::Linear;
 use retune_model::Drive;
 
 /// Terms of a Taylor series over one step.
-pub const TERMS: usize = 19;
+pub const TERMS: usize = 20;
 
 /// The flow over a fixed step: `y(t + h) = origin + Φ (y(t) - origin) + Ψ [P cos ωt, P sin ωt]`.
 pub struct Flow<const N: usize> {
@@ -19,11 +19,23 @@ pub struct Flow<const N: usize> {
     phi: [[f64; N]; N],
     psi: [[f64; N]; 2],
     turn: [f64; 2],
+    /// The series of which `Φ` and `Ψ` are the values at the end of the step.
+    free: [Expansion<N>; N],
+    forced: [Expansion<N>; 2],
 }
 
-/// The motion over one step as a polynomial: `y(t + s) = Σ c_k s^k`, `0 <= s <= step`.
-pub struct Expansion<const N: usize> {
-    coefficients: [[f64; N]; TERMS],
+/// The motion over one step as a polynomial: `y(t + s) = Σ c_k s^k`, `0 <= s <= step`, to the first `K` terms.
+#[derive(Clone, Copy)]
+pub struct Expansion<const N: usize, const K: usize = TERMS> {
+    coefficients: [[f64; N]; K],
+}
+
+/// The series of one linear combination of the components.
+pub struct Series<const N: usize> {
+    origin: [f64; N],
+    at_origin: f64,
+    free: [[f64; TERMS]; N],
+    forced: [[f64; TERMS]; 2],
 }
 
 impl<const N: usize> Flow<N> {
@@ -31,16 +43,17 @@ impl<const N: usize> Flow<N> {
     pub fn new(linear: Linear<N>, longest: f64) -> Self {
         let step = longest.min(1.0 / linear.rate);
         let unit = |i: usize| -> [f64; N] { std::array::from_fn(|j| f64::from(i == j)) };
-        let mut flow = Self {
+        let free = std::array::from_fn(|j| series(&linear, [0.0; 2], unit(j)));
+        let forced = [[1.0, 0.0], [0.0, 1.0]].map(|drive| series(&linear, drive, [0.0; N]));
+        Self {
             linear,
             step,
-            phi: [[0.0; N]; N],
-            psi: [[0.0; N]; 2],
+            phi: std::array::from_fn(|j| free[j].at(step)),
+            psi: [forced[0].at(step), forced[1].at(step)],
             turn: rotation(linear.frequency * step),
-        };
-        flow.phi = std::array::from_fn(|j| flow.series([0.0; 2], unit(j)).deviation(step));
-        flow.psi = [[1.0, 0.0], [0.0, 1.0]].map(|drive| flow.series(drive, [0.0; N]).deviation(step));
-        flow
+            free,
+            forced,
+        }
     }
 
     /// Length of a whole step, s.
@@ -105,58 +118,103 @@ impl<const N: usize> Flow<N> {
     }
 
     /// The motion from `y` over the next step.
-    pub fn expand(&self, drive: Drive, y: &[f64; N]) -> Expansion<N> {
-        let mut expansion = self.series(drive, std::array::from_fn(|i| y[i] - self.linear.origin[i]));
-        expansion.coefficients[0] = *y;
-        expansion
-    }
-
-    /// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`.
-    fn series(&self, mut drive: Drive, deviation: [f64; N]) -> Expansion<N> {
-        let Linear { columns, input, frequency, .. } = &self.linear;
-        let mut coefficients = [deviation; TERMS];
-        for k in 1..TERMS {
-            let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
-            let mut next = [0.0; N];
-            for i in 0..N {
-                next[i] = input[i] * drive[0];
-            }
-            for (column, c) in columns.iter().zip(previous) {
+    #[inline(always)]
+    pub fn expand<const K: usize>(&self, drive: Drive, y: &[f64; N]) -> Expansion<N, K> {
+        let mut coefficients = [[0.0; N]; K];
+        for k in 1..K {
+            for (series, force) in self.forced.iter().zip(drive) {
                 for i in 0..N {
-                    next[i] += column[i] * c;
+                    coefficients[k][i] += series.coefficients[k][i] * force;
                 }
             }
-            coefficients[k] = next.map(|c| c * scale);
-            drive = [-frequency * scale * drive[1], frequency * scale * drive[0]];
+            for (j, series) in self.free.iter().enumerate() {
+                let deviation = y[j] - self.linear.origin[j];
+                for i in 0..N {
+                    coefficients[k][i] += series.coefficients[k][i] * deviation;
+                }
+            }
         }
+        coefficients[0] = *y;
         Expansion { coefficients }
+    }
+
+    /// Prepares the series of `row · y`.
+    pub fn series(&self, row: &[f64; N]) -> Series<N> {
+        let combined = |e: &Expansion<N>| e.coefficients.map(|c| dot(&c, row));
+        Series {
+            origin: self.linear.origin,
+            at_origin: dot(&self.linear.origin, row),
+            free: self.free.each_ref().map(combined),
+            forced: self.forced.each_ref().map(combined),
+        }
     }
 }
 
-impl<const N: usize> Expansion<N> {
-    /// The state after `s` seconds.
-    pub fn at(&self, s: f64) -> [f64; N] {
-        self.horner(s)
-    }
-
-    fn deviation(&self, s: f64) -> [f64; N] {
-        self.horner(s)
-    }
-
-    fn horner(&self, s: f64) -> [f64; N] {
-        let mut y = self.coefficients[TERMS - 1];
-        for c in self.coefficients[..TERMS - 1].iter().rev() {
-            for i in 0..N {
-                y[i] = c[i] + s * y[i];
+impl<const N: usize> Series<N> {
+    /// `Σ c_k s^k` from a state on.
+    #[inline(always)]
+    pub fn expand(&self, drive: Drive, y: &[f64; N]) -> [f64; TERMS] {
+        let mut sum = [0.0; TERMS];
+        for (series, force) in self.forced.iter().zip(drive) {
+            for k in 0..TERMS {
+                sum[k] += series[k] * force;
             }
         }
-        y
+        for (j, series) in self.free.iter().enumerate() {
+            let deviation = y[j] - self.origin[j];
+            for k in 0..TERMS {
+                sum[k] += series[k] * deviation;
+            }
+        }
+        sum[0] += self.at_origin;
+        sum
+    }
+}
+
+/// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`.
+fn series<const N: usize>(linear: &Linear<N>, mut drive: Drive, deviation: [f64; N]) -> Expansion<N> {
+    let Linear { columns, input, frequency, .. } = linear;
+    let mut coefficients = [deviation; TERMS];
+    for k in 1..TERMS {
+        let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
+        let mut next = [0.0; N];
+        for i in 0..N {
+            next[i] = input[i] * drive[0];
+        }
+        for (column, c) in columns.iter().zip(previous) {
+            for i in 0..N {
+                next[i] += column[i] * c;
+            }
+        }
+        coefficients[k] = next.map(|c| c * scale);
+        drive = [-frequency * scale * drive[1], frequency * scale * drive[0]];
+    }
+    Expansion { coefficients }
+}
+
+impl<const N: usize, const K: usize> Expansion<N, K> {
+    /// The state after `s` seconds: even and odd terms apart, so that less waits for less.
+    #[inline(always)]
+    pub fn at(&self, s: f64) -> [f64; N] {
+        let (mut even, mut odd, square) = ([0.0; N], [0.0; N], s * s);
+        for pair in self.coefficients.chunks_exact(2).rev() {
+            for i in 0..N {
+                even[i] = even[i] * square + pair[0][i];
+                odd[i] = odd[i] * square + pair[1][i];
+            }
+        }
+        std::array::from_fn(|i| even[i] + s * odd[i])
     }
 
-    /// The polynomial of a linear combination of the components, without its constant term's offset.
-    pub fn combination(&self, row: &[f64; N]) -> [f64; TERMS] {
-        self.coefficients.map(|c| c.iter().zip(row).map(|(c, r)| c * r).sum())
+    /// The coefficients of one component.
+    #[inline(always)]
+    pub fn component(&self, i: usize) -> [f64; K] {
+        self.coefficients.map(|c| c[i])
     }
+}
+
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn rotation(angle: f64) -> [f64; 2] {

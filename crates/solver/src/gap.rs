@@ -25,8 +25,8 @@ pub fn first_contact(gap: &Polynomial, to: f64) -> Option<f64> {
         return Some(0.0);
     }
     let derivative = differentiated(&p);
-    let at = |s: f64| [horner(&p, s), horner(&derivative, s)];
-    search(&at, fourth_derivative_bound(&p, to), to * 1e-15, (0.0, at(0.0)), (to, at(to)))
+    let at = |s: f64| [value(&p, s), value(&derivative, s)];
+    search(&at, fourth_derivative_bound(&p, to), to * 1e-15, (0.0, [p[0], p[1]]), (to, at(to)))
 }
 
 /// Left half first, so that what is found is the first; an interval ends the search when it is certified open, when it holds
@@ -47,7 +47,7 @@ fn search(
     let middle = 3.0 * (right[0] - left[0]) / h - left[1] - right[1];
     let steepest = left[1].max(middle).max(right[1]) + 0.009 * h.powi(3) * fourth;
     if right[0] < 0.0 && steepest < 0.0 {
-        return Some(root(at, a, b));
+        return Some(root(at, (a, left), (b, right)));
     }
     let mid = 0.5 * (a + b);
     if h < shortest || mid <= a || mid >= b {
@@ -58,9 +58,15 @@ fn search(
         .or_else(|| search(at, fourth, shortest, (mid, centre), (b, right)))
 }
 
-/// The root of a function that falls from positive to negative over `[a, b]`: Newton, kept inside by bisection.
-fn root(at: &impl Fn(f64) -> [f64; 2], mut a: f64, mut b: f64) -> f64 {
-    let mut s = 0.5 * (a + b);
+/// The root of a function that falls from positive to negative over `[a, b]`: Newton, kept inside by bisection, from the root
+/// of the cubic that meets value and slope at both ends.
+fn root(
+    at: &impl Fn(f64) -> [f64; 2],
+    (mut a, left): (f64, [f64; 2]),
+    (mut b, right): (f64, [f64; 2]),
+) -> f64 {
+    let mut s = a + cubic_root(b - a, left, right);
+    let mut before = b - a;
     for _ in 0..100 {
         let [value, slope] = at(s);
         if value > 0.0 {
@@ -69,17 +75,42 @@ fn root(at: &impl Fn(f64) -> [f64; 2], mut a: f64, mut b: f64) -> f64 {
             b = s
         }
         let newton = s - value / slope;
-        let next = if newton > a && newton < b { newton } else { 0.5 * (a + b) };
-        if (next - s).abs() <= 2.0 * f64::EPSILON * s || next <= a || next >= b {
+        let inside = (a..=b).contains(&newton);
+        let next = if inside { newton } else { 0.5 * (a + b) };
+        let step = (next - s).abs();
+        // Each step is the square of the one before times a constant: so will the next be, which is left undone if too small.
+        if inside && step.powi(3) <= f64::EPSILON * s * before * before || next == s {
             return next;
         }
-        s = next;
+        (before, s) = (step, next);
     }
     s
 }
 
-fn horner(p: &Polynomial, s: f64) -> f64 {
-    p.iter().rev().fold(0.0, |sum, c| sum * s + c)
+/// The root of the cubic that falls from positive to negative over an interval of length `h`, after some steps of Newton.
+fn cubic_root(h: f64, [value, slope]: [f64; 2], [value_end, slope_end]: [f64; 2]) -> f64 {
+    let fall = value_end - value;
+    let (c1, c2, c3) =
+        (h * slope, 3.0 * fall - h * (2.0 * slope + slope_end), h * (slope + slope_end) - 2.0 * fall);
+    let mut x = value / (value - value_end);
+    for _ in 0..3 {
+        let next = x - (value + x * (c1 + x * (c2 + x * c3))) / (c1 + x * (2.0 * c2 + x * 3.0 * c3));
+        x = next.clamp(0.0, 1.0);
+    }
+    if x.is_nan() { 0.5 * h } else { x * h }
+}
+
+/// `Σ c_k s^k`: four sums in powers of `s⁴`, side by side.
+#[inline(always)]
+fn value(p: &Polynomial, s: f64) -> f64 {
+    let (square, mut lanes) = (s * s, [0.0; 4]);
+    let fourth = square * square;
+    for block in p.chunks_exact(4).rev() {
+        for lane in 0..4 {
+            lanes[lane] = lanes[lane] * fourth + block[lane];
+        }
+    }
+    (lanes[0] + s * lanes[1]) + square * (lanes[2] + s * lanes[3])
 }
 
 fn differentiated(p: &Polynomial) -> Polynomial {

@@ -4,8 +4,9 @@
 //! flight step must only be short enough to *see* a contact: a certified bound on the gap over the step decides at once in
 //! nearly all cases, an exact polynomial search (`gap`) in the rest.
 
+use crate::collision::Collisions;
 use crate::contact;
-use crate::flow::{Expansion, Flow};
+use crate::flow::{Expansion, Flow, Series, TERMS};
 use crate::gap::{cubic_floor, first_contact};
 use crate::observe::{Knot, Observer, Segment};
 use crate::settings::{SolverError, Work};
@@ -39,7 +40,9 @@ pub struct Motion {
 pub struct Hybrid<'a> {
     system: &'a Coupled,
     flow: Flow<4>,
+    stroke: Series<4>,
     contacts: [Compression; 2],
+    collisions: [Collisions; 2],
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴.
     fourth: [f64; 2],
     rtol: f64,
@@ -55,8 +58,6 @@ enum FlightEnd {
 
 /// The row that picks `r = x2 - x1` from a state.
 const STROKE: [f64; 4] = [-1.0, 0.0, 1.0, 0.0];
-/// The row that picks `dr/dt`.
-const STROKE_RATE: [f64; 4] = [0.0, -1.0, 0.0, 1.0];
 
 struct Flight<'a> {
     flow: &'a Flow<4>,
@@ -91,9 +92,12 @@ impl<'a> Hybrid<'a> {
     /// flight step, `max_steps` the most steps a run may take.
     pub fn new(system: &'a Coupled, rtol: f64, longest: f64, max_steps: u64) -> Self {
         let linear = system.linear();
+        let flow = Flow::new(linear, longest);
         Self {
             system,
-            flow: Flow::new(linear, longest),
+            collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
+            stroke: flow.series(&STROKE),
+            flow,
             contacts: Side::BOTH.map(|side| system.compression(side)),
             fourth: fourth_derivative_bound(system, &linear),
             rtol,
@@ -134,6 +138,18 @@ impl<'a> Hybrid<'a> {
                     let closing = side.sign() * (touch.y[3] - touch.y[1]);
                     if touch.t > from.t || closing > 0.0 {
                         observer.touch_down(touch.t, side);
+                    }
+                    if let Some((lift_off, evaluations)) =
+                        self.collisions[side as usize].collide(&self.flow, touch, to, observer)
+                    {
+                        self.work.steps += 1;
+                        self.work.evaluations += evaluations;
+                        now = lift_off;
+                        phase = Phase::Leaving(side);
+                        if observer.satisfied() {
+                            return stopped(now, phase);
+                        }
+                        continue;
                     }
                     let equations = self.contacts[side as usize];
                     let (begin, pressed) = self.press_in(equations, touch, observer)?;
@@ -215,20 +231,21 @@ impl<'a> Hybrid<'a> {
             let mut length = whole;
             let mut touched = None;
             if open != [true; 2] || remaining < whole {
-                let motion = self.flow.expand(now.drive, &now.y);
                 length = whole.min(remaining);
+                let stroke = self.stroke.expand(now.drive, &now.y);
                 for side in Side::BOTH.into_iter().filter(|&side| !open[side as usize]) {
-                    if let Some(s) = first_contact(&self.gap_polynomial(&motion, side, leaving), length) {
+                    if let Some(s) = first_contact(&self.gap_polynomial(&stroke, side, leaving), length) {
                         (length, touched) = (s, Some(side));
                     }
                 }
                 if length < whole {
+                    let motion = self.flow.expand(now.drive, &now.y);
                     end = flight_knot(&self.flow, &now, &motion, length);
                     if touched.is_none() {
                         end.t = to;
                     }
+                    let _ = expansion.set(motion);
                 }
-                let _ = expansion.set(motion);
             }
             if length > 0.0 {
                 observer.segment(&Flight {
@@ -251,13 +268,8 @@ impl<'a> Hybrid<'a> {
     }
 
     /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.
-    fn gap_polynomial(
-        &self,
-        motion: &Expansion<4>,
-        side: Side,
-        leaving: Option<Side>,
-    ) -> [f64; crate::flow::TERMS] {
-        let mut p = motion.combination(&STROKE).map(|c| -side.sign() * c);
+    fn gap_polynomial(&self, stroke: &[f64; TERMS], side: Side, leaving: Option<Side>) -> [f64; TERMS] {
+        let mut p = stroke.map(|c| -side.sign() * c);
         p[0] =
             if leaving == Some(side) { 0.0 } else { (p[0] + side.sign() * self.system.wall(side)).max(0.0) };
         p
@@ -282,7 +294,8 @@ impl<'a> Hybrid<'a> {
         }
         let unfelt = |s: f64, z: f64| z > 0.0 && equations.hertz_rate() * z.sqrt() * s * s <= 1e-14;
         let motion = self.flow.expand(touch.drive, &touch.y);
-        let (stroke, rate) = (motion.combination(&STROKE), motion.combination(&STROKE_RATE));
+        let stroke = self.stroke.expand(touch.drive, &touch.y);
+        let rate: [f64; TERMS - 1] = std::array::from_fn(|k| (k + 1) as f64 * stroke[k + 1]);
         let sign = equations.side().sign();
         let value = |p: &[f64], s: f64| sign * p.iter().rev().fold(0.0, |sum, c| sum * s + c);
         let mut s = self.flow.step();

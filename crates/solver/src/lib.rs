@@ -4,6 +4,7 @@
 //! ([`observe::Segment`]) to whatever was asked for ([`observe::Observer`]); nothing is stored on the way.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod collision;
 mod contact;
 pub mod dop853;
 mod flow;
@@ -14,6 +15,7 @@ pub mod observe;
 pub mod ode23s;
 pub mod ode45;
 pub mod onestep;
+mod rule;
 mod run;
 mod settings;
 mod system;

@@ -28,10 +28,32 @@ pub trait Segment<const N: usize> {
     fn at_time(&self, t: f64) -> Knot<N>;
 }
 
+/// A stretch of the motion known at its knots; what lies between them is computed for who asks.
+pub trait Path<const N: usize> {
+    /// Number of pieces, one less than there are knots, of which there are at most [`MOST_KNOTS`].
+    fn pieces(&self) -> usize;
+    /// Visits the states at the knots in their order.
+    fn states(&self, visit: impl FnMut(&[f64; N]));
+    /// Shows the piece that follows a knot.
+    fn show(&self, piece: usize, observer: &mut impl Observer<N>);
+}
+
+/// Most knots of a [`Path`].
+pub const MOST_KNOTS: usize = 18;
+
 /// Follows a run.
 pub trait Observer<const N: usize> {
     /// A piece of the motion has been computed.
     fn segment(&mut self, segment: &impl Segment<N>);
+    /// Many pieces at once. To look at them one by one is always right.
+    fn path(&mut self, path: &impl Path<N>)
+    where
+        Self: Sized,
+    {
+        for piece in 0..path.pieces() {
+            path.show(piece, self);
+        }
+    }
     /// The damper has touched a wall.
     fn touch_down(&mut self, _t: f64, _side: Side) {}
     /// Nothing that can still happen will change what is kept: the run may end here.
@@ -45,6 +67,7 @@ pub struct Unobserved;
 
 impl<const N: usize> Observer<N> for Unobserved {
     fn segment(&mut self, _segment: &impl Segment<N>) {}
+    fn path(&mut self, _path: &impl Path<N>) {}
 }
 
 /// The largest value of a quantity, located where its rate of change is zero, to rounding.
@@ -215,6 +238,24 @@ where
         let remainder = SCREEN * (variation(at_a) + variation(at_b));
         self.halvings = HALVINGS;
         self.search(segment, (0.0, at_a), (h, at_b), remainder);
+    }
+
+    /// Looks only between knots where the record could be broken: a quantity that the knots resolve rises between them by
+    /// less than its largest second difference (by an eighth of it, were it a parabola on even knots).
+    #[inline(always)]
+    fn path(&mut self, path: &impl Path<N>) {
+        let mut values = [f64::NEG_INFINITY; MOST_KNOTS];
+        let mut count = 0;
+        path.states(|y| {
+            [values[count], ..] = (self.rates)([0.0; 2], y);
+            count += 1;
+        });
+        let bend = values[..count].windows(3).map(|v| (v[2] - 2.0 * v[1] + v[0]).abs()).fold(0.0, f64::max);
+        for (piece, ends) in values[..count].windows(2).enumerate() {
+            if ends[0].max(ends[1]) + bend > self.record.value {
+                path.show(piece, self);
+            }
+        }
     }
 
     fn satisfied(&self) -> bool {
