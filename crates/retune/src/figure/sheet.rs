@@ -99,7 +99,7 @@ fn on_width(page: f64, charts: &[Chart], columns: usize, height: f64, legend: &[
     let mut x = 30.0;
     for (key, words) in legend {
         let heading = matches!(key, Key::Heading);
-        let length = if heading { 205.0 } else { 74.0 + 14.3 * words.chars().count() as f64 + 20.0 };
+        let length = if heading { 125.0 } else { 74.0 + 16.0 * words.chars().count() as f64 + 12.0 };
         if (heading && x > 30.0) || x + length > page {
             (x, y) = (30.0, y + 44.0);
         }

@@ -36,19 +36,19 @@ fn colour(kind: Kind) -> &'static str {
 fn legend() -> Vec<(Key, &'static str)> {
     let kinds = [Kind::Periodic, Kind::AmplitudeModulated, Kind::Chaotic, Kind::Intermittent, Kind::Settling];
     let mut keys = vec![
-        (Key::Heading, "left, zones:"),
+        (Key::Heading, "zones:"),
         (Key::Area(PURPLE, 0.35), "both walls struck"),
         (Key::Area(SKY, 0.35), "PS only"),
-        (Key::Heading, "left, curves:"),
+        (Key::Heading, "curves:"),
         (Key::Line(BLACK, "12 8"), "E₁max, no damper"),
         (Key::Line(VERMILION, "3 5"), "E₁max, SSVI"),
         (Key::Line(GREEN, ""), "E₁max, TMD"),
         (Key::Line(ORANGE, ""), "E₂max, SSVI"),
-        (Key::Heading, "right, dots:"),
+        (Key::Heading, "dots:"),
         (Key::Dot(BLACK), "from rest"),
         (Key::Dot(BLUE), "sweep up"),
         (Key::Dot(ORANGE), "sweep down"),
-        (Key::Heading, "right, strip:"),
+        (Key::Heading, "strip:"),
     ];
     keys.extend(kinds.map(|kind| (Key::Area(colour(kind), 1.0), kind.words())));
     keys

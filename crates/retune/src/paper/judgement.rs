@@ -41,9 +41,9 @@ pub fn definitions() -> Grid {
         (
             "transient chaos, then …",
             format!(
-                "Periodic in the end, but before it came within {ARRIVED} of its size of its period neighbours parted by a factor of {PARTED} or more, at a mean rate above {FLOOR} /s and {MARGIN} standard errors above zero (Grebogi, Ott & Yorke 1983)."
+                "Periodic in the end, but before it came within {ARRIVED} of its size of its period neighbours parted by a factor of {PARTED:e} or more, at a mean rate above {FLOOR} /s and {MARGIN} standard errors above zero (Grebogi, Ott & Yorke 1983)."
             ),
-            "The paper does not define it. Without chaos an impact parts neighbours by less than a hundred, and a slow approach never does.".to_owned(),
+            "The paper does not define it. On the way to a period neighbours part for a while without chaos too, in Figure 4 by up to 2e4; an approach that only creeps never parts them.".to_owned(),
         ),
         (
             "still settling",
