@@ -233,8 +233,8 @@ fn draw_layer(out: &mut String, layer: &Layer, place: &Place) {
             )
         }
         Layer::Band { from, to, colour, opacity, height } => {
-            let (left, _) = place.pixel((*from, f64::NAN));
-            let (right, _) = place.pixel((*to, f64::NAN));
+            // Whole pixels: bands that meet share an edge.
+            let [left, right] = [from, to].map(|x| place.pixel((*x, f64::NAN)).0.round());
             let (top, tall) =
                 (place.top + place.height * (1.0 - height.1), place.height * (height.1 - height.0));
             writeln!(
