@@ -56,6 +56,10 @@ test *OPTIONS:
 bench *OPTIONS:
     cargo bench --workspace {{OPTIONS}}
 
+# Measure time and memory of a surf of 20^4 runs
+bench-surf:
+    cargo bench --quiet --package retune-optim --bench surf
+
 # Format the code
 fmt:
     cargo fmt --all

@@ -5,11 +5,13 @@
 //! - [`strobe`]: the motion once per period of the force, and sweeps that carry the state over.
 //! - [`lyapunov`]: how fast neighbouring motions part, from two trajectories with renormalisation.
 //! - [`record`]: a motion followed for many periods together with its neighbour.
+//! - [`attractor`]: whether two stretches of motion show one motion or two.
 //! - [`regime`]: periodic (`nT, m, k`), amplitude-modulated, chaotic, intermittent, after transient chaos or not.
 //!
 //! Every result depends on its input alone, whatever the number of threads. Nothing is printed, no file is touched.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+pub mod attractor;
 pub mod lyapunov;
 pub mod parameter;
 pub mod record;
@@ -21,5 +23,5 @@ pub use lyapunov::Exponent;
 pub use parameter::{Error, Parameter};
 pub use record::{Record, Stretch, follow};
 pub use regime::{Kind, Regime, classify};
-pub use strobe::{Orbit, carried, fresh_orbits};
+pub use strobe::{Orbit, carried, fresh_orbits, resumed};
 pub use sweep::{Point, Zone, fresh};

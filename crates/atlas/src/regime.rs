@@ -4,29 +4,47 @@
 //!    the impacts on the structure and on the obstacle in n periods. Neighbours must not part.
 //! 2. Otherwise the exponent decides: above [`FLOOR`] *chaotic*, within it *amplitude-modulated* (quasi-periodic), below it
 //!    *settling* (the record is too short: a long transient or a period above [`LONGEST`]).
-//! 3. A chaotic motion is *intermittent* where nearly periodic (laminar) phases alternate with bursts.
-//! 4. A regular motion was reached through *transient chaos* where neighbours parted, on average and by much, before it.
+//! 3. A chaotic motion is *intermittent* where it is nearly periodic (laminar) most of the time, in phases that bursts end and
+//!    begin again and again (Y. Pomeau and P. Manneville, Commun. Math. Phys. 74, 1980).
+//! 4. A periodic motion was reached through *transient chaos* where neighbours parted, on average and by much, before it
+//!    (C. Grebogi, E. Ott and J. A. Yorke, Physica D 7, 1983).
 
 use crate::lyapunov::Exponent;
 use crate::record::{Record, distance};
 use serde::Serialize;
 
-/// Longest period that is looked for, in periods of the force.
+/// Longest period that is looked for, in periods of the force: the default stretch of 500 holds it seven times.
 pub const LONGEST: usize = 64;
-/// Distance of states, as a share of the motion's size, below which they are the same.
+/// Distance of states, as a share of the motion's size, below which they are the same: far above the error of a run (rtol 1e-11),
+/// far below what can be seen.
 pub const SAME: f64 = 1e-6;
-/// As [`SAME`] where the distances still fall: a motion that is coming to rest on its period.
-const NEARING: f64 = 1e-3;
-/// An exponent within this of zero cannot be told from zero, 1/s.
+/// As [`SAME`] where the distances fall to less than [`FALLING`] of themselves from one half of the stretch to the other: a motion
+/// that is coming to rest on its period. At a thousandth of its size a motion is periodic to any eye.
+pub const NEARING: f64 = 1e-3;
+/// See [`NEARING`]. Neighbours that meet at [`FLOOR`] come e times 2.5 nearer in half the default stretch, to a twelfth; a fifth
+/// leaves room for the last of a faster approach.
+pub const FALLING: f64 = 0.2;
+/// An exponent within this of zero cannot be told from zero, 1/s: on a motion whose exponent is zero neighbours may part in
+/// proportion to time, and over the 500 periods of about 1 s of the default stretch that looks like ln(500)/500 s = 0.012 /s.
 pub const FLOOR: f64 = 0.01;
-/// Distance, as a share of the motion's size, within which a phase is laminar.
-const LAMINAR: f64 = 0.05;
-/// Longest period of a laminar phase, in periods of the force.
-const LAMINAR_PERIOD: usize = 12;
-/// Shares of time in laminar phases between which a chaotic motion is intermittent.
-const INTERMITTENT: [f64; 2] = [0.2, 0.98];
-/// A transient is chaotic only if it parted neighbours by at least this factor.
-const PARTED: f64 = 1e3;
+/// Distance, as a share of the motion's size, within which a phase is laminar. States of a chaotic motion lie apart by about the
+/// motion's size, the drift of a laminar phase is a few per cent a period of the motion: this lies between.
+pub const LAMINAR: f64 = 0.05;
+/// Longest period of a laminar phase, in periods of the force: twice the longest that Figure 4 of the paper can label.
+pub const LAMINAR_PERIOD: usize = 12;
+/// Least periods of the force in a laminar phase, and three times its own period at that: a chaotic motion comes within
+/// [`LAMINAR`] of itself by chance one time in twenty or less, ten times in a row practically never.
+pub const LAMINAR_PHASE: usize = 10;
+/// Share of time in laminar phases above which a chaotic motion can be intermittent: most of it.
+pub const MOSTLY: f64 = 0.5;
+/// Distance, as a share of the motion's size, from its period at which a transient ends: the motion is then a hundredth off.
+pub const ARRIVED: f64 = 0.01;
+/// A transient is chaotic only if it parted neighbours by at least this factor. On the way to a period they part for a while
+/// without chaos too: among the motions of Figure 4 from rest by up to 2e4 (2T, 1, 0 at k1 = 3.95e4 N/m, omega = 5.958 rad/s).
+pub const PARTED: f64 = 1e5;
+
+/// Standard errors by which the exponent of a chaotic transient must lie above zero: 98 of 100 chances.
+pub const MARGIN: f64 = 2.0;
 
 /// The kinds of settled motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -68,6 +86,8 @@ pub struct Regime {
     pub transient: Option<Transient>,
     /// Share of settled time in laminar phases.
     pub laminar: f64,
+    /// Bursts that ended a laminar phase in the settled stretch.
+    pub bursts: usize,
     /// Probability, by the evidence above, that the kind is right: 0.5 is a toss-up.
     pub confidence: f64,
 }
@@ -109,7 +129,7 @@ pub fn classify(record: &Record) -> Regime {
     let laminar = laminar_share(settled, size);
     let kind = match found {
         Some(_) => Kind::Periodic,
-        None if exponent.value > FLOOR && intermittent(&laminar) => Kind::Intermittent,
+        None if exponent.value > FLOOR && laminar.intermittency() > 0.5 => Kind::Intermittent,
         None if exponent.value > FLOOR => Kind::Chaotic,
         None if exponent.value >= -FLOOR => Kind::AmplitudeModulated,
         None => Kind::Settling,
@@ -126,7 +146,8 @@ pub fn classify(record: &Record) -> Regime {
         exponent,
         transient,
         laminar: laminar.share,
-        confidence: confidence(kind, exponent, found.map(|(_, gap)| gap), transient.as_ref(), laminar.share),
+        bursts: laminar.bursts,
+        confidence: confidence(kind, exponent, found.map(|(_, gap)| gap), transient.as_ref(), &laminar),
     }
 }
 
@@ -141,7 +162,7 @@ fn repeats(samples: &[[f64; 4]], size: f64) -> Option<(usize, f64)> {
         periods().find_map(|n| {
             let (first, last) = samples.split_at(samples.len() / 2);
             let (before, after) = (worst(first, n), worst(last, n));
-            Some((n, after)).filter(|_| after < NEARING && after < 0.2 * before)
+            Some((n, after)).filter(|_| after < NEARING && after < FALLING * before)
         })
     })
 }
@@ -159,16 +180,35 @@ fn mean_impacts(impacts: &[[u64; 2]], n: usize, repeats: bool) -> [f64; 2] {
     }
 }
 
+/// Laminar phases of a settled motion.
 struct Laminar {
     share: f64,
-    phases: usize,
+    bursts: usize,
+    /// Independent draws that the share rests on.
+    draws: f64,
 }
 
-/// Phases in which states n periods apart stay close for at least ten periods and three times n, for any one n.
+impl Laminar {
+    /// Probability that laminar phases and bursts alternate for good and that the former fill most of the time: that a burst
+    /// came not by chance (if one were expected in the whole stretch, the number of bursts would be Poisson-distributed about 1),
+    /// and that the share is above [`MOSTLY`] (each laminar phase a draw of its own, and each [`LAMINAR_PHASE`] without).
+    fn intermittency(&self) -> f64 {
+        let mut term = (-1.0_f64).exp();
+        let mut fewer = 0.0;
+        for burst in 0..self.bursts.min(20) {
+            fewer += term;
+            term /= (burst + 1) as f64;
+        }
+        let error = (MOSTLY * (1.0 - MOSTLY) / self.draws).sqrt();
+        fewer * normal((self.share - MOSTLY) / error)
+    }
+}
+
+/// Phases in which states n periods apart stay close for at least [`LAMINAR_PHASE`] periods and three times n, for any one n.
 fn laminar_share(samples: &[[f64; 4]], size: f64) -> Laminar {
     let mut laminar = vec![false; samples.len()];
     for n in 1..=LAMINAR_PERIOD.min(samples.len() / 3) {
-        let least = (3 * n).max(10);
+        let least = (3 * n).max(LAMINAR_PHASE);
         let mut begin = 0;
         for i in 0..=samples.len() - n {
             let close = i < samples.len() - n && distance(&samples[i], &samples[i + n]) < LAMINAR * size;
@@ -182,18 +222,15 @@ fn laminar_share(samples: &[[f64; 4]], size: f64) -> Laminar {
         }
     }
     let count = laminar.iter().filter(|&&is| is).count();
-    let phases = laminar.windows(2).filter(|pair| !pair[0] && pair[1]).count();
-    Laminar { share: count as f64 / samples.len().max(1) as f64, phases }
+    let bursts = laminar.windows(2).filter(|pair| pair[0] && !pair[1]).count();
+    let draws = 1.0 + bursts as f64 + ((laminar.len() - count) / LAMINAR_PHASE) as f64;
+    Laminar { share: count as f64 / samples.len().max(1) as f64, bursts, draws }
 }
 
-fn intermittent(laminar: &Laminar) -> bool {
-    laminar.share > INTERMITTENT[0] && laminar.share < INTERMITTENT[1] && laminar.phases >= 2
-}
-
-/// The stretch before the motion came within a hundredth of its size of its period, if neighbours parted in it.
+/// The stretch before the motion came within [`ARRIVED`] of its period, if neighbours parted in it.
 fn transient_chaos(record: &Record, n: usize, size: f64) -> Option<Transient> {
     let samples = &record.samples;
-    let far = |i: &usize| distance(&samples[*i], &samples[*i + n]) > 1e-2 * size;
+    let far = |i: &usize| distance(&samples[*i], &samples[*i + n]) > ARRIVED * size;
     let end = (0..samples.len() - n).rev().find(far)? + 1;
     let growth = &record.growth[..end];
     // The last contraction on to the period belongs to the period, not to the chaos before it: take the stretch up to where the
@@ -207,7 +244,7 @@ fn transient_chaos(record: &Record, n: usize, size: f64) -> Option<Transient> {
         }
     }
     let exponent = Exponent::of(&growth[..at], record.period);
-    let real = most > PARTED.ln() && exponent.value > FLOOR && exponent.margin(0.0) > 2.0;
+    let real = most > PARTED.ln() && exponent.value > FLOOR && exponent.margin(0.0) > MARGIN;
     real.then_some(Transient { until: end as f64 * record.period, exponent })
 }
 
@@ -221,22 +258,19 @@ fn confidence(
     exponent: Exponent,
     gap: Option<f64>,
     transient: Option<&Transient>,
-    laminar: f64,
+    laminar: &Laminar,
 ) -> f64 {
     let sign = |threshold: f64| normal(exponent.margin(threshold));
     match kind {
         Kind::Periodic => {
+            // A motion still on its way to its period may yet turn out to be on its way to a multiple of it.
             let closes = if gap.is_some_and(|gap| gap < SAME) { 1.0 } else { 0.8 };
             let chaos = transient.map_or(1.0, |chaos| normal(chaos.exponent.margin(FLOOR)));
             (1.0 - sign(FLOOR)) * closes * chaos
         }
         Kind::AmplitudeModulated => sign(-FLOOR) - sign(FLOOR),
-        Kind::Chaotic => sign(FLOOR),
-        Kind::Intermittent => {
-            let [low, high] = INTERMITTENT;
-            let inside = (laminar - low).min(high - laminar) / (0.5 * (high - low));
-            sign(FLOOR) * (0.5 + 0.5 * inside.clamp(0.0, 1.0))
-        }
+        Kind::Chaotic => sign(FLOOR) * (1.0 - laminar.intermittency()),
+        Kind::Intermittent => sign(FLOOR) * laminar.intermittency(),
         Kind::Settling => 1.0 - sign(-FLOOR),
     }
 }

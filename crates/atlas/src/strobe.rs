@@ -62,6 +62,14 @@ pub fn at_rest(system: &Coupled) -> Motion {
     Motion { t: 0.0, y: system.rest(), phase: Phase::Flight }
 }
 
+/// The motion that goes on from the state `y` at a crest of the force, for instance the last of an [`Orbit`].
+///
+/// # Errors
+/// As [`coupled`].
+pub fn resumed(scene: &Scene, y: [f64; 4]) -> Result<Motion, Error> {
+    Ok(Motion { t: 0.0, y, phase: phase_of(&coupled(scene)?, &y) })
+}
+
 /// What the damper does in a state that was not reached by moving there: pressed into a wall where it overlaps one.
 pub(crate) fn phase_of(system: &Coupled, y: &[f64; 4]) -> Phase {
     let overlaps = system.rapprochement(y);

@@ -32,6 +32,19 @@ pub struct Primary {
     pub stiffness: NonNegative,
 }
 
+impl Primary {
+    /// ω0 = √(k1/m1), the natural frequency without damping (section 2 of the paper), rad/s.
+    pub fn natural_frequency(&self) -> f64 {
+        (self.stiffness.get() / self.mass.get()).sqrt()
+    }
+
+    /// c1/(2 m1), half the width of the resonance where its energy has fallen to a half, to first order in the damping, rad/s
+    /// (any text on vibration, for instance J. P. Den Hartog, Mechanical Vibrations, chapter 2).
+    pub fn half_power_half_width(&self) -> f64 {
+        0.5 * self.damping.get() / self.mass.get()
+    }
+}
+
 /// The harmonic force on the primary structure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -2,7 +2,7 @@
 
 pub mod log;
 mod optimum;
-mod pictures;
+pub mod pictures;
 mod refine;
 mod surf;
 

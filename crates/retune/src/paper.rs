@@ -2,12 +2,17 @@
 
 mod cases;
 mod curves;
+mod diagrams;
 mod energies;
+mod family;
 mod item;
+mod judgement;
+mod keeping;
 mod motions;
 mod page;
 mod plan;
 mod ratios;
+mod regimes;
 mod surfaces;
 mod table1;
 mod table2;
@@ -31,7 +36,7 @@ const ITEMS: [(&str, Maker); 8] = [
     ("table2", table2::table2),
     ("figure2", surfaces::figure2),
     ("figure3", curves::figure3),
-    ("figure4", motions::figure4),
+    ("figure4", regimes::figure4),
     ("figure5", ratios::figure5),
     ("figure6", energies::figure6),
     ("figure7", cases::figure7),
@@ -82,7 +87,7 @@ fn is_of(file: &str, name: &str) -> bool {
 
 fn write(item: &Item, results: &Directory) -> Result<(), Error> {
     for picture in &item.pictures {
-        results.write(&format!("{}.svg", picture.name), &picture.svg)?;
+        results.write(&format!("{}.svg", picture.name), &picture.drawing.wide)?;
     }
     for (i, grid) in item.grids.iter().enumerate() {
         results.write(&format!("{}-table-{}.csv", item.name, i + 1), &grid.csv())?;

@@ -13,7 +13,7 @@ pub struct Directory {
 
 impl Directory {
     /// Opens the directory, made if there is none. Of an earlier run in it, the files `is_ours` names are removed: results of
-    /// two studies must not stand side by side.
+    /// two studies must not stand side by side. So is what a killed run left of them under temporary names.
     ///
     /// # Errors
     /// The directory cannot be made or written to.
@@ -24,7 +24,8 @@ impl Directory {
         drop(directory.file("probe")?); // may we write here at all?
         for entry in std::fs::read_dir(path).map_err(refuse)? {
             let entry = entry.map_err(refuse)?;
-            if entry.file_name().to_str().is_some_and(&is_ours) {
+            let is_stale = |name: &str| is_ours(final_name(name));
+            if entry.file_name().to_str().is_some_and(is_stale) {
                 std::fs::remove_file(entry.path()).map_err(refuse)?;
             }
         }
@@ -62,6 +63,16 @@ impl Directory {
         let text = serde_json::to_string_pretty(value)
             .map_err(|error| Error::Output { path: self.path.join(name), source: error.into() })?;
         self.write(name, &(text + "\n"))
+    }
+}
+
+/// The name that a file will have when it is whole: of `.surf.csv.4711.tmp`, the temporary of process 4711, `surf.csv`; of any
+/// other, its own.
+fn final_name(name: &str) -> &str {
+    let inner = name.strip_prefix('.').and_then(|name| name.strip_suffix(".tmp"));
+    match inner.and_then(|inner| inner.rsplit_once('.')) {
+        Some((inner, process)) if process.parse::<u32>().is_ok() => inner,
+        _ => name,
     }
 }
 

@@ -51,7 +51,12 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
     let mut table = Table::new("retune", "k1", &out)?;
     with_threads(running.threads, || {
         for (k1, damper, study) in studies {
-            screen.log(format!("\n{damper} at k1 = {k1} N/m"))?;
+            let scene = study.scene;
+            screen.log(format!(
+                "\n{damper} at k1 = {k1} N/m (natural frequency {} rad/s), forced at omega = {} rad/s",
+                short(scene.primary.natural_frequency()),
+                scene.forcing.frequency.get()
+            ))?;
             let optimum = optimize(&study, &out.join(format!("k1-{k1}")).join(study.name()), screen)?;
             table.push(&k1.to_string(), damper, optimum.found());
         }

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, scale_for};
 use super::colour::{NOTHING, viridis};
-use super::{Canvas, Drawn, Frame, SMALL, TEXT, TICK, figure, line, text, upright};
+use super::{Canvas, Drawn, Frame, TEXT, TICK, figure, line, text, upright};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use retune_optim::Scale;
@@ -67,16 +67,13 @@ pub fn heat_map(
             let corner = frame.pixel(edges[0][column], edges[1][row]);
             let (right, top) = frame.pixel(edges[0][column + 1], edges[1][row + 1]);
             let colour = if value.is_finite() { viridis(colours.share(value)) } else { NOTHING };
-            cell(canvas, corner, (right + SEAM, top - SEAM), &colour)?;
+            cell(canvas, corner, (right, top), &colour)?;
         }
         frame.draw(canvas, true)?;
         colour_bar(canvas, &colours, &frame)?;
         marks.iter().enumerate().try_for_each(|(i, mark)| draw_mark(canvas, &frame, mark, i))
     })
 }
-
-/// By how much a cell reaches under the next one, so that no viewer shows a seam between them, px. The frame hides it outside.
-const SEAM: i32 = 1;
 
 fn cell(canvas: &Canvas, corner: (i32, i32), opposite: (i32, i32), colour: &impl Color) -> Drawn {
     canvas.draw(&Rectangle::new([corner, opposite], colour.filled())).map_err(|error| error.to_string())
@@ -103,7 +100,7 @@ fn colour_bar(canvas: &Canvas, colours: &Axis, frame: &Frame) -> Drawn {
     for i in 0..bands {
         let [below, above] = [i, i + 1].map(|edge| frame.bottom - height * edge / bands);
         let colour = viridis((f64::from(i) + 0.5) / f64::from(bands));
-        cell(canvas, (left, below), (right, above - SEAM), &colour)?;
+        cell(canvas, (left, below), (right, above), &colour)?;
     }
     for (value, label) in colours.ticks(6) {
         let y = frame.bottom - (f64::from(height) * colours.share(value)).round() as i32;
@@ -119,13 +116,13 @@ fn colour_bar(canvas: &Canvas, colours: &Axis, frame: &Frame) -> Drawn {
 fn draw_mark(canvas: &Canvas, frame: &Frame, mark: &Mark, number: usize) -> Drawn {
     let (Mark::Grid { x, y, label } | Mark::Optimum { x, y, label }) = mark;
     let inside = frame.x.holds(*x) && frame.y.holds(*y);
-    let key = (frame.left + 20 + 560 * number as i32, 60);
+    let key = (frame.left + 20 + 640 * number as i32, 60);
     let places = if inside { vec![frame.pixel(*x, *y), key] } else { vec![key] };
     for place in places {
         symbol(canvas, mark, place)?;
     }
     let words = if inside { label.clone() } else { format!("{label} (off the map)") };
-    text(canvas, &words, (key.0 + 40, key.1), SMALL + 4, HPos::Left, &BLACK)
+    text(canvas, &words, (key.0 + 40, key.1), TEXT - 4, HPos::Left, &BLACK)
 }
 
 /// White with a black rim: seen on every colour of the map.

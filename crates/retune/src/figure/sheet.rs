@@ -22,6 +22,11 @@ pub const VERMILION: &str = "#D55E00";
 /// Reddish purple; pale, the pink of the paper's bilateral zones.
 pub const PURPLE: &str = "#CC79A7";
 
+/// Yellow.
+pub const YELLOW: &str = "#F0E442";
+/// What needs no attention.
+pub const GREY: &str = "#B8B8B8";
+
 /// Something drawn on a chart.
 pub enum Layer {
     /// A line through points; values that are not finite break it.
@@ -58,34 +63,59 @@ pub enum Key {
     Dot(&'static str),
     /// An area.
     Area(&'static str, f64),
+    /// Words that begin a row and say what its keys are for.
+    Heading,
 }
 
 const WIDTH: f64 = 1600.0;
+/// Half of it: on a telephone text is then about 12 px high.
+const NARROW: f64 = 800.0;
 const TEXT: f64 = 27.0;
 
+/// A picture, and the same for a narrow screen where the picture itself would be too small to read.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// For print and wide screens.
+    pub wide: String,
+    /// One chart a row, half as wide.
+    pub narrow: Option<String>,
+}
+
+impl From<String> for Drawing {
+    fn from(wide: String) -> Self {
+        Self { wide, narrow: None }
+    }
+}
+
 /// Draws `charts` in rows of `columns`, each `height` px high.
-pub fn sheet(charts: &[Chart], columns: usize, height: f64, legend: &[(Key, &str)]) -> String {
+pub fn sheet(charts: &[Chart], columns: usize, height: f64, legend: &[(Key, &str)]) -> Drawing {
+    let wide = on_width(WIDTH, charts, columns, height, legend);
+    Drawing { wide, narrow: Some(on_width(NARROW, charts, 1, height, legend)) }
+}
+
+fn on_width(page: f64, charts: &[Chart], columns: usize, height: f64, legend: &[(Key, &str)]) -> String {
     let mut body = String::new();
     let mut y = 26.0;
     let mut x = 30.0;
     for (key, words) in legend {
-        let length = 74.0 + 15.5 * words.chars().count() as f64 + 36.0;
-        if x + length > WIDTH {
+        let heading = matches!(key, Key::Heading);
+        let length = if heading { 125.0 } else { 74.0 + 16.0 * words.chars().count() as f64 + 12.0 };
+        if (heading && x > 30.0) || x + length > page {
             (x, y) = (30.0, y + 44.0);
         }
         draw_key(&mut body, key, words, x, y);
         x += length;
     }
     let top = if legend.is_empty() { 20.0 } else { y + 40.0 };
-    let (cell_width, cell_height) = (WIDTH / columns as f64, height);
+    let (cell_width, cell_height) = (page / columns as f64, height);
     for (i, chart) in charts.iter().enumerate() {
         let corner = ((i % columns) as f64 * cell_width, top + (i / columns) as f64 * cell_height);
         draw_chart(&mut body, chart, corner, (cell_width, cell_height));
     }
     let total = top + charts.len().div_ceil(columns) as f64 * cell_height + 10.0;
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {total}\" width=\"{WIDTH}\" height=\"{total}\" font-family=\"sans-serif\" \
-         font-size=\"{TEXT}\">\n<rect class=\"paper\" width=\"{WIDTH}\" height=\"{total}\" fill=\"#FFFFFF\"/>\n{body}</svg>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {page} {total}\" width=\"{page}\" height=\"{total}\" font-family=\"sans-serif\" \
+         font-size=\"{TEXT}\">\n<rect class=\"paper\" width=\"{page}\" height=\"{total}\" fill=\"#FFFFFF\"/>\n{body}</svg>\n"
     )
 }
 
@@ -115,6 +145,10 @@ fn draw_key(out: &mut String, key: &Key, text: &str, x: f64, y: f64) {
             "<rect x=\"{x}\" y=\"{}\" width=\"56\" height=\"26\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>",
             y - 13.0
         ),
+        Key::Heading => {
+            words(out, text, (x, y + 9.0), "start", "");
+            return;
+        }
     };
     words(out, text, (x + 68.0, y + 9.0), "start", "");
 }
@@ -199,13 +233,13 @@ fn draw_layer(out: &mut String, layer: &Layer, place: &Place) {
             )
         }
         Layer::Band { from, to, colour, opacity, height } => {
-            let (left, _) = place.pixel((*from, f64::NAN));
-            let (right, _) = place.pixel((*to, f64::NAN));
+            // Whole pixels: bands that meet share an edge.
+            let [left, right] = [from, to].map(|x| place.pixel((*x, f64::NAN)).0.round());
             let (top, tall) =
                 (place.top + place.height * (1.0 - height.1), place.height * (height.1 - height.0));
             writeln!(
                 out,
-                "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{tall:.1}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>",
+                "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{tall:.1}\" fill=\"{colour}\" fill-opacity=\"{opacity}\" shape-rendering=\"crispEdges\"/>",
                 right - left
             )
         }
@@ -220,7 +254,9 @@ fn draw_layer(out: &mut String, layer: &Layer, place: &Place) {
         Layer::Words { x, share, text } => {
             let (at, _) = place.pixel((*x, f64::NAN));
             let y = place.top + place.height * (1.0 - share);
-            words(out, text, (at, y), "middle", " font-size=\"21\"");
+            // A halo in the colour of the paper, so that lines behind do not cross the words.
+            let halo = " stroke=\"#FFFFFF\" stroke-width=\"6\" paint-order=\"stroke\"";
+            words(out, text, (at, y), "middle", &format!(" font-size=\"21\"{halo}"));
             Ok(())
         }
     };

@@ -11,7 +11,7 @@ use crate::summary::MadeBy;
 use retune_optim::{Scale, Variable};
 
 /// The label of E1max.
-const ENERGY: &str = "E_{1max}, J";
+pub const ENERGY: &str = "E_{1max}, J";
 
 /// Draws all figures.
 pub(super) fn draw(
@@ -112,7 +112,7 @@ fn convergence(search: &Search, refined: &Refined, made_by: &str) -> Result<Stri
 }
 
 /// A parameter's symbol and unit, for an axis.
-fn label(variable: Variable) -> String {
+pub fn label(variable: Variable) -> String {
     format!("{}, {}", symbol(variable), variable.unit())
 }
 

@@ -1,6 +1,7 @@
 //! Figure 7: three irregular motions, and what they are.
 
 use super::item::{Grid, Item, Verdict, numbers};
+use super::judgement::definitions;
 use super::plan::{Plan, stiffness};
 use crate::error::Error;
 use crate::figure::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, sheet};
@@ -89,7 +90,16 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     );
     let mut grid = Grid::new(
         "Our judgement of each case, and how it depends on what the paper leaves out",
-        &["case", "R, m", "ω, rad/s", "motion", "largest exponent, 1/s", "laminar share", "confidence"],
+        &[
+            "case",
+            "R, m",
+            "ω, rad/s",
+            "motion",
+            "largest exponent, 1/s",
+            "laminar share",
+            "bursts",
+            "confidence",
+        ],
     );
     let near = [-0.02, -0.01, 0.01, 0.02];
     let bar = plan.screen.progress("figure 7", (CASES.len() * (RADII.len() + near.len())) as u64);
@@ -118,20 +128,31 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
                 regime.label(),
                 format!("{:.3} ± {:.3}", regime.exponent.value, regime.exponent.error),
                 format!("{:.2}", regime.laminar),
+                regime.bursts.to_string(),
                 format!("{:.2}", regime.confidence),
             ]);
         }
         state(case, &scene, &variants, &judged, plan, &mut item)?;
+        item.notes.extend(creeping(case, &judged[0]));
     }
     bar.finish_and_clear();
     item.grids.push(grid);
-    item.notes.push(
-        "Case (b): the motion from rest creeps towards a period-2 motion, and its exponent is the rate of that: with -0.014 /s it takes \
-         70 s to come e times nearer, so in a run of 100 s it never looks periodic; but neighbours do not part at any time, which \
-         transient chaos would need."
-            .into(),
-    );
+    item.grids.push(definitions());
     Ok(item)
+}
+
+/// A slow approach to a period can be taken for a transient that ends: says how slow it is.
+fn creeping(case: &Case, regime: &Regime) -> Option<String> {
+    let slow = regime.kind == Kind::Periodic && regime.transient.is_none() && regime.exponent.value < 0.0;
+    slow.then(|| {
+        format!(
+            "Case ({}): the motion from rest creeps towards {}, and its exponent is the rate of that: with {:.3} /s it takes {:.0} s to come e times nearer, so in a run of 100 s it need not look periodic; but neighbours do not part at any time, which transient chaos would need.",
+            case.letter,
+            regime.label(),
+            regime.exponent.value,
+            -1.0 / regime.exponent.value
+        )
+    })
 }
 
 fn state(
@@ -153,11 +174,7 @@ fn state(
         .map(|((radius, omega), _)| format!("R = {radius} m, ω = {omega:.2}"))
         .collect();
     let own = &judged[0];
-    let verdict = match (case.agrees(own), zone == case.zone) {
-        (true, true) => Verdict::Holds,
-        (false, false) => Verdict::Fails,
-        _ => Verdict::Partly,
-    };
+    let verdict = Verdict::of_all(&[case.agrees(own), zone == case.zone]);
     let found = format!(
         "{} (exponent {:.3} ± {:.3} /s, laminar {:.0} % of the time, confidence {:.2}); {} impacts on the PS and {} on the obstacle in {}–{} s; the paper's word fits also at: {}",
         own.label(),
@@ -183,6 +200,7 @@ fn state(
             case.omega,
             stiffness(case.k1)
         ),
+        "Holds if the motion from rest has this name by our definitions (table below) and strikes the walls that the paper says; in part if only one is so.",
         verdict,
         found,
     );

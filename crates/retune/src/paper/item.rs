@@ -1,5 +1,6 @@
 //! A table or figure of the paper, made again: what the paper says, what was found, and a verdict on each statement.
 
+use crate::figure::sheet::Drawing;
 use serde::Serialize;
 
 /// What becomes of a statement.
@@ -28,6 +29,15 @@ impl Verdict {
     pub const fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::Fails }
     }
+
+    /// Holds if all of `parts` do, fails if none does, else holds in part.
+    pub fn of_all(parts: &[bool]) -> Self {
+        match parts.iter().filter(|&&holds| holds).count() {
+            0 => Self::Fails,
+            count if count == parts.len() => Self::Holds,
+            _ => Self::Partly,
+        }
+    }
 }
 
 /// A statement of the paper beside what was found.
@@ -35,6 +45,8 @@ impl Verdict {
 pub struct Statement {
     /// The paper's words, or nearly.
     pub paper: String,
+    /// When it counts as holding, and why then: where the paper has only words, this says what is measured.
+    pub rule: String,
     /// What becomes of it.
     pub verdict: Verdict,
     /// The numbers it rests on.
@@ -81,8 +93,8 @@ impl Grid {
 pub struct Picture {
     /// File name without its ending.
     pub name: String,
-    /// The SVG.
-    pub svg: String,
+    /// As SVG.
+    pub drawing: Drawing,
     /// What there is to see, and how it was made.
     pub caption: String,
 }
@@ -128,13 +140,15 @@ impl Item {
     }
 
     /// Adds a picture.
-    pub fn picture(&mut self, name: &str, svg: String, caption: &str) {
-        self.pictures.push(Picture { name: name.to_owned(), svg, caption: caption.to_owned() });
+    pub fn picture(&mut self, name: &str, drawing: impl Into<Drawing>, caption: &str) {
+        let [name, caption] = [name, caption].map(str::to_owned);
+        self.pictures.push(Picture { name, drawing: drawing.into(), caption });
     }
 
     /// Adds a statement.
-    pub fn statement(&mut self, paper: &str, verdict: Verdict, found: String) {
-        self.statements.push(Statement { paper: paper.to_owned(), verdict, found });
+    pub fn statement(&mut self, paper: &str, rule: &str, verdict: Verdict, found: String) {
+        let [paper, rule] = [paper, rule].map(str::to_owned);
+        self.statements.push(Statement { paper, rule, verdict, found });
     }
 }
 

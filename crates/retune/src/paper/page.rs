@@ -1,6 +1,7 @@
 //! The page: every item beside what the paper says, in one file that needs no network.
 
 use super::item::{Grid, Item, Picture, Statement, Verdict};
+use crate::figure::sheet::Drawing;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
@@ -69,7 +70,7 @@ fn statement(statement: &Statement) -> Markup {
     };
     html! {
         li class=(class) {
-            span.says { (statement.paper) }
+            span.says { (statement.paper) small.rule { (statement.rule) } }
             span.verdict { (statement.verdict.words()) }
             span.found { (statement.found) }
         }
@@ -77,22 +78,32 @@ fn statement(statement: &Statement) -> Markup {
 }
 
 fn figure(picture: &Picture) -> Markup {
-    let start = picture.svg.find("<svg").unwrap_or(0);
+    let svg = |text: &str| PreEscaped(text[text.find("<svg").unwrap_or(0)..].to_owned());
+    let Drawing { wide, narrow } = &picture.drawing;
+    let class = if narrow.is_some() { "wide" } else { "any" };
     html! {
         figure {
-            div.scroll tabindex="0" role="img" aria-label=(picture.caption) { (PreEscaped(&picture.svg[start..])) }
+            div.(class) role="img" aria-label=(picture.caption) { (svg(wide)) }
+            @if let Some(narrow) = narrow { div.narrow role="img" aria-label=(picture.caption) { (svg(narrow)) } }
             figcaption { (picture.caption) " " a href={ (picture.name) ".svg" } { (picture.name) ".svg" } }
         }
     }
 }
 
+/// Cells of more letters than this may break into lines.
+const LONG: usize = 48;
+
 fn table(grid: &Grid) -> Markup {
+    let cell = |text: &String| {
+        let long = text.chars().count() > LONG;
+        html! { td class=[long.then_some("long")] { (text) } }
+    };
     html! {
+        p.caption { (grid.caption) }
         div.scroll tabindex="0" {
             table {
-                caption { (grid.caption) }
                 thead { tr { @for name in &grid.head { th { (name) } } } }
-                tbody { @for row in &grid.rows { tr { @for cell in row { td { (cell) } } } } }
+                tbody { @for row in &grid.rows { tr { @for text in row { (cell(text)) } } } }
             }
         }
     }

@@ -138,8 +138,3 @@ impl Plan {
 pub fn stiffness(k1: f64) -> String {
     format!("{k1:.2e}")
 }
-
-/// The natural frequency `√(k1/m1)` of a scene's structure, rad/s.
-pub fn natural(scene: &Scene) -> f64 {
-    (scene.primary.stiffness.get() / scene.primary.mass.get()).sqrt()
-}

@@ -1,6 +1,6 @@
 //! Figure 5: the share of the energy that the damper holds.
 
-use super::curves::Family;
+use super::family::Family;
 use super::item::{Item, Verdict, numbers};
 use super::plan::{Plan, stiffness};
 use crate::error::Error;
@@ -19,7 +19,7 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
     let mut at_resonance = [Vec::new(), Vec::new()];
     for &k1 in &stiffnesses {
         for (scene, place) in plan.scenes(k1)?[1..].iter().zip(&mut at_resonance) {
-            let scene = retune_atlas::Parameter::Omega.at(*scene, super::plan::natural(scene))?;
+            let scene = retune_atlas::Parameter::Omega.at(*scene, scene.primary.natural_frequency())?;
             let run = simulate(&scene, plan.window(), &plan.settings())?;
             bar.inc(1);
             let (e1_max, e2_max) = (run.e1_max.value, run.e2_max.value);
@@ -82,22 +82,19 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
         more as f64 / ssvi.len().max(1) as f64
     };
     let band = |family: &Family| {
-        let near = |p: &&Point| (p.value / family.natural - 1.0).abs() < 0.05;
+        let near = |p: &&Point| (p.value - family.natural).abs() <= family.half_width;
         let [s, t] =
             [1, 2].map(|scene| family.points[scene].iter().filter(near).copied().collect::<Vec<_>>());
         above(&s, &t)
     };
     let shares = [above(&at_resonance[0], &at_resonance[1]), band(&soft), band(&tuned)];
-    let verdict = match shares.iter().filter(|share| **share > 0.5).count() {
-        3 => Verdict::Holds,
-        0 => Verdict::Fails,
-        _ => Verdict::Partly,
-    };
+    let verdict = Verdict::of_all(&shares.map(|share| share > 0.5));
     item.statement(
         "The SSVI NES realises the energy transfer from PS to damper somewhat better than the TMD (a larger R2)",
+        "Holds if R2 is the larger at most places of each of the three graphs, of (b) and (c) within half the half-power width c1/(2 m1) of resonance, where a damper matters; in part if of one or two.",
         verdict,
         format!(
-            "R2 is the larger with the SSVI NES at {:.0} % of the stiffnesses of (a), and within 5 % of resonance at {:.0} % of the frequencies of (b) and {:.0} % of (c)",
+            "R2 is the larger with the SSVI NES at {:.0} % of the stiffnesses of (a), and near resonance at {:.0} % of the frequencies of (b) and {:.0} % of (c)",
             100.0 * shares[0], 100.0 * shares[1], 100.0 * shares[2]
         ),
     );

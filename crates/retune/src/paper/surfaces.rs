@@ -4,6 +4,8 @@ use super::item::{Item, Verdict, numbers};
 use super::plan::Plan;
 use crate::error::Error;
 use crate::figure::{Mark, Nodes, heat_map};
+use crate::optimize::log::short;
+use crate::optimize::pictures::{ENERGY, label};
 use crate::study::Study;
 use rayon::prelude::*;
 use retune_atlas::parameter::evenly;
@@ -45,6 +47,8 @@ struct Found {
     best_value: f64,
     paper: [f64; 2],
     paper_value: f64,
+    /// Between nodes.
+    step: [f64; 2],
 }
 
 /// Makes Figure 2.
@@ -63,30 +67,34 @@ pub fn figure2(plan: &Plan) -> Result<Item, Error> {
     let bar = plan.screen.progress("figure 2", (3 * POINTS * POINTS) as u64);
     let done = || bar.inc(1);
     let tmd = surface(plan, &plan.tmd, &TMD, &mut item, &done)?;
-    let mut ssvi = Vec::new();
-    for one in &SSVI {
-        ssvi.push(surface(plan, &plan.ssvi, one, &mut item, &done)?);
-    }
+    let ssvi = [
+        surface(plan, &plan.ssvi, &SSVI[0], &mut item, &done)?,
+        surface(plan, &plan.ssvi, &SSVI[1], &mut item, &done)?,
+    ];
     bar.finish_and_clear();
-    let near = |found: &Found| found.paper_value <= 1.05 * found.best_value;
+    let near =
+        |found: &Found| (0..2).all(|side| (found.paper[side] - found.best[side]).abs() <= found.step[side]);
     let words = |found: &Found| {
         format!(
-            "best node ({:.4}, {:.4}): {:.0} J; the paper's point ({}, {}): {:.0} J",
-            found.best[0], found.best[1], found.best_value, found.paper[0], found.paper[1], found.paper_value
+            "best node ({}, {}): {:.0} J; the paper's point ({}, {}): {:.0} J",
+            short(found.best[0]),
+            short(found.best[1]),
+            found.best_value,
+            found.paper[0],
+            found.paper[1],
+            found.paper_value
         )
     };
+    let rule = "Holds if the paper's point is no further than one step of the grid from the best node, in both directions: so near is what can be read from a surface.";
     item.statement(
         "The surface gives the approximate optimum of the TMD",
+        rule,
         Verdict::of(near(&tmd)),
         words(&tmd),
     );
-    let verdict = match ssvi.iter().filter(|found| near(found)).count() {
-        2 => Verdict::Holds,
-        1 => Verdict::Partly,
-        _ => Verdict::Fails,
-    };
+    let verdict = Verdict::of_all(&ssvi.each_ref().map(near));
     let found = format!("over k2 and c2, {}; over D and C, {}", words(&ssvi[0]), words(&ssvi[1]));
-    item.statement("The surface gives the approximate optimum of the SSVI NES", verdict, found);
+    item.statement("The surface gives the approximate optimum of the SSVI NES", rule, verdict, found);
     item.notes.push("The SSVI NES's surfaces are rugged where the motion is chaotic: neighbouring nodes differ by tens of joules, and a best node is partly luck.".into());
     Ok(item)
 }
@@ -117,8 +125,8 @@ fn surface(
         best_value: values[best],
         paper,
         paper_value: objective.value(&paper, f64::INFINITY),
+        step: [xs[1] - xs[0], ys[1] - ys[0]],
     };
-    let label = |variable: Variable| format!("{variable}, {}", variable.unit());
     let sides = [(0, &xs), (1, &ys)].map(|(side, nodes)| Nodes {
         label: label(surface.variables[side]),
         scale: Scale::Linear,
@@ -132,7 +140,7 @@ fn surface(
         },
         Mark::Optimum { x: paper[0], y: paper[1], label: format!("the paper's, {:.0} J", found.paper_value) },
     ];
-    let svg = heat_map(&sides, &values, "E1max, J", &marks, &[]).map_err(refuse)?;
+    let svg = heat_map(&sides, &values, ENERGY, &marks, &[]).map_err(refuse)?;
     let [a, b] = surface.variables;
     item.picture(surface.name, svg, &format!("{}: E₁max over {a} and {b}.", surface.title));
     let rows = designs.iter().zip(&values).map(|(design, value)| vec![design[0], design[1], *value]);

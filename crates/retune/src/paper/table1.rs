@@ -6,7 +6,8 @@ use crate::error::Error;
 use crate::optimize::log::{CSV_HEADER, csv, scientific};
 use rayon::prelude::*;
 use retune_atlas::{Stretch, classify, follow};
-use retune_optim::{Failures, Minimum, Options, PeakEnergy, Row, Variable, minimize};
+use retune_model::{Damper, Positive};
+use retune_optim::{Failures, Minimum, Options, PeakEnergy, Row, Stop, Variable, minimize};
 use retune_solver::{Settings, Window};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -19,6 +20,11 @@ const PAPER: [([f64; 4], f64); 4] = [
     ([215.0, 232.0, 0.06, 0.36], 563.0),
 ];
 const PERTURBATIONS: usize = 201;
+
+/// Radii with which the rows are repeated, m, and windows, s: neither is in the paper.
+const RADII: [f64; 5] = [0.1, 0.5, 2.0, 5.0, 10.0];
+/// Designs of each median of that table.
+const FEW: usize = 51;
 
 /// Least, median and largest of some values.
 struct Spread {
@@ -58,6 +64,7 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
     };
     let own = objective(plan.window(), plan.settings());
     worth(plan, &objective, &mut item)?;
+    item.grids.push(left_out(plan, damper));
     for (start, name) in [(0, "row 1"), (3, "the published optimum")] {
         let (rows, found) = search(&own, PAPER[start].0)?;
         log(&rows, &found, name, &mut item);
@@ -126,12 +133,15 @@ fn worth(
     }
     bar.finish_and_clear();
     item.grids.push(grid);
-    let inside = fits.iter().filter(|(_, near, paper)| (near.least..=near.largest).contains(paper)).count();
+    let inside: Vec<bool> =
+        fits.iter().map(|(_, near, paper)| (near.least..=near.largest).contains(paper)).collect();
     item.statement(
         "The four rows have E1max = 666.2, 661.1, 573.1 and 563.0 J",
-        if inside == 4 { Verdict::Holds } else if inside > 0 { Verdict::Partly } else { Verdict::Fails },
+        "Holds if each of the four lies within what ours takes when every parameter is moved by up to 0.1 %, in part if some do: 0.1 % is less than the rounding of the printed D = 0.06 m.",
+        Verdict::of_all(&inside),
         format!(
-            "{inside} of the 4 values lie within the spread under ±0.1 % of the parameters; medians {}. The motions are irregular or long transients: a single E1max is a draw, and no digits can be reproduced",
+            "{} of the 4 values lie within the spread; medians {} J. The motions are irregular or long transients: a single E1max is a draw, and no digits can be reproduced. What the paper leaves out moves the medians too (table)",
+            inside.iter().filter(|&&within| within).count(),
             fits.iter().map(|(_, near, _)| format!("{:.0}", near.median)).collect::<Vec<_>>().join(", ")
         ),
     );
@@ -139,14 +149,44 @@ fn worth(
     let better = medians[2].max(medians[3]) < medians[0].min(medians[1]);
     item.statement(
         "The refined designs (rows 3 and 4) are better than the first (rows 1 and 2)",
+        "Holds if the medians of rows 3 and 4 under ±0.1 % are below those of rows 1 and 2: single values are draws.",
         Verdict::of(better),
-        "by the medians above".into(),
+        format!("medians {} J", medians.iter().map(|m| format!("{m:.0}")).collect::<Vec<_>>().join(", ")),
     );
     Ok(())
 }
 
+/// The medians of the four rows under ±0.1 % for other radii and for the whole run: what the paper leaves out moves them by more
+/// than its digits.
+fn left_out(plan: &Plan, damper: Damper) -> Grid {
+    let head = ["R, m", "window, s", "row 1, J", "row 2, J", "row 3, J", "row 4, J"];
+    let mut grid = Grid::new("Medians of E1max under ±0.1 %, for other radii and windows", &head);
+    let mut row = vec!["the paper".to_owned(), String::new()];
+    row.extend(PAPER.iter().map(|(_, paper)| format!("{paper:.1}")));
+    grid.rows.push(row);
+    let own = damper.contact.radius.get();
+    let late = plan.window();
+    let radii = RADII.into_iter().filter(|radius| *radius != own).map(|radius| (radius, late));
+    for (radius, window) in [(own, late), (own, Window { from: 0.0, ..late })].into_iter().chain(radii) {
+        let mut damper = damper;
+        damper.contact.radius = Positive::new(radius).unwrap_or(damper.contact.radius);
+        let objective =
+            PeakEnergy::new(plan.ssvi.scene, damper, Variable::ALL.to_vec(), window, plan.settings());
+        let mut row = vec![format!("{radius}"), format!("{}–{}", window.from, window.to)];
+        row.extend(PAPER.iter().map(|(design, _)| {
+            let values: Vec<f64> = (0..FEW)
+                .into_par_iter()
+                .map(|n| objective.value(&perturbed(design, n), f64::INFINITY))
+                .collect();
+            format!("{:.0}", Spread::of(values).median)
+        }));
+        grid.rows.push(row);
+    }
+    grid
+}
+
 /// A design moved by up to 0.1 % in each parameter, in a fixed low-discrepancy sequence (additive recurrence); the first is itself.
-fn perturbed(design: &[f64; 4], n: usize) -> [f64; 4] {
+pub fn perturbed(design: &[f64; 4], n: usize) -> [f64; 4] {
     const STEPS: [f64; 4] =
         [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_719_147_146_4, 0.538_597_247_228_474_5];
     std::array::from_fn(|i| {
@@ -173,8 +213,10 @@ fn design(row: &Row) -> [f64; 4] {
 fn log(rows: &[Row], found: &Minimum, name: &str, item: &mut Item) {
     let head = ["iteration", "procedure", "k2 opt, N/m", "c2 opt, N·s/m", "D opt, m", "C opt, m", "E1max, J"];
     let caption = format!(
-        "Our fminsearch from {name}: {} iterations, {} evaluations, stopped by {:?}. First rows and last",
-        found.iterations, found.func_count, found.stop
+        "Our fminsearch from {name}: {} iterations, {} evaluations, {}. First rows and last",
+        found.iterations,
+        found.func_count,
+        if found.stop == Stop::Converged { "converged" } else { "stopped at a limit" }
     );
     let mut grid = Grid::new(&caption, &head);
     let last = rows.len().saturating_sub(1);
@@ -209,7 +251,8 @@ fn row_3(item: &mut Item) -> Result<(), Error> {
     let paper = PAPER[2].0.map(scientific).join("  ");
     item.statement(
         "The table is a fragment of one run that ends at the published optimum",
-        Verdict::Fails,
+        "Fails if a row is a step of a run that starts at the published optimum: it cannot then come before it.",
+        if printed == paper { Verdict::Fails } else { Verdict::Partly },
         format!(
             "row 3 is, to every printed digit, the first “contract inside” of a run that starts at the published optimum (with the k2 vertex worst): our algorithm gives {printed}, the paper prints {paper}{}. The last row is a start, not an end; and rows 1 and 2 differ in k2 alone, by 40 %, which no step of 5 % makes",
             if printed == paper { "" } else { " (they differ)" }

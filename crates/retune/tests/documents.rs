@@ -1,0 +1,76 @@
+//! What the documents name is there.
+
+mod common;
+#[path = "../../model/tests/scenes/mod.rs"]
+mod scenes;
+
+use common::studies;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// What stands between backticks; every second piece.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+const DOCUMENTS: [&str; 3] = ["README.md", "ARCHITECTURE.md", "docs/decisions.md"];
+
+#[test]
+fn exact_every_path_of_the_documents_exists() {
+    for (document, least) in DOCUMENTS.into_iter().zip([3, 15, 1]) {
+        let text = text(document);
+        let places = ["crates/", "docs/", "results/", "studies/", "tests/"];
+        let linked = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        let paths: Vec<&str> = quoted(&text)
+            .chain(linked)
+            .filter(|word| {
+                places.iter().any(|place| word.starts_with(place) || *word == place.trim_end_matches('/'))
+            })
+            .filter(|word| !word.contains(['<', '*', ' ']))
+            .collect();
+        assert!(paths.len() >= least, "{document}: {paths:?}");
+        for path in paths {
+            assert!(root().join(path).exists(), "{document} names {path}");
+        }
+    }
+}
+
+#[test]
+fn exact_every_recipe_of_the_documents_exists() {
+    let justfile = text("justfile");
+    let recipes: Vec<&str> = justfile
+        .lines()
+        .filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase()) && !line.contains(":="))
+        .filter_map(|line| line.split([' ', ':']).next())
+        .collect();
+    let mut seen = 0;
+    for document in DOCUMENTS {
+        let text = text(document);
+        let commands = quoted(&text).chain(text.lines().filter_map(|line| line.split("&& ").nth(1)));
+        for command in commands.filter_map(|command| command.strip_prefix("just ")) {
+            let recipe = command.split_whitespace().next().unwrap_or_default();
+            assert!(recipes.contains(&recipe), "{document} names `just {command}`, not among {recipes:?}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 12, "{seen}");
+}
+
+/// The tests' own scene of the paper is that of the studies.
+#[test]
+fn exact_the_scene_of_the_tests_is_that_of_the_studies() {
+    for (name, numbers) in [("ssvi.json", scenes::SSVI), ("tmd.json", scenes::TMD)] {
+        let text = std::fs::read_to_string(studies().join(name)).expect(name);
+        let study: Value = serde_json::from_str(&text).expect("JSON");
+        let scene: retune_model::Scene = serde_json::from_value(study["scene"].clone()).expect("a scene");
+        assert_eq!(scene, numbers.scene(), "{name}");
+    }
+}
