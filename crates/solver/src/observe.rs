@@ -166,7 +166,8 @@ impl<F> Peak<F> {
             return;
         }
         let middle = 0.5 * (a + b);
-        if remainder < 1e-15 * self.record.value.abs() || middle <= a || middle >= b {
+        let size = self.record.value.abs().max(at_a[0].abs()).max(at_b[0].abs());
+        if remainder <= 1e-15 * size || middle <= a || middle >= b {
             return;
         }
         let (t, at_middle) = exact(middle);

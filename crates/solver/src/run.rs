@@ -1,10 +1,8 @@
 //! A run: a scene, a window of time and a method in; what was observed out.
 
-use crate::hybrid::{Hybrid, Motion, Phase};
+use crate::follow::{follow_bare, follow_coupled};
 use crate::observe::{Knot, Observer, Peak, Segment, Unobserved};
-use crate::onestep::{OneStep, Run};
-use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
-use crate::{bare, ode23s::Ode23s, ode45::Ode45};
+use crate::settings::{Extreme, Response, SceneKind, Settings, SolverError, Window};
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -219,84 +217,4 @@ impl<const N: usize, F: FnMut(&Knot<N>)> Observer<N> for Recorder<F> {
             self.next += 1.0;
         }
     }
-}
-
-fn follow_bare(
-    system: &Bare,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<2>,
-    observer: &mut impl Observer<2>,
-) -> Result<([f64; 2], Work), SolverError> {
-    let steps = |run: Run<'_, Bare, 2>| (run.state(), run.work);
-    match settings.method {
-        Method::Hybrid => {
-            let mut work = Work::default();
-            let y = bare::propagate(
-                system,
-                (0.0, system.rest()),
-                window.from,
-                settings.max_steps,
-                &mut work,
-                before,
-            )?;
-            let y = bare::propagate(
-                system,
-                (window.from, y),
-                window.to,
-                settings.max_steps,
-                &mut work,
-                observer,
-            )?;
-            Ok((y, work))
-        }
-        Method::Ode23s => {
-            one_step::<Ode23s, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-        Method::Ode45 => {
-            one_step::<Ode45, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-    }
-}
-
-#[inline(always)]
-fn follow_coupled(
-    system: &Coupled,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<4>,
-    observer: &mut impl Observer<4>,
-) -> Result<([f64; 4], Work), SolverError> {
-    let steps = |run: Run<'_, Coupled, 4>| (run.state(), run.work);
-    match settings.method {
-        Method::Hybrid => {
-            let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-            let start = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
-            let middle =
-                if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
-            let end = hybrid.propagate(middle, window.to, observer)?;
-            Ok((end.y, hybrid.work))
-        }
-        Method::Ode23s => {
-            one_step::<Ode23s, _, 4>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-        Method::Ode45 => {
-            one_step::<Ode45, _, 4>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-    }
-}
-
-fn one_step<'a, M: OneStep<N>, S: crate::System<N>, const N: usize>(
-    system: &'a S,
-    rest: [f64; N],
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<N>,
-    observer: &mut impl Observer<N>,
-) -> Result<Run<'a, S, N>, SolverError> {
-    let longest = 0.1 * window.to; // MATLAB's
-    let mut run = Run::new(system, settings, 0.0, rest, longest);
-    run.integrate::<M>(window.from, before)?;
-    run.integrate::<M>(window.to, observer)?;
-    Ok(run)
 }
