@@ -24,6 +24,6 @@ mod settings;
 mod system;
 
 pub use hybrid::{Hybrid, Motion, Phase};
-pub use run::{Sample, e1_max, simulate, trajectory};
+pub use run::{Sample, e1_max, simulate, touch_downs, trajectory};
 pub use settings::{Contacts, Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
 pub use system::{Linear, LinearSystem, System};

@@ -132,6 +132,33 @@ where
     }
 }
 
+/// When the damper touched each wall in the window, s, in the order of time.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn touch_downs(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+) -> Result<Vec<(f64, Side)>, SolverError> {
+    let mut times = Times::default();
+    if let Some(damper) = &scene.damper {
+        let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+        follow_coupled(&system, window, settings, &mut Unobserved, &mut times)?;
+    }
+    Ok(times.0)
+}
+
+#[derive(Default)]
+struct Times(Vec<(f64, Side)>);
+
+impl Observer<4> for Times {
+    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn touch_down(&mut self, t: f64, side: Side) {
+        self.0.push((t, side));
+    }
+}
+
 /// A moment of a recorded trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
