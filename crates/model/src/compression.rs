@@ -9,14 +9,12 @@
 //!
 //! Every right-hand side is a polynomial, so the motion is analytic in `θ` from before touch-down (`q = 0`, `w > 0`)
 //! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
-//! The force enters as two more components that turn with `ωt`.
+//! The force is a Taylor polynomial in the time since it was last set ([`Compression::set_drive`]).
 
 use crate::{Coupled, Drive, Side};
 
-/// A regularised state: `[q, w, x1, v1, P cos ωt, P sin ωt, t, θ]` (√m, m/s, m, m/s, N, N, s, s/√m), `t` and `θ` since touch-down.
-///
-/// Eight components: every linear combination is a whole number of machine vectors.
-pub type Compressed = [f64; 8];
+/// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.
+pub type Compressed = [f64; 5];
 
 /// Equation (1) in contact with one wall.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +29,13 @@ pub struct Compression {
     dashpot: [f64; 2], // c2/m1, c2 (1/m1 + 1/m2)
     spring: [f64; 2],  // k2/m1, k2 (1/m1 + 1/m2)
     stretch: f64,      // sign (wall - D): the spring's stretch at touch-down, towards the wall
+    since: f64,        // the time at which the drive was set
+    cos: [f64; WAVE],  // Taylor coefficients of P cos ωt and P sin ωt about that time
+    sin: [f64; WAVE],
 }
+
+/// Terms of the force's Taylor polynomials.
+const WAVE: usize = 9;
 
 impl Coupled {
     /// The regularised equations of contact with `side`.
@@ -50,6 +54,9 @@ impl Coupled {
             dashpot: pair(c2),
             spring: pair(k2),
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
+            since: 0.0,
+            cos: [0.0; WAVE],
+            sin: [0.0; WAVE],
         }
     }
 }
@@ -60,13 +67,38 @@ impl Compression {
         self.side
     }
 
+    /// The angle (rad) by which the force may turn after [`Self::set_drive`]: the first neglected term is below
+    /// `0.05⁹ / 9! = 5e-18` of the force.
+    pub const TURN: f64 = 0.05;
+
+    /// Sets the force at time `t` (s, since touch-down); it is exact while `ω |t' - t| <= TURN`.
+    pub fn set_drive(&mut self, t: f64, [cos, sin]: Drive) {
+        (self.since, self.cos[0], self.sin[0]) = (t, cos, sin);
+        for k in 1..WAVE {
+            let turn = self.omega / k as f64;
+            (self.cos[k], self.sin[k]) = (-turn * self.sin[k - 1], turn * self.cos[k - 1]);
+        }
+    }
+
+    /// `[P cos ωt, P sin ωt]` at the time of a state, N.
+    pub fn drive(&self, y: &Compressed) -> Drive {
+        let t = y[4] - self.since;
+        [horner(&self.cos, t), horner(&self.sin, t)]
+    }
+
+    /// Angular frequency of the force, rad/s.
+    pub fn frequency(&self) -> f64 {
+        self.omega
+    }
+
     /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
     /// and the net force on the damper `-s (K q³ + c2 w + k2 (z + s (wall - D)))`.
     #[inline(always)]
-    fn accelerations(&self, &[q, w, x1, v1, cos, ..]: &Compressed) -> [f64; 2] {
+    fn accelerations(&self, &[q, w, x1, v1, t]: &Compressed) -> [f64; 2] {
         let z = q * q;
         let (cube, stretch) = (z * q, z + self.stretch);
-        let free = self.primary[0] * cos - self.primary[1] * v1 - self.primary[2] * x1;
+        let free =
+            self.primary[0] * horner(&self.cos, t - self.since) - self.primary[1] * v1 - self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
         [-push(1) - self.sign * free, free + self.sign * push(0)]
     }
@@ -74,10 +106,9 @@ impl Compression {
     /// Derivative with respect to `θ` of every component.
     #[inline(always)]
     pub fn derivative(&self, y: &Compressed) -> Compressed {
-        let &[q, w, _, v1, cos, sin, ..] = y;
+        let &[q, w, _, v1, _] = y;
         let [rate, a1] = self.accelerations(y);
-        let turn = self.omega * q;
-        [0.5 * w, q * rate, q * v1, q * a1, -turn * sin, turn * cos, q, 1.0]
+        [0.5 * w, q * rate, q * v1, q * a1, q]
     }
 
     /// `dw/dt`, the acceleration into the wall, m/s².
@@ -102,9 +133,9 @@ impl Compression {
 
     /// The state `[x1, v1, x2, v2]` as a regularised one, with no time elapsed. A damper that is not in contact with this
     /// wall is taken to be just touching it.
-    pub fn compress(&self, [cos, sin]: Drive, &[x1, v1, x2, v2]: &[f64; 4]) -> Compressed {
+    pub fn compress(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> Compressed {
         let z = self.sign * (x2 - x1 - self.wall);
-        [z.max(0.0).sqrt(), self.sign * (v2 - v1), x1, v1, cos, sin, 0.0, 0.0]
+        [z.max(0.0).sqrt(), self.sign * (v2 - v1), x1, v1, 0.0]
     }
 
     /// The state `[x1, v1, x2, v2]` of a regularised one.
@@ -135,4 +166,9 @@ impl Compression {
             - y * (1.0 / 6.0 + x * 3.0 / 32.0 - y * 3.0 / 40.0);
         2.0 * q / v2.sqrt() * series
     }
+}
+
+#[inline(always)]
+fn horner(coefficients: &[f64; WAVE], t: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }

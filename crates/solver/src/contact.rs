@@ -21,8 +21,7 @@ pub enum End {
 // Components of a regularised state.
 const Q: usize = 0;
 const W: usize = 1;
-const TIME: usize = 6;
-const THETA: usize = 7;
+const TIME: usize = 4;
 
 /// One step. Its interior is reached by shorter steps from its start.
 struct Piece<'a> {
@@ -35,11 +34,16 @@ struct Piece<'a> {
 }
 
 fn knot(equations: &Compression, touch_down: f64, y: &Compressed) -> Knot<4> {
-    Knot { t: touch_down + y[TIME], drive: [y[4], y[5]], y: equations.expand(y), clock: [y[Q], 0.5 * y[W]] }
+    Knot {
+        t: touch_down + y[TIME],
+        drive: equations.drive(y),
+        y: equations.expand(y),
+        clock: [y[Q], 0.5 * y[W]],
+    }
 }
 
 #[inline(always)]
-fn step(equations: &Compression, y: &Compressed, slope: &Compressed, h: f64) -> Step<8> {
+fn step(equations: &Compression, y: &Compressed, slope: &Compressed, h: f64) -> Step<5> {
     dop853::step(|y| equations.derivative(y), y, slope, h)
 }
 
@@ -54,12 +58,12 @@ impl Segment<4> for Piece<'_> {
         knot(self.equations, self.touch_down, &step(self.equations, self.from, self.slope, theta).y)
     }
     fn at_time(&self, t: f64) -> Knot<4> {
-        let y = at_elapsed(self.equations, self.from, self.slope, self.length, t - self.touch_down);
+        let (_, y) = at_elapsed(self.equations, self.from, self.slope, self.length, t - self.touch_down);
         Knot { t, ..knot(self.equations, self.touch_down, &y) }
     }
 }
 
-/// The state when `elapsed` seconds have passed since touch-down, within the step of `length` from `from`: time grows with
+/// The `θ` and the state when `elapsed` seconds have passed since touch-down, within the step of `length` from `from`: time grows with
 /// θ, so Newton's iteration kept inside by bisection finds it.
 fn at_elapsed(
     equations: &Compression,
@@ -67,7 +71,7 @@ fn at_elapsed(
     slope: &Compressed,
     length: f64,
     elapsed: f64,
-) -> Compressed {
+) -> (f64, Compressed) {
     let (mut lower, mut upper, mut theta) = (0.0, length, 0.5 * length);
     let mut y = step(equations, from, slope, theta).y;
     for _ in 0..100 {
@@ -85,7 +89,7 @@ fn at_elapsed(
         theta = next;
         y = step(equations, from, slope, theta).y;
     }
-    y
+    (theta, y)
 }
 
 /// The natural sizes of a contact, and the steps planned for it.
@@ -97,38 +101,46 @@ struct Plan {
     mass_ratio: f64,
     /// Step at the deepest point, s/√m.
     h: f64,
+    taken: u32,
 }
 
 impl Plan {
     /// The step at the deepest point that an error of 1e-9 allows, in units of `2 q_max / w`: where the error estimate of
     /// DOP853 on the undisturbed collision puts it.
-    const DEEPEST: f64 = 0.115;
+    const DEEPEST: f64 = 0.118;
+
+    /// Steps of a collision; a contact with more is a long press, and its steps follow the error estimate alone.
+    const COLLISION: u32 = 40;
 
     fn new(equations: &Compression, y: &Compressed, rtol: f64) -> Self {
         // A contact that begins pressed in is as long as the collision that would reach as deep.
         let w = y[W].abs().max(equations.speed_at_depth(y[Q]));
         let q = equations.greatest_depth(w);
         let h = Self::DEEPEST * (rtol / 1e-9).powf(1.0 / 8.0) * 2.0 * q / w;
-        Self { q, w, mass_ratio: equations.mass_ratio(), h }
+        Self { q, w, mass_ratio: equations.mass_ratio(), h, taken: 0 }
     }
 
     /// The step from a state: the nearest singularity of a collision lies above its deepest point, so steps may be longer
     /// towards the wall, about twice as long at the wall itself.
     fn step(&self, y: &Compressed) -> f64 {
         let height = 1.0 - (y[Q] / self.q).min(1.0);
-        self.h * (1.0 + 1.1 * height * height)
+        let farther = if y[W] > 0.0 { height.powi(3) } else { height * height };
+        self.h * (1.0 + 1.1 * farther)
     }
 
     /// The error of a step over what is allowed, `rtol` of the largest `q` and speeds.
     #[inline(always)]
-    fn error(&self, h: f64, step: &Step<8>, rtol: f64) -> f64 {
+    fn error(&self, h: f64, step: &Step<5>, rtol: f64) -> f64 {
         let (q, w) = (1.0 / (rtol * self.q), 1.0 / (rtol * self.w));
-        step.error(h, &[q, w, 0.0, w * self.mass_ratio, 0.0, 0.0, 0.0, 0.0], 3.0)
+        step.error(h, &[q, w, 0.0, w * self.mass_ratio, 0.0], 3.0)
     }
 
-    /// Learns from a step that had this error.
+    /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate.
     fn adapt(&mut self, error: f64, y: &Compressed) {
-        self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.8, 1.1);
+        self.taken += 1;
+        if self.taken > Self::COLLISION {
+            self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.7, 1.5);
+        }
         self.q = self.q.max(y[Q].abs());
         self.w = self.w.max(y[W].abs());
     }
@@ -142,7 +154,7 @@ impl Plan {
 /// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
 #[inline(always)]
 pub fn integrate(
-    equations: &Compression,
+    mut equations: Compression,
     from: &Knot<4>,
     mut y: Compressed,
     to: f64,
@@ -151,16 +163,19 @@ pub fn integrate(
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
     let touch_down = from.t;
-    let mut plan = Plan::new(equations, &y, rtol);
+    let mut plan = Plan::new(&equations, &y, rtol);
     let shortest = plan.h * 1e-12;
     let mut start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
     loop {
+        // The force is a polynomial about the start of the step; the step must not outrun it.
+        equations.set_drive(y[TIME], start.drive);
+        let reach = Compression::TURN / (equations.frequency() * plan.q);
         // A step aimed at the wall if it is near enough; the aim need not be good (see `reach_wall`).
-        let planned = plan.step(&y);
+        let planned = plan.step(&y).min(reach);
         let left = if y[W] < 0.0 { equations.theta_to_wall(&y) } else { f64::INFINITY };
-        let h = if left < 1.2 * planned { left } else { planned };
+        let h = if left < (1.2 * planned).min(reach) { left } else { planned };
         let slope = equations.derivative(&y);
-        let tried = step(equations, &y, &slope, h);
+        let tried = step(&equations, &y, &slope, h);
         work.evaluations += EVALUATIONS + 1;
         let error = plan.error(h, &tried, rtol);
         let t = touch_down + y[TIME];
@@ -180,28 +195,23 @@ pub fn integrate(
         if work.steps > max_steps {
             return Err(SolverError::TooManySteps { t, limit: max_steps });
         }
-        let mut next = tried.y;
+        let (mut next, mut length) = (tried.y, h);
         let lifted = next[W] < 0.0 && next[Q] < 0.02 * plan.q;
         if lifted {
-            next = reach_wall(equations, &next, 0.02 * plan.q, work);
+            next = reach_wall(&equations, &tried.y, 0.02 * plan.q, work);
+            length -= 4.0 * tried.y[Q] / (tried.y[W] + next[W]); // dq/dθ = w/2
         }
         let over = touch_down + next[TIME] >= to;
         if over {
-            next = at_elapsed(equations, &y, &slope, next[THETA] - y[THETA], to - touch_down);
+            (length, next) = at_elapsed(&equations, &y, &slope, length, to - touch_down);
         }
-        let mut end = knot(equations, touch_down, &next);
+        let mut end = knot(&equations, touch_down, &next);
         if over {
             end.t = to;
         }
-        let length = next[THETA] - y[THETA];
-        observer.segment(&Piece {
-            equations,
-            touch_down,
-            from: &y,
-            slope: &slope,
-            length,
-            ends: [start, end],
-        });
+        let piece =
+            Piece { equations: &equations, touch_down, from: &y, slope: &slope, length, ends: [start, end] };
+        observer.segment(&piece);
         if over || observer.satisfied() {
             return Ok(End::Pressed(end));
         }
@@ -224,7 +234,7 @@ fn reach_wall(equations: &Compression, y: &Compressed, short: f64, work: &mut Wo
     let (k1, h) = (by_q(y), -y[Q]);
     let mut end = if h.abs() < short {
         work.evaluations += 4;
-        let along = |k: &Compressed, h: f64| std::array::from_fn::<f64, 8, _>(|i| y[i] + h * k[i]);
+        let along = |k: &Compressed, h: f64| std::array::from_fn::<f64, 5, _>(|i| y[i] + h * k[i]);
         let k2 = by_q(&along(&k1, 0.5 * h));
         let k3 = by_q(&along(&k2, 0.5 * h));
         let k4 = by_q(&along(&k3, h));

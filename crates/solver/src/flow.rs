@@ -47,6 +47,27 @@ impl<const N: usize> Flow<N> {
         self.step
     }
 
+    /// The flow's numbers.
+    pub fn linear(&self) -> &Linear<N> {
+        &self.linear
+    }
+
+    /// A deviation from the origin after `steps` whole steps without force, `Φ^steps y`, by repeated squaring.
+    pub fn decay(&self, mut steps: u64, mut deviation: [f64; N]) -> [f64; N] {
+        let apply = |phi: &[[f64; N]; N], y: &[f64; N]| -> [f64; N] {
+            std::array::from_fn(|i| (0..N).map(|j| phi[j][i] * y[j]).sum())
+        };
+        let mut power = self.phi;
+        while steps > 0 {
+            if steps & 1 == 1 {
+                deviation = apply(&power, &deviation);
+            }
+            power = power.map(|column| apply(&power, &column));
+            steps >>= 1;
+        }
+        deviation
+    }
+
     /// Advances by a whole step.
     #[inline(always)]
     pub fn advance(&self, drive: Drive, y: &[f64; N]) -> (Drive, [f64; N]) {

@@ -1,11 +1,12 @@
 //! Which loop follows a scene under which method.
 
+use crate::free::Free;
 use crate::hybrid::{Hybrid, Motion, Phase};
 use crate::observe::Observer;
 use crate::onestep::{OneStep, Run};
 use crate::settings::{Method, Settings, SolverError, Window, Work};
 use crate::system::System;
-use crate::{bare, dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
+use crate::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
 use nalgebra::{Const, DimMin};
 use retune_model::{Bare, Coupled};
 
@@ -23,11 +24,10 @@ pub fn follow_bare(
     if settings.method != Method::Hybrid {
         return general(system, system.rest(), window, settings, before, observer);
     }
-    let mut work = Work::default();
-    let start = (0.0, system.rest());
-    let y = bare::propagate(system, start, window.from, settings.max_steps, &mut work, before)?;
-    let y = bare::propagate(system, (window.from, y), window.to, settings.max_steps, &mut work, observer)?;
-    Ok((y, work))
+    let mut free = Free::new(system, window.to, settings.max_steps);
+    free.propagate(window.from, before)?;
+    free.propagate(window.to, observer)?;
+    Ok((free.state(), free.work))
 }
 
 /// Follows a structure and its damper from rest: `before` sees the motion to the window, `observer` that inside it.

@@ -119,8 +119,8 @@ impl<'a> Hybrid<'a> {
         loop {
             if let Phase::Pressed(side) = phase {
                 let equations = self.contacts[side as usize];
-                let pressed = equations.compress(now.drive, &now.y);
-                match self.contact(&equations, &now, pressed, to, observer)? {
+                let pressed = equations.compress(&now.y);
+                match self.contact(equations, &now, pressed, to, observer)? {
                     contact::End::Pressed(end) => return stopped(end, phase),
                     contact::End::LiftOff(end) => now = self.knot(end.t, end.y),
                 }
@@ -134,8 +134,8 @@ impl<'a> Hybrid<'a> {
                         observer.touch_down(touch.t, side);
                     }
                     let equations = self.contacts[side as usize];
-                    let (begin, pressed) = self.press_in(&equations, touch, observer)?;
-                    match self.contact(&equations, &begin, pressed, to, observer)? {
+                    let (begin, pressed) = self.press_in(equations, touch, observer)?;
+                    match self.contact(equations, &begin, pressed, to, observer)? {
                         contact::End::Pressed(end) => return stopped(end, Phase::Pressed(side)),
                         contact::End::LiftOff(end) => now = self.knot(end.t, end.y),
                     }
@@ -154,7 +154,7 @@ impl<'a> Hybrid<'a> {
 
     fn contact(
         &mut self,
-        equations: &Compression,
+        equations: Compression,
         from: &Knot<4>,
         pressed: retune_model::Compressed,
         to: f64,
@@ -204,7 +204,7 @@ impl<'a> Hybrid<'a> {
             let margin = slack * (self.fourth[0] * energy + self.fourth[1]);
             let rates = |y: &[f64; 4]| [y[2] - y[0], y[3] - y[1]];
             let ([r0, w0], [r1, w1]) = (rates(&now.y), rates(&end.y));
-            let open = Side::BOTH.iter().all(|&side| {
+            let open = Side::BOTH.map(|side| {
                 let sign = -side.sign();
                 let ends = [[gap(self.system, side, r0), sign * w0], [gap(self.system, side, r1), sign * w1]];
                 cubic_floor(whole, ends[0], ends[1]) > margin
@@ -212,10 +212,10 @@ impl<'a> Hybrid<'a> {
             let expansion = OnceCell::new();
             let mut length = whole;
             let mut touched = None;
-            if !open || remaining < whole {
+            if open != [true; 2] || remaining < whole {
                 let motion = self.flow.expand(now.drive, &now.y);
                 length = whole.min(remaining);
-                for side in Side::BOTH {
+                for side in Side::BOTH.into_iter().filter(|&side| !open[side as usize]) {
                     if let Some(s) = first_contact(&self.gap_polynomial(&motion, side, leaving), length) {
                         (length, touched) = (s, Some(side));
                     }
@@ -265,13 +265,19 @@ impl<'a> Hybrid<'a> {
     /// on for the moment in which the contact force cannot be felt, less than one part in 1e14 of the motion.
     fn press_in(
         &mut self,
-        equations: &Compression,
+        mut equations: Compression,
         touch: Knot<4>,
         observer: &mut impl Observer<4>,
     ) -> Result<(Knot<4>, retune_model::Compressed), SolverError> {
-        let mut pressed = equations.compress(touch.drive, &touch.y);
+        let mut pressed = equations.compress(&touch.y);
         pressed[0] = 0.0;
+        equations.set_drive(0.0, touch.drive);
         let (speed, pull) = (pressed[1], equations.acceleration(&pressed));
+        // After `s` seconds at this speed the force has moved the damper by `κ √z s²` of `z = w s`.
+        let slow = |s: f64| speed <= pull * s;
+        if speed > 0.0 && !slow((1e-28 / (equations.hertz_rate().powi(2) * speed)).powf(0.2)) {
+            return Ok((touch, pressed)); // fast enough to start at q = 0
+        }
         let unfelt = |s: f64, z: f64| z > 0.0 && equations.hertz_rate() * z.sqrt() * s * s <= 1e-14;
         let motion = self.flow.expand(touch.drive, &touch.y);
         let (stroke, rate) = (motion.combination(&STROKE), motion.combination(&STROKE_RATE));
@@ -281,12 +287,9 @@ impl<'a> Hybrid<'a> {
         for _ in 0..400 {
             let z = s * value(&stroke[1..], s);
             if unfelt(s, z) {
-                if speed > 0.0 && speed >= pull * s {
-                    return Ok((touch, pressed)); // fast enough to start at q = 0
-                }
                 let mut end = flight_knot(&self.flow, &touch, &motion, s);
                 end.y[2] = end.y[0] + self.system.wall(equations.side()) + sign * z;
-                let mut pressed = equations.compress(end.drive, &end.y);
+                let mut pressed = equations.compress(&end.y);
                 (pressed[0], pressed[1]) = (z.sqrt(), value(&rate, s));
                 let expansion = OnceCell::from(motion);
                 observer.segment(&Flight {

@@ -5,12 +5,12 @@
 //! ([`observe::Segment`]) to whatever was asked for ([`observe::Observer`]); nothing is stored on the way.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
-mod bare;
 mod contact;
 pub mod dop853;
 pub mod euler;
 mod flow;
 mod follow;
+mod free;
 mod gap;
 mod hybrid;
 pub mod observe;

@@ -59,8 +59,13 @@ pub struct Peak<F> {
     last: Option<(f64, [f64; 3])>,
 }
 
-/// Share of the quantity's size by which the motion may leave the quintic of a segment.
-const SCREEN: f64 = 1e-3;
+/// Share of what a quantity varies over a segment, `h |slope| + h² |curvature|` at both ends, by which it may leave its
+/// quintic: for one that varies no faster than `2/h` (flight steps are `1/rate` long, and energies vary at twice the rate of
+/// the motion) the remainder is `2⁶ / 46080` of its amplitude.
+const SCREEN: f64 = 2e-3;
+
+/// Share of a segment below which an interval is not halved: its square is a rounding error.
+const SHORTEST: f64 = 1e-8;
 
 impl<F> Peak<F> {
     /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
@@ -166,8 +171,10 @@ impl<F> Peak<F> {
             return;
         }
         let middle = 0.5 * (a + b);
+        // An interval this short adds less than rounding to what the quantity varies over the segment: a place where it only
+        // touches the record (a stroke of 0 at each lift-off) ends here.
         let size = self.record.value.abs().max(at_a[0].abs()).max(at_b[0].abs());
-        if remainder <= 1e-15 * size || middle <= a || middle >= b {
+        if remainder <= 1e-15 * size || h <= SHORTEST * segment.length() {
             return;
         }
         let (t, at_middle) = exact(middle);
@@ -196,8 +203,10 @@ where
         self.last = Some((b.t, rates_b));
         note(&mut self.record, rates_b[0], b.t);
         let (at_a, at_b) = (in_theta(rates_a, a.clock), in_theta(rates_b, b.clock));
-        let remainder = SCREEN * rates_a[0].abs().max(rates_b[0].abs());
-        self.search(segment, (0.0, at_a), (segment.length(), at_b), remainder);
+        let h = segment.length();
+        let variation = |[_, slope, curvature]: [f64; 3]| h * (slope.abs() + h * curvature.abs());
+        let remainder = SCREEN * (variation(at_a) + variation(at_b));
+        self.search(segment, (0.0, at_a), (h, at_b), remainder);
     }
 
     fn satisfied(&self) -> bool {

@@ -1,8 +1,9 @@
 //! A run: a scene, a window of time and a method in; what was observed out.
 
 use crate::follow::{follow_bare, follow_coupled};
+use crate::free::Free;
 use crate::observe::{Knot, Observer, Peak, Segment, Unobserved};
-use crate::settings::{Extreme, Response, SceneKind, Settings, SolverError, Window};
+use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -18,11 +19,16 @@ pub fn e1_max(
     settings: &Settings,
     cutoff: f64,
 ) -> Result<Extreme, SolverError> {
+    let hybrid = settings.method == Method::Hybrid;
     match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
             let mut peak =
                 Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), cutoff);
+            if hybrid {
+                let steady = system.steady(system.frequency()).e1_max;
+                return Free::new(&system, window.to, settings.max_steps).e1_max(window, peak, steady);
+            }
             follow_bare(&system, window, settings, &mut Unobserved, &mut peak)?;
             Ok(peak.record())
         }
@@ -30,6 +36,12 @@ pub fn e1_max(
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
             let mut peak =
                 Peak::new(|drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), cutoff);
+            if hybrid {
+                let mut free = Free::new(&system, window.to, settings.max_steps);
+                if free.clears_walls() {
+                    return free.e1_max(window, peak, system.steady(system.bare().frequency()).e1_max);
+                }
+            }
             follow_coupled(&system, window, settings, &mut Unobserved, &mut peak)?;
             Ok(peak.record())
         }

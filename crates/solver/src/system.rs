@@ -1,6 +1,6 @@
 //! What a solver needs to know of a system. The only file here that meets the model's equations by name.
 
-use nalgebra::SMatrix;
+use nalgebra::{Complex, SMatrix};
 use retune_model::{Bare, Coupled, Drive, Side};
 
 /// A first-order system `y' = f(t, y)` of `N` equations that general-purpose methods can integrate.
@@ -22,9 +22,13 @@ pub trait System<const N: usize> {
 }
 
 /// A system whose flow between contacts is linear: `y' = A (y - origin) + b P cos ωt`.
-pub trait LinearSystem<const N: usize> {
+pub trait LinearSystem<const N: usize>: System<N> {
     /// The numbers of that flow.
     fn linear(&self) -> Linear<N>;
+    /// Complex amplitudes of the steady motion about the origin, or `None` if there is none (undamped resonance).
+    fn steady(&self) -> Option<[Complex<f64>; N]>;
+    /// A norm of the deviation of a state from the origin that never grows without force, √J: `√(2E)`.
+    fn energy_norm(&self, y: &[f64; N]) -> f64;
 }
 
 /// A forced linear system.
@@ -90,6 +94,13 @@ impl LinearSystem<2> for Bare {
             rate: self.rate(),
         }
     }
+    fn steady(&self) -> Option<[Complex<f64>; 2]> {
+        let steady = Bare::steady(self, self.frequency());
+        finite([steady.x1], self.frequency()).map(|[x1]| x1)
+    }
+    fn energy_norm(&self, &[x1, v1]: &[f64; 2]) -> f64 {
+        (2.0 * self.primary_energy(x1, v1)).sqrt()
+    }
 }
 
 impl LinearSystem<4> for Coupled {
@@ -103,6 +114,23 @@ impl LinearSystem<4> for Coupled {
             rate: self.rate(),
         }
     }
+    fn steady(&self) -> Option<[Complex<f64>; 4]> {
+        let omega = self.bare().frequency();
+        let steady = Coupled::steady(self, omega);
+        finite([steady.x1, steady.x2], omega).map(|[[x1, v1], [x2, v2]]| [x1, v1, x2, v2])
+    }
+    fn energy_norm(&self, y: &[f64; 4]) -> f64 {
+        Coupled::energy_norm(self, y)
+    }
+}
+
+/// Amplitudes of positions with those of their velocities, `iω` times as large; `None` unless all are finite.
+fn finite<const M: usize>(positions: [Complex<f64>; M], omega: f64) -> Option<[[Complex<f64>; 2]; M]> {
+    let velocity = Complex::new(0.0, omega);
+    positions
+        .iter()
+        .all(|x| x.re.is_finite() && x.im.is_finite())
+        .then(|| positions.map(|x| [x, velocity * x]))
 }
 
 /// Both walls with the sign of the gap to each: `gap = sign_gap (r - wall)`, positive in flight.

@@ -1,0 +1,154 @@
+//! The regularised equations of a contact against equation (1), and the undisturbed collision against quadrature.
+
+mod scenes;
+
+use retune_model::{Compressed, Compression, Side};
+use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, slope};
+
+const T: f64 = 1.21;
+
+/// A random state pressed `z` (m) into a wall.
+fn pressed(system: &retune_model::Coupled, side: Side, z: f64, spread: &mut Spread) -> [f64; 4] {
+    let (x1, v1, v2) = (0.1 * spread.signed(), 0.6 * spread.signed(), 1.5 * spread.signed());
+    [x1, v1, x1 + system.wall(side) + side.sign() * z, v2]
+}
+
+#[test]
+fn exact_compressing_and_expanding_is_the_identity() {
+    let mut spread = Spread::new(2);
+    for numbers in [SSVI, ROW1] {
+        let system = numbers.coupled();
+        for side in Side::BOTH {
+            let equations = system.compression(side);
+            assert_eq!(equations.side(), side);
+            for z in [0.0, 1e-6, 1e-3, 0.02] {
+                let y = pressed(&system, side, z, &mut spread);
+                let compressed = equations.compress(&y);
+                assert!((compressed[0] - z.sqrt()).abs() < 1e-8, "{} {z}", compressed[0]);
+                assert_eq!(compressed[4], 0.0, "no time has passed");
+                let back = equations.expand(&compressed);
+                for i in 0..4 {
+                    assert!((back[i] - y[i]).abs() <= 1e-15, "{side:?} {z}: {back:?} {y:?}");
+                }
+            }
+            let apart = equations.compress(&pressed(&system, side, -0.01, &mut spread));
+            assert_eq!(apart[0], 0.0, "a damper that is not in contact counts as touching");
+        }
+    }
+}
+
+/// The chain rule: the state that a regularised one stands for moves with `q` times equation (1).
+#[test]
+fn exact_regularised_equations_are_equation_1() {
+    let mut spread = Spread::new(3);
+    for numbers in [SSVI, ROW1, TWO_SIDED] {
+        let system = numbers.coupled();
+        for side in Side::BOTH {
+            let mut equations = system.compression(side);
+            equations.set_drive(0.0, system.drive(T));
+            for z in [1e-4, 1e-3, 5e-3] {
+                let (y, drive) = (pressed(&system, side, z, &mut spread), system.drive(T));
+                let compressed = equations.compress(&y);
+                let q = compressed[0];
+                let rate = equations.derivative(&compressed);
+                let expected = system.derivative(drive, &y);
+                let moved = slope(1e-4, |s| {
+                    let ahead: Compressed = std::array::from_fn(|i| compressed[i] + s * rate[i]);
+                    equations.expand(&ahead)
+                });
+                for i in 0..4 {
+                    let (found, expected) = (moved[i], q * expected[i]);
+                    assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{side:?} {z} {i}");
+                }
+                assert_eq!(rate[4], q, "dt = q dθ");
+                let closing = side.sign() * (expected[3] - expected[1]);
+                let found = equations.acceleration(&compressed);
+                assert!((found - closing).abs() < 1e-10 * closing.abs(), "{found} {closing}");
+            }
+        }
+    }
+}
+
+/// One step of the classical Runge–Kutta method in `θ`.
+fn advance(equations: &Compression, y: &Compressed, h: f64) -> Compressed {
+    let along = |k: &Compressed, h: f64| -> Compressed { std::array::from_fn(|i| y[i] + h * k[i]) };
+    let a = equations.derivative(y);
+    let b = equations.derivative(&along(&a, 0.5 * h));
+    let c = equations.derivative(&along(&b, 0.5 * h));
+    let d = equations.derivative(&along(&c, h));
+    along(&std::array::from_fn(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0), h)
+}
+
+/// Two bodies and nothing else.
+const COLLISION: Numbers = Numbers { k1: 0.0, c1: 0.0, p: 0.0, k2: 0.0, c2: 0.0, ..SSVI };
+
+/// The damper turns where the energy of its approach is in the contact.
+#[test]
+fn exact_undisturbed_collision() {
+    let system = COLLISION.coupled();
+    for side in Side::BOTH {
+        let equations = system.compression(side);
+        let kappa = system.hertz(side) * (1.0 / SSVI.m1 + 1.0 / SSVI.m2);
+        assert!((equations.hertz_rate() / kappa - 1.0).abs() < 1e-15);
+        assert!((equations.mass_ratio() / (1.0 + SSVI.m1 / SSVI.m2) - 1.0).abs() < 1e-15);
+        for speed in [1e-3, 0.1, 1.0] {
+            let depth = equations.greatest_depth(speed);
+            assert!((equations.speed_at_depth(depth) / speed - 1.0).abs() < 1e-14);
+            let wall = system.wall(side);
+            let mut y = equations.compress(&[0.0, 0.0, wall, side.sign() * speed]);
+            let mut deepest: f64 = 0.0;
+            while y[1] > -0.5 * speed {
+                y = advance(&equations, &y, 1e-3 * depth / speed);
+                deepest = deepest.max(y[0]);
+            }
+            assert!((deepest / depth - 1.0).abs() < 1e-6, "{deepest} {depth}");
+            // Half the reduced mass times the speed squared: w² = v² - (4/5) κ q⁵ all the way.
+            let kept = y[1] * y[1] + 0.8 * kappa * y[0].powi(5);
+            assert!((kept / (speed * speed) - 1.0).abs() < 1e-9, "{kept}");
+        }
+    }
+}
+
+/// The prediction of the lift-off is exact in the limit at the wall and good from well inside.
+#[test]
+fn exact_prediction_of_the_lift_off() {
+    for (numbers, from, allowed) in
+        [(COLLISION, 0.7, 2e-3), (COLLISION, 0.3, 1e-6), (SSVI, 0.3, 2e-3), (SSVI, 0.03, 3e-6)]
+    {
+        let system = numbers.coupled();
+        for side in Side::BOTH {
+            let mut equations = system.compression(side);
+            equations.set_drive(0.0, system.drive(T));
+            let speed = 0.5;
+            let q = from * equations.greatest_depth(speed);
+            let w = (speed * speed - equations.speed_at_depth(q).powi(2)).sqrt();
+            let z = side.sign() * q * q;
+            let mut y = equations.compress(&[0.01, 0.1, 0.01 + system.wall(side) + z, 0.1 - side.sign() * w]);
+            let predicted = equations.theta_to_wall(&y);
+            let h = predicted / 400.0;
+            let mut theta = 0.0;
+            while y[0] > 0.0 {
+                y = advance(&equations, &y, h);
+                theta += h;
+            }
+            theta -= y[0] / (0.5 * y[1]); // back to the wall, along q' = w/2
+            assert!((theta / predicted - 1.0).abs() < allowed, "{side:?} {from} {theta} {predicted}");
+        }
+    }
+}
+
+/// The force is a polynomial of the time since it was set, exact to rounding over the turn that is allowed.
+#[test]
+fn exact_force_during_a_contact() {
+    let system = SSVI.coupled();
+    let mut equations = system.compression(Side::Primary);
+    assert_eq!(equations.frequency(), SSVI.omega);
+    let since = 0.003;
+    equations.set_drive(since, system.drive(T));
+    for share in [-1.0, -0.5, 0.0, 0.3, 1.0] {
+        let later = share * Compression::TURN / SSVI.omega;
+        let [cos, sin] = equations.drive(&[0.01, 0.0, 0.0, 0.0, since + later]);
+        let [c, s] = system.drive(T + later);
+        assert!((cos - c).abs() < 1e-15 * SSVI.p * 8.0 && (sin - s).abs() < 1e-15 * SSVI.p * 8.0, "{share}");
+    }
+}

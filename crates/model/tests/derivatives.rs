@@ -1,0 +1,147 @@
+//! Every derivative that the model states, against finite differences of what it is the derivative of.
+
+mod scenes;
+
+use retune_model::Coupled;
+use scenes::{ROW1, SSVI, Spread, TWO_SIDED, slope};
+
+const T: f64 = 0.37;
+
+/// Spacing of the differences, small beside a rapprochement of millimetres.
+const H: f64 = 3e-5;
+
+/// Random states: in flight, pressed into the structure, pressed into the obstacle.
+fn states(system: &Coupled) -> Vec<[f64; 4]> {
+    let mut spread = Spread::new(1);
+    let mut states = Vec::new();
+    for _ in 0..4 {
+        for r in [
+            0.5 * system.wall(retune_model::Side::Obstacle),
+            -2e-3,
+            system.wall(retune_model::Side::Obstacle) + 3e-3,
+        ] {
+            let (x1, v1, v2) = (0.1 * spread.signed(), 0.6 * spread.signed(), 1.5 * spread.signed());
+            states.push([x1, v1, x1 + r, v2]);
+        }
+    }
+    states
+}
+
+fn along(y: &[f64; 4], direction: &[f64; 4], s: f64) -> [f64; 4] {
+    std::array::from_fn(|i| y[i] + s * direction[i])
+}
+
+fn assert_close(found: f64, expected: f64, size: f64, tolerance: f64, what: &str) {
+    assert!((found - expected).abs() <= tolerance * size, "{what}: {found} {expected} (size {size})");
+}
+
+#[test]
+fn exact_jacobian_is_the_derivative_of_equation_1() {
+    for numbers in [SSVI, ROW1, TWO_SIDED] {
+        let system = numbers.coupled();
+        let drive = system.drive(T);
+        for y in states(&system) {
+            let jacobian = system.jacobian(&y);
+            for j in 0..4 {
+                let unit: [f64; 4] = std::array::from_fn(|i| f64::from(i == j));
+                let column = slope(H, |s| system.derivative(drive, &along(&y, &unit, s)));
+                for i in 0..4 {
+                    let size = jacobian.row(i).amax();
+                    assert_close(column[i], jacobian[(i, j)], size, 1e-7, &format!("J[{i}][{j}] at {y:?}"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn exact_linear_part_is_the_jacobian_in_flight() {
+    let system = SSVI.coupled();
+    let (a, b) = system.linear_part();
+    let y = [0.02, -0.3, 0.11, 0.4];
+    assert_eq!(a, system.jacobian(&y));
+    let drive = system.drive(T);
+    let deviation = nalgebra::SVector::from(y) - nalgebra::SVector::from(system.rest());
+    let expected = system.derivative(drive, &y);
+    for i in 0..4 {
+        assert_close((a * deviation)[i] + b[i] * drive[0], expected[i], 10.0, 1e-15, "A y + b P cos ωt");
+    }
+
+    let bare = SSVI.bare();
+    let (a, b) = bare.linear_part();
+    let (y, drive) = ([0.02, -0.3], bare.drive(T));
+    for (i, expected) in bare.derivative(drive, &y).into_iter().enumerate() {
+        assert_close((a * nalgebra::SVector::from(y))[i] + b[i] * drive[0], expected, 1.0, 1e-15, "bare");
+    }
+}
+
+#[test]
+fn exact_time_derivative_of_equation_1() {
+    let (system, bare) = (SSVI.coupled(), SSVI.bare());
+    let y = [0.02, -0.3, 0.11, 0.4];
+    let found = system.time_derivative(system.drive(T));
+    let expected = slope(1e-3, |s| system.derivative(system.drive(T + s), &y));
+    (0..4).for_each(|i| assert_close(found[i], expected[i], 5.0, 1e-12, "coupled"));
+    let found = bare.time_derivative(bare.drive(T));
+    let expected = slope(1e-3, |s| bare.derivative(bare.drive(T + s), &[y[0], y[1]]));
+    (0..2).for_each(|i| assert_close(found[i], expected[i], 5.0, 1e-12, "bare"));
+}
+
+/// The true energy changes only by the force and the two dampers, so contacts and springs hold what they take.
+#[test]
+fn invariant_energy_balance() {
+    for numbers in [SSVI, ROW1, TWO_SIDED] {
+        let system = numbers.coupled();
+        let drive = system.drive(T);
+        for y in states(&system) {
+            let f = system.derivative(drive, &y);
+            let h = H / f[3].abs().max(f[1].abs()).max(3.0); // velocities differ by H, positions by less
+            let [rate] = slope(h, |s| [system.total_energy(&along(&y, &f, s))]);
+            let [_, v1, _, v2] = y;
+            let power = drive[0] * v1 - numbers.c1 * v1 * v1 - numbers.c2 * (v2 - v1) * (v2 - v1);
+            let size = numbers.m2 * (f[3] * v2).abs() + numbers.m1 * (f[1] * v1).abs() + power.abs();
+            assert_close(rate, power, size, 1e-7, &format!("dE/dt at {y:?}"));
+        }
+    }
+}
+
+/// `[value, rate, rate of rate]` along the flow.
+fn assert_rates(system: &Coupled, name: &str, rates: impl Fn([f64; 2], &[f64; 4]) -> [f64; 3]) {
+    for y in states(system) {
+        let f = system.derivative(system.drive(T), &y);
+        let h = H / f[3].abs().max(f[1].abs()).max(3.0);
+        let differences = slope(h, |s| rates(system.drive(T + s), &along(&y, &f, s)));
+        let [value, first, second] = rates(system.drive(T), &y);
+        assert_close(first, differences[0], first.abs() + value.abs(), 1e-7, &format!("d{name}/dt at {y:?}"));
+        assert_close(
+            second,
+            differences[1],
+            second.abs() + first.abs(),
+            1e-7,
+            &format!("d²{name}/dt² at {y:?}"),
+        );
+    }
+}
+
+#[test]
+fn exact_rates_of_the_observed_quantities() {
+    for numbers in [SSVI, ROW1, TWO_SIDED] {
+        let system = numbers.coupled();
+        assert_rates(&system, "E1", |drive, y| system.primary_energy_rates(drive, y));
+        assert_rates(&system, "E2", |drive, y| system.damper_energy_rates(drive, y));
+        assert_rates(&system, "r", |drive, y| system.stroke_rates(drive, y));
+    }
+}
+
+#[test]
+fn exact_rates_of_the_bare_energy() {
+    let bare = SSVI.bare();
+    let y = [0.05, 0.4];
+    let f = bare.derivative(bare.drive(T), &y);
+    let rates =
+        |s: f64| bare.primary_energy_rates(bare.drive(T + s), &std::array::from_fn(|i| y[i] + s * f[i]));
+    let (found, differences) = (rates(0.0), slope(1e-3, rates));
+    assert_close(found[0], 0.5 * (1000.0 * 0.16 + 3.95e4 * 0.0025), 1.0, 1e-12, "E1");
+    assert_close(found[1], differences[0], found[1].abs(), 1e-10, "dE1/dt");
+    assert_close(found[2], differences[1], found[2].abs(), 1e-10, "d²E1/dt²");
+}

@@ -1,0 +1,171 @@
+//! Linear scenes in closed form: the bare structure, and a damper that provably never reaches a wall.
+//!
+//! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Dampers only take energy from the transient, so its
+//! energy norm bounds all that it can still do: whether a wall can ever be reached, and whether the record can still fall.
+
+use crate::flow::{Expansion, Flow};
+use crate::observe::{Knot, Observer, Peak, Segment};
+use crate::settings::{Extreme, SolverError, Window, Work};
+use crate::system::LinearSystem;
+use nalgebra::Complex;
+use retune_model::{Coupled, Drive, Side};
+use std::cell::OnceCell;
+
+/// An exact step without walls.
+struct Step<'a, const N: usize> {
+    flow: &'a Flow<N>,
+    ends: [Knot<N>; 2],
+    length: f64,
+    expansion: OnceCell<Expansion<N>>,
+}
+
+impl<const N: usize> Segment<N> for Step<'_, N> {
+    fn ends(&self) -> [&Knot<N>; 2] {
+        [&self.ends[0], &self.ends[1]]
+    }
+    fn length(&self) -> f64 {
+        self.length
+    }
+    fn at(&self, theta: f64) -> Knot<N> {
+        let from = &self.ends[0];
+        let expansion = self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y));
+        let drive = self.flow.drive_after(from.drive, theta);
+        Knot { t: from.t + theta, drive, y: expansion.at(theta), clock: [1.0, 0.0] }
+    }
+    fn at_time(&self, t: f64) -> Knot<N> {
+        Knot { t, ..self.at(t - self.ends[0].t) }
+    }
+}
+
+/// A linear scene at a moment of its run.
+pub struct Free<'a, S, const N: usize> {
+    system: &'a S,
+    flow: Flow<N>,
+    now: Knot<N>,
+    max_steps: u64,
+    /// Work done so far.
+    pub work: Work,
+}
+
+impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
+    /// The scene at rest at t = 0; no step will be longer than `longest` (s).
+    pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
+        let linear = system.linear();
+        let now = Knot { t: 0.0, drive: system.drive(0.0), y: linear.origin, clock: [1.0, 0.0] };
+        Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
+    }
+
+    /// The state reached.
+    pub fn state(&self) -> [f64; N] {
+        self.now.y
+    }
+
+    /// Steps to time `to` (s), or until the observer is satisfied.
+    ///
+    /// # Errors
+    /// [`SolverError::TooManySteps`], [`SolverError::NonFinite`].
+    pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
+        let (from, mut count) = (self.now.t, 0.0); // time is counted, not accumulated
+        while self.now.t < to && !observer.satisfied() {
+            let now = self.now;
+            self.work.steps += 1;
+            if self.work.steps > self.max_steps {
+                return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
+            }
+            let (drive, y) = self.flow.advance(now.drive, &now.y);
+            count += 1.0;
+            let end = Knot { t: from + count * self.flow.step(), drive, y, clock: [1.0, 0.0] };
+            let mut step = Step {
+                flow: &self.flow,
+                ends: [now, end],
+                length: self.flow.step(),
+                expansion: OnceCell::new(),
+            };
+            if to - now.t < step.length {
+                step.length = to - now.t;
+                step.ends[1] = Knot { t: to, ..step.at(step.length) };
+            }
+            if !step.ends[1].y.iter().all(|v| v.is_finite()) {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+            observer.segment(&step);
+            self.now = step.ends[1];
+        }
+        Ok(())
+    }
+
+    /// Goes to time `to` (s) without looking: the transient by repeated squaring, the steady motion by its phase. Steps where
+    /// there is no steady motion.
+    fn jump(&mut self, to: f64) -> Result<(), SolverError> {
+        let whole = ((to - self.now.t) / self.flow.step()).floor();
+        let Some(steady) = self.system.steady() else {
+            return self.propagate(to, &mut crate::observe::Unobserved);
+        };
+        if whole >= 2.0 && whole < u64::MAX as f64 {
+            let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
+            let t = self.now.t + whole * self.flow.step();
+            let y = sum(&steady_state(&self.flow, &steady, t), &self.flow.decay(whole as u64, transient));
+            self.now = Knot { t, drive: self.system.drive(t), y, clock: [1.0, 0.0] };
+        }
+        self.propagate(to, &mut crate::observe::Unobserved)
+    }
+
+    /// Energy norm of the transient at this moment, √J; infinite where there is no steady motion.
+    fn transient(&self) -> f64 {
+        let Some(steady) = self.system.steady() else { return f64::INFINITY };
+        let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
+        self.system.energy_norm(&sum(&self.flow.linear().origin, &transient))
+    }
+
+    /// Largest energy of the primary structure over the window; it ends early once `cutoff` is exceeded, or once steady motion
+    /// and what is left of the transient cannot reach the record any more: `√E1 <= √E1_steady + |transient| / √2`.
+    ///
+    /// # Errors
+    /// As [`Self::propagate`].
+    pub fn e1_max<F>(
+        &mut self,
+        window: Window,
+        mut peak: Peak<F>,
+        steady_e1: f64,
+    ) -> Result<Extreme, SolverError>
+    where
+        F: Fn(Drive, &[f64; N]) -> [f64; 3],
+    {
+        /// Steps between looks at the bound.
+        const STRIDE: f64 = 16.0;
+        self.jump(window.from)?;
+        while self.now.t < window.to && !Observer::<N>::satisfied(&peak) {
+            let to = window.to.min(self.now.t + STRIDE * self.flow.step());
+            self.propagate(to, &mut peak)?;
+            let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
+            if bound <= peak.record().value {
+                break;
+            }
+        }
+        Ok(peak.record())
+    }
+}
+
+impl Free<'_, Coupled, 4> {
+    /// Whether the damper provably stays off both walls from rest on: `|r - D| <= |X2 - X1| + |row of r| |transient|`.
+    pub fn clears_walls(&self) -> bool {
+        let reach = self.system.steady(self.system.bare().frequency()).stroke()
+            + self.system.dual_energy_norm(&[-1.0, 0.0, 1.0, 0.0]) * self.transient();
+        let rest = self.system.rest_distance();
+        reach < rest && reach < self.system.wall(Side::Obstacle) - rest
+    }
+}
+
+fn difference<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn sum<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// The steady motion at time `t`: `origin + Re(Y e^{iωt})`.
+fn steady_state<const N: usize>(flow: &Flow<N>, amplitudes: &[Complex<f64>; N], t: f64) -> [f64; N] {
+    let turn = Complex::from_polar(1.0, flow.linear().frequency * t);
+    std::array::from_fn(|i| flow.linear().origin[i] + (amplitudes[i] * turn).re)
+}

@@ -1,0 +1,24 @@
+//! The time loop allocates nothing. In a file of its own: the counting allocator is the whole program's.
+
+mod problems;
+
+use problems::scenes::{SSVI, TMD, TWO_SIDED};
+use retune_solver::{Method, Settings, Window, e1_max, simulate};
+use std::hint::black_box;
+
+#[test]
+fn invariant_runs_allocate_nothing() {
+    let window = Window { from: 0.0, to: 20.0 };
+    let count = |f: &dyn Fn()| allocation_counter::measure(f).count_total;
+    assert_eq!(count(&|| drop(black_box(Box::new(1)))), 1, "the counter counts");
+    for scene in [SSVI.scene(), TMD.scene(), TWO_SIDED.scene(), SSVI.bare_scene()] {
+        for method in [Method::Hybrid, Method::Ode45, Method::Ode23s] {
+            let settings = Settings { method, rtol: 1e-6, atol: 1e-8, ..Settings::default() };
+            let found = count(&|| {
+                black_box(e1_max(&scene, window, &settings, f64::INFINITY).expect("a run"));
+                black_box(simulate(&scene, window, &settings).expect("a run"));
+            });
+            assert_eq!(found, 0, "{method:?}");
+        }
+    }
+}
