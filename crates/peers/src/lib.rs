@@ -1,0 +1,13 @@
+//! Retune's methods and other people's integrators on the same scenes: speed against accuracy, and where methods fail.
+//!
+//! No crate imports this one, and no one who only uses the program builds it (`just accuracy`, `just stability`).
+
+pub mod atlas;
+pub mod chart;
+pub mod external;
+pub mod motion;
+pub mod own;
+pub mod peers;
+pub mod reading;
+pub mod record;
+pub mod scenes;
