@@ -57,6 +57,7 @@ pub struct Peak<F> {
     record: Extreme,
     cutoff: f64,
     last: Option<(f64, [f64; 3])>,
+    intervals: u32,
 }
 
 /// Share of what a quantity varies over a segment, `h |slope| + h² |curvature|` at both ends, by which it may leave its
@@ -67,11 +68,21 @@ const SCREEN: f64 = 2e-3;
 /// Share of a segment below which an interval is not halved: its square is a rounding error.
 const SHORTEST: f64 = 1e-8;
 
+/// Most intervals of a segment that are looked into: a method of low order may hand over a motion that is not one of its
+/// equations (a blow-up, a chord), on which no bound holds.
+const MOST_INTERVALS: u32 = 2_000;
+
 impl<F> Peak<F> {
     /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
     /// the value exceeds `cutoff`.
     pub fn new(rates: F, cutoff: f64) -> Self {
-        Self { rates, record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN }, cutoff, last: None }
+        Self {
+            rates,
+            record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN },
+            cutoff,
+            last: None,
+            intervals: 0,
+        }
     }
 
     /// The record so far.
@@ -174,7 +185,9 @@ impl<F> Peak<F> {
         // An interval this short adds less than rounding to what the quantity varies over the segment: a place where it only
         // touches the record (a stroke of 0 at each lift-off) ends here.
         let size = self.record.value.abs().max(at_a[0].abs()).max(at_b[0].abs());
-        if remainder <= 1e-15 * size || h <= SHORTEST * segment.length() {
+        self.intervals += 1;
+        let enough = self.intervals > MOST_INTERVALS || !remainder.is_finite();
+        if enough || remainder <= 1e-15 * size || h <= SHORTEST * segment.length() {
             return;
         }
         let (t, at_middle) = exact(middle);
@@ -206,6 +219,7 @@ where
         let h = segment.length();
         let variation = |[_, slope, curvature]: [f64; 3]| h * (slope.abs() + h * curvature.abs());
         let remainder = SCREEN * (variation(at_a) + variation(at_b));
+        self.intervals = 0;
         self.search(segment, (0.0, at_a), (h, at_b), remainder);
     }
 
