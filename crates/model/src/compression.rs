@@ -103,6 +103,14 @@ impl Compression {
         [-push(1) - self.sign * free, free + self.sign * push(0)]
     }
 
+    /// How large the terms are whose sum accelerates the PS away from contact, m/s²: that sum is rounded at their size.
+    pub fn size_of_terms(&self, y: &Compressed) -> f64 {
+        let &[_, _, x1, v1, _] = y;
+        self.primary[0] * self.cos[0].hypot(self.sin[0])
+            + self.primary[1] * v1.abs()
+            + self.primary[2] * x1.abs()
+    }
+
     /// Derivative with respect to `θ` of every component.
     #[inline(always)]
     pub fn derivative(&self, y: &Compressed) -> Compressed {

@@ -1,5 +1,6 @@
 //! Rectangular grids over parameters: evenly spaced axes and their product.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -8,7 +9,7 @@ use thiserror::Error;
 pub const LARGEST_END: f64 = 1e280;
 
 /// How the points of an axis are spaced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
     /// Equal differences.

@@ -1,6 +1,7 @@
 //! Searches for the parameters that make an objective small.
 //!
-//! The methods receive a closure and know nothing of what it computes: no springs, no files, no clocks.
+//! The methods receive a closure and know nothing of what it computes: no springs, no files, no clocks. The one thing
+//! here that knows of dampers is the closure itself, [`PeakEnergy`]: E1max as a function of a design.
 //! What happens on the way is told to the caller's observers; nothing is printed.
 //!
 //! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
@@ -10,8 +11,10 @@
 
 pub mod fminsearch;
 pub mod grid;
+pub mod objective;
 pub mod surf;
 
 pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
 pub use grid::{Axis, AxisError, Grid, GridError, Scale};
+pub use objective::{Failures, PeakEnergy, Unusable, Variable};
 pub use surf::{best_separated, surf};

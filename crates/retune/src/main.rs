@@ -1,2 +1,52 @@
-//! Retune: the command line.
-fn main() {}
+//! Retune: tunes vibration dampers from the command line.
+
+mod check;
+mod cli;
+mod error;
+mod figure;
+mod optimize;
+mod results;
+mod screen;
+mod simulate;
+mod study;
+mod summary;
+mod tables;
+
+use clap::{CommandFactory, Parser};
+use cli::{Cli, Command, Kind};
+use error::Error;
+use screen::Screen;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            screen::show_error(&error);
+            error.exit_code()
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Error> {
+    match command {
+        Command::Optimize(arguments) => optimize::command(&arguments),
+        Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Table2(arguments) => tables::table2(&arguments),
+        Command::Retune(arguments) => tables::retune(&arguments),
+        Command::Check { study } => check::check(&study),
+        Command::Schema { kind: Kind::Study } => print_schema(&schemars::schema_for!(study::Study)),
+        Command::Schema { kind: Kind::Table2 } => print_schema(&schemars::schema_for!(study::Table2)),
+        Command::Completions { shell } => print_completions(shell),
+    }
+}
+
+fn print_schema(schema: &schemars::Schema) -> Result<(), Error> {
+    Screen::new(false).line(simulate::json(schema)?)
+}
+
+fn print_completions(shell: clap_complete::Shell) -> Result<(), Error> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "retune", &mut script);
+    Screen::new(false).line(String::from_utf8_lossy(&script).trim_end())
+}

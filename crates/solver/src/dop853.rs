@@ -93,14 +93,14 @@ fn stages<const L: usize>(
 impl<const L: usize> Step<L> {
     /// DOP853's blend of its two estimates: `|h| e5² / √(n (e5² + 0.01 e3²))`, with `e` the scaled Euclidean norms.
     ///
-    /// `inverse_scale` is the reciprocal of each component's tolerance, zero for a component that is not controlled;
-    /// the step is good where the result is at most 1. NaN where the step is not finite.
+    /// `controlled` lists the components that count, each with the reciprocal of its tolerance; the step is good where the
+    /// result is at most 1. NaN where the step is not finite.
     #[inline(always)]
-    pub fn error(&self, h: f64, inverse_scale: &[f64; L], controlled: f64) -> f64 {
-        let norm2 = |e: &[f64; L]| (0..L).map(|i| (e[i] * inverse_scale[i]).powi(2)).sum::<f64>();
+    pub fn error<const M: usize>(&self, h: f64, controlled: [(usize, f64); M]) -> f64 {
+        let norm2 = |e: &[f64; L]| controlled.iter().map(|&(i, scale)| (e[i] * scale).powi(2)).sum::<f64>();
         let (e5, e3) = (norm2(&self.error5), norm2(&self.error3));
         let denominator = e5 + 0.01 * e3;
-        if denominator == 0.0 { 0.0 } else { h.abs() * e5 / (denominator * controlled).sqrt() }
+        if denominator == 0.0 { 0.0 } else { h.abs() * e5 / (denominator * M as f64).sqrt() }
     }
 }
 

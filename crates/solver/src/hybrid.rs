@@ -130,7 +130,8 @@ impl<'a> Hybrid<'a> {
                 FlightEnd::Stopped(end) => return stopped(end, Phase::Flight),
                 FlightEnd::TouchDown(side, touch) => {
                     // A damper that rests on a wall from the start has not struck it.
-                    if touch.t > from.t {
+                    let closing = side.sign() * (touch.y[3] - touch.y[1]);
+                    if touch.t > from.t || closing > 0.0 {
                         observer.touch_down(touch.t, side);
                     }
                     let equations = self.contacts[side as usize];

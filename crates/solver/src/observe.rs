@@ -57,7 +57,8 @@ pub struct Peak<F> {
     record: Extreme,
     cutoff: f64,
     last: Option<(f64, [f64; 3])>,
-    intervals: u32,
+    /// Halvings left in the segment being searched.
+    halvings: u32,
 }
 
 /// Share of what a quantity varies over a segment, `h |slope| + h² |curvature|` at both ends, by which it may leave its
@@ -65,12 +66,9 @@ pub struct Peak<F> {
 /// the motion) the remainder is `2⁶ / 46080` of its amplitude.
 const SCREEN: f64 = 2e-3;
 
-/// Share of a segment below which an interval is not halved: its square is a rounding error.
-const SHORTEST: f64 = 1e-8;
-
-/// Most intervals of a segment that are looked into: a method of low order may hand over a motion that is not one of its
-/// equations (a blow-up, a chord), on which no bound holds.
-const MOST_INTERVALS: u32 = 2_000;
+/// Most halvings in a segment. A motion needs a few; only where a quantity is level to rounding (a stroke that touches its
+/// record of 0 at each lift-off, the energy of a damper that does not move yet) is there no end of them.
+const HALVINGS: u32 = 200;
 
 impl<F> Peak<F> {
     /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
@@ -81,7 +79,7 @@ impl<F> Peak<F> {
             record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN },
             cutoff,
             last: None,
-            intervals: 0,
+            halvings: 0,
         }
     }
 
@@ -156,7 +154,7 @@ impl<F> Peak<F> {
         }
         let exact = |theta: f64| {
             let knot = segment.at(theta);
-            (knot.t, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
+            (knot, in_theta((self.rates)(knot.drive, &knot.y), knot.clock))
         };
         if at_a[1] > 0.0 && at_b[1] < 0.0 && at_a[2] < 0.0 && at_b[2] < 0.0 {
             // Concave at both ends: one maximum. The quantity is flat there: an error δ of its place costs δ², and that is
@@ -164,7 +162,7 @@ impl<F> Peak<F> {
             let (mut lower, mut upper) = (a, b);
             let mut theta = a + slope_root(h, at_a, at_b);
             for _ in 0..60 {
-                let (t, [value, slope, curvature]) = exact(theta);
+                let (Knot { t, clock: [rate, rate_slope], .. }, [value, slope, curvature]) = exact(theta);
                 note(&mut self.record, value, t);
                 if slope > 0.0 {
                     lower = theta
@@ -174,7 +172,7 @@ impl<F> Peak<F> {
                 let step = -slope / curvature;
                 let gain = 0.5 * slope * step;
                 if curvature < 0.0 && gain <= 1e-10 * value.abs() {
-                    return note(&mut self.record, value + gain, t);
+                    return note(&mut self.record, value + gain, t + step * (rate + 0.5 * step * rate_slope));
                 }
                 let newton = theta + step;
                 theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
@@ -182,16 +180,12 @@ impl<F> Peak<F> {
             return;
         }
         let middle = 0.5 * (a + b);
-        // An interval this short adds less than rounding to what the quantity varies over the segment: a place where it only
-        // touches the record (a stroke of 0 at each lift-off) ends here.
-        let size = self.record.value.abs().max(at_a[0].abs()).max(at_b[0].abs());
-        self.intervals += 1;
-        let enough = self.intervals > MOST_INTERVALS || !remainder.is_finite();
-        if enough || remainder <= 1e-15 * size || h <= SHORTEST * segment.length() {
+        if remainder < 1e-15 * self.record.value.abs() || self.halvings == 0 {
             return;
         }
-        let (t, at_middle) = exact(middle);
-        note(&mut self.record, at_middle[0], t);
+        self.halvings -= 1;
+        let (knot, at_middle) = exact(middle);
+        note(&mut self.record, at_middle[0], knot.t);
         self.search(segment, (a, at_a), (middle, at_middle), remainder / 64.0);
         self.search(segment, (middle, at_middle), (b, at_b), remainder / 64.0);
     }
@@ -219,7 +213,7 @@ where
         let h = segment.length();
         let variation = |[_, slope, curvature]: [f64; 3]| h * (slope.abs() + h * curvature.abs());
         let remainder = SCREEN * (variation(at_a) + variation(at_b));
-        self.intervals = 0;
+        self.halvings = HALVINGS;
         self.search(segment, (0.0, at_a), (h, at_b), remainder);
     }
 

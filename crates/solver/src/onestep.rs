@@ -95,6 +95,8 @@ pub struct Run<'a, S, const N: usize> {
     h: Option<f64>,
     contact: Option<Side>,
     leaving: bool,
+    /// The walls that the damper has lain against since the start: it has not struck them.
+    resting: [bool; 2],
     /// Work done so far.
     pub work: Work,
 }
@@ -141,6 +143,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             h: None,
             contact: Side::BOTH.into_iter().find(|&side| z[side as usize] > 0.0),
             leaving: false,
+            resting: z.map(|z| z == 0.0),
             work: Work { evaluations: 1, ..Work::default() },
         }
     }
@@ -179,19 +182,24 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
     /// Keeps account of touch-downs: at an event, or by what can be seen at the ends of steps.
     fn follow_contact(&mut self, event: Option<Side>, observer: &mut impl Observer<N>) {
         let before = self.contact;
+        let z = self.system.rapprochement(&self.now.y);
         self.leaving = event.is_some();
         if self.settings.contacts == Contacts::Located {
             if let Some(side) = event {
                 self.contact = if before == Some(side) { None } else { Some(side) };
             }
         } else {
-            let z = self.system.rapprochement(&self.now.y);
             self.contact = Side::BOTH.into_iter().find(|&side| z[side as usize] > 0.0);
         }
         if let Some(side) = self.contact
             && before != self.contact
+            && !self.resting[side as usize]
         {
             observer.touch_down(self.now.t, side);
+        }
+        for side in Side::BOTH {
+            let apart = self.contact != Some(side) && (z[side as usize] < 0.0 || before == Some(side));
+            self.resting[side as usize] &= !apart;
         }
     }
 

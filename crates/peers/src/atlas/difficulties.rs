@@ -43,7 +43,7 @@ pub fn all() -> Result<Vec<Difficulty>, OutOfRange> {
         stiffness("contact K × 10⁸", 1e8)?,
         difficulty(
             "contact",
-            "light touch (D just below the TMD's stroke)",
+            "TMD that never touches",
             20.0,
             Numbers { d: 0.327, ..TMD },
             same,

@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let mut text = format!(
         "# Where methods fail\n\nWritten by `just stability`. Works: E1max within 1e-4 of the hybrid at rtol 1e-12 and every impact counted; \
-         inaccurate: within 1 % and at most one impact in ten miscounted; says it fails: an error; fails silently: anything else. \
+         inaccurate: within 1 % and at most one impact, or one in ten, miscounted; says it fails: an error; fails silently: anything else. \
          Runs at rtol 1e-6 or steps of 1 ms; `ode23s defaults` is MATLAB's rtol 1e-3, as in the paper. The hybrid fails silently {silent} times.\n\n\
          ![atlas](atlas.svg)\n\n## Causes\n\n{causes}"
     );

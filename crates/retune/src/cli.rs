@@ -1,0 +1,147 @@
+//! What may be typed: commands, arguments and their help.
+
+use crate::study::{Setting, SettingError};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use retune_solver::{Contacts, Method};
+use std::path::PathBuf;
+
+/// Tunes vibration dampers: from a study file to the best design, its log and its figures.
+#[derive(Debug, Parser)]
+#[command(version, about, max_term_width = 110, subcommand_required = true, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Tune the damper of a study: a coarse grid (surf), then Nelder-Mead (fminsearch)
+    Optimize(Optimize),
+    /// Run one scene and say what happened
+    Simulate(Simulate),
+    /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
+    Table2(Table2),
+    /// Tune both dampers anew for other stiffnesses k1 of the primary structure
+    Retune(Retune),
+    /// Check a study file and say what it asks for
+    Check {
+        /// The study file
+        study: PathBuf,
+    },
+    /// Print the JSON Schema of a study file, for completion and checks in an editor
+    Schema {
+        /// Which kind of file
+        #[arg(value_enum, default_value_t = Kind::Study)]
+        kind: Kind,
+    },
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// The kinds of study file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// A scene to simulate or tune
+    Study,
+    /// The paper's Table 2
+    Table2,
+}
+
+/// How a search is run.
+#[derive(Debug, Args)]
+pub struct Running {
+    /// Directory of the results [default: results/<study>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads of the grid; the results are the same for any number [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No log and no progress on screen, only the result
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `optimize`.
+#[derive(Debug, Args)]
+pub struct Optimize {
+    /// The study file
+    pub study: PathBuf,
+    /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `table2`.
+#[derive(Debug, Args)]
+pub struct Table2 {
+    /// The study file
+    #[arg(default_value = "studies/table2.json")]
+    pub study: PathBuf,
+    /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `retune`.
+#[derive(Debug, Args)]
+pub struct Retune {
+    /// Stiffnesses of the primary structure, N/m
+    #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
+    pub k1: Vec<Setting>,
+    /// The table that names the study of each damper
+    #[arg(long, value_name = "FILE", default_value = "studies/table2.json")]
+    pub study: PathBuf,
+    /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `simulate`.
+#[derive(Debug, Args)]
+pub struct Simulate {
+    /// The study file
+    pub study: PathBuf,
+    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P omega R T t0 (repeatable)
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub settings: Vec<Setting>,
+    /// Integration method
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(["hybrid", "ode23s", "ode45"]).map(method))]
+    pub solver: Option<Method>,
+    /// How ode23s and ode45 meet a contact
+    #[arg(long, value_name = "HOW", value_parser = PossibleValuesParser::new(["located", "stepped"]).map(contacts))]
+    pub contacts: Option<Contacts>,
+    /// Relative tolerance of a step
+    #[arg(long, value_name = "X")]
+    pub rtol: Option<f64>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Also write the motion in the window to a CSV file
+    #[arg(long, value_name = "FILE.csv")]
+    pub trajectory: Option<PathBuf>,
+    /// Time between two rows of the trajectory, s
+    #[arg(long, value_name = "S", default_value_t = 0.005, requires = "trajectory")]
+    pub interval: f64,
+}
+
+fn stiffness(text: &str) -> Result<Setting, SettingError> {
+    format!("k1={text}").parse()
+}
+
+fn method(name: String) -> Method {
+    match name.as_str() {
+        "ode23s" => Method::Ode23s,
+        "ode45" => Method::Ode45,
+        _ => Method::Hybrid,
+    }
+}
+
+fn contacts(name: String) -> Contacts {
+    if name == "stepped" { Contacts::Stepped } else { Contacts::Located }
+}

@@ -1,0 +1,251 @@
+//! What a search found: one type, from which `optimum.json` and the last lines on screen are made.
+
+use super::log::short;
+use super::refine::{Refined, Run};
+use super::surf::Surf;
+use crate::study::{PerVariable, Search, Study};
+use crate::summary::Summary;
+use retune_model::Damper;
+use retune_optim::{Failures, Minimum, Scaling, Stop, Variable};
+use serde::Serialize;
+
+/// The best design and how it was found. SI units.
+#[derive(Clone, Debug, Serialize)]
+pub struct Optimum {
+    damper_type: &'static str,
+    #[serde(flatten)]
+    design: Design,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+    on_bound: Vec<Variable>,
+    surf: Option<GridBest>,
+    refine: Refinement,
+    failures: FailureNote,
+    simulation: Summary,
+    #[serde(skip)]
+    start: Found,
+}
+
+/// A design as in the paper's Table 2: m2, k2, c2, D, C in SI units; and its E1max, J.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// m2, k2, c2, D, C.
+    pub design: [f64; 5],
+    /// E1max, J.
+    pub e1_max: f64,
+}
+
+/// A damper as in the paper's Table 2.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Design {
+    m2: f64,
+    k2: f64,
+    c2: f64,
+    #[serde(rename = "D")]
+    d: f64,
+    #[serde(rename = "C")]
+    c: f64,
+}
+
+/// The best point of the grid.
+#[derive(Clone, Debug, Serialize)]
+struct GridBest {
+    points: usize,
+    best: PerVariable<f64>,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+}
+
+/// The refinements.
+#[derive(Clone, Debug, Serialize)]
+struct Refinement {
+    /// "absolute" or "scaled": what TolX measures.
+    #[serde(rename = "TolX_mode")]
+    tol_x_mode: &'static str,
+    #[serde(rename = "TolX")]
+    tol_x: f64,
+    #[serde(rename = "TolFun")]
+    tol_fun: f64,
+    /// The number, from 1, of the start that gave the optimum.
+    winner: usize,
+    runs: Vec<RunNote>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct RunNote {
+    start: PerVariable<f64>,
+    #[serde(rename = "E1max_start")]
+    e1_max_start: f64,
+    found: PerVariable<f64>,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+    iterations: u64,
+    func_count: u64,
+    stop: Stop,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FailureNote {
+    count: u64,
+    example: Option<String>,
+}
+
+impl Optimum {
+    /// Collects what a search found; `summary` is of a run of the best design.
+    pub(super) fn new(
+        study: &Study,
+        search: &Search,
+        surf: Option<&Surf>,
+        refined: &Refined,
+        summary: Summary,
+    ) -> Self {
+        let best = refined.best();
+        let damper = refined.objective.damper(&best.minimum.x).unwrap_or(search.damper);
+        let over = |values: &[f64]| per_variable(&search.variables, values);
+        let refine = study.optimize.as_ref().map(|optimize| optimize.refine).unwrap_or_default();
+        Self {
+            damper_type: summary.damper_type(),
+            design: Design::new(&damper),
+            e1_max: best.minimum.value,
+            on_bound: on_bound(search, best),
+            surf: surf.map(|surf| GridBest {
+                points: surf.grid.len(),
+                best: per_variable(&surf.variables, &surf.point(surf.best)),
+                e1_max: surf.values[surf.best],
+            }),
+            refine: Refinement {
+                tol_x_mode: tol_x_mode(best.minimum.scaling),
+                tol_x: refine.tol_x,
+                tol_fun: refine.tol_fun,
+                winner: refined.winner + 1,
+                runs: refined.runs.iter().map(|run| RunNote::new(run, over)).collect(),
+            },
+            failures: FailureNote::new(surf.map(|surf| &surf.failures), &refined.objective.failures()),
+            simulation: summary,
+            start: start(search, refined),
+        }
+    }
+
+    /// The best design.
+    pub fn found(&self) -> Found {
+        let Design { m2, k2, c2, d, c } = self.design;
+        Found { design: [m2, k2, c2, d, c], e1_max: self.e1_max }
+    }
+
+    /// The design at which the best refinement started.
+    pub fn start(&self) -> Found {
+        self.start
+    }
+
+    /// The last lines on screen.
+    pub fn report(&self) -> String {
+        let Refinement { tol_x, tol_x_mode, winner, runs, .. } = &self.refine;
+        let RunNote { iterations, func_count, stop, .. } = &runs[winner - 1];
+        let mut lines = vec![
+            String::new(),
+            table2_header(),
+            table2_row(self.damper_type, self.found().design),
+            format!("E1max = {} J; {}", short(self.e1_max), self.simulation.made_by()),
+            format!(
+                "fminsearch, start {winner} of {}: {} after {iterations} iterations, {func_count} evaluations; \
+                 TolX {tol_x:e} is {tol_x_mode}",
+                runs.len(),
+                stop_words(*stop),
+            ),
+        ];
+        if !self.on_bound.is_empty() {
+            let names = super::log::joined(&self.on_bound, ", ");
+            lines.push(format!("note: {names} ended on a bound of the study; a wider one may give less"));
+        }
+        if let FailureNote { count, example: Some(example) } = &self.failures {
+            lines.push(format!("note: {count} designs could not be computed, for instance {example}"));
+        }
+        lines.join("\n")
+    }
+}
+
+/// The header of the paper's Table 2.
+pub fn table2_header() -> String {
+    format!(
+        "{:<24}{:<10}{:<12}{:<14}{:<12}{:<12}",
+        "Damper type", "m2, kg", "k2, N/m", "c2, N·s/m", "D, m", "C, m"
+    )
+    .trim_end()
+    .to_owned()
+}
+
+/// A row of the paper's Table 2.
+pub fn table2_row(name: &str, row: [f64; 5]) -> String {
+    let [m2, k2, c2, d, c] = row.map(short);
+    format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
+}
+
+/// Where the best run started.
+fn start(search: &Search, refined: &Refined) -> Found {
+    let first = refined.best().rows.first();
+    let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
+    let Design { m2, k2, c2, d, c } = Design::new(&damper);
+    Found { design: [m2, k2, c2, d, c], e1_max: first.map_or(f64::NAN, |row| row.value) }
+}
+
+impl Design {
+    fn new(damper: &Damper) -> Self {
+        let [k2, c2, d, c] = super::surf::design(damper);
+        Self { m2: damper.mass.get(), k2, c2, d, c }
+    }
+}
+
+impl RunNote {
+    fn new(run: &Run, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
+        let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
+        let (start, e1_max_start) = match run.rows.first() {
+            Some(row) => (over(&row.best), row.value),
+            None => (PerVariable::default(), f64::NAN),
+        };
+        let (iterations, func_count) = (*iterations, *func_count);
+        Self { start, e1_max_start, found: over(x), e1_max: *value, iterations, func_count, stop: *stop }
+    }
+}
+
+impl FailureNote {
+    fn new(surf: Option<&Failures>, refine: &Failures) -> Self {
+        let count = surf.map_or(0, |failures| failures.count) + refine.count;
+        let first = surf.and_then(|failures| failures.example.as_ref()).or(refine.example.as_ref());
+        Self { count, example: first.map(|(design, reason)| format!("{design:?}: {reason}")) }
+    }
+}
+
+fn per_variable(variables: &[Variable], values: &[f64]) -> PerVariable<f64> {
+    let mut all = PerVariable::default();
+    for (&variable, &value) in variables.iter().zip(values) {
+        *all.get_mut(variable) = Some(value);
+    }
+    all
+}
+
+/// Parameters that ended on a bound, to a thousandth of what they started with.
+fn on_bound(search: &Search, run: &Run) -> Vec<Variable> {
+    let Some(first) = run.rows.first() else { return Vec::new() };
+    let ended = |i: usize| {
+        let (start, value, bounds) = (first.best[i], run.minimum.x[i], search.options.bounds[i]);
+        let near = |bound: f64| (value - bound).abs() <= 1e-3 * value.abs().max(start.abs());
+        [bounds.lower, bounds.upper].into_iter().flatten().any(near)
+    };
+    (0..search.variables.len()).filter(|&i| ended(i)).map(|i| search.variables[i]).collect()
+}
+
+fn tol_x_mode(scaling: Scaling) -> &'static str {
+    match scaling {
+        Scaling::None => "absolute",
+        Scaling::Start => "scaled",
+    }
+}
+
+fn stop_words(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Converged => "converged",
+        Stop::MaxIter => "stopped at MaxIter",
+        Stop::MaxFunEvals => "stopped at MaxFunEvals",
+        Stop::Interrupted => "interrupted",
+    }
+}

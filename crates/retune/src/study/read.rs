@@ -1,0 +1,118 @@
+//! From a file to a checked study, or to one message that says what to change.
+
+use super::explain::explain;
+use super::{Rule, Study};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::path::Path;
+use thiserror::Error;
+
+/// What is wrong with a study file.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// There is no such file, or it may not be read.
+    #[error("{file}: cannot be read: {source}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// The file is not text.
+    #[error("{file}: not UTF-8 text (at byte {byte})")]
+    NotText {
+        /// The file.
+        file: String,
+        /// Where it ceases to be text.
+        byte: usize,
+    },
+    /// The text is not JSON, or does not have the fields of a study.
+    #[error("{file}:{line}:{column}: {problem}")]
+    Field {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The field's path and what is wrong there.
+        problem: String,
+    },
+    /// Values without their names.
+    #[error("{file}: {field}: wrong type: list, expected an object")]
+    List {
+        /// The file.
+        file: String,
+        /// The field's path.
+        field: String,
+    },
+    /// Each field is right but they contradict one another.
+    #[error("{file}: {rule}")]
+    Rule {
+        /// The file.
+        file: String,
+        /// The rule that is broken.
+        rule: Rule,
+    },
+}
+
+/// Reads and checks a study. Its name is filled in from that of the file.
+///
+/// # Errors
+/// [`StudyError`]: the file, the field, its value and what is allowed.
+pub fn read(path: &Path) -> Result<Study, StudyError> {
+    let file = path.display().to_string();
+    let mut study: Study = parse(&read_text(path)?, &file)?;
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    study.name = study.name.or(stem);
+    study.check().map_err(|rule| StudyError::Rule { file, rule })?;
+    Ok(study)
+}
+
+/// Reads a file as text, without a byte-order mark.
+///
+/// # Errors
+/// The file cannot be read or is not UTF-8.
+pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
+    let file = || path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|source| StudyError::Unreadable { file: file(), source })?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| StudyError::NotText { file: file(), byte: error.utf8_error().valid_up_to() })?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// Parses the text of `file`, naming the field that is wrong.
+///
+/// # Errors
+/// [`StudyError::Field`].
+pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> Result<T, StudyError> {
+    let refuse = |path: Option<String>, error: &serde_json::Error| StudyError::Field {
+        file: file.to_owned(),
+        line: error.line(),
+        column: error.column(),
+        problem: explain(path.as_deref(), error),
+    };
+    let mut json = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut json)
+        .map_err(|error| refuse(Some(error.path().to_string()), error.inner()))?;
+    json.end().map_err(|error| refuse(None, &error))?;
+    let given = serde_json::from_str(text).map_err(|error| refuse(None, &error))?;
+    let meant = serde_json::to_value(&value).map_err(|error| refuse(None, &error))?;
+    match list_for_object(&given, &meant) {
+        Some(field) => Err(StudyError::List { file: file.to_owned(), field }),
+        None => Ok(value),
+    }
+}
+
+/// The first field that was given as a list of values where they should be named. (Serde takes both.)
+fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
+    match (given, meant) {
+        (Value::Array(_), Value::Object(_)) => Some(String::new()),
+        (Value::Object(given), Value::Object(meant)) => given.iter().find_map(|(key, value)| {
+            let inner = list_for_object(value, meant.get(key)?)?;
+            Some(if inner.is_empty() { key.clone() } else { format!("{key}.{inner}") })
+        }),
+        _ => None,
+    }
+}

@@ -1,0 +1,134 @@
+//! `--set NAME=VALUE`: one number of a study, changed on the command line.
+
+use super::{Rule, Study};
+use retune_model::{Damper, NonNegative, OutOfRange, Positive};
+use std::str::FromStr;
+use thiserror::Error;
+
+/// What may be set, in the order of the list.
+const NAMES: [&str; 13] = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "P", "omega", "R", "T", "t0"];
+
+/// A parsed `NAME=VALUE`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    name: &'static str,
+    value: f64,
+}
+
+/// Why a setting is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SettingError {
+    /// There is no `=`.
+    #[error("\"{text}\" is not of the form NAME=VALUE, for instance k1=30000")]
+    Form {
+        /// The text as given.
+        text: String,
+    },
+    /// No such parameter.
+    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &NAMES))]
+    Name {
+        /// The name as given.
+        name: String,
+    },
+    /// Not a number.
+    #[error("{name}: \"{text}\" is not a number")]
+    Number {
+        /// The parameter.
+        name: &'static str,
+        /// The text as given.
+        text: String,
+    },
+    /// A number that the parameter cannot have.
+    #[error("{name}: {source}")]
+    OutOfRange {
+        /// The parameter.
+        name: &'static str,
+        /// Its value and what is allowed.
+        source: OutOfRange,
+    },
+    /// A parameter of a damper that is not there.
+    #[error("{name}: the scene has no damper")]
+    NoDamper {
+        /// The parameter.
+        name: &'static str,
+    },
+    /// The study does not hold together any more.
+    #[error(transparent)]
+    Rule(#[from] Rule),
+}
+
+impl Setting {
+    /// The number that is set, in the parameter's SI unit.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+}
+
+impl FromStr for Setting {
+    type Err = SettingError;
+
+    fn from_str(text: &str) -> Result<Self, SettingError> {
+        let (name, value) =
+            text.split_once('=').ok_or_else(|| SettingError::Form { text: text.to_owned() })?;
+        let name = known(name.trim())?;
+        let number = value.trim().parse();
+        let value = number.map_err(|_| SettingError::Number { name, text: value.trim().to_owned() })?;
+        Ok(Self { name, value })
+    }
+}
+
+fn known(name: &str) -> Result<&'static str, SettingError> {
+    let unknown = || SettingError::Name { name: name.to_owned() };
+    NAMES.into_iter().find(|known| *known == name).ok_or_else(unknown)
+}
+
+impl Study {
+    /// The same study with `settings` applied, first to last, and checked like a file.
+    ///
+    /// # Errors
+    /// The first setting that is refused, or the [`Rule`] that they break together.
+    pub fn with(&self, settings: &[Setting]) -> Result<Self, SettingError> {
+        let mut study = self.clone();
+        settings.iter().try_for_each(|setting| study.set(setting))?;
+        study.check()?;
+        Ok(study)
+    }
+
+    fn set(&mut self, &Setting { name, value }: &Setting) -> Result<(), SettingError> {
+        let out_of_range = |source| SettingError::OutOfRange { name, source };
+        let positive = || Positive::new(value).map_err(out_of_range);
+        let not_negative = || NonNegative::new(value).map_err(out_of_range);
+        let (primary, forcing) = (&mut self.scene.primary, &mut self.scene.forcing);
+        match name {
+            "m1" => primary.mass = positive()?,
+            "c1" => primary.damping = not_negative()?,
+            "k1" => primary.stiffness = not_negative()?,
+            "P" => forcing.amplitude = not_negative()?,
+            "omega" => forcing.frequency = not_negative()?,
+            "t0" => self.window.t0 = not_negative()?,
+            "T" => self.window.end = positive()?,
+            _ => {
+                let damper = self.scene.damper.as_mut().ok_or(SettingError::NoDamper { name })?;
+                set_damper(damper, name, positive, not_negative)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn set_damper(
+    damper: &mut Damper,
+    name: &str,
+    positive: impl Fn() -> Result<Positive, SettingError>,
+    not_negative: impl Fn() -> Result<NonNegative, SettingError>,
+) -> Result<(), SettingError> {
+    match name {
+        "m2" => damper.mass = positive()?,
+        "k2" => damper.stiffness = not_negative()?,
+        "c2" => damper.damping = not_negative()?,
+        "D" => damper.rest_distance = not_negative()?,
+        "C" => damper.clearance = not_negative()?,
+        _ => damper.contact.radius = positive()?, // R, the last of `NAMES`
+    }
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
+
+use super::read::{parse, read, read_text};
+use super::{Rule, Study, StudyError};
+use retune_model::NonNegative;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Table 2 of the paper: dampers to tune, beside the paper's own designs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table2 {
+    /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// The rows of the table.
+    #[schemars(length(min = 1))]
+    pub rows: Vec<PaperRow>,
+}
+
+/// A row of Table 2.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PaperRow {
+    /// The damper's name in the table.
+    pub damper: String,
+    /// The study that tunes it; a path as seen from this file.
+    pub study: PathBuf,
+    /// The paper's design, from which the refinement starts.
+    pub paper: Design,
+}
+
+/// A damper's design.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// k2, stiffness of the damper's spring, N/m.
+    pub k2: NonNegative,
+    /// c2, damping between damper and primary structure, N·s/m.
+    pub c2: NonNegative,
+    /// D, distance between the damper at rest and the primary structure, m.
+    #[serde(rename = "D")]
+    pub d: NonNegative,
+    /// C, clearance between the damper at rest and the obstacle, m.
+    #[serde(rename = "C")]
+    pub c: NonNegative,
+}
+
+/// A damper's study with the paper's design in its scene.
+#[derive(Clone, Debug)]
+pub struct PaperStudy {
+    /// The damper's name in the table.
+    pub damper: String,
+    /// The study; the design in its scene is the paper's.
+    pub study: Study,
+}
+
+/// Reads the studies of a table, each with the paper's design in its scene.
+///
+/// # Errors
+/// [`StudyError`], of the table's own file or of a study that it names.
+pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
+    let file = path.display().to_string();
+    let table: Table2 = parse(&read_text(path)?, &file)?;
+    let refuse = |rule| StudyError::Rule { file: file.clone(), rule };
+    let directory = path.parent().unwrap_or(Path::new(""));
+    let mut rows: Vec<PaperStudy> = Vec::new();
+    for row in table.rows {
+        let study_file = directory.join(&row.study);
+        let study = at_design(read(&study_file)?, row.paper)
+            .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
+        if rows.iter().any(|other| other.study.name() == study.name()) {
+            return Err(refuse(Rule::SameName { name: study.name().to_owned() }));
+        }
+        rows.push(PaperStudy { damper: row.damper, study });
+    }
+    if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok(rows) }
+}
+
+/// The study with another design in its scene.
+fn at_design(mut study: Study, design: Design) -> Result<Study, Rule> {
+    let damper = study.scene.damper.as_mut().ok_or(Rule::NoDamper)?;
+    (damper.stiffness, damper.damping) = (design.k2, design.c2);
+    (damper.rest_distance, damper.clearance) = (design.d, design.c);
+    study.search()?;
+    Ok(study)
+}
+
+/// Whether a file is a table of studies and no study: whether it has `rows`. A file that is neither is none.
+///
+/// # Errors
+/// It cannot be read.
+pub fn is_table2(path: &Path) -> Result<bool, StudyError> {
+    let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
+    Ok(json.is_ok_and(|json| json.get("rows").is_some()))
+}

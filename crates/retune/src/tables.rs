@@ -1,0 +1,100 @@
+//! `table2` and `retune`: the same search for several dampers or structures, and a table of what was found.
+
+use crate::cli;
+use crate::error::Error;
+use crate::optimize::log::{joined, short};
+use crate::optimize::{Found, optimize, table2_header, table2_row, where_results_are, with_threads};
+use crate::results::Directory;
+use crate::screen::Screen;
+use crate::study::{self, PaperStudy};
+use std::path::{Path, PathBuf};
+
+/// Re-optimises each row of Table 2 from the paper's own design, and shows both rows.
+///
+/// # Errors
+/// A study is wrong, nothing can be computed, or the results cannot be written.
+pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
+    let rows = study::read_table2(&arguments.study)?;
+    let running = &arguments.running;
+    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/table2"));
+    let screen = Screen::new(running.quiet);
+    let mut table = Table::new("table2", "origin", &out)?;
+    with_threads(running.threads, || {
+        for PaperStudy { damper, mut study } in rows {
+            if let Some(optimize) = &mut study.optimize {
+                optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
+            }
+            screen.log(format!("\n{damper}: re-optimised from the paper's design"))?;
+            let optimum = optimize(&study, &out.join(study.name()), screen)?;
+            table.push("paper", &damper, optimum.start());
+            table.push("re-optimised", &damper, optimum.found());
+        }
+        table.finish(screen)
+    })
+}
+
+/// Tunes both dampers anew for each stiffness of the primary structure.
+///
+/// # Errors
+/// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
+pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
+    let rows = study::read_table2(&arguments.study)?;
+    let mut studies = Vec::new();
+    for setting in &arguments.k1 {
+        for PaperStudy { damper, study } in &rows {
+            studies.push((setting.value(), damper, study.with(std::slice::from_ref(setting))?));
+        }
+    }
+    let running = &arguments.running;
+    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/retune"));
+    let screen = Screen::new(running.quiet);
+    let mut table = Table::new("retune", "k1", &out)?;
+    with_threads(running.threads, || {
+        for (k1, damper, study) in studies {
+            screen.log(format!("\n{damper} at k1 = {k1} N/m"))?;
+            let optimum = optimize(&study, &out.join(format!("k1-{k1}")).join(study.name()), screen)?;
+            table.push(&k1.to_string(), damper, optimum.found());
+        }
+        table.finish(screen)
+    })
+}
+
+/// A table of designs in the form of the paper's Table 2, with E1max and one column of its own.
+struct Table {
+    name: &'static str,
+    directory: Directory,
+    csv: Vec<String>,
+    text: Vec<String>,
+}
+
+impl Table {
+    fn new(name: &'static str, column: &'static str, out: &Path) -> Result<Self, Error> {
+        let directory =
+            Directory::create(out, |file| file == format!("{name}.csv") || file == format!("{name}.txt"))?;
+        let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
+        let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
+        Ok(Self { name, directory, csv, text })
+    }
+
+    fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
+        self.csv.push(format!("{label},{},{},{e1_max}", quoted(damper), joined(&design, ",")));
+        self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, design), short(e1_max)));
+    }
+
+    fn finish(self, screen: Screen) -> Result<(), Error> {
+        let Self { name, directory, csv, text } = self;
+        directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
+        directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
+        screen.line(format!("\n{}", text.join("\n")))?;
+        screen.line(where_results_are(directory.path())?)
+    }
+}
+
+/// A text as a CSV field.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,67 @@
+# Retune: the verbs of the project. Type `just` for this list.
+
+retune := "cargo run --release --quiet --package retune --"
+
+# List the recipes
+default:
+    @just --list --unsorted
+
+# Tune the SSVI NES of the paper: grid, fminsearch, log and figures into results/ssvi
+optimize-ssvi:
+    {{retune}} optimize studies/ssvi.json
+
+# Tune the linear TMD of the paper into results/tmd
+optimize-tmd:
+    {{retune}} optimize studies/tmd.json
+
+# Re-optimise both rows of Table 2, beside the paper's
+table2:
+    {{retune}} table2 studies/table2.json
+
+# Re-tune both dampers for other stiffnesses k1 in N/m, for instance `just retune 30000 50000`
+retune *K1:
+    {{retune}} retune {{K1}}
+
+# Run one scene, for instance `just simulate studies/ssvi.json --set k1=30000 --json`
+simulate STUDY="studies/ssvi.json" *OPTIONS:
+    {{retune}} simulate {{STUDY}} {{OPTIONS}}
+
+# Check a study file and say what it asks for
+check STUDY:
+    {{retune}} check {{STUDY}}
+
+# Write the JSON Schemas that editors complete study files with
+schema:
+    {{retune}} schema study > studies/study.schema.json.tmp && mv studies/study.schema.json.tmp studies/study.schema.json
+    {{retune}} schema table2 > studies/table2.schema.json.tmp && mv studies/table2.schema.json.tmp studies/table2.schema.json
+
+# Run all tests
+test *OPTIONS:
+    cargo test {{OPTIONS}}
+
+# Measure speed
+bench *OPTIONS:
+    cargo bench {{OPTIONS}}
+
+# Format the code
+fmt:
+    cargo fmt --all
+
+# Check format and lints, warnings as errors
+lint:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets -- -D warnings
+
+# Speed against accuracy of every method and peer, on six scenes (results/accuracy)
+accuracy:
+    cargo run --release -p retune-peers --bin accuracy
+
+# GNU Octave, SciPy and SUNDIALS on the same scenes (needs octave, and scipy and scikit-sundae for python3)
+accuracy-external:
+    octave-cli --no-gui --quiet tests/reference/external/octave_methods.m
+    python3 tests/reference/external/scipy_methods.py
+    cargo run --release -p retune-peers --bin accuracy draw
+
+# Where methods fail, and how (results/stability)
+stability:
+    cargo run --release -p retune-peers --bin stability
