@@ -54,6 +54,10 @@ pub const PEERS: [Peer; 9] = [
     Peer { program: "diffsol 0.18", method: "TR-BDF2", piece: with_diffsol::tr_bdf2, tightest: 1e-7 },
 ];
 
+/// The peer that, restarted at contacts of the near-critical scene, loops without end inside a step (ivp 0.6.0): it is run only
+/// with contacts stepped over.
+pub const ENDLESS: (&str, &str) = ("ivp 0.6", "LSODA");
+
 /// Most events of a run.
 const MOST_EVENTS: usize = 10_000;
 

@@ -41,13 +41,7 @@ pub fn all() -> Result<Vec<Difficulty>, OutOfRange> {
         stiffness("contact K × 10⁴", 1e4)?,
         stiffness("contact K × 10⁶", 1e6)?,
         stiffness("contact K × 10⁸", 1e8)?,
-        difficulty(
-            "contact",
-            "TMD that never touches",
-            20.0,
-            Numbers { d: 0.327, ..TMD },
-            same,
-        )?,
+        difficulty("contact", "TMD that never touches", 20.0, Numbers { d: 0.327, ..TMD }, same)?,
         difficulty("contact", "D = 0: contact at t = 0", 10.0, Numbers { d: 0.0, ..SSVI }, same)?,
         difficulty(
             "contact",
