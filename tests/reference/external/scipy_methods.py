@@ -89,8 +89,8 @@ def cvode_piece(motion, method, t, y, end, rtol):
 
     def events(_t, y, g):
         g[:] = motion.gaps(y)
-    events.terminal, events.direction, events.num_events = [True, True], [-1, -1], 2
-    solver = CVODE(rhs, rtol=rtol, atol=rtol * 1e-3, method=method, eventsfn=events, max_num_steps=200000)
+    events.terminal, events.direction = [True, True], [-1, -1]
+    solver = CVODE(rhs, rtol=rtol, atol=rtol * 1e-3, method=method, eventsfn=events, num_events=2, max_num_steps=200000)
     out = solver.solve(numpy.array([t, end]), numpy.array(y))
     if not out.success:
         raise RuntimeError(out.message)
