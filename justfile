@@ -26,6 +26,18 @@ retune *K1:
 simulate STUDY="studies/ssvi.json" *OPTIONS:
     {{retune}} simulate {{STUDY}} {{OPTIONS}}
 
+# Make every table and figure of the paper, on one page: results/paper/index.html
+reproduce *OPTIONS:
+    {{retune}} reproduce {{OPTIONS}}
+
+# Make one figure of the paper, 2 to 7, into results/paper
+figure N *OPTIONS:
+    {{retune}} figure {{N}} {{OPTIONS}}
+
+# Make one table of the paper, 1 or 2, into results/paper
+table N *OPTIONS:
+    {{retune}} table {{N}} {{OPTIONS}}
+
 # Check a study file and say what it asks for
 check STUDY:
     {{retune}} check {{STUDY}}
@@ -34,6 +46,7 @@ check STUDY:
 schema:
     {{retune}} schema study > studies/study.schema.json.tmp && mv studies/study.schema.json.tmp studies/study.schema.json
     {{retune}} schema table2 > studies/table2.schema.json.tmp && mv studies/table2.schema.json.tmp studies/table2.schema.json
+    {{retune}} schema paper > studies/paper.schema.json.tmp && mv studies/paper.schema.json.tmp studies/paper.schema.json
 
 # Run all tests
 test *OPTIONS:

@@ -180,6 +180,7 @@ impl PeakEnergy {
 }
 
 #[cfg(test)]
+#[expect(clippy::approx_constant, reason = "the paper's rounded numbers")]
 mod tests {
     use super::*;
     use retune_model::{Contact, Forcing, PoissonRatio, Positive, Primary};

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::optimize::log::{joined, short};
+use crate::paper::Plan;
 use crate::screen::Screen;
 use crate::study::{self, Study};
 use std::path::Path;
@@ -16,6 +17,9 @@ pub fn check(path: &Path) -> Result<(), Error> {
         for row in study::read_table2(path)? {
             screen.line(format!("{}: {}", row.damper, describe(&row.study)))?;
         }
+    } else if study::is_paper(path)? {
+        Plan::read(path, screen)?;
+        screen.line("every table and figure of the paper".to_owned())?;
     } else {
         screen.line(describe(&study::read(path)?))?;
     }

@@ -26,6 +26,26 @@ pub enum Command {
     Table2(Table2),
     /// Tune both dampers anew for other stiffnesses k1 of the primary structure
     Retune(Retune),
+    /// Make every table and figure of the paper, on one page beside what the paper says
+    Reproduce(Reproduce),
+    /// Make one figure of the paper
+    Figure {
+        /// Its number in the paper
+        #[arg(value_parser = clap::value_parser!(u8).range(2..=7))]
+        number: u8,
+        /// How it is made.
+        #[command(flatten)]
+        paper: Reproduce,
+    },
+    /// Make one table of the paper
+    Table {
+        /// Its number in the paper
+        #[arg(value_parser = clap::value_parser!(u8).range(1..=2))]
+        number: u8,
+        /// How it is made.
+        #[command(flatten)]
+        paper: Reproduce,
+    },
     /// Check a study file and say what it asks for
     Check {
         /// The study file
@@ -51,6 +71,8 @@ pub enum Kind {
     Study,
     /// The paper's Table 2
     Table2,
+    /// The whole paper
+    Paper,
 }
 
 /// How a search is run.
@@ -73,6 +95,17 @@ pub struct Optimize {
     /// The study file
     pub study: PathBuf,
     /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `reproduce`, `figure`, `table`.
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// The study of the whole paper
+    #[arg(long, value_name = "FILE", default_value = "studies/paper.json")]
+    pub study: PathBuf,
+    /// How it is run; results go to results/paper unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
 }
@@ -111,9 +144,9 @@ pub struct Simulate {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<Setting>,
     /// Integration method
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(["hybrid", "ode23s", "ode45"]).map(method))]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).map(method))]
     pub solver: Option<Method>,
-    /// How ode23s and ode45 meet a contact
+    /// How every method but the hybrid meets a contact
     #[arg(long, value_name = "HOW", value_parser = PossibleValuesParser::new(["located", "stepped"]).map(contacts))]
     pub contacts: Option<Contacts>,
     /// Relative tolerance of a step
@@ -135,11 +168,7 @@ fn stiffness(text: &str) -> Result<Setting, SettingError> {
 }
 
 fn method(name: String) -> Method {
-    match name.as_str() {
-        "ode23s" => Method::Ode23s,
-        "ode45" => Method::Ode45,
-        _ => Method::Hybrid,
-    }
+    Method::ALL.into_iter().find(|method| method.name() == name).unwrap_or(Method::Hybrid)
 }
 
 fn contacts(name: String) -> Contacts {

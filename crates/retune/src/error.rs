@@ -48,6 +48,9 @@ pub enum Error {
     /// A run could not be finished.
     #[error("the run failed: {0}")]
     Run(#[from] SolverError),
+    /// A motion could not be followed.
+    #[error("the run failed: {0}")]
+    Atlas(#[from] retune_atlas::Error),
     /// A design that was found cannot be run.
     #[error("a design that was found cannot be run: {0}")]
     Unusable(#[from] Unusable),
@@ -90,6 +93,7 @@ impl Error {
             | Self::Output { .. } => 2,
             Self::Threads(_)
             | Self::Run(_)
+            | Self::Atlas(_)
             | Self::Unusable(_)
             | Self::NoStart(_)
             | Self::Search { .. }

@@ -7,6 +7,7 @@ mod axis;
 mod colour;
 mod heat_map;
 mod panels;
+pub mod sheet;
 
 pub use axis::scale_for;
 pub use heat_map::{Mark, Nodes, heat_map};
@@ -58,7 +59,9 @@ fn with_subscripts(svg: &str) -> String {
     for part in parts {
         match part.split_once('}') {
             Some((low, rest)) => {
-                out += &format!("<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}");
+                out += &format!(
+                    "<tspan dy=\"9\" font-size=\"70%\">{low}</tspan><tspan dy=\"-9\">&#8203;</tspan>{rest}"
+                );
             }
             None => out += part,
         }

@@ -8,10 +8,10 @@ mod search;
 mod set;
 mod table2;
 
-pub use read::{StudyError, read};
+pub use read::{StudyError, read, read_paper};
 pub use search::{Rule, Search};
 pub use set::{Setting, SettingError};
-pub use table2::{PaperStudy, Table2, is_table2, read_table2};
+pub use table2::{PaperStudy, Table2, is_paper, is_table2, read_table2};
 
 use retune_model::{NonNegative, Positive, Scene};
 use retune_optim::{Options, Scale, Variable};
@@ -61,12 +61,12 @@ pub struct Span {
 pub struct Solver {
     /// The integration method.
     pub method: Method,
-    /// How ode23s and ode45 meet a contact. The hybrid always locates it.
+    /// How every method but the hybrid meets a contact. The hybrid always locates it.
     pub contacts: Contacts,
     /// Relative tolerance of a step.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
     pub rtol: f64,
-    /// Absolute tolerance of a step, m and m/s (ode23s and ode45).
+    /// Absolute tolerance of a step, m and m/s (of the methods with an error estimate, but the hybrid).
     #[schemars(range(min = 0.0))]
     pub atol: f64,
     /// Most steps a run may take.

@@ -82,7 +82,8 @@ impl std::fmt::Display for MadeBy {
 impl Summary {
     /// Collects the observations of a run of `scene` with the window and solver of `study`.
     pub fn new(study: &Study, scene: Scene, response: &Response) -> Self {
-        let Response { e1_max, e2_max, impacts, force_max, stroke_max, final_state, scene: kind, work } = *response;
+        let Response { e1_max, e2_max, impacts, force_max, stroke_max, final_state, scene: kind, work } =
+            *response;
         let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
         let [x1, v1, x2, v2] = final_state;
         Self {
@@ -131,11 +132,19 @@ impl std::fmt::Display for Summary {
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
-        writeln!(f, "impacts     {} on the primary structure, {} on the obstacle", self.impacts.primary, self.impacts.obstacle)?;
+        writeln!(
+            f,
+            "impacts     {} on the primary structure, {} on the obstacle",
+            self.impacts.primary, self.impacts.obstacle
+        )?;
         let Walls { primary, obstacle } = self.force_max;
         writeln!(f, "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle")?;
         writeln!(f, "stroke max  {:.6} m, the largest |x2 - x1|", self.stroke_max)?;
         writeln!(f, "model       {model}")?;
-        write!(f, "work        {} steps, {} rejected, {} evaluations", self.steps, self.rejected, self.evaluations)
+        write!(
+            f,
+            "work        {} steps, {} rejected, {} evaluations",
+            self.steps, self.rejected, self.evaluations
+        )
     }
 }

@@ -40,7 +40,11 @@ fn exact_unknown_fields_are_named_with_a_suggestion() {
         "optimize.refine: unknown field `tolx`; did you mean `TolX`? \
          allowed: starts, apart, TolX, TolFun, scaled, MaxIter, MaxFunEvals",
     );
-    refused("/optimize/vary", json!(["c3"]), "optimize.vary[0]: \"c3\" is not allowed here; did you mean `c2`? allowed: k2, c2, D, C");
+    refused(
+        "/optimize/vary",
+        json!(["c3"]),
+        "optimize.vary[0]: \"c3\" is not allowed here; did you mean `c2`? allowed: k2, c2, D, C",
+    );
 }
 
 #[test]
@@ -60,9 +64,21 @@ fn exact_missing_fields_are_named() {
 
 #[test]
 fn exact_values_out_of_range_are_named_with_what_is_allowed() {
-    refused("/scene/primary/m1", json!(-1), "scene.primary.m1: -1 is not allowed here: give a finite number above 0");
-    refused("/scene/damper/D", json!(-0.1), "scene.damper.D: -0.1 is not allowed here: give a finite number not below 0");
-    refused("/scene/damper/C", json!(-1), "scene.damper.C: -1 is not allowed here: give a finite number not below 0");
+    refused(
+        "/scene/primary/m1",
+        json!(-1),
+        "scene.primary.m1: -1 is not allowed here: give a finite number above 0",
+    );
+    refused(
+        "/scene/damper/D",
+        json!(-0.1),
+        "scene.damper.D: -0.1 is not allowed here: give a finite number not below 0",
+    );
+    refused(
+        "/scene/damper/C",
+        json!(-1),
+        "scene.damper.C: -1 is not allowed here: give a finite number not below 0",
+    );
     refused(
         "/scene/damper/contact/nu2",
         json!(0.7),
@@ -70,24 +86,39 @@ fn exact_values_out_of_range_are_named_with_what_is_allowed() {
     );
     refused("/window/T", json!(0), "window.T: 0 is not allowed here: give a finite number above 0");
     refused("/window/t0", json!(4), "window: t0 = 4 s is not before T = 4 s: the window is empty");
-    refused("/optimize/refine/starts", json!(0), "optimize.refine.starts: 0 is not allowed here: give a whole number above 0");
+    refused(
+        "/optimize/refine/starts",
+        json!(0),
+        "optimize.refine.starts: 0 is not allowed here: give a whole number above 0",
+    );
     let mut study = tiny();
     study["solver"] = json!({ "rtol": 0 });
-    refused_text(&study.to_string(), "solver.rtol: 0 is not allowed here: give a number above 0 and at most 0.1");
+    refused_text(
+        &study.to_string(),
+        "solver.rtol: 0 is not allowed here: give a number above 0 and at most 0.1",
+    );
     study["solver"] = json!({ "method": "ode45s" });
     refused_text(
         &study.to_string(),
-        "solver.method: \"ode45s\" is not allowed here; did you mean `ode45`? allowed: hybrid, ode23s, ode45",
+        "solver.method: \"ode45s\" is not allowed here; did you mean `ode45`? allowed: hybrid, ode23s, ode45, ode23, dop853, rk4, euler",
     );
 }
 
 #[test]
 fn exact_wrong_types_are_named() {
-    refused("/scene/damper/k2", json!("215"), "scene.damper.k2: wrong type: string \"215\", expected a number");
+    refused(
+        "/scene/damper/k2",
+        json!("215"),
+        "scene.damper.k2: wrong type: string \"215\", expected a number",
+    );
     refused("/scene/damper/k2", Value::Null, "scene.damper.k2: wrong type: null, expected a number");
     refused("/window", json!(100), "window: wrong type: number `100`, expected an object");
     refused("/window", json!([1, 4]), "window: wrong type: list, expected an object");
-    refused("/scene/primary", json!([1000, 452, 39500]), "scene.primary: wrong type: list, expected an object");
+    refused(
+        "/scene/primary",
+        json!([1000, 452, 39500]),
+        "scene.primary: wrong type: list, expected an object",
+    );
     refused(
         "/optimize/surf/k2/points",
         json!(1.5),
@@ -98,13 +129,21 @@ fn exact_wrong_types_are_named() {
 #[test]
 fn exact_contradictions_in_a_search_are_named() {
     let from_to = |from: f64, to: f64, points: u64| json!({ "from": from, "to": to, "points": points });
-    refused("/optimize/surf/k2", from_to(300.0, 200.0, 3), "optimize.surf.k2: the range is empty: `from` 300 is above `to` 200");
+    refused(
+        "/optimize/surf/k2",
+        from_to(300.0, 200.0, 3),
+        "optimize.surf.k2: the range is empty: `from` 300 is above `to` 200",
+    );
     refused(
         "/optimize/surf/k2",
         from_to(5.0, 200.0, 3),
         "optimize.surf.k2: from 5 to 200 leaves the bounds [10, 1000]",
     );
-    refused("/optimize/surf/k2/from", json!(0), "optimize.surf.k2: `from` is 0: both ends of a logarithmic axis must be above zero");
+    refused(
+        "/optimize/surf/k2/from",
+        json!(0),
+        "optimize.surf.k2: `from` is 0: both ends of a logarithmic axis must be above zero",
+    );
     refused(
         "/optimize/bounds/k2",
         json!([400, 100]),
@@ -197,7 +236,10 @@ fn exact_settings_are_checked_like_the_file() {
         assert_eq!((code, stderr), (Some(2), format!("error: {message}\n")));
     }
     for (setting, part) in [
-        ("k3=1", "unknown parameter `k3`; did you mean `k1`? allowed: m1, c1, k1, m2, k2, c2, D, C, P, omega, R, T, t0"),
+        (
+            "k3=1",
+            "unknown parameter `k3`; did you mean `k1`? allowed: m1, c1, k1, m2, k2, c2, D, C, P, omega, R, T, t0",
+        ),
         ("k1", "\"k1\" is not of the form NAME=VALUE, for instance k1=30000"),
         ("k1=soft", "k1: \"soft\" is not a number"),
     ] {

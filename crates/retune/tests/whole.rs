@@ -89,7 +89,8 @@ fn exact_results_are_the_same_bytes_with_one_thread_and_two() {
     for name in RESULTS {
         assert_eq!(desk.read(&format!("one/{name}")), desk.read(&format!("two/{name}")), "{name}");
     }
-    let log = |text: &str| text.lines().filter(|line| line.contains("E+0")).map(str::to_owned).collect::<Vec<_>>();
+    let log =
+        |text: &str| text.lines().filter(|line| line.contains("E+0")).map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(log(&one), log(&two));
 }
 
@@ -133,10 +134,21 @@ fn exact_a_later_run_leaves_nothing_of_an_earlier_one() {
 fn exact_simulate_prints_one_object_with_the_promised_keys() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
-    let answer: Value = serde_json::from_str(&desk.good(&["simulate", "small.json", "--json"])).expect("JSON");
+    let answer: Value =
+        serde_json::from_str(&desk.good(&["simulate", "small.json", "--json"])).expect("JSON");
     for key in [
-        "/E1max", "/t_E1max", "/E2max", "/R1", "/R2", "/impacts/primary", "/impacts/obstacle", "/stroke_max",
-        "/force_max/primary", "/force_max/obstacle", "/evaluations", "/solver/rtol",
+        "/E1max",
+        "/t_E1max",
+        "/E2max",
+        "/R1",
+        "/R2",
+        "/impacts/primary",
+        "/impacts/obstacle",
+        "/stroke_max",
+        "/force_max/primary",
+        "/force_max/obstacle",
+        "/evaluations",
+        "/solver/rtol",
     ] {
         assert!(answer.pointer(key).is_some_and(Value::is_number), "{key}");
     }

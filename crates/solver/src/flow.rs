@@ -5,6 +5,7 @@
 //! are not used: near critical damping they are nearly parallel. The force is two more components that turn with `ωt`, so
 //! resonance is no special case.
 
+use crate::settings::SolverError;
 use crate::system::Linear;
 use retune_model::Drive;
 
@@ -45,6 +46,18 @@ impl<const N: usize> Flow<N> {
     /// Length of a whole step, s.
     pub fn step(&self) -> f64 {
         self.step
+    }
+
+    /// Refuses a run to time `to` (s) in which a whole step would be lost to rounding.
+    ///
+    /// # Errors
+    /// [`SolverError::StepTooSmall`].
+    pub fn check_step(&self, t: f64, to: f64) -> Result<(), SolverError> {
+        if to <= t || to + self.step > to {
+            Ok(())
+        } else {
+            Err(SolverError::StepTooSmall { t, h: self.step })
+        }
     }
 
     /// The flow's numbers.

@@ -65,6 +65,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
+        self.flow.check_step(self.now.t, to)?;
         let (from, mut count) = (self.now.t, 0.0); // time is counted, not accumulated
         while self.now.t < to && !observer.satisfied() {
             let now = self.now;

@@ -40,7 +40,7 @@ pub struct Hybrid<'a> {
     system: &'a Coupled,
     flow: Flow<4>,
     contacts: [Compression; 2],
-    /// `|d⁴r/dt⁴| <= jerk_rate[0] e + jerk_rate[1]` at energy norm `e`.
+    /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴.
     fourth: [f64; 2],
     rtol: f64,
     max_steps: u64,
@@ -113,6 +113,7 @@ impl<'a> Hybrid<'a> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
+        self.flow.check_step(from.t, to)?;
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });

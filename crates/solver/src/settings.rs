@@ -35,6 +35,19 @@ impl Method {
         Method::Euler,
     ];
 
+    /// Its name in studies, tables and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Method::Hybrid => "hybrid",
+            Method::Ode23s => "ode23s",
+            Method::Ode45 => "ode45",
+            Method::Ode23 => "ode23",
+            Method::Dop853 => "dop853",
+            Method::Rk4 => "rk4",
+            Method::Euler => "euler",
+        }
+    }
+
     /// Whether the method takes equal steps, whatever the error.
     pub const fn has_fixed_step(self) -> bool {
         matches!(self, Method::Rk4 | Method::Euler)
@@ -97,7 +110,7 @@ impl Settings {
     }
 }
 
-/// A span of time over which maxima are taken, `0 <= from <= to`, s. Every run starts at rest at t = 0.
+/// A span of time over which maxima are taken, `0 <= from < to`, s. Every run starts at rest at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Start t0 of the observation; the motion before it is a transient that counts for nothing.
@@ -163,7 +176,7 @@ pub struct Response {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolverError {
     /// The step had to become smaller than the spacing of floating-point numbers allows.
-    #[error("the step became too small at t = {t} s (h = {h} s); loosen rtol, or choose the hybrid solver")]
+    #[error("the step became too small at t = {t} s (h = {h:e} s); loosen rtol, or choose the hybrid solver")]
     StepTooSmall {
         /// Time reached, s.
         t: f64,

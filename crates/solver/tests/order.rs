@@ -224,6 +224,24 @@ fn exact_stability_function_of_ode23s() {
     }
 }
 
+/// The error estimate on `y' = λ y`, from the three stages of the paper in complex numbers.
+#[test]
+fn exact_error_estimate_of_ode23s() {
+    let (d, e32, one) = (1.0 / (2.0 + 2.0_f64.sqrt()), 6.0 + 2.0_f64.sqrt(), Complex::from(1.0));
+    for (a, b) in [(-0.5, 0.0), (-3.0, 1.0), (0.2, 1.5), (-40.0, 300.0)] {
+        let z = Complex::new(a, b);
+        let w = one - z * d;
+        let k1 = z / w;
+        let f1 = z * (one + k1 * 0.5);
+        let k2 = (f1 - k1) / w + k1;
+        let f2 = z * (one + k2);
+        let k3 = (f2 - (k2 - f1) * e32 - (k1 - z) * 2.0) / w;
+        let expected = (k1 - k2 * 2.0 + k3) / 6.0;
+        let [re, im] = attempt::<Ode23s>(&Scalar { a, b }, 0.0, &[1.0, 0.0], 1.0).error;
+        assert!((Complex::new(re, im) - expected).norm() < 1e-13 * (1.0 + expected.norm()), "{z}");
+    }
+}
+
 #[test]
 fn exact_ode23s_is_l_stable() {
     for z in [-1e3, -1e6, -1e9] {

@@ -112,7 +112,7 @@ pub fn scale_for(values: &[f64]) -> Scale {
 
 /// A tick's number with as many decimals as the step needs; `size` is the largest on the axis.
 fn words(value: f64, step: f64, size: f64) -> String {
-    if value != 0.0 && (size >= 1e6 || size < 1e-3) {
+    if value != 0.0 && !(1e-3..1e6).contains(&size) {
         let text = format!("{value:.2e}");
         return text.replace(".00e", "e").replace("0e", "e");
     }
@@ -149,7 +149,10 @@ mod tests {
         let share = |scale, value| Axis::new(String::new(), scale, 2.0, 200.0).share(value);
         assert!((share(Scale::Linear, 101.0) - 0.5).abs() < 1e-14);
         assert!((share(Scale::Log, 20.0) - 0.5).abs() < 1e-14);
-        assert_eq!([share(Scale::Log, 1.0), share(Scale::Log, 300.0), share(Scale::Log, f64::NAN)], [0.0, 1.0, 0.0]);
+        assert_eq!(
+            [share(Scale::Log, 1.0), share(Scale::Log, 300.0), share(Scale::Log, f64::NAN)],
+            [0.0, 1.0, 0.0]
+        );
     }
 
     #[test]

@@ -84,11 +84,9 @@ fn cell(canvas: &Canvas, corner: (i32, i32), opposite: (i32, i32), colour: &impl
 
 /// The edges of the cells around the nodes: halfway to the next node, on the scale of the side.
 fn edges(side: &Nodes) -> Vec<f64> {
-    let (to, from): (fn(f64) -> f64, fn(f64) -> f64) = match side.scale {
-        Scale::Linear => (|v| v, |v| v),
-        Scale::Log => (f64::ln, f64::exp),
-    };
-    let nodes: Vec<f64> = side.values.iter().map(|v| to(*v)).collect();
+    let to = |v: f64| if side.scale == Scale::Log { v.ln() } else { v };
+    let from = |v: f64| if side.scale == Scale::Log { v.exp() } else { v };
+    let nodes: Vec<f64> = side.values.iter().map(|&v| to(v)).collect();
     let half_first = nodes.get(1).map_or(0.5, |second| 0.5 * (second - nodes[0]));
     let mut edges = vec![from(nodes[0] - half_first)];
     for (i, node) in nodes.iter().enumerate() {

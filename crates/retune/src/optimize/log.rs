@@ -75,7 +75,7 @@ mod tests {
     fn exact_short_numbers_have_six_digits() {
         assert_eq!(short(215.0), "215");
         assert_eq!(short(0.060_333_333_3), "0.0603333");
-        assert_eq!(short(1234.567_89), "1234.57");
+        assert_eq!(short(1_234.567_89), "1234.57");
         assert_eq!(short(1.234_567_8e-9), "1.23457e-9");
         assert_eq!(short(0.0), "0");
     }

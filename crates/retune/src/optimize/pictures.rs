@@ -23,12 +23,14 @@ pub(super) fn draw(
 ) -> Result<(), Error> {
     let made_by = MadeBy::new(study).to_string();
     if let Some(surf) = surf {
-        let free: Vec<usize> = (0..surf.variables.len()).filter(|&axis| surf.grid.axes()[axis].points() > 1).collect();
+        let free: Vec<usize> =
+            (0..surf.variables.len()).filter(|&axis| surf.grid.axes()[axis].points() > 1).collect();
         for (i, &x) in free.iter().enumerate() {
             for &y in &free[i + 1..] {
                 let name = format!("surf-{}-{}.svg", surf.variables[x], surf.variables[y]);
                 let svg = heat_map(surf, [x, y], search, refined, &made_by);
-                results.write(&name, &svg.map_err(|problem| Error::Figure { name: name.clone(), problem })?)?;
+                results
+                    .write(&name, &svg.map_err(|problem| Error::Figure { name: name.clone(), problem })?)?;
             }
         }
     }
@@ -68,14 +70,24 @@ fn heat_map(
         others => format!("Least E_{{1max}} over the grid in {}.", others.join(" and ")),
     };
     let marks = [
-        Mark::Grid { x: best[x], y: best[y], label: format!("best of the grid, {} J", short(surf.values[surf.best])) },
+        Mark::Grid {
+            x: best[x],
+            y: best[y],
+            label: format!("best of the grid, {} J", short(surf.values[surf.best])),
+        },
         Mark::Optimum {
             x: found(x),
             y: found(y),
             label: format!("refined, {} J", short(refined.best().minimum.value)),
         },
     ];
-    figure::heat_map(&[x, y].map(|axis| nodes(surf, axis)), &least, ENERGY, &marks, &[what, made_by.to_owned()])
+    figure::heat_map(
+        &[x, y].map(|axis| nodes(surf, axis)),
+        &least,
+        ENERGY,
+        &marks,
+        &[what, made_by.to_owned()],
+    )
 }
 
 /// An axis of the grid as an axis of a figure.

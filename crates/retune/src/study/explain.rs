@@ -5,7 +5,8 @@ use serde_json::error::Category;
 /// Says what is wrong at the field `path` (`scene.damper.k2`), if the text came as far as a field.
 pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
     let message = message_only(error);
-    let field = path.map(|path| path.strip_suffix(".?").unwrap_or(path)).filter(|path| !matches!(*path, "." | "?"));
+    let field =
+        path.map(|path| path.strip_suffix(".?").unwrap_or(path)).filter(|path| !matches!(*path, "." | "?"));
     if matches!(error.classify(), Category::Syntax | Category::Eof) {
         let place = field.map(|field| format!(" at {field}")).unwrap_or_default();
         return format!("not valid JSON{place}: {}", syntax(&message));

@@ -55,6 +55,22 @@ pub enum StudyError {
         /// The rule that is broken.
         rule: Rule,
     },
+    /// The plan of the whole paper asks for what cannot be.
+    #[error("{file}: {problem}")]
+    Paper {
+        /// The file.
+        file: String,
+        /// The field and what is allowed.
+        problem: String,
+    },
+}
+
+/// Reads the plan of the whole paper.
+///
+/// # Errors
+/// [`StudyError`]: the file, the field, its value and what is allowed.
+pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, StudyError> {
+    parse(&read_text(path)?, &path.display().to_string())
 }
 
 /// Reads and checks a study. Its name is filled in from that of the file.

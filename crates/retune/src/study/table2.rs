@@ -92,6 +92,19 @@ fn at_design(mut study: Study, design: Design) -> Result<Study, Rule> {
 /// # Errors
 /// It cannot be read.
 pub fn is_table2(path: &Path) -> Result<bool, StudyError> {
+    has_field(path, "rows")
+}
+
+/// Whether a file is a plan of the whole paper, by its field `table2`.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn is_paper(path: &Path) -> Result<bool, StudyError> {
+    has_field(path, "table2")
+}
+
+/// Whether a file is JSON with this field at its top.
+fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
     let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
-    Ok(json.is_ok_and(|json| json.get("rows").is_some()))
+    Ok(json.is_ok_and(|json| json.get(field).is_some()))
 }

@@ -1,0 +1,25 @@
+//! What motions there are: sweeps over frequency or stiffness, impact zones, stroboscopic maps, orbit diagrams, Lyapunov
+//! exponents through contacts, and names for regimes that stand on evidence.
+//!
+//! - [`sweep`]: the response at each value of a parameter, every run fresh from rest, in parallel.
+//! - [`strobe`]: the motion once per period of the force, and sweeps that carry the state over.
+//! - [`lyapunov`]: how fast neighbouring motions part, from two trajectories with renormalisation.
+//! - [`record`]: a motion followed for many periods together with its neighbour.
+//! - [`regime`]: periodic (`nT, m, k`), amplitude-modulated, chaotic, intermittent, after transient chaos or not.
+//!
+//! Every result depends on its input alone, whatever the number of threads. Nothing is printed, no file is touched.
+#![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
+
+pub mod lyapunov;
+pub mod parameter;
+pub mod record;
+pub mod regime;
+pub mod strobe;
+pub mod sweep;
+
+pub use lyapunov::Exponent;
+pub use parameter::{Error, Parameter};
+pub use record::{Record, Stretch, follow};
+pub use regime::{Kind, Regime, classify};
+pub use strobe::{Orbit, carried, fresh_orbits};
+pub use sweep::{Point, Zone, fresh};

@@ -1,0 +1,51 @@
+//! What a sweep runs over.
+
+use retune_model::{NonNegative, OutOfRange, Scene};
+use retune_solver::SolverError;
+
+/// A parameter of a scene that is swept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// ω, angular frequency of the force, rad/s.
+    Omega,
+    /// k1, stiffness of the primary structure, N/m.
+    K1,
+}
+
+impl Parameter {
+    /// The scene with this parameter at `value`.
+    ///
+    /// # Errors
+    /// A value that the parameter cannot have.
+    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, Error> {
+        let value = NonNegative::new(value)?;
+        match self {
+            Self::Omega => scene.forcing.frequency = value,
+            Self::K1 => scene.primary.stiffness = value,
+        }
+        Ok(scene)
+    }
+}
+
+/// Why something could not be followed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A value that a parameter cannot have.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// A run could not be finished.
+    #[error(transparent)]
+    Run(#[from] SolverError),
+    /// Without a damper there is nothing to strobe: the steady response says it all.
+    #[error("the scene has no damper: its steady response is known in closed form")]
+    NoDamper,
+    /// A constant force has no period.
+    #[error("omega is 0: the force has no period to look at the motion by")]
+    NoPeriod,
+}
+
+/// `count` evenly spaced values from `from` to `to`, both included. Each is computed by itself, none by adding steps.
+pub fn evenly(from: f64, to: f64, count: usize) -> Vec<f64> {
+    let last = count.saturating_sub(1).max(1) as f64;
+    (0..count).map(|i| from + (to - from) * (i as f64 / last)).collect()
+}

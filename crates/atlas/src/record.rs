@@ -1,0 +1,144 @@
+//! A motion followed for many periods of the force, together with a neighbour: what a regime is judged by.
+
+use crate::lyapunov::{Exponent, Neighbours, Pair};
+use crate::parameter::Error;
+use crate::strobe::{Strobe, Touches, at_rest, coupled, phase_of};
+use retune_model::{Coupled, Scene};
+use retune_solver::observe::Unobserved;
+use retune_solver::{Motion, Settings, SolverError};
+
+/// How long a motion is followed, in periods of the force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// Periods after which the motion is taken to have settled; they are recorded too, to see transients.
+    pub settle: usize,
+    /// Periods after that, from which the regime is read.
+    pub observe: usize,
+}
+
+impl Default for Stretch {
+    fn default() -> Self {
+        Self { settle: 500, observe: 500 }
+    }
+}
+
+/// A motion, once per period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Period of the force, s.
+    pub period: f64,
+    /// States in coordinates of one unit, √J (see [`coordinates`]), one at the end of each period.
+    pub samples: Vec<[f64; 4]>,
+    /// Impacts in each period, on the structure and on the obstacle.
+    pub impacts: Vec<[u64; 2]>,
+    /// Logarithm of the neighbour's growth in each period.
+    pub growth: Vec<f64>,
+    /// How many of the first periods are taken for a transient.
+    pub settle: usize,
+}
+
+/// First distance of the neighbour, as a share of the size of the motion.
+const APART: f64 = 1e-7;
+/// Largest tolerance of a contact: a thousandth of the distance of the neighbours or less.
+const TOLERANCE: f64 = 1e-11;
+
+/// The state in one unit, √J: `[ω√m1 x1, √m1 v1, ω√m2 (x2 - x1 - D), √m2 v2]`. Its square is twice the kinetic energy plus that
+/// of springs which would resonate at ω; a distance in it weighs all four coordinates by what they do to the motion.
+pub fn coordinates(scene: &Scene, &[x1, v1, x2, v2]: &[f64; 4]) -> [f64; 4] {
+    let omega = scene.forcing.frequency.get();
+    let m1 = scene.primary.mass.get().sqrt();
+    let (m2, d) =
+        scene.damper.map_or((0.0, 0.0), |damper| (damper.mass.get().sqrt(), damper.rest_distance.get()));
+    [omega * m1 * x1, m1 * v1, omega * m2 * (x2 - x1 - d), m2 * v2]
+}
+
+/// Euclidean distance.
+pub(crate) fn distance(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+struct Twins<'a> {
+    scene: &'a Scene,
+    system: &'a Coupled,
+    strobe: Strobe<'a>,
+}
+
+impl Neighbours for Twins<'_> {
+    type State = Motion;
+    type Error = SolverError;
+
+    fn step(&mut self, state: Motion) -> Result<Motion, SolverError> {
+        self.strobe.next(state, &mut Unobserved)
+    }
+    fn distance(&self, a: Motion, b: Motion) -> f64 {
+        distance(&coordinates(self.scene, &a.y), &coordinates(self.scene, &b.y))
+    }
+    fn between(&self, a: Motion, b: Motion, share: f64) -> Motion {
+        let y = std::array::from_fn(|i| a.y[i] + share * (b.y[i] - a.y[i]));
+        Motion { t: a.t, y, phase: phase_of(self.system, &y) }
+    }
+}
+
+/// Follows the motion of a scene from `start` (at a crest of the force), or from rest.
+///
+/// # Errors
+/// As [`Error`] says.
+pub fn follow(
+    scene: &Scene,
+    start: Option<Motion>,
+    stretch: Stretch,
+    settings: &Settings,
+) -> Result<Record, Error> {
+    let system = coupled(scene)?;
+    let settings = Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings };
+    let start = start.unwrap_or_else(|| at_rest(&system));
+    let mut twins = Twins { scene, system: &system, strobe: Strobe::new(&system, &settings) };
+    let mut ahead = Strobe::new(&system, &settings);
+    let count = stretch.settle + stretch.observe;
+    let mut record = Record {
+        period: ahead.period(),
+        samples: Vec::with_capacity(count),
+        impacts: Vec::with_capacity(count),
+        growth: Vec::with_capacity(count),
+        settle: stretch.settle,
+    };
+    // The structure's size of motion without its damper at most, a tenth of it at least: the scale need only be right in order.
+    let size = (system.energy_norm_growth() * record.period).max(f64::MIN_POSITIVE);
+    let mut pair = Pair {
+        motion: start,
+        neighbour: beside(scene, &system, start, APART * size),
+        distance: APART * size,
+    };
+    for _ in 0..count {
+        let mut touches = Touches::default();
+        let motion = ahead.next(pair.motion, &mut touches)?;
+        record.growth.push(pair.advance(&mut twins, motion)?);
+        record.samples.push(coordinates(scene, &motion.y));
+        record.impacts.push(touches.0);
+    }
+    Ok(record)
+}
+
+/// A neighbour at a distance in no special direction.
+fn beside(scene: &Scene, system: &Coupled, motion: Motion, distance: f64) -> Motion {
+    let unit = coordinates(scene, &[1.0, 1.0, 2.0 + system.rest_distance(), 1.0]);
+    let share = 0.5 * distance;
+    let [a, b, c, d] = unit.map(|scale| share / scale);
+    let [x1, v1, x2, v2] = motion.y;
+    let y = [x1 + a, v1 - b, x2 + a + c, v2 + d];
+    Motion { t: motion.t, y, phase: phase_of(system, &y) }
+}
+
+impl Record {
+    /// The exponent of the settled motion, 1/s.
+    pub fn exponent(&self) -> Exponent {
+        Exponent::of(&self.growth[self.settle.min(self.growth.len())..], self.period)
+    }
+
+    /// Root mean square of the settled samples about zero, √J: what distances are compared with.
+    pub fn scale(&self) -> f64 {
+        let settled = &self.samples[self.settle.min(self.samples.len())..];
+        let sum: f64 = settled.iter().map(|y| y.iter().map(|v| v * v).sum::<f64>()).sum();
+        (sum / settled.len().max(1) as f64).sqrt()
+    }
+}

@@ -1,0 +1,191 @@
+//! The motion looked at once per period of the force: the stroboscopic map, and orbit diagrams.
+
+use crate::parameter::{Error, Parameter};
+use rayon::prelude::*;
+use retune_model::{Coupled, Drive, Scene, Side};
+use retune_solver::observe::{Observer, Peak, Segment, Unobserved};
+use retune_solver::{Hybrid, Motion, Phase, Settings, SolverError};
+use std::f64::consts::TAU;
+
+/// The equations of a scene that has a damper.
+///
+/// # Errors
+/// [`Error::NoDamper`], or [`Error::NoPeriod`] under a constant force.
+pub fn coupled(scene: &Scene) -> Result<Coupled, Error> {
+    let damper = scene.damper.as_ref().ok_or(Error::NoDamper)?;
+    if scene.forcing.frequency.get() == 0.0 {
+        return Err(Error::NoPeriod);
+    }
+    Ok(Coupled::new(&scene.primary, &scene.forcing, damper))
+}
+
+/// The map of the state over one period of the force, from a crest of `P cos ωt` to the next.
+///
+/// Time starts anew with each period, so the map is the same at every step.
+pub struct Strobe<'a> {
+    hybrid: Hybrid<'a>,
+    period: f64,
+    max_steps: u64,
+}
+
+impl<'a> Strobe<'a> {
+    /// Prepares the map. A period may take [`Settings::max_steps`] steps.
+    pub fn new(system: &'a Coupled, settings: &Settings) -> Self {
+        let period = TAU / system.bare().frequency();
+        Self {
+            hybrid: Hybrid::new(system, settings.rtol, period, settings.max_steps),
+            period,
+            max_steps: settings.max_steps,
+        }
+    }
+
+    /// Period of the force, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// The motion a period later.
+    ///
+    /// # Errors
+    /// [`SolverError`] with the time reached in the period.
+    pub fn next(&mut self, from: Motion, observer: &mut impl Observer<4>) -> Result<Motion, SolverError> {
+        if self.hybrid.work.steps > self.max_steps / 2 {
+            self.hybrid.work = Default::default(); // the limit is meant for a period, not for a sweep
+        }
+        let end = self.hybrid.propagate(Motion { t: 0.0, ..from }, self.period, observer)?;
+        Ok(Motion { t: 0.0, ..end })
+    }
+}
+
+/// The paper's start: at rest.
+pub fn at_rest(system: &Coupled) -> Motion {
+    Motion { t: 0.0, y: system.rest(), phase: Phase::Flight }
+}
+
+/// What the damper does in a state that was not reached by moving there: pressed into a wall where it overlaps one.
+pub(crate) fn phase_of(system: &Coupled, y: &[f64; 4]) -> Phase {
+    let overlaps = system.rapprochement(y);
+    let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
+    pressed.map_or(Phase::Flight, Phase::Pressed)
+}
+
+/// Counts impacts.
+#[derive(Default)]
+pub(crate) struct Touches(pub(crate) [u64; 2]);
+
+impl Observer<4> for Touches {
+    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn touch_down(&mut self, _t: f64, side: Side) {
+        self.0[side as usize] += 1;
+    }
+}
+
+struct Watch<F> {
+    peak: Peak<F>,
+    touches: Touches,
+}
+
+impl<F: Fn(Drive, &[f64; 4]) -> [f64; 3]> Observer<4> for Watch<F> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.peak.segment(segment);
+    }
+    fn touch_down(&mut self, t: f64, side: Side) {
+        self.touches.touch_down(t, side);
+    }
+}
+
+/// The stroboscopic samples of a motion at one value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orbit {
+    /// The parameter's value.
+    pub value: f64,
+    /// `[x1, v1, x2, v2]` at each crest of the force.
+    pub samples: Vec<[f64; 4]>,
+    /// Largest energy of the primary structure over the samples' periods, J.
+    pub e1_max: f64,
+    /// Impacts over the samples' periods, on the structure and on the obstacle.
+    pub impacts: [u64; 2],
+}
+
+/// Periods that are waited, then looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Periods {
+    /// Periods that count for nothing.
+    pub settle: usize,
+    /// Periods that are recorded.
+    pub record: usize,
+}
+
+/// Follows one orbit and says where it ends.
+fn orbit(
+    system: &Coupled,
+    value: f64,
+    start: Motion,
+    periods: Periods,
+    settings: &Settings,
+) -> Result<(Orbit, Motion), Error> {
+    let mut strobe = Strobe::new(system, settings);
+    let mut motion = start;
+    for _ in 0..periods.settle {
+        motion = strobe.next(motion, &mut Unobserved)?;
+    }
+    let rates = |drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y);
+    let mut samples = Vec::with_capacity(periods.record);
+    let (mut e1_max, mut impacts) = (0.0_f64, [0; 2]);
+    for _ in 0..periods.record {
+        let mut watch = Watch { peak: Peak::new(rates, f64::INFINITY), touches: Touches::default() };
+        motion = strobe.next(motion, &mut watch)?;
+        samples.push(motion.y);
+        e1_max = e1_max.max(watch.peak.record().value);
+        impacts = [0, 1].map(|side| impacts[side] + watch.touches.0[side]);
+    }
+    Ok((Orbit { value, samples, e1_max, impacts }, motion))
+}
+
+/// Sweeps the parameter through `values` in their order; each motion starts where the one before ended, at a crest of the
+/// force, so that a motion is kept as long as it exists.
+///
+/// # Errors
+/// As [`Error`] says.
+pub fn carried(
+    scene: &Scene,
+    parameter: Parameter,
+    values: &[f64],
+    periods: Periods,
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Orbit>, Error> {
+    let mut last: Option<Motion> = None;
+    let mut orbits = Vec::with_capacity(values.len());
+    for &value in values {
+        let system = coupled(&parameter.at(*scene, value)?)?;
+        let (found, end) =
+            orbit(&system, value, last.unwrap_or_else(|| at_rest(&system)), periods, settings)?;
+        orbits.push(found);
+        last = Some(end);
+        done();
+    }
+    Ok(orbits)
+}
+
+/// The orbit at each of `values`, every one from rest, in parallel.
+///
+/// # Errors
+/// As [`Error`] says.
+pub fn fresh_orbits(
+    scene: &Scene,
+    parameter: Parameter,
+    values: &[f64],
+    periods: Periods,
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Orbit>, Error> {
+    let run = |&value: &f64| {
+        let system = coupled(&parameter.at(*scene, value)?)?;
+        let (found, _) = orbit(&system, value, at_rest(&system), periods, settings)?;
+        done();
+        Ok(found)
+    };
+    let orbits: Vec<Result<Orbit, Error>> = values.par_iter().map(run).collect();
+    orbits.into_iter().collect()
+}
