@@ -7,7 +7,7 @@ use std::{fs, io};
 /// The tables, made by `just accuracy-external`.
 const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/reference/external/scipy.csv"];
 
-/// The runs of a scene. The scripts know how many contacts there were but not always when.
+/// The runs of a scene. The scripts say how many contacts there were, not when.
 ///
 /// # Errors
 /// A table that cannot be read; a missing one is an empty one.

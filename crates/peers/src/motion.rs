@@ -3,6 +3,9 @@
 use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 use std::cell::Cell;
 
+/// Evaluations after which a run is given up: a hundred times those of the longest that ended.
+pub const MOST_EVALUATIONS: u64 = 20_000_000;
+
 /// Which contact forces act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acting {
@@ -39,8 +42,12 @@ impl Equations {
     }
 
     /// `y'`.
+    ///
+    /// # Panics
+    /// After [`MOST_EVALUATIONS`]: an integrator that never returns can be stopped in no other way.
     pub fn derivative(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
         self.evaluations.set(self.evaluations.get() + 1);
+        assert!(self.evaluations.get() < MOST_EVALUATIONS, "does not end: {MOST_EVALUATIONS} evaluations, at t = {t} s");
         let Some(coupled) = &self.coupled else {
             let [v, a] = self.bare.derivative(self.bare.drive(t), &[y[0], y[1]]);
             return [v, a, 0.0, 0.0];

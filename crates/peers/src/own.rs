@@ -2,7 +2,18 @@
 
 use crate::record::Found;
 use crate::scenes::Case;
-use retune_solver::{Contacts, Method, Settings, Window, e1_max, simulate, touch_downs};
+use retune_model::Coupled;
+use retune_solver::dop853::Dop853;
+use retune_solver::euler::Euler;
+use retune_solver::observe::Observer;
+use retune_solver::ode23::Ode23;
+use retune_solver::ode23s::Ode23s;
+use retune_solver::ode45::Ode45;
+use retune_solver::onestep::Run;
+use retune_solver::rk4::Rk4;
+use retune_solver::{
+    Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError, Window, e1_max, simulate, touch_downs,
+};
 use std::time::{Duration, Instant};
 
 /// The shortest of several runs, s: after a warm-up at least 5 and at most 20, fewer where one takes long.
@@ -54,4 +65,41 @@ pub fn run(case: &Case, settings: &Settings, timed: bool) -> Result<Found, Strin
         evaluations: response.work.evaluations + if hybrid { response.work.steps } else { 0 },
         seconds,
     })
+}
+
+/// Follows a motion from a state of flight at t = 0 to time `to` (s) or until the observer is satisfied; the state reached.
+///
+/// # Errors
+/// As the method's own.
+pub fn follow(
+    system: &Coupled,
+    start: [f64; 4],
+    to: f64,
+    settings: &Settings,
+    observer: &mut impl Observer<4>,
+) -> Result<[f64; 4], SolverError> {
+    let mut run = Run::new(system, settings, 0.0, start, settings.longest_step(to));
+    match settings.method {
+        Method::Hybrid => {
+            let begin = Motion { t: 0.0, y: start, phase: Phase::Flight };
+            let mut hybrid = Hybrid::new(system, settings.rtol, to, settings.max_steps);
+            return Ok(hybrid.propagate(begin, to, observer)?.y);
+        }
+        Method::Ode23s => run.integrate::<Ode23s>(to, observer),
+        Method::Ode45 => run.integrate::<Ode45>(to, observer),
+        Method::Ode23 => run.integrate::<Ode23>(to, observer),
+        Method::Dop853 => run.integrate::<Dop853>(to, observer),
+        Method::Rk4 => run.integrate::<Rk4>(to, observer),
+        Method::Euler => run.integrate::<Euler>(to, observer),
+    }?;
+    Ok(run.state())
+}
+
+/// How a method meets contacts, in a word.
+pub fn way(settings: &Settings) -> &'static str {
+    match (settings.method, settings.contacts) {
+        (Method::Hybrid, _) => "exact",
+        (_, Contacts::Located) => "located",
+        (_, Contacts::Stepped) => "stepped",
+    }
 }

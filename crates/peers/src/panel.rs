@@ -235,7 +235,7 @@ fn mark(area: &Area<'_>, (x, y): (i32, i32), line: &Line) -> Drawn {
         Marker::Ring => area.draw(&Circle::new((x, y), r + 2, line.colour))?,
         Marker::Square => area.draw(&Rectangle::new([(x - r, y - r), (x + r, y + r)], fill))?,
         Marker::Triangle => area.draw(&TriangleMarker::new((x, y), r + 2, fill))?,
-        Marker::Cross => area.draw(&plotters::element::Cross::new((x, y), r, line.colour.stroke_width(2)))?,
+        Marker::Cross => area.draw(&Cross::new((x, y), r, line.colour.stroke_width(2)))?,
         Marker::Nothing => {}
     }
     Ok(())

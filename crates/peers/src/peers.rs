@@ -8,6 +8,7 @@ use crate::motion::{Equations, Track};
 use crate::own::shortest_of;
 use crate::record::Found;
 use crate::scenes::Case;
+use std::panic::{self, AssertUnwindSafe};
 
 /// Follows the motion from `y` at a time to another; the end reached, and whether an event ended it. With a track, the motion
 /// is shown to it.
@@ -54,12 +55,19 @@ pub const PEERS: [Peer; 9] = [
     Peer { program: "diffsol 0.18", method: "TR-BDF2", piece: with_diffsol::tr_bdf2, tightest: 1e-7 },
 ];
 
-/// The peer that, restarted at contacts of the near-critical scene, loops without end inside a step (ivp 0.6.0): it is run only
-/// with contacts stepped over.
-pub const ENDLESS: (&str, &str) = ("ivp 0.6", "LSODA");
-
 /// Most events of a run.
 const MOST_EVENTS: usize = 10_000;
+
+/// Runs what may never return: it is stopped by the bound on evaluations, and that is its failure.
+fn guarded<T>(run: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    let loud = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let end = panic::catch_unwind(AssertUnwindSafe(run));
+    panic::set_hook(loud);
+    end.unwrap_or_else(|payload| {
+        Err(payload.downcast_ref::<String>().cloned().unwrap_or_else(|| String::from("panicked")))
+    })
+}
 
 fn follow(
     peer: &Peer,
@@ -97,7 +105,7 @@ fn follow(
 pub fn run(peer: &Peer, case: &Case, located: bool, rtol: f64) -> Result<Found, String> {
     let spacing = if case.name == "near-rigid" { 2e-5 } else { 2e-4 };
     let mut track = Track::new(spacing);
-    follow(peer, case, located, rtol, Some(&mut track))?;
+    guarded(|| follow(peer, case, located, rtol, Some(&mut track)))?;
     let (final_state, evaluations) = follow(peer, case, located, rtol, None)?;
     let seconds = shortest_of(|| follow(peer, case, located, rtol, None));
     Ok(Found {

@@ -37,6 +37,11 @@ pub const SSVI: Numbers = Numbers { k2: 215.0, c2: 232.0, d: 0.06, c: 0.36, stif
 /// Table 2's TMD.
 pub const TMD: Numbers = Numbers { k2: 600.0, c2: 262.0, d: 2.08, c: 4.7, stiffer: 1.0 };
 
+/// The structure and the damper of a scene that has one, as one system.
+pub fn system(scene: &Scene) -> Option<Coupled> {
+    scene.damper.as_ref().map(|damper| Coupled::new(&scene.primary, &scene.forcing, damper))
+}
+
 /// The paper's structure with a damper.
 ///
 /// # Errors
@@ -96,8 +101,7 @@ pub fn cases() -> Result<Vec<Case>, OutOfRange> {
 /// # Errors
 /// A run that failed.
 pub fn parting_rate(case: &Case) -> Result<Option<f64>, SolverError> {
-    let Some(damper) = &case.scene.damper else { return Ok(None) };
-    let system = Coupled::new(&case.scene.primary, &case.scene.forcing, damper);
+    let Some(system) = system(&case.scene) else { return Ok(None) };
     let apart = 1e-9;
     let end = |shift: f64| {
         let mut y = system.rest();

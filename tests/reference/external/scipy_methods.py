@@ -95,10 +95,13 @@ def cvode_piece(motion, method, t, y, end, rtol):
     if not out.success:
         raise RuntimeError(out.message)
     which = None
+    ts, ys = numpy.asarray(out.t), numpy.asarray(out.y)
     if out.t_events is not None and len(out.t_events):
-        which = int(numpy.argmin(numpy.abs(motion.gaps(out.y_events[-1]))))
-        return [t, out.t_events[-1]], [y, out.y_events[-1]], which, None
-    return out.t, out.y, None, None
+        hit, at = out.t_events[-1], out.y_events[-1]
+        which = int(numpy.argmin(numpy.abs(motion.gaps(at))))
+        before = ts < hit
+        return numpy.append(ts[before], hit), numpy.vstack([ys[before], at]), which, None
+    return ts, ys, None, None
 
 
 def run(s, piece, method, rtol):
@@ -108,8 +111,9 @@ def run(s, piece, method, rtol):
     energy = lambda y: 0.5 * (s["m1"] * y[1] ** 2 + s["k1"] * y[0] ** 2)
     pieces = []
     while t < s["T"]:
+        phase = motion.phase
         ts, ys, which, dense = piece(motion, method, t, y, s["T"], rtol)
-        pieces.append((ts, dense))
+        pieces.append((ts, ys, dense, phase))
         t, y = ts[-1], ys[-1]
         best = max([best] + [energy(v) for v in ys])
         if which is None:
@@ -121,20 +125,41 @@ def run(s, piece, method, rtol):
     return motion.evaluations, best, y, impacts, pieces
 
 
+def quintic(ts, ys, accelerations):
+    """x1 and v1 between points as the quintic that meets x1, v1 and its acceleration at both ends."""
+    h = numpy.diff(ts)[:, None]
+    x, v = ys[:, 0][:, None], ys[:, 1][:, None]
+    a = numpy.asarray(accelerations)[:, None]
+    c0, c1, c2 = x[:-1], h * v[:-1], h * h / 2 * a[:-1]
+    p, q, r = x[1:] - c0 - c1 - c2, h * v[1:] - c1 - 2 * c2, h * h * a[1:] - 2 * c2
+    c3, c4, c5 = 10 * p - 4 * q + r / 2, -15 * p + 7 * q - r, 6 * p - 3 * q + r / 2
+    u = numpy.linspace(0.0, 1.0, 65)[None, :]
+    at = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
+    slope = (c1 + u * (2 * c2 + u * (3 * c3 + u * (4 * c4 + u * 5 * c5)))) / h
+    return at, slope
+
+
 def e1max(s, best, pieces):
-    """The largest E1 on a fine grid of each dense output, and between its points by the parabola through three."""
-    for ts, dense in pieces:
+    """The largest E1 on a fine grid of the dense output (of the quintic between steps, where a program has none), and between
+    its points by the parabola through three."""
+    for ts, ys, dense, phase in pieces:
         if dense is None:
-            return math.nan
-        grid = numpy.linspace(ts[0], ts[-1], max(9, int((ts[-1] - ts[0]) / 2e-4)))
-        y = dense(grid)
-        e = 0.5 * (s["m1"] * y[1] ** 2 + s["k1"] * y[0] ** 2)
-        i = int(numpy.argmax(e))
-        best = max(best, e[i])
-        if 0 < i < len(e) - 1:
-            a, b, c = e[i - 1 : i + 2]
-            if 2 * b - a - c > 0:
-                best = max(best, b + (c - a) ** 2 / (8 * (2 * b - a - c)))
+            if len(ts) < 2 or ts[-1] <= ts[0]:
+                continue
+            motion = Motion(s)
+            motion.phase = phase
+            ys = numpy.asarray(ys)
+            x, v = quintic(numpy.asarray(ts), ys, [motion.f(t, y)[1] for t, y in zip(ts, ys)])
+        else:
+            y = dense(numpy.linspace(ts[0], ts[-1], max(9, int((ts[-1] - ts[0]) / 2e-4))))
+            x, v = y[:1], y[1:2]
+        for e in 0.5 * (s["m1"] * v**2 + s["k1"] * x**2):
+            i = int(numpy.argmax(e))
+            best = max(best, e[i])
+            if 0 < i < len(e) - 1:
+                a, b, c = e[i - 1 : i + 2]
+                if 2 * b - a - c > 0:
+                    best = max(best, b + (c - a) ** 2 / (8 * (2 * b - a - c)))
     return best
 
 

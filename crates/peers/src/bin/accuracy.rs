@@ -2,10 +2,13 @@
 #![allow(clippy::print_stderr)]
 
 use retune_model::{Coupled, Side};
-use retune_peers::reading::Reference;
+use retune_peers::chart::{self, Cost};
+use retune_peers::reading::Measure;
 use retune_peers::record::{Found, Row, csv, errors, parse};
-use retune_peers::scenes::{Case, cases, parting_rate};
-use retune_peers::{chart, external, own, peers, reading};
+use retune_peers::reference::Reference;
+use retune_peers::savings::savings;
+use retune_peers::scenes::{Case, cases};
+use retune_peers::{external, own, peers, text};
 use retune_solver::{Contacts, Method};
 use std::error::Error;
 use std::fs;
@@ -20,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
     let cases = cases()?;
     fs::write("tests/reference/external/scenes.json", scenes_json(&cases)?)?;
-    let references = cases.iter().map(reference).collect::<Result<Vec<_>, _>>()?;
+    let references = cases.iter().map(Reference::of).collect::<Result<Vec<_>, _>>()?;
     let table = folder.join("runs.csv");
     // `accuracy draw`: the runs of other programs and the pictures again, from the runs made before.
     let mut rows: Vec<Row> = if std::env::args().nth(1).as_deref() == Some("draw") {
@@ -39,22 +42,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         rows.extend(external::rows(case, &reference.found)?);
     }
     fs::write(table, csv(&rows))?;
-    let savings = reading::savings(&cases)?;
-    fs::write(folder.join("README.md"), reading::text(&cases, &references, &rows, &savings))?;
-    chart::work_precision(&folder.join("time.svg"), &cases, &rows, true)?;
-    chart::work_precision(&folder.join("evaluations.svg"), &cases, &rows, false)?;
+    let savings = savings(&cases)?;
+    fs::write(folder.join("README.md"), text::text(&cases, &references, &rows, &savings))?;
+    for (name, measure, cost) in [
+        ("time", Measure::E1max, Cost::Time),
+        ("evaluations", Measure::E1max, Cost::Evaluations),
+        ("state", Measure::State, Cost::Time),
+    ] {
+        chart::work_precision(&folder.join(format!("{name}.svg")), &cases, &rows, measure, cost)?;
+    }
     chart::savings(&folder.join("models.svg"), &savings)?;
     Ok(())
-}
-
-/// The hybrid at its tightest, and how far DOP853 with located contacts, another method, is from it.
-fn reference(case: &Case) -> Result<Reference, Box<dyn Error>> {
-    let run = |method, rtol| own::run(case, &own::settings(method, Contacts::Located, rtol), false);
-    let found = run(Method::Hybrid, 1e-13)?;
-    let omega = case.scene.forcing.frequency.get();
-    let [looser, independent] =
-        [run(Method::Hybrid, 1e-12)?, run(Method::Dop853, 1e-13)?].map(|other| errors(&other, &found, omega));
-    Ok(Reference { found, looser, independent, parting: parting_rate(case)? })
 }
 
 fn row(
@@ -99,8 +97,7 @@ fn own_rows(case: &Case, reference: &Found) -> Vec<Row> {
             for &value in &values {
                 let begun = Instant::now();
                 let found = own::run(case, &own::settings(method, contacts, value), true);
-                let name = format!("{method:?}").to_lowercase();
-                rows.push(row(case, reference, "retune", &name, way, value, found));
+                rows.push(row(case, reference, "retune", method.name(), way, value, found));
                 if begun.elapsed() > PATIENCE {
                     break;
                 }
@@ -119,11 +116,7 @@ fn peer_rows(case: &Case, reference: &Found) -> Vec<Row> {
                     break;
                 }
                 let begun = Instant::now();
-                let found = if located && (peer.program, peer.method) == peers::ENDLESS {
-                    Err(String::from("not run: restarted at a contact its step loop can go on for ever"))
-                } else {
-                    peers::run(peer, case, located, rtol)
-                };
+                let found = peers::run(peer, case, located, rtol);
                 rows.push(row(case, reference, peer.program, peer.method, way, rtol, found));
                 if begun.elapsed() > PATIENCE {
                     break;
