@@ -111,7 +111,11 @@ pub fn savings(path: &Path, savings: &[Saving]) -> Drawn {
     let root = SVGBackend::new(path, (900, 84 + 62 * savings.len() as u32)).into_drawing_area();
     root.fill(&WHITE)?;
     let bold = |size| ("sans-serif", size).into_font().style(FontStyle::Bold);
-    root.draw(&Text::new("Time of one E1max, µs: the smallest model that is exact, and the full contact model", (20, 14), bold(18)))?;
+    root.draw(&Text::new(
+        "Time of one E1max, µs: the smallest model that is exact, and the full contact model",
+        (20, 14),
+        bold(18),
+    ))?;
     let longest = savings.iter().flat_map(|s| s.seconds).fold(0.0, f64::max);
     for (i, s) in savings.iter().enumerate() {
         let top = 60 + 62 * i as i32;

@@ -2,6 +2,7 @@
 
 use crate::record::{Found, Row, errors};
 use crate::scenes::Case;
+use std::path::Path;
 use std::{fs, io};
 
 /// The tables, made by `just accuracy-external`.
@@ -11,10 +12,10 @@ const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/referen
 ///
 /// # Errors
 /// A table that cannot be read; a missing one is an empty one.
-pub fn rows(case: &Case, reference: &Found) -> io::Result<Vec<Row>> {
+pub fn rows(root: &Path, case: &Case, reference: &Found) -> io::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for table in TABLES {
-        let text = match fs::read_to_string(table) {
+        let text = match fs::read_to_string(root.join(table)) {
             Ok(text) => text,
             Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
             Err(error) => return Err(error),

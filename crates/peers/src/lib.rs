@@ -16,4 +16,5 @@ pub mod record;
 pub mod reference;
 pub mod savings;
 pub mod scenes;
+pub mod statistics;
 pub mod text;

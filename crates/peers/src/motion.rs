@@ -47,7 +47,10 @@ impl Equations {
     /// After [`MOST_EVALUATIONS`]: an integrator that never returns can be stopped in no other way.
     pub fn derivative(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
         self.evaluations.set(self.evaluations.get() + 1);
-        assert!(self.evaluations.get() < MOST_EVALUATIONS, "does not end: {MOST_EVALUATIONS} evaluations, at t = {t} s");
+        assert!(
+            self.evaluations.get() < MOST_EVALUATIONS,
+            "does not end: {MOST_EVALUATIONS} evaluations, at t = {t} s"
+        );
         let Some(coupled) = &self.coupled else {
             let [v, a] = self.bare.derivative(self.bare.drive(t), &[y[0], y[1]]);
             return [v, a, 0.0, 0.0];

@@ -16,7 +16,7 @@ use retune_solver::{
 };
 use std::time::{Duration, Instant};
 
-/// The shortest of several runs, s: after a warm-up at least 5 and at most 20, fewer where one takes long.
+/// The shortest of several runs, s: after a warm-up 100 of less than a millisecond, fewer where one takes longer.
 pub fn shortest_of<T>(mut run: impl FnMut() -> T) -> f64 {
     let timed = |run: &mut dyn FnMut()| {
         let begun = Instant::now();
@@ -28,9 +28,9 @@ pub fn shortest_of<T>(mut run: impl FnMut() -> T) -> f64 {
     };
     let warm_up = timed(&mut once);
     let wanted = match warm_up {
-        t if t < Duration::from_millis(1) => 20,
-        t if t < Duration::from_millis(20) => 5,
-        t if t < Duration::from_millis(100) => 1,
+        t if t < Duration::from_millis(1) => 100,
+        t if t < Duration::from_millis(20) => 6,
+        t if t < Duration::from_millis(150) => 2,
         t => return t.as_secs_f64(),
     };
     (0..wanted).map(|_| timed(&mut once)).fold(Duration::MAX, Duration::min).as_secs_f64()

@@ -102,7 +102,8 @@ impl Axis {
         }
         let rough = (self.high - self.low) / 5.0;
         let decade = 10f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|s| *s >= rough).unwrap_or(rough);
+        let step =
+            [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|s| *s >= rough).unwrap_or(rough);
         let first = (self.low / step).ceil() as i64;
         let last = (self.high / step + 1e-9).floor() as i64;
         let digits = usize::try_from(-(step.log10().floor() as i32)).unwrap_or(0);
@@ -275,4 +276,20 @@ fn write_names(
         ))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_axes_place_values_and_label_decades() {
+        let axis = Axis::log("x", 1e-4, 1e4);
+        assert!((axis.place(1.0) - 0.5).abs() < 1e-12);
+        assert_eq!((axis.place(1e-9), axis.place(1e9)), (0.0, 1.0));
+        let labels: Vec<String> = axis.ticks().into_iter().map(|t| t.1).collect();
+        assert_eq!(labels, ["10⁻⁴", "10⁻²", "1", "10²", "10⁴"]);
+        let ticks: Vec<String> = Axis::linear("y", 0.0, 100.0).ticks().into_iter().map(|t| t.1).collect();
+        assert_eq!(ticks, ["0", "20", "40", "60", "80", "100"]);
+    }
 }

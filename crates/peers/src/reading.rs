@@ -93,8 +93,7 @@ pub fn curves<'a>(rows: &'a [Row], case: &Case, measure: Measure) -> Vec<Curve<'
         ["exact", "located", "stepped"]
             .into_iter()
             .filter_map(|way| {
-                let rows: Vec<_> =
-                    of_case().filter(|r| r.name() == *name && r.contacts == way).collect();
+                let rows: Vec<_> = of_case().filter(|r| r.name() == *name && r.contacts == way).collect();
                 curve(&rows, measure)
             })
             .min_by(|a, b| {
@@ -103,4 +102,41 @@ pub fn curves<'a>(rows: &'a [Row], case: &Case, measure: Measure) -> Vec<Curve<'
             })
     };
     names.iter().filter_map(best).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Found;
+
+    fn row(setting: f64, seconds: f64, error: f64) -> Row {
+        let found =
+            Found { e1_max: 1.0, final_state: [0.0; 4], touches: None, impacts: 0, evaluations: 1, seconds };
+        Row {
+            scene: "a",
+            program: "retune".into(),
+            method: "m".into(),
+            contacts: "located",
+            setting,
+            found: if error.is_nan() { Err("failed".into()) } else { Ok(found) },
+            errors: [error, f64::NAN, f64::NAN],
+            expected_impacts: 0,
+        }
+    }
+
+    #[test]
+    fn exact_a_lucky_run_does_not_count_and_a_failed_one_is_counted() {
+        let rows = [
+            row(1e-3, 1.0, 1e-9), // lucky
+            row(1e-4, 2.0, 1e-4),
+            row(1e-5, 3.0, 1e-5),
+            row(1e-6, 9.0, f64::NAN),
+        ];
+        let curve = curve(&rows.iter().collect::<Vec<_>>(), Measure::E1max).expect("runs");
+        assert_eq!(curve.failed, 1);
+        assert_eq!(curve.points.iter().map(|p| p.0).collect::<Vec<_>>(), [1e-5, 1e-4, 1e-4]);
+        assert_eq!(curve.cost_at(1e-3, true), Some((1.0, 1e-3)));
+        assert_eq!(curve.cost_at(2e-5, true), Some((3.0, 1e-5)));
+        assert_eq!(curve.cost_at(1e-7, true), None);
+    }
 }

@@ -46,6 +46,7 @@ pub fn system(scene: &Scene) -> Option<Coupled> {
 ///
 /// # Errors
 /// A number that cannot be.
+#[expect(clippy::approx_constant, reason = "the paper's rounded numbers")]
 pub fn scene(n: Numbers) -> Result<Scene, OutOfRange> {
     let steel = (Positive::new(2.1e11)?, PoissonRatio::new(0.3)?);
     let soft = PoissonRatio::new(0.4)?;

@@ -4,7 +4,6 @@ use retune_peers::atlas::difficulties::all;
 use retune_peers::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
 use retune_peers::own;
 use retune_peers::record::errors;
-use retune_peers::scenes::cases;
 use retune_solver::{Contacts, Method};
 use std::path::Path;
 
@@ -47,17 +46,8 @@ fn exact_largest_stable_steps_are_those_of_theory() {
     for moment in stable::moments().expect("runs") {
         for found in stable::stable(&moment) {
             let equal = (found.measured / found.theory - 1.0).abs() < 1e-3
-                || (found.measured.is_infinite() && found.theory.is_infinite())
-                // Modes that are not quite decoupled have no formula for semi-implicit Euler.
-                || (found.method == Method::Euler && (found.measured / found.theory - 1.0).abs() < 0.05);
-            assert!(
-                equal,
-                "{} {}: {} {}",
-                moment.name,
-                found.method.name(),
-                found.measured,
-                found.theory
-            );
+                || (found.measured.is_infinite() && found.theory.is_infinite());
+            assert!(equal, "{} {}: {} {}", moment.name, found.method.name(), found.measured, found.theory);
         }
     }
 }
@@ -74,7 +64,7 @@ fn order_of_the_approach_to_rigid_walls_is_two_fifths() {
 
 #[test]
 fn exact_the_hybrid_jumps_over_no_contact() {
-    for case in cases().expect("valid numbers").iter().filter(|c| c.name == "two-sided" || c.name == "near-rigid") {
+    for case in &missed::subjects().expect("valid numbers") {
         for step in [1e-3, 1.0] {
             let found = missed::missed(case, Method::Hybrid, Contacts::Located, step).expect("runs");
             assert_eq!((found.jumped, found.said), (0, None), "{}", case.name);
@@ -105,4 +95,15 @@ fn regress_every_cell_is_as_committed() {
     for (j, way) in WAYS.iter().enumerate() {
         check("1,000 lossless impacts: the energy", j, energy_cell(way).expect("runs").verdict);
     }
+}
+
+/// The damped oscillator under semi-implicit Euler: `hω = 2 (√(1 + ζ²) - ζ)`.
+#[test]
+fn exact_largest_stable_step_of_semi_implicit_euler_with_damping() {
+    let moments = stable::moments().expect("runs");
+    let bare = moments.iter().find(|m| m.name.starts_with("no damper")).expect("the bare structure");
+    let (omega, zeta) = (39.5_f64.sqrt(), 452.0 / (2.0 * (3.95e4_f64 * 1000.0).sqrt()));
+    let expected = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta) / omega;
+    let found = stable::stable(bare).into_iter().find(|s| s.method == Method::Euler).expect("Euler").measured;
+    assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
 }

@@ -58,6 +58,7 @@ function v = ifelse_ (condition, yes, no)
   end
 end
 
+warning ("off", "all"); % each located event makes one
 global evaluations
 here = fileparts (mfilename ("fullpath"));
 scenes = jsondecode (fileread (fullfile (here, "scenes.json")));

@@ -88,9 +88,12 @@ fn damper(list: &mut List) -> Any<()> {
     list.add(group, "critical damping, c2² = 4 k2 m2", 20.0, scene(Numbers { c2: critical, ..SSVI })?);
     list.add(group, "k2 = 0", 10.0, scene(Numbers { k2: 0.0, ..SSVI })?);
     list.add(group, "c2 = 0", 10.0, scene(Numbers { c2: 0.0, k2: 600.0, d: 0.3, ..SSVI })?);
-    for (name, ratio) in
-        [("mass ratio 10⁻⁶", 1e-6), ("mass ratio 10⁻⁴", 1e-4), ("mass ratio 10⁻²", 1e-2), ("mass ratio 1", 1.0)]
-    {
+    for (name, ratio) in [
+        ("mass ratio 10⁻⁶", 1e-6),
+        ("mass ratio 10⁻⁴", 1e-4),
+        ("mass ratio 10⁻²", 1e-2),
+        ("mass ratio 1", 1.0),
+    ] {
         // Spring and dashpot in proportion, so that the damper keeps its frequency and damping ratio.
         let share = 1000.0 * ratio / 60.0;
         let mut scene = scene(Numbers { k2: SSVI.k2 * share, c2: SSVI.c2 * share, ..SSVI })?;

@@ -58,7 +58,11 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Drawn {
         let (glyph, fill, ink) = look(verdict);
         root.draw(&Rectangle::new([(x, 47), (x + 30, 73)], fill.filled()))?;
         root.draw(&Text::new(glyph, (x + 15, 60), centred(18, &ink)))?;
-        root.draw(&Text::new(verdict.name(), (x + 38, 60), font(16).color(&INK).pos(Pos::new(HPos::Left, VPos::Center))))?;
+        root.draw(&Text::new(
+            verdict.name(),
+            (x + 38, 60),
+            font(16).color(&INK).pos(Pos::new(HPos::Left, VPos::Center)),
+        ))?;
         x += 160;
     }
     let note = "in each cell: the larger relative error of E1max and final state";
@@ -76,7 +80,11 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Drawn {
             y += GAP;
             group = of;
         }
-        root.draw(&Text::new(*name, (20, y + CELL.1 / 2), font(16).color(&INK).pos(Pos::new(HPos::Left, VPos::Center))))?;
+        root.draw(&Text::new(
+            *name,
+            (20, y + CELL.1 / 2),
+            font(16).color(&INK).pos(Pos::new(HPos::Left, VPos::Center)),
+        ))?;
         for (j, cell) in cells.iter().enumerate() {
             let x = LEFT + CELL.0 * j as i32;
             let (glyph, fill, ink) = look(cell.verdict);

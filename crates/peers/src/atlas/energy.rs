@@ -170,6 +170,7 @@ fn draw(path: &Path, all: &[Drift]) -> Drawn {
         panel(false, Contacts::Stepped, "contacts stepped over"),
         panel(true, Contacts::Stepped, "fixed step, stepped over"),
     ];
-    let note = "No damping, no force: every change is the method's error. Runs that blew up are in energy.csv.";
+    let note =
+        "No damping, no force: every change is the method's error. Runs that blew up are in energy.csv.";
     sheet(path, &["Change of the energy over 1,000 lossless impacts", note], 3, (610, 500), &panels)
 }

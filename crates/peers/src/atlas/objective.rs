@@ -98,9 +98,8 @@ pub fn tables(chart: &Path) -> Result<[String; 2], Box<dyn Error>> {
             writeln!(values, "{variable} {:+.1} %,1e-11,{whole:.8},{window:.8}", 100.0 * change)?;
         }
     }
-    let corner = |k: i32| {
-        changed(std::array::from_fn(|i| 1.0 + 1e-3 * f64::from(k / 3_i32.pow(i as u32) % 3 - 1)))
-    };
+    let corner =
+        |k: i32| changed(std::array::from_fn(|i| 1.0 + 1e-3 * f64::from(k / 3_i32.pow(i as u32) % 3 - 1)));
     let all = (0..81).map(|k| both(corner(k), &tight)).collect::<Result<Vec<_>, _>>()?;
     for (name, pick) in [("least", f64::min as fn(f64, f64) -> f64), ("largest", f64::max)] {
         let [a, b] = [0, 1].map(|i| all.iter().map(|v| v[i]).reduce(pick).unwrap_or(f64::NAN));
@@ -139,7 +138,8 @@ fn optima() -> Result<String, Box<dyn Error>> {
         ))
     };
     let lines = runs.par_iter().map(judge).collect::<Result<Vec<_>, _>>()?;
-    Ok(String::from("run,k2,c2,D,C,reported_E1max_J,E1max_of_that_design_J,evaluations,stop\n") + &lines.concat())
+    Ok(String::from("run,k2,c2,D,C,reported_E1max_J,E1max_of_that_design_J,evaluations,stop\n")
+        + &lines.concat())
 }
 
 /// E1max along a line of k2 within ±0.1 %, J.
@@ -154,7 +154,8 @@ fn scan(settings: &Settings) -> Result<Vec<(f64, f64)>, OutOfRange> {
 }
 
 fn draw(path: &Path, [ode45, ode23s, hybrid]: [Vec<(f64, f64)>; 3]) -> Drawn {
-    let line = |name: &str, points, colour, width, marker| Line { name: name.into(), points, colour, width, marker };
+    let line =
+        |name: &str, points, colour, width, marker| Line { name: name.into(), points, colour, width, marker };
     let panels = [
         Panel {
             caption: "How far E1max is off".into(),
@@ -173,7 +174,13 @@ fn draw(path: &Path, [ode45, ode23s, hybrid]: [Vec<(f64, f64)>; 3]) -> Drawn {
             lines: vec![
                 line("ode23s, rtol 1e-3", scan(&stepped(Method::Ode23s, 1e-3))?, INK, 1, Marker::Cross),
                 line("hybrid, rtol 1e-6", scan(&located(Method::Hybrid, 1e-6))?, BLUE, 1, Marker::Square),
-                line("hybrid, rtol 1e-10", scan(&located(Method::Hybrid, 1e-10))?, VERMILION, 3, Marker::Nothing),
+                line(
+                    "hybrid, rtol 1e-10",
+                    scan(&located(Method::Hybrid, 1e-10))?,
+                    VERMILION,
+                    3,
+                    Marker::Nothing,
+                ),
             ],
         },
     ];

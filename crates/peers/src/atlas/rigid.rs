@@ -120,7 +120,8 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
         let apart = distance(n)?;
         (0..2).for_each(|i| limit[i].push((factor, apart[i])));
         for (i, way) in WAYS.iter().enumerate() {
-            let settings = Settings { max_steps: 400_000, ..own::settings(way.method, way.contacts, way.setting) };
+            let settings =
+                Settings { max_steps: 400_000, ..own::settings(way.method, way.contacts, way.setting) };
             write!(text, "1e{n},{},{:e},", way.name, way.setting)?;
             match own::run(&case, &settings, true) {
                 Ok(found) => {
@@ -183,7 +184,8 @@ fn draw(
     let [e1, state] = limit;
     let (first, at) = state.last().map_or((1.0, 1.0), |p| *p);
     let slope = EXPONENTS.map(|n| 10f64.powi(n)).map(|f| (f, at * (f / first).powf(-0.4))).collect();
-    let plain = |name: &str, points, colour, width, marker| Line { name: name.into(), points, colour, width, marker };
+    let plain =
+        |name: &str, points, colour, width, marker| Line { name: name.into(), points, colour, width, marker };
     let panels = [
         Panel {
             caption: "Error of the final state".into(),
@@ -200,7 +202,7 @@ fn draw(
         Panel {
             caption: "Hertz's contact against rigid walls".into(),
             x: x(),
-            y: Axis::log("relative distance from rigid walls", 1e-6, 1e2),
+            y: Axis::log("relative distance from rigid walls", 1e-8, 1e2),
             lines: vec![
                 plain("slope −2/5", slope, GREY, 1, Marker::Nothing),
                 plain("E1max", e1, BLUE, 2, Marker::Disc),
@@ -210,4 +212,22 @@ fn draw(
     ];
     let note = "Two-sided SSVI, 10 s. Lines end where a method gave up or blew up. Right: the hybrid against instantaneous elastic impacts; a contact lasts as long as K^(−2/5).";
     sheet(path, &["Toward rigid walls", note], 3, (640, 480), &panels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bounce;
+
+    #[test]
+    fn invariant_a_bounce_keeps_momentum_and_energy_and_turns_the_relative_velocity() {
+        let before = [0.3, 1.2, 0.3, -2.5];
+        let mut after = before;
+        bounce([1000.0, 60.0], &mut after);
+        let momentum = |y: [f64; 4]| 1000.0 * y[1] + 60.0 * y[3];
+        let energy = |y: [f64; 4]| 0.5 * (1000.0 * y[1] * y[1] + 60.0 * y[3] * y[3]);
+        assert!((momentum(after) - momentum(before)).abs() < 1e-12 * 1000.0);
+        assert!((energy(after) / energy(before) - 1.0).abs() < 1e-14);
+        assert!((after[3] - after[1] + before[3] - before[1]).abs() < 1e-14);
+        assert_eq!((after[0], after[2]), (before[0], before[2]));
+    }
 }

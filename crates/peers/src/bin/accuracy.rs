@@ -8,7 +8,7 @@ use retune_peers::record::{Found, Row, csv, errors, parse};
 use retune_peers::reference::Reference;
 use retune_peers::savings::savings;
 use retune_peers::scenes::{Case, cases};
-use retune_peers::{external, own, peers, text};
+use retune_peers::{external, own, peers, statistics, text};
 use retune_solver::{Contacts, Method};
 use std::error::Error;
 use std::fs;
@@ -39,11 +39,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect()
     };
     for (case, reference) in cases.iter().zip(&references) {
-        rows.extend(external::rows(case, &reference.found)?);
+        rows.extend(external::rows(Path::new("."), case, &reference.found)?);
     }
     fs::write(table, csv(&rows))?;
     let savings = savings(&cases)?;
-    fs::write(folder.join("README.md"), text::text(&cases, &references, &rows, &savings))?;
+    fs::write(
+        folder.join("README.md"),
+        text::text(&cases, &references, &rows, &savings, &statistics::all()?),
+    )?;
     for (name, measure, cost) in [
         ("time", Measure::E1max, Cost::Time),
         ("evaluations", Measure::E1max, Cost::Evaluations),
