@@ -125,6 +125,7 @@ fn exact_semi_implicit_euler_keeps_the_area_of_phase_space() {
 }
 
 /// The paper's system with the SSVI damper of Table 2.
+#[expect(clippy::approx_constant, reason = "the paper's rounded numbers")]
 fn ssvi() -> Scene {
     let positive = |v| Positive::new(v).expect("positive");
     let number = |v| NonNegative::new(v).expect("not negative");
