@@ -50,11 +50,11 @@ schema:
 
 # Run all tests
 test *OPTIONS:
-    cargo test --workspace {{OPTIONS}}
+    cargo test {{OPTIONS}}
 
 # Measure speed
 bench *OPTIONS:
-    cargo bench --workspace {{OPTIONS}}
+    cargo bench {{OPTIONS}}
 
 # Measure time and memory of a surf of 20^4 runs
 bench-surf:
@@ -67,4 +67,23 @@ fmt:
 # Check format and lints, warnings as errors
 lint:
     cargo fmt --all --check
-    cargo clippy --workspace --all-targets -- -D warnings
+    cargo clippy --all-targets -- -D warnings
+
+# Speed against accuracy of every method and peer, on six scenes, into results/accuracy
+accuracy:
+    cargo run --release -p retune-peers --features integrators --bin accuracy
+
+# GNU Octave, SciPy and SUNDIALS on the same scenes (needs octave, and numpy, scipy, scikit-sundae for python3), and the charts again
+accuracy-external:
+    octave-cli --no-gui --quiet tests/reference/external/octave_methods.m
+    python3 tests/reference/external/scipy_methods.py
+    cargo run --release -p retune-peers --features integrators --bin accuracy draw
+
+# Where methods fail, and how, into results/stability
+stability:
+    cargo run --release -p retune-peers --bin stability
+
+# Test the comparison itself, every cell of the atlas among it; `just test-peers --features integrators` with the peers
+test-peers *OPTIONS:
+    cargo clippy -p retune-peers --all-targets {{OPTIONS}} -- -D warnings
+    cargo test -p retune-peers {{OPTIONS}}

@@ -144,9 +144,9 @@ pub struct Simulate {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<Setting>,
     /// Integration method
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(["hybrid", "ode23s", "ode45"]).map(method))]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).map(method))]
     pub solver: Option<Method>,
-    /// How ode23s and ode45 meet a contact
+    /// How every method but the hybrid meets a contact
     #[arg(long, value_name = "HOW", value_parser = PossibleValuesParser::new(["located", "stepped"]).map(contacts))]
     pub contacts: Option<Contacts>,
     /// Relative tolerance of a step
@@ -168,11 +168,7 @@ fn stiffness(text: &str) -> Result<Setting, SettingError> {
 }
 
 fn method(name: String) -> Method {
-    match name.as_str() {
-        "ode23s" => Method::Ode23s,
-        "ode45" => Method::Ode45,
-        _ => Method::Hybrid,
-    }
+    Method::ALL.into_iter().find(|method| method.name() == name).unwrap_or(Method::Hybrid)
 }
 
 fn contacts(name: String) -> Contacts {

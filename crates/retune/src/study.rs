@@ -61,12 +61,12 @@ pub struct Span {
 pub struct Solver {
     /// The integration method.
     pub method: Method,
-    /// How ode23s and ode45 meet a contact. The hybrid always locates it.
+    /// How every method but the hybrid meets a contact. The hybrid always locates it.
     pub contacts: Contacts,
     /// Relative tolerance of a step.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
     pub rtol: f64,
-    /// Absolute tolerance of a step, m and m/s (ode23s and ode45).
+    /// Absolute tolerance of a step, m and m/s (of the methods with an error estimate, but the hybrid).
     #[schemars(range(min = 0.0))]
     pub atol: f64,
     /// Most steps a run may take.
@@ -168,13 +168,13 @@ impl Solver {
     /// The settings as solvers take them.
     pub fn settings(self) -> Settings {
         let Self { method, contacts, rtol, atol, max_steps } = self;
-        Settings { method, contacts, rtol, atol, max_steps }
+        Settings { method, contacts, rtol, atol, max_steps, ..Settings::default() }
     }
 }
 
 impl Default for Solver {
     fn default() -> Self {
-        let Settings { method, contacts, rtol, atol, max_steps } = Settings::default();
+        let Settings { method, contacts, rtol, atol, max_steps, .. } = Settings::default();
         Self { method, contacts, rtol, atol, max_steps }
     }
 }

@@ -100,7 +100,7 @@ fn exact_values_out_of_range_are_named_with_what_is_allowed() {
     study["solver"] = json!({ "method": "ode45s" });
     refused_text(
         &study.to_string(),
-        "solver.method: \"ode45s\" is not allowed here; did you mean `ode45`? allowed: hybrid, ode23s, ode45",
+        "solver.method: \"ode45s\" is not allowed here; did you mean `ode45`? allowed: hybrid, ode23s, ode45, ode23, dop853, rk4, euler",
     );
 }
 

@@ -1,4 +1,5 @@
-//! How a state moves in time: the exact flight + regularised contact propagator, `ode23s`, `ode45`, and what they observe.
+//! How a state moves in time: the exact flight + regularised contact propagator, `ode23s`, `ode45` and other
+//! general methods, and what they observe.
 //!
 //! [`simulate`], [`e1_max`] and [`trajectory`] run a scene. Below them, a method hands its motion over piece by piece
 //! ([`observe::Segment`]) to whatever was asked for ([`observe::Observer`]); nothing is stored on the way.
@@ -7,20 +8,24 @@
 mod collision;
 mod contact;
 pub mod dop853;
+pub mod euler;
 mod flow;
+mod follow;
 mod free;
 mod gap;
 mod hybrid;
 pub mod observe;
+pub mod ode23;
 pub mod ode23s;
 pub mod ode45;
 pub mod onestep;
+pub mod rk4;
 mod rule;
 mod run;
 mod settings;
 mod system;
 
 pub use hybrid::{Hybrid, Motion, Phase};
-pub use run::{Sample, e1_max, simulate, trajectory};
+pub use run::{Sample, e1_max, simulate, touch_downs, trajectory};
 pub use settings::{Contacts, Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
 pub use system::{Linear, LinearSystem, System};

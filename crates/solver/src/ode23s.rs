@@ -3,7 +3,7 @@
 //!
 //! Order 2, three stages, L-stable, first same as last. A W-method: it keeps its order with a wrong Jacobian.
 
-use crate::onestep::{Attempt, OneStep, Tolerance};
+use crate::onestep::{Attempt, OneStep, POWERS, Tolerance};
 use crate::system::System;
 use nalgebra::{Const, DimMin, SMatrix, SVector};
 
@@ -36,12 +36,9 @@ where
         let slope = system.derivative(t + h, &end);
         let k3 = lu.solve(&(vector(slope) - (k2 - f1) * E32 - (k1 - f0) * 2.0 + time_part))?;
         let (linear, quadratic) = ((k2 * (-2.0 * D) + k1) / (1.0 - 2.0 * D), (k2 - k1) / (1.0 - 2.0 * D));
-        Some(Attempt {
-            y: end,
-            slope,
-            error: array((k1 - k2 * 2.0 + k3) * (h / 6.0)),
-            dense: [array(linear), array(quadratic), [0.0; N], [0.0; N]],
-        })
+        let mut dense = [[0.0; N]; POWERS];
+        (dense[0], dense[1]) = (array(linear), array(quadratic));
+        Some(Attempt { y: end, slope, error: array((k1 - k2 * 2.0 + k3) * (h / 6.0)), dense })
     }
 
     /// MATLAB's: from `|y'|`, then from an estimate of `|y''|`.

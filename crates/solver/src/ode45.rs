@@ -3,7 +3,7 @@
 //!
 //! Order 5, seven stages, first same as last.
 
-use crate::onestep::{Attempt, OneStep, Tolerance};
+use crate::onestep::{Attempt, OneStep, POWERS};
 use crate::system::System;
 
 /// The method.
@@ -52,23 +52,10 @@ impl<const N: usize> OneStep<N> for Ode45 {
             k[stage] = system.derivative(t + C[stage] * h, &end);
         }
         let weighted = |weights: [f64; 7], i: usize| (0..7).map(|s| weights[s] * k[s][i]).sum::<f64>();
-        Some(Attempt {
-            y: end,
-            slope: k[6],
-            error: std::array::from_fn(|i| h * weighted(E, i)),
-            dense: std::array::from_fn(|j| std::array::from_fn(|i| weighted(DENSE.map(|row| row[j]), i))),
-        })
-    }
-
-    fn first_step(
-        _: &impl System<N>,
-        _t: f64,
-        y: &[f64; N],
-        f: &[f64; N],
-        tolerance: Tolerance,
-        longest: f64,
-    ) -> f64 {
-        let rate = tolerance.norm(f, y, y) / (0.8 * tolerance.rtol.powf(<Self as OneStep<N>>::POWER));
-        if longest * rate > 1.0 { 1.0 / rate } else { longest }
+        let mut dense = [[0.0; N]; POWERS];
+        for (j, coefficient) in dense[..4].iter_mut().enumerate() {
+            *coefficient = std::array::from_fn(|i| weighted(DENSE.map(|row| row[j]), i));
+        }
+        Some(Attempt { y: end, slope: k[6], error: std::array::from_fn(|i| h * weighted(E, i)), dense })
     }
 }

@@ -16,7 +16,31 @@ pub struct Attempt<const N: usize> {
     /// Estimate of the local error.
     pub error: [f64; N],
     /// Dense output: `y(t + s h) = y + h Σ p_j s^(j+1)`, `0 <= s <= 1`.
-    pub dense: [[f64; N]; 4],
+    pub dense: [[f64; N]; POWERS],
+}
+
+/// Powers of the step fraction in a dense output: as many as that of DOP853 has.
+pub const POWERS: usize = 7;
+
+/// The cubic that meets value and slope `(y, f)` at both ends of a step, as a dense output.
+pub fn hermite<const N: usize>(
+    h: f64,
+    (y, f): (&[f64; N], &[f64; N]),
+    (end, slope): (&[f64; N], &[f64; N]),
+) -> [[f64; N]; POWERS] {
+    let mut dense = [[0.0; N]; POWERS];
+    for i in 0..N {
+        let chord = (end[i] - y[i]) / h;
+        dense[0][i] = f[i];
+        dense[1][i] = 3.0 * chord - 2.0 * f[i] - slope[i];
+        dense[2][i] = f[i] + slope[i] - 2.0 * chord;
+    }
+    dense
+}
+
+/// The error estimate of a method that has none: zero, NaN where the state is not finite.
+pub fn unknown_error<const N: usize>(end: &[f64; N]) -> [f64; N] {
+    end.map(|v| 0.0 * v)
 }
 
 /// A one-step method with an embedded error estimate. It is handed `f(t, y)` and returns `f` at the end of the step.
@@ -27,15 +51,18 @@ pub trait OneStep<const N: usize> {
     const EVALUATIONS: u64;
     /// Takes a step of length `h`; `None` if the method's equations have no solution there.
     fn attempt(system: &impl System<N>, t: f64, y: &[f64; N], f: &[f64; N], h: f64) -> Option<Attempt<N>>;
-    /// The first step to try, given the longest that may be taken, by the method's own recipe.
+    /// The first step to try, given the longest that may be taken: MATLAB's, from `|y'|`, unless the method has its own.
     fn first_step(
-        system: &impl System<N>,
-        t: f64,
+        _system: &impl System<N>,
+        _t: f64,
         y: &[f64; N],
         f: &[f64; N],
         tolerance: Tolerance,
         longest: f64,
-    ) -> f64;
+    ) -> f64 {
+        let rate = tolerance.norm(f, y, y) / (0.8 * tolerance.rtol.powf(Self::POWER));
+        if longest * rate > 1.0 { 1.0 / rate } else { longest }
+    }
 }
 
 /// MATLAB's tolerances: a component's error may be `rtol max(|y|, atol / rtol)`.
@@ -78,7 +105,7 @@ struct Piece<'a, S, const N: usize> {
     system: &'a S,
     ends: [Knot<N>; 2],
     h: f64,
-    dense: [[f64; N]; 4],
+    dense: [[f64; N]; POWERS],
 }
 
 impl<S: System<N>, const N: usize> Segment<N> for Piece<'_, S, N> {
@@ -206,6 +233,9 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
                 return Ok((h, attempt));
             }
             self.work.rejected += 1;
+            if self.settings.method.has_fixed_step() {
+                return Err(SolverError::NonFinite { t }); // all that such a method can notice
+            }
             if h <= shortest {
                 let finite = y.iter().all(|v| v.is_finite());
                 return Err(if finite {

@@ -1,11 +1,9 @@
 //! A run: a scene, a window of time and a method in; what was observed out.
 
+use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
-use crate::hybrid::{Hybrid, Motion, Phase};
 use crate::observe::{Knot, Observer, Peak, Segment, Unobserved};
-use crate::onestep::{OneStep, Run};
-use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
-use crate::{ode23s::Ode23s, ode45::Ode45};
+use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -146,6 +144,33 @@ where
     }
 }
 
+/// When the damper touched each wall in the window, s, in the order of time.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn touch_downs(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+) -> Result<Vec<(f64, Side)>, SolverError> {
+    let mut times = Times::default();
+    if let Some(damper) = &scene.damper {
+        let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+        follow_coupled(&system, window, settings, &mut Unobserved, &mut times)?;
+    }
+    Ok(times.0)
+}
+
+#[derive(Default)]
+struct Times(Vec<(f64, Side)>);
+
+impl Observer<4> for Times {
+    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn touch_down(&mut self, t: f64, side: Side) {
+        self.0.push((t, side));
+    }
+}
+
 /// A moment of a recorded trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -231,70 +256,4 @@ impl<const N: usize, F: FnMut(&Knot<N>)> Observer<N> for Recorder<F> {
             self.next += 1.0;
         }
     }
-}
-
-fn follow_bare(
-    system: &Bare,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<2>,
-    observer: &mut impl Observer<2>,
-) -> Result<([f64; 2], Work), SolverError> {
-    let steps = |run: Run<'_, Bare, 2>| (run.state(), run.work);
-    match settings.method {
-        Method::Hybrid => {
-            let mut free = Free::new(system, window.to, settings.max_steps);
-            free.propagate(window.from, before)?;
-            free.propagate(window.to, observer)?;
-            Ok((free.state(), free.work))
-        }
-        Method::Ode23s => {
-            one_step::<Ode23s, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-        Method::Ode45 => {
-            one_step::<Ode45, _, 2>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-    }
-}
-
-#[inline(always)]
-fn follow_coupled(
-    system: &Coupled,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<4>,
-    observer: &mut impl Observer<4>,
-) -> Result<([f64; 4], Work), SolverError> {
-    let steps = |run: Run<'_, Coupled, 4>| (run.state(), run.work);
-    match settings.method {
-        Method::Hybrid => {
-            let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-            let start = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
-            let middle =
-                if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
-            let end = hybrid.propagate(middle, window.to, observer)?;
-            Ok((end.y, hybrid.work))
-        }
-        Method::Ode23s => {
-            one_step::<Ode23s, _, 4>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-        Method::Ode45 => {
-            one_step::<Ode45, _, 4>(system, system.rest(), window, settings, before, observer).map(steps)
-        }
-    }
-}
-
-fn one_step<'a, M: OneStep<N>, S: crate::System<N>, const N: usize>(
-    system: &'a S,
-    rest: [f64; N],
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<N>,
-    observer: &mut impl Observer<N>,
-) -> Result<Run<'a, S, N>, SolverError> {
-    let longest = 0.1 * window.to; // MATLAB's
-    let mut run = Run::new(system, settings, 0.0, rest, longest);
-    run.integrate::<M>(window.from, before)?;
-    run.integrate::<M>(window.to, observer)?;
-    Ok(run)
 }

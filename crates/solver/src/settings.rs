@@ -13,6 +13,45 @@ pub enum Method {
     Ode23s,
     /// Dormand & Prince 5(4) (1980).
     Ode45,
+    /// Bogacki & Shampine 3(2) (1989).
+    Ode23,
+    /// Dormand & Prince 8(5, 3), the code DOP853 of Hairer, Nørsett & Wanner (1993).
+    Dop853,
+    /// The classical Runge–Kutta method of order 4 at a fixed step.
+    Rk4,
+    /// Semi-implicit Euler at a fixed step, as in game physics.
+    Euler,
+}
+
+impl Method {
+    /// Every method.
+    pub const ALL: [Method; 7] = [
+        Method::Hybrid,
+        Method::Ode23s,
+        Method::Ode45,
+        Method::Ode23,
+        Method::Dop853,
+        Method::Rk4,
+        Method::Euler,
+    ];
+
+    /// Its name in studies, tables and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Method::Hybrid => "hybrid",
+            Method::Ode23s => "ode23s",
+            Method::Ode45 => "ode45",
+            Method::Ode23 => "ode23",
+            Method::Dop853 => "dop853",
+            Method::Rk4 => "rk4",
+            Method::Euler => "euler",
+        }
+    }
+
+    /// Whether the method takes equal steps, whatever the error.
+    pub const fn has_fixed_step(self) -> bool {
+        matches!(self, Method::Rk4 | Method::Euler)
+    }
 }
 
 /// How a general-purpose method meets a contact. The hybrid always locates.
@@ -31,12 +70,15 @@ pub enum Contacts {
 pub struct Settings {
     /// The method.
     pub method: Method,
-    /// How contacts are met (`ode23s`, `ode45`).
+    /// How contacts are met by every method but the hybrid.
     pub contacts: Contacts,
     /// Relative tolerance of a step.
     pub rtol: f64,
     /// Absolute tolerance of a step, in the units of each component of the state (m, m/s). The hybrid needs none.
     pub atol: f64,
+    /// Longest step, s, of every method but the hybrid (MATLAB's `MaxStep`); `None` for a tenth of the run. A method of fixed
+    /// step takes this one; `None` for [`Settings::FIXED_STEP`].
+    pub step: Option<f64>,
     /// Most steps a run may take before it is refused as [`SolverError::TooManySteps`].
     pub max_steps: u64,
 }
@@ -48,7 +90,22 @@ impl Default for Settings {
             contacts: Contacts::Located,
             rtol: 1e-10,
             atol: 1e-12,
+            step: None,
             max_steps: 20_000_000,
+        }
+    }
+}
+
+impl Settings {
+    /// Step of a method of fixed step that was given none, 1 ms.
+    pub const FIXED_STEP: f64 = 1e-3;
+
+    /// The longest step that a run to time `to` (s) may take.
+    pub fn longest_step(&self, to: f64) -> f64 {
+        match self.step {
+            Some(step) => step.min(to),
+            None if self.method.has_fixed_step() => Self::FIXED_STEP,
+            None => 0.1 * to,
         }
     }
 }

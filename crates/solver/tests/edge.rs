@@ -18,6 +18,7 @@ const HYBRID: Settings = Settings {
     contacts: retune_solver::Contacts::Located,
     rtol: 1e-11,
     atol: 1e-13,
+    step: None,
     max_steps: 2_000_000,
 };
 

@@ -1,0 +1,176 @@
+//! Drift of the mechanical energy over 1,000 impacts without any loss: no damping, no force.
+
+use crate::own;
+use crate::panel::{Axis, BLUE, Drawn, GREEN, INK, Line, Marker, Panel, VERMILION, sheet};
+use crate::scenes::{SSVI, scene, system};
+use retune_model::{Coupled, NonNegative, Side};
+use retune_solver::observe::{Observer, Segment};
+use retune_solver::{Contacts, Method, Settings};
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Impacts.
+pub const IMPACTS: u64 = 1000;
+/// A method that has not had them by then has lost its energy, s.
+const PATIENCE: f64 = 1000.0;
+/// The damper's first speed, m/s.
+const SPEED: f64 = 4.0;
+
+struct Touched(u64);
+
+impl Observer<4> for Touched {
+    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn touch_down(&mut self, _t: f64, _side: Side) {
+        self.0 += 1;
+    }
+    fn satisfied(&self) -> bool {
+        self.0 >= IMPACTS
+    }
+}
+
+/// What became of the energy.
+pub struct Drift {
+    /// The method and its setting.
+    pub settings: Settings,
+    /// Tolerance, or step (s).
+    pub setting: f64,
+    /// Impacts until the end.
+    pub impacts: u64,
+    /// Relative change of the true mechanical energy, or why there is none.
+    pub change: Result<f64, String>,
+}
+
+/// The two-sided SSVI without damping or force, its damper thrown at a wall.
+fn lossless() -> Result<Coupled, Box<dyn Error>> {
+    let mut scene = scene(SSVI)?;
+    scene.primary.damping = NonNegative::new(0.0)?;
+    scene.forcing.amplitude = NonNegative::new(0.0)?;
+    if let Some(damper) = &mut scene.damper {
+        damper.damping = NonNegative::new(0.0)?;
+    }
+    system(&scene).ok_or_else(|| "no damper".into())
+}
+
+/// Follows the lossless motion through its impacts.
+///
+/// # Errors
+/// A number that cannot be.
+pub fn drift(method: Method, contacts: Contacts, setting: f64) -> Result<Drift, Box<dyn Error>> {
+    let system = lossless()?;
+    let settings = Settings { max_steps: 4_000_000, ..own::settings(method, contacts, setting) };
+    let start = [0.0, 0.0, SSVI.d, SPEED];
+    let mut seen = Touched(0);
+    let end = own::follow(&system, start, PATIENCE, &settings, &mut seen);
+    let change = end
+        .map(|y| system.total_energy(&y) / system.total_energy(&start) - 1.0)
+        .map_err(|error| error.to_string());
+    Ok(Drift { settings, setting, impacts: seen.0, change })
+}
+
+/// Methods with their settings.
+fn runs() -> Vec<(Method, Vec<f64>)> {
+    let decades = |from: i32, to: i32| (from..=to).map(|k| 10f64.powi(-k)).collect::<Vec<_>>();
+    vec![
+        (Method::Ode23, decades(2, 7)),
+        (Method::Ode45, decades(2, 10)),
+        (Method::Dop853, decades(2, 12)),
+        (Method::Rk4, vec![1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
+        (Method::Euler, vec![1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
+        (Method::Ode23s, decades(2, 7)),
+        (Method::Hybrid, decades(2, 12)),
+    ]
+}
+
+/// The table, and its chart.
+///
+/// # Errors
+/// A number that cannot be, or a file that cannot be written.
+pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
+    let mut all = Vec::new();
+    for (method, settings) in runs() {
+        let ways: &[Contacts] = match method {
+            Method::Hybrid => &[Contacts::Located],
+            _ => &[Contacts::Located, Contacts::Stepped],
+        };
+        for &contacts in ways {
+            for &setting in &settings {
+                all.push(drift(method, contacts, setting)?);
+            }
+        }
+    }
+    let mut text = String::from("method,contacts,rtol_or_step_s,impacts,energy_change,failure\n");
+    for d in &all {
+        let (change, said) = match &d.change {
+            Ok(change) => (format!("{change:.2e}"), String::new()),
+            Err(said) => (String::new(), said.replace(',', ";")),
+        };
+        let (name, way) = (d.settings.method.name(), own::way(&d.settings));
+        writeln!(text, "{name},{way},{:e},{},{change},{said}", d.setting, d.impacts)?;
+    }
+    draw(chart, &all)?;
+    Ok(text)
+}
+
+fn draw(path: &Path, all: &[Drift]) -> Drawn {
+    let look = |method| match method {
+        Method::Hybrid => (VERMILION, 4, Marker::Disc),
+        Method::Ode23s => (INK, 3, Marker::Disc),
+        Method::Ode45 => (BLUE, 2, Marker::Disc),
+        Method::Ode23 => (BLUE, 2, Marker::Square),
+        Method::Dop853 => (BLUE, 2, Marker::Triangle),
+        Method::Rk4 => (GREEN, 2, Marker::Disc),
+        Method::Euler => (GREEN, 2, Marker::Square),
+    };
+    let panel = |fixed: bool, contacts: Contacts, caption: &str| {
+        let lines = runs()
+            .into_iter()
+            .filter(|(method, _)| method.has_fixed_step() == fixed)
+            .map(|(method, _)| {
+                let (colour, width, marker) = look(method);
+                let mut gains = 0;
+                let mut blown = 0;
+                let of: Vec<&Drift> = all
+                    .iter()
+                    .filter(|d| d.settings.method == method)
+                    .filter(|d| method == Method::Hybrid || d.settings.contacts == contacts)
+                    .collect();
+                let points = of
+                    .iter()
+                    .filter_map(|d| match d.change {
+                        Ok(change) => {
+                            gains += u32::from(change > 0.0);
+                            Some((d.setting, change.abs()))
+                        }
+                        Err(_) => {
+                            blown += 1;
+                            None
+                        }
+                    })
+                    .collect();
+                let how = match (gains as usize, blown) {
+                    (0, 0) => ", loses",
+                    (g, 0) if g == of.len() => ", gains",
+                    (_, 0) => ", loses or gains",
+                    _ => ", blows up",
+                };
+                Line { name: format!("{}{how}", method.name()), points, colour, width, marker }
+            })
+            .collect();
+        let x = if fixed {
+            Axis::log("step, s", 1e-5, 1e-1)
+        } else {
+            Axis::log("relative tolerance of a step", 1e-13, 1e-1)
+        };
+        let y = Axis::log("relative change of the energy", 1e-12, 1e3);
+        Panel { caption: caption.into(), x, y, lines }
+    };
+    let panels = [
+        panel(false, Contacts::Located, "contacts located"),
+        panel(false, Contacts::Stepped, "contacts stepped over"),
+        panel(true, Contacts::Stepped, "fixed step, stepped over"),
+    ];
+    let note =
+        "No damping, no force: every change is the method's error. Runs that blew up are in energy.csv.";
+    sheet(path, &["Change of the energy over 1,000 lossless impacts", note], 3, (610, 500), &panels)
+}

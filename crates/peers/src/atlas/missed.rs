@@ -1,0 +1,184 @@
+//! Contacts jumped over: steps that begin and end in flight although the exact motion from their beginning touches a wall and
+//! leaves it again before they end.
+
+use crate::own;
+use crate::panel::{Axis, BLUE, Drawn, GREEN, INK, Line, Marker, Panel, VERMILION, sheet};
+use crate::scenes::{Case, Numbers, TMD, cases, scene, system};
+use retune_model::{Coupled, Side};
+use retune_solver::observe::{Observer, Segment};
+use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings};
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Counts impacts seen and jumped over.
+struct Watch<'a> {
+    system: &'a Coupled,
+    exact: Hybrid<'a>,
+    seen: u64,
+    jumped: u64,
+}
+
+#[derive(Default)]
+struct Touches(u64);
+
+impl Observer<4> for Touches {
+    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn touch_down(&mut self, _t: f64, _side: Side) {
+        self.0 += 1;
+    }
+}
+
+impl Observer<4> for Watch<'_> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let [from, to] = segment.ends();
+        let open = |y: &[f64; 4]| self.system.rapprochement(y).iter().all(|z| *z <= 1e-12);
+        if from.clock != [1.0, 0.0] || !open(&from.y) || !open(&to.y) {
+            return;
+        }
+        let mut touches = Touches::default();
+        let begin = Motion { t: from.t, y: from.y, phase: Phase::Flight };
+        // A step that ends in a located touch-down is not one that jumped over it.
+        let until = to.t - 1e-6 * (to.t - from.t);
+        if let Ok(end) = self.exact.propagate(begin, until, &mut touches) {
+            let unfinished = matches!(end.phase, Phase::Pressed(_));
+            self.jumped += touches.0 - u64::from(unfinished).min(touches.0);
+        }
+    }
+    fn touch_down(&mut self, _t: f64, _side: Side) {
+        self.seen += 1;
+    }
+}
+
+/// What a run with a longest step saw.
+pub struct Missed {
+    /// Impacts seen.
+    pub seen: u64,
+    /// Impacts jumped over.
+    pub jumped: u64,
+    /// What the method said, if it noticed anything.
+    pub said: Option<String>,
+}
+
+impl Missed {
+    /// Share of the impacts that were jumped over.
+    pub fn share(&self) -> f64 {
+        self.jumped as f64 / (self.jumped + self.seen).max(1) as f64
+    }
+}
+
+/// Follows a scene from rest at MATLAB's default tolerance with steps no longer than `step` (s).
+///
+/// # Errors
+/// A scene without damper.
+pub fn missed(case: &Case, method: Method, contacts: Contacts, step: f64) -> Result<Missed, Box<dyn Error>> {
+    let system = system(&case.scene).ok_or("no damper")?;
+    let settings =
+        Settings { method, contacts, rtol: 1e-3, atol: 1e-6, step: Some(step), max_steps: 1_000_000 };
+    let mut watch =
+        Watch { system: &system, exact: Hybrid::new(&system, 1e-9, case.to, u64::MAX), seen: 0, jumped: 0 };
+    let said = own::follow(&system, system.rest(), case.to, &settings, &mut watch).err();
+    Ok(Missed { seen: watch.seen, jumped: watch.jumped, said: said.map(|error| error.to_string()) })
+}
+
+/// The SSVI, the same with stiffer contacts, and the TMD whose wall stands at a share of its free steady swing.
+///
+/// # Errors
+/// A number that cannot be.
+pub fn subjects() -> Result<Vec<Case>, Box<dyn Error>> {
+    let free = system(&scene(TMD)?).ok_or("no damper")?;
+    let swing = free.steady(free.bare().frequency()).stroke();
+    let mut all: Vec<Case> =
+        cases()?.into_iter().filter(|c| ["two-sided", "near-rigid"].contains(&c.name)).collect();
+    for (name, share) in [("grazing 1 %", 0.99), ("grazing 0.1 %", 0.999)] {
+        let scene = scene(Numbers { d: share * swing, c: 5.0, ..TMD })?;
+        all.push(Case { name, label: name, scene, to: 100.0 });
+    }
+    Ok(all)
+}
+
+/// Longest steps, s.
+const STEPS: [f64; 8] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0];
+
+/// A line of the chart: scene, method, way, and the share missed at each step (NaN where the method said that it failed).
+type Shares = (&'static str, Method, Contacts, Vec<(f64, f64)>);
+
+/// The table, and its chart.
+///
+/// # Errors
+/// A scene that cannot be, or a file that cannot be written.
+pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
+    let mut text =
+        String::from("scene,method,contacts,longest_step_s,seen,jumped_over,missed_share,noticed\n");
+    let mut shares: Vec<Shares> = Vec::new();
+    for case in &subjects()? {
+        for method in Method::ALL {
+            for contacts in [Contacts::Located, Contacts::Stepped] {
+                if method == Method::Hybrid && contacts == Contacts::Stepped {
+                    continue;
+                }
+                let mut points = Vec::new();
+                for step in STEPS {
+                    let found = missed(case, method, contacts, step)?;
+                    let noticed = match (&found.said, found.jumped) {
+                        (Some(said), _) => said.replace(',', ";"),
+                        (None, 0) => "nothing missed".into(),
+                        (None, _) => "no".into(),
+                    };
+                    let way = own::way(&Settings { method, contacts, ..Settings::default() });
+                    writeln!(
+                        text,
+                        "{},{},{way},{step:e},{},{},{:.3},{noticed}",
+                        case.name,
+                        method.name(),
+                        found.seen,
+                        found.jumped,
+                        found.share()
+                    )?;
+                    points.push((step, if found.said.is_some() { f64::NAN } else { found.share() }));
+                }
+                shares.push((case.name, method, contacts, points));
+            }
+        }
+    }
+    draw(chart, &shares)?;
+    Ok(text)
+}
+
+fn draw(path: &Path, shares: &[Shares]) -> Drawn {
+    let look = |method| match method {
+        Method::Hybrid => (VERMILION, 4, Marker::Disc),
+        Method::Ode23s => (INK, 3, Marker::Disc),
+        Method::Ode45 => (BLUE, 2, Marker::Disc),
+        Method::Ode23 => (BLUE, 2, Marker::Square),
+        Method::Dop853 => (BLUE, 2, Marker::Triangle),
+        Method::Rk4 => (GREEN, 2, Marker::Disc),
+        Method::Euler => (GREEN, 2, Marker::Square),
+    };
+    let panel = |scene: &str, contacts: Contacts, caption: &str| Panel {
+        caption: caption.into(),
+        x: Axis::log("longest step allowed, s", 1e-4, 1.0),
+        y: Axis::linear("impacts jumped over, per cent", 0.0, 100.0),
+        lines: shares
+            .iter()
+            .filter(|s| s.0 == scene && (s.2 == contacts || s.1 == Method::Hybrid))
+            .map(|(_, method, _, points)| {
+                let (colour, width, marker) = look(*method);
+                let failed = points.iter().any(|p| p.1.is_nan());
+                let name = format!("{}{}", method.name(), if failed { ", then blows up" } else { "" });
+                let points = points.iter().map(|p| (p.0, 100.0 * p.1)).collect();
+                Line { name, points, colour, width, marker }
+            })
+            .rev()
+            .collect(),
+    };
+    let panels = [
+        panel("grazing 1 %", Contacts::Located, "wall at 99 % of the swing, located"),
+        panel("grazing 1 %", Contacts::Stepped, "wall at 99 % of the swing, stepped over"),
+        panel("grazing 0.1 %", Contacts::Located, "wall at 99.9 % of the swing, located"),
+        panel("grazing 0.1 %", Contacts::Stepped, "wall at 99.9 % of the swing, stepped over"),
+    ];
+    let note = "A TMD that grazes its wall, 100 s, at MATLAB's default tolerance 1e-3.";
+    let more = "Nobody noticed: where a line is above zero the run ended without a word. Lines end where the motion blew up.";
+    sheet(path, &["Contacts that steps jump over", note, more], 2, (690, 430), &panels)
+}

@@ -1,0 +1,20 @@
+//! Retune's methods and other people's integrators on the same scenes: speed against accuracy, and where methods fail.
+//!
+//! No crate imports this one, and no one who only uses the program builds it (`just accuracy`, `just stability`). Other people's
+//! integrators come with the feature `integrators`.
+
+pub mod atlas;
+pub mod chart;
+pub mod external;
+pub mod motion;
+pub mod own;
+pub mod panel;
+#[cfg(feature = "integrators")]
+pub mod peers;
+pub mod reading;
+pub mod record;
+pub mod reference;
+pub mod savings;
+pub mod scenes;
+pub mod statistics;
+pub mod text;

@@ -1,0 +1,142 @@
+//! What a table of runs says: curves of error against cost, and what a level of accuracy costs.
+
+use crate::record::Row;
+use crate::scenes::Case;
+
+/// Which error is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Of E1max.
+    E1max,
+    /// Of the state at the end.
+    State,
+}
+
+impl Measure {
+    /// Its name on a chart.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Measure::E1max => "E1max",
+            Measure::State => "the final state",
+        }
+    }
+}
+
+/// A method on a scene: its cheapest way to meet contacts, from the tightest setting to the loosest, with the error that no
+/// tighter setting exceeded (a lucky run does not count).
+pub struct Curve<'a> {
+    /// Name of the method, with its program unless it is Retune's.
+    pub name: String,
+    /// Its way to meet contacts.
+    pub contacts: &'static str,
+    /// Error, and the run.
+    pub points: Vec<(f64, &'a Row)>,
+    /// Runs that failed.
+    pub failed: usize,
+}
+
+impl Curve<'_> {
+    /// Whose program.
+    pub fn program(&self) -> &str {
+        self.name.split_once(' ').map_or("retune", |(program, _)| program)
+    }
+
+    /// Least cost at which the error stays below a level, and the setting.
+    pub fn cost_at(&self, level: f64, in_time: bool) -> Option<(f64, f64)> {
+        self.points
+            .iter()
+            .filter(|(error, _)| *error <= level)
+            .filter_map(|(_, row)| Some((row.cost(in_time)?, row.setting)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+/// Smallest error that is told apart from none.
+const ROUNDING: f64 = 1e-15;
+
+fn curve<'a>(rows: &[&'a Row], measure: Measure) -> Option<Curve<'a>> {
+    let first = rows.first()?;
+    let mut sorted = rows.to_vec();
+    sorted.sort_by(|a, b| a.setting.total_cmp(&b.setting));
+    let mut worst = ROUNDING;
+    let mut points = Vec::new();
+    for row in &sorted {
+        let error = row.errors[measure as usize];
+        if row.found.is_ok() && error.is_finite() {
+            worst = worst.max(error);
+            points.push((worst, *row));
+        }
+    }
+    let failed = sorted.iter().filter(|r| r.found.is_err()).count();
+    Some(Curve { name: first.name(), contacts: first.contacts, points, failed })
+}
+
+/// How well a curve serves: the first of three levels that it reaches, and the cost there; less is better.
+pub fn rank(curve: &Curve<'_>) -> (usize, f64) {
+    [1e-6, 1e-4, 1e-2]
+        .into_iter()
+        .enumerate()
+        .find_map(|(i, level)| Some((i, curve.cost_at(level, true)?.0)))
+        .unwrap_or((9, f64::INFINITY))
+}
+
+/// The curves of a scene, one a method.
+pub fn curves<'a>(rows: &'a [Row], case: &Case, measure: Measure) -> Vec<Curve<'a>> {
+    let of_case = || rows.iter().filter(|r| r.scene == case.name);
+    let mut names: Vec<String> = Vec::new();
+    for row in of_case() {
+        if !names.contains(&row.name()) {
+            names.push(row.name());
+        }
+    }
+    let best = |name: &String| {
+        ["exact", "located", "stepped"]
+            .into_iter()
+            .filter_map(|way| {
+                let rows: Vec<_> = of_case().filter(|r| r.name() == *name && r.contacts == way).collect();
+                curve(&rows, measure)
+            })
+            .min_by(|a, b| {
+                let (a, b) = (rank(a), rank(b));
+                a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+            })
+    };
+    names.iter().filter_map(best).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Found;
+
+    fn row(setting: f64, seconds: f64, error: f64) -> Row {
+        let found =
+            Found { e1_max: 1.0, final_state: [0.0; 4], touches: None, impacts: 0, evaluations: 1, seconds };
+        Row {
+            scene: "a",
+            program: "retune".into(),
+            method: "m".into(),
+            contacts: "located",
+            setting,
+            found: if error.is_nan() { Err("failed".into()) } else { Ok(found) },
+            errors: [error, f64::NAN, f64::NAN],
+            expected_impacts: 0,
+        }
+    }
+
+    #[test]
+    fn exact_a_lucky_run_does_not_count_and_a_failed_one_is_counted() {
+        let rows = [
+            row(1e-3, 1.0, 1e-9), // lucky
+            row(1e-4, 2.0, 1e-4),
+            row(1e-5, 3.0, 1e-5),
+            row(1e-6, 9.0, f64::NAN),
+        ];
+        let curve = curve(&rows.iter().collect::<Vec<_>>(), Measure::E1max).expect("runs");
+        assert_eq!(curve.failed, 1);
+        assert_eq!(curve.points.iter().map(|p| p.0).collect::<Vec<_>>(), [1e-5, 1e-4, 1e-4]);
+        assert_eq!(curve.cost_at(1e-3, true), Some((1.0, 1e-3)));
+        assert_eq!(curve.cost_at(2e-5, true), Some((3.0, 1e-5)));
+        assert_eq!(curve.cost_at(1e-7, true), None);
+    }
+}

@@ -1,0 +1,25 @@
+//! The wrapped integrators of others find the motion: what separates them on the chart is theirs, not the wrapping's.
+#![cfg(feature = "integrators")]
+
+use retune_peers::own;
+use retune_peers::peers::{PEERS, run};
+use retune_peers::record::errors;
+use retune_peers::scenes::cases;
+use retune_solver::{Contacts, Method};
+
+#[test]
+fn reference_every_peer_finds_every_motion() {
+    for case in cases().expect("valid numbers") {
+        let settings = own::settings(Method::Hybrid, Contacts::Located, 1e-12);
+        let reference = own::run(&case, &settings, false).expect("runs");
+        for peer in &PEERS {
+            let level = 1e-7_f64.max(peer.tightest);
+            let best = [true, false]
+                .into_iter()
+                .filter_map(|located| run(peer, &case, located, level).ok())
+                .map(|found| errors(&found, &reference, case.scene.forcing.frequency.get())[0])
+                .fold(f64::INFINITY, f64::min);
+            assert!(best < 1e-3, "{} {} on {}: {best:e}", peer.program, peer.method, case.name);
+        }
+    }
+}
