@@ -11,7 +11,13 @@ type Polynomial = [f64; TERMS];
 #[inline(always)]
 pub fn cubic_floor(h: f64, a: [f64; 2], b: [f64; 2]) -> f64 {
     let third = h / 3.0;
-    a[0].min(a[0] + third * a[1]).min(b[0] - third * b[1]).min(b[0])
+    least(least(a[0], a[0] + third * a[1]), least(b[0] - third * b[1], b[0]))
+}
+
+/// The smaller of two numbers, neither of them NaN: one instruction, where `f64::min` needs three.
+#[inline(always)]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// The first `s` in `(0, to]` at which the gap becomes negative, or `None`.

@@ -57,25 +57,28 @@ enum FlightEnd {
     Stopped(Knot<4>),
 }
 
+/// Steps after which the energy, which bounds how the gap can bend, is looked up.
+const LOOKS: f64 = 4.0;
+
 /// The row that picks `r = x2 - x1` from a state.
 const STROKE: [f64; 4] = [-1.0, 0.0, 1.0, 0.0];
 
 struct Flight<'a> {
     flow: &'a Flow<4>,
-    ends: [Knot<4>; 2],
+    ends: [&'a Knot<4>; 2],
     length: f64,
     expansion: &'a OnceCell<Expansion<4>>,
 }
 
 impl Segment<4> for Flight<'_> {
     fn ends(&self) -> [&Knot<4>; 2] {
-        [&self.ends[0], &self.ends[1]]
+        self.ends
     }
     fn length(&self) -> f64 {
         self.length
     }
     fn at(&self, theta: f64) -> Knot<4> {
-        let from = &self.ends[0];
+        let from = self.ends[0];
         let expansion = self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y));
         flight_knot(self.flow, from, expansion, theta)
     }
@@ -201,6 +204,8 @@ impl<'a> Hybrid<'a> {
     ) -> Result<FlightEnd, SolverError> {
         let whole = self.flow.step();
         let slack = whole.powi(4) / 384.0;
+        let growth = self.system.energy_norm_growth() * whole;
+        let mut energy = 0.0; // a bound, looked up again after a few steps
         let mut now = from;
         let mut count = 0.0; // steps since `from`: time is counted, not accumulated
         let mut leaving = if let Phase::Leaving(side) = phase { Some(side) } else { None };
@@ -214,12 +219,15 @@ impl<'a> Hybrid<'a> {
                 return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
             }
             let (drive, y) = self.flow.advance(now.drive, &now.y);
+            if count % LOOKS == 0.0 {
+                energy = self.system.energy_norm(&now.y);
+                if !energy.is_finite() {
+                    return Err(SolverError::NonFinite { t: now.t });
+                }
+            }
+            energy += growth;
             count += 1.0;
             let mut end = Knot { t: from.t + count * whole, drive, y, clock: [1.0, 0.0] };
-            let energy = self.system.energy_norm(&now.y) + self.system.energy_norm_growth() * whole;
-            if !energy.is_finite() {
-                return Err(SolverError::NonFinite { t: now.t });
-            }
             let margin = slack * (self.fourth[0] * energy + self.fourth[1]);
             let rates = |y: &[f64; 4]| [y[2] - y[0], y[3] - y[1]];
             let ([r0, w0], [r1, w1]) = (rates(&now.y), rates(&end.y));
@@ -251,7 +259,7 @@ impl<'a> Hybrid<'a> {
             if length > 0.0 {
                 observer.segment(&Flight {
                     flow: &self.flow,
-                    ends: [now, end],
+                    ends: [&now, &end],
                     length,
                     expansion: &expansion,
                 });
@@ -310,7 +318,7 @@ impl<'a> Hybrid<'a> {
                 let expansion = OnceCell::from(motion);
                 observer.segment(&Flight {
                     flow: &self.flow,
-                    ends: [touch, end],
+                    ends: [&touch, &end],
                     length: s,
                     expansion: &expansion,
                 });

@@ -168,7 +168,8 @@ impl<F> Peak<F> {
     {
         let h = b - a;
         let coefficients = quintic(h, at_a, at_b);
-        if coefficients.into_iter().fold(f64::NEG_INFINITY, f64::max) + remainder <= self.record.value {
+        let highest = coefficients.into_iter().fold(f64::NEG_INFINITY, |a, b| if a > b { a } else { b });
+        if highest + remainder <= self.record.value {
             return;
         }
         let steps = || coefficients.windows(2).map(|pair| pair[1] - pair[0]);

@@ -2,7 +2,7 @@
 
 use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
-use crate::observe::{Knot, Observer, Peak, Segment, Unobserved};
+use crate::observe::{Knot, Observer, Path, Peak, Segment, Unobserved};
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 
@@ -113,6 +113,7 @@ struct Touches([u64; 2]);
 
 impl Observer<4> for Touches {
     fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn path(&mut self, _path: &impl Path<4>) {}
     fn touch_down(&mut self, _t: f64, side: Side) {
         self.0[side as usize] += 1;
     }
@@ -138,6 +139,12 @@ where
         self.e2.segment(segment);
         self.farthest.segment(segment);
         self.nearest.segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        self.e1.path(path);
+        self.e2.path(path);
+        self.farthest.path(path);
+        self.nearest.path(path);
     }
     fn touch_down(&mut self, t: f64, side: Side) {
         self.touches.touch_down(t, side);
@@ -166,6 +173,7 @@ struct Times(Vec<(f64, Side)>);
 
 impl Observer<4> for Times {
     fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn path(&mut self, _path: &impl Path<4>) {}
     fn touch_down(&mut self, t: f64, side: Side) {
         self.0.push((t, side));
     }
