@@ -27,7 +27,7 @@ const REFINEMENTS: usize = 12;
 
 /// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is
 /// not below them. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any
-/// number of them. Once a sample is above `cutoff`, the largest sample is the answer.
+/// number of them. It is a lower bound: a peak that shows at no sample is missed. Once a sample is above `cutoff`, the largest sample is the answer.
 ///
 /// # Errors
 /// The first of the band's failures, in the order of the frequencies, samples before searches.

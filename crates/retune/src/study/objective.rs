@@ -25,7 +25,8 @@ pub struct Band {
     /// Highest angular frequency, rad/s.
     pub to: Positive,
     /// Evenly spaced frequencies at which runs are made first, both ends included; each maximum of them is then refined between
-    /// its neighbours by at most 12 more. The steady response needs none: it is exact over the whole band.
+    /// its neighbours by at most 12 more. What is found this way is a lower bound: a peak that shows at no sample is missed. The
+    /// steady response needs no samples: it is exact over the whole band.
     #[serde(default = "samples")]
     #[schemars(range(min = 2, max = 10000))]
     pub samples: usize,
