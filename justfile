@@ -14,6 +14,10 @@ optimize-ssvi:
 optimize-tmd:
     {{retune}} optimize studies/tmd.json
 
+# Tune the TMD for the worst over 5 to 8 rad/s, steady, into results/tmd-band
+optimize-tmd-band:
+    {{retune}} optimize studies/tmd-band.json
+
 # Re-optimise both rows of Table 2, beside the paper's
 table2:
     {{retune}} table2 studies/table2.json

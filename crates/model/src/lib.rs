@@ -7,6 +7,7 @@
 //! This crate never steps in time, reads files, starts threads or prints. All quantities are in SI units.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod band;
 mod bare;
 mod compression;
 mod coupled;
@@ -15,6 +16,7 @@ mod scene;
 mod steady;
 mod value;
 
+pub use band::Worst;
 pub use bare::Bare;
 pub use compression::{Compressed, Compression};
 pub use coupled::{Coupled, Side};

@@ -1,7 +1,8 @@
 //! Searches for the parameters that make an objective small.
 //!
 //! The methods receive a closure and know nothing of what it computes: no springs, no files, no clocks. The one thing
-//! here that knows of dampers is the closure itself, [`PeakEnergy`]: E1max as a function of a design.
+//! here that knows of dampers is the closure itself, [`PeakEnergy`]: E1max as a function of a design, at one frequency or
+//! the worst over a band.
 //! What happens on the way is told to the caller's observers; nothing is printed.
 //!
 //! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
@@ -9,12 +10,14 @@
 //! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998) as an argmin solver, [`Fminsearch`], which logs
 //!   each iteration and can be saved and continued.
 
+pub mod band;
 pub mod fminsearch;
 pub mod grid;
 pub mod objective;
 pub mod surf;
 
+pub use band::{Band, worst_over};
 pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
 pub use grid::{Axis, AxisError, Grid, GridError, Scale};
-pub use objective::{Failures, PeakEnergy, Unusable, Variable};
+pub use objective::{Failures, PeakEnergy, Unusable, Variable, When, e1_max};
 pub use surf::{best_separated, surf};

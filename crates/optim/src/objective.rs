@@ -1,6 +1,7 @@
 //! What is made small: the largest energy of the primary structure as a function of the damper's design.
 
-use retune_model::{Damper, NonNegative, OutOfRange, Scene};
+use crate::band::{Band, worst_over};
+use retune_model::{Bare, Coupled, Damper, NonNegative, OutOfRange, Scene, Worst};
 use retune_solver::{Settings, SolverError, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -88,9 +89,83 @@ pub enum Unusable {
         /// Its value and what is allowed.
         source: OutOfRange,
     },
+    /// A frequency that no force can have.
+    #[error("omega: {0}")]
+    Frequency(OutOfRange),
     /// The run could not be finished.
     #[error(transparent)]
     Run(#[from] SolverError),
+    /// The steady motion reaches a wall, so that it is not linear.
+    #[error(
+        "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \
+         widen them, or look at a window of time instead of the steady response"
+    )]
+    Touches {
+        /// Where the stroke is largest, rad/s.
+        omega: f64,
+        /// The stroke without walls, m.
+        stroke: f64,
+        /// The smaller of D and C, m.
+        room: f64,
+    },
+}
+
+/// When E1max is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// In a window of a run from rest.
+    Window(Window),
+    /// Once all transients have died, in closed form: for scenes without contacts only.
+    Steady,
+}
+
+impl From<Window> for When {
+    fn from(window: Window) -> Self {
+        Self::Window(window)
+    }
+}
+
+/// E1max of a scene, J, and the ω at which it is: at the scene's own, or the worst over `band`. Any value above `cutoff` as
+/// soon as it is known to be above.
+///
+/// In a window it comes from runs ([`worst_over`]); the steady one is exact over the whole band ([`Coupled::steady_e1_max`]).
+///
+/// # Errors
+/// A run could not be finished, or the damper of a steady motion reaches a wall.
+pub fn e1_max(
+    scene: &Scene,
+    when: When,
+    band: Option<Band>,
+    settings: &Settings,
+    cutoff: f64,
+) -> Result<Worst, Unusable> {
+    let own = scene.forcing.frequency.get();
+    let Scene { primary, forcing, damper } = scene;
+    match when {
+        When::Window(window) => {
+            let run = |omega: f64| -> Result<f64, Unusable> {
+                let mut scene = *scene;
+                scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
+                Ok(retune_solver::e1_max(&scene, window, settings, cutoff)?.value)
+            };
+            match band {
+                Some(band) => worst_over(&band, run, cutoff),
+                None => Ok(Worst { value: run(own)?, frequency: own }),
+            }
+        }
+        When::Steady => {
+            let band = band.map_or([own; 2], |band| [band.from, band.to]);
+            let Some(damper) = damper else { return Ok(Bare::new(primary, forcing).steady_e1_max(band)) };
+            let system = Coupled::new(primary, forcing, damper);
+            let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
+            let room = damper.rest_distance.get().min(damper.clearance.get());
+            if stroke < room {
+                Ok(system.steady_e1_max(band))
+            } else {
+                Err(Unusable::Touches { omega, stroke, room })
+            }
+        }
+    }
 }
 
 /// The designs that could not be evaluated.
@@ -103,7 +178,7 @@ pub struct Failures {
     pub example: Option<(Vec<f64>, Unusable)>,
 }
 
-/// E1max over a window, J, of a scene whose damper is varied. It may be shared by threads.
+/// E1max, J, of a scene whose damper is varied. It may be shared by threads.
 ///
 /// A design that cannot be evaluated counts as +∞, and is kept in [`Self::failures`].
 #[derive(Debug)]
@@ -111,7 +186,8 @@ pub struct PeakEnergy {
     scene: Scene,
     damper: Damper,
     variables: Vec<Variable>,
-    window: Window,
+    when: When,
+    band: Option<Band>,
     settings: Settings,
     failures: Mutex<Failures>,
 }
@@ -122,10 +198,17 @@ impl PeakEnergy {
         scene: Scene,
         damper: Damper,
         variables: Vec<Variable>,
-        window: Window,
+        when: impl Into<When>,
         settings: Settings,
     ) -> Self {
-        Self { scene, damper, variables, window, settings, failures: Mutex::default() }
+        let when = when.into();
+        Self { scene, damper, variables, when, band: None, settings, failures: Mutex::default() }
+    }
+
+    /// The worst over `band` instead of the value at the scene's own ω; `None` for that again.
+    #[must_use]
+    pub fn over(self, band: Option<Band>) -> Self {
+        Self { band, ..self }
     }
 
     /// The varied parameters, in the order of a design.
@@ -155,14 +238,19 @@ impl PeakEnergy {
 
     /// E1max of `design`, J; any number above `cutoff` as soon as it is known to be above; +∞ where there is none.
     pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
-        let run = || {
-            let scene = self.scene(design)?;
-            Ok(retune_solver::e1_max(&scene, self.window, &self.settings, cutoff)?.value)
-        };
-        run().unwrap_or_else(|reason| {
+        let worst = self.scene(design).and_then(|scene| self.worst(&scene, cutoff));
+        worst.map(|worst| worst.value).unwrap_or_else(|reason| {
             self.note(design, reason);
             f64::INFINITY
         })
+    }
+
+    /// E1max of a scene as this objective takes it, J, with its ω; see [`e1_max`].
+    ///
+    /// # Errors
+    /// As [`e1_max`].
+    pub fn worst(&self, scene: &Scene, cutoff: f64) -> Result<Worst, Unusable> {
+        e1_max(scene, self.when, self.band, &self.settings, cutoff)
     }
 
     /// The evaluations that failed so far.

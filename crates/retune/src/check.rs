@@ -4,7 +4,8 @@ use crate::error::Error;
 use crate::optimize::log::{joined, short};
 use crate::paper::Plan;
 use crate::screen::Screen;
-use crate::study::{self, Study};
+use crate::study::{self, Response, Study};
+use retune_optim::Band;
 use std::path::Path;
 
 /// Checks a study file and shows what it asks for.
@@ -52,6 +53,16 @@ fn describe(study: &Study) -> String {
             None => "the damper of the scene".to_owned(),
         };
         lines.push(format!("tunes {} from {from}", joined(&search.variables, ", ")));
+        let objective = study.objective();
+        if let Some(Band { from, to, samples }) = objective.band() {
+            let how = match objective.response {
+                Response::Window => format!("in the window, on {samples} samples and refined at their peaks"),
+                Response::Steady => "steady, exact".to_owned(),
+            };
+            lines.push(format!("for the worst E1max over omega = {from} to {to} rad/s, {how}"));
+        } else if objective.response == Response::Steady {
+            lines.push("for the steady E1max".to_owned());
+        }
     }
     lines.join("\n  ")
 }

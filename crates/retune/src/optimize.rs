@@ -1,5 +1,6 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
+mod band;
 pub mod log;
 mod optimum;
 pub mod pictures;
@@ -14,7 +15,8 @@ use crate::results::Directory;
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
-use retune_optim::{PeakEnergy, Variable};
+use retune_model::NonNegative;
+use retune_optim::{PeakEnergy, Unusable, Variable};
 use std::path::{Path, PathBuf};
 
 /// Tunes the damper of a study file.
@@ -61,24 +63,30 @@ pub fn optimize(study: &Study, out: &Path, screen: Screen) -> Result<Optimum, Er
     };
     let refined = refine::refine(study, &search, starts, &results, screen)?;
 
-    let scene = refined.objective.scene(&refined.best().minimum.x)?;
+    let mut scene = refined.objective.scene(&refined.best().minimum.x)?;
+    let worst = refined.objective.worst(&scene, f64::INFINITY)?;
+    scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let optimum = Optimum::new(study, &search, surf.as_ref(), &refined, summary);
+    let optimum = Optimum::new(study, &search, surf.as_ref(), &refined, summary, worst);
     results.write_json("optimum.json", &optimum)?;
     pictures::draw(study, &search, surf.as_ref(), &refined, &results)?;
+    if let Some(band) = study.objective().band() {
+        band::write(study, &band, scene, &results)?;
+    }
     Ok(optimum)
 }
 
 /// The objective of a study over some parameters of its damper.
 fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
-    let (window, settings) = (study.window.window(), study.solver.settings());
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), window, settings)
+    let (when, settings) = (study.when(), study.solver.settings());
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), when, settings)
+        .over(study.objective().band())
 }
 
 /// Whether `optimize` writes files of this name.
 fn is_ours(name: &str) -> bool {
-    const NAMES: [&str; 7] = [
+    const NAMES: [&str; 9] = [
         "study.json",
         "surf.csv",
         "fminsearch.csv",
@@ -86,6 +94,8 @@ fn is_ours(name: &str) -> bool {
         "fminsearch-starts.csv",
         "optimum.json",
         "convergence.svg",
+        "band.csv",
+        "band.svg",
     ];
     NAMES.contains(&name) || (name.starts_with("surf-") && name.ends_with(".svg"))
 }

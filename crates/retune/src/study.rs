@@ -3,11 +3,13 @@
 //! The types here are the format: their doc comments are the descriptions of the JSON Schema.
 
 mod explain;
+mod objective;
 mod read;
 mod search;
 mod set;
 mod table2;
 
+pub use objective::{Objective, Response};
 pub use read::{StudyError, read, read_paper};
 pub use search::{Rule, Search};
 pub use set::{Setting, SettingError};
@@ -80,6 +82,9 @@ pub struct Optimize {
     /// The parameters to tune; the others keep their values in `scene`.
     #[schemars(length(min = 1))]
     pub vary: Vec<Variable>,
+    /// Which E1max is made small. Default: the largest in `window` at the scene's omega.
+    #[serde(default, skip_serializing_if = "Objective::is_default")]
+    pub objective: Objective,
     /// Smallest and largest value allowed for a tuned parameter; null for no largest value. Default: `[0, null]`.
     #[serde(default)]
     pub bounds: PerVariable<(f64, Option<f64>)>,

@@ -1,6 +1,6 @@
 //! What a run gave: one type, from which JSON and text are made.
 
-use crate::study::{Solver, Span, Study};
+use crate::study::{Objective, Response as When, Solver, Span, Study};
 use retune_model::{Scene, energy_ratios};
 use retune_solver::{Response, SceneKind};
 use serde::Serialize;
@@ -42,6 +42,9 @@ pub struct MadeBy {
     omega: f64,
     window: Span,
     solver: Solver,
+    /// What was made small; of a run, the default.
+    #[serde(skip)]
+    objective: Objective,
 }
 
 /// Something for each wall of the cavity.
@@ -64,18 +67,32 @@ impl MadeBy {
     pub fn new(study: &Study) -> Self {
         let (window, solver) = (study.window, study.solver);
         let omega = study.scene.forcing.frequency.get();
-        Self { retune: env!("CARGO_PKG_VERSION"), study: study.name().to_owned(), omega, window, solver }
+        let (study, objective) = (study.name().to_owned(), study.objective());
+        Self { retune: env!("CARGO_PKG_VERSION"), study, omega, window, solver, objective }
+    }
+
+    /// What makes a run of `scene` under `study`.
+    fn run(study: &Study, scene: &Scene) -> Self {
+        let omega = scene.forcing.frequency.get();
+        Self { omega, objective: Objective::default(), ..Self::new(study) }
     }
 }
 
 impl std::fmt::Display for MadeBy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { retune, study, omega, window, solver } = self;
+        let Self { retune, study, omega, window, solver, objective } = self;
         let method = format!("{:?}", solver.method).to_lowercase();
         let (t0, end) = (window.t0.get(), window.end.get());
         let rtol = solver.rtol;
-        write!(f, "study {study}, omega = {omega} rad/s, t0 = {t0} s, T = {end} s; ")?;
-        write!(f, "Retune {retune}, {method}, rtol {rtol:e}")
+        write!(f, "study {study}, ")?;
+        match objective.omega {
+            Some(band) => write!(f, "worst over omega = {} to {} rad/s, ", band.from.get(), band.to.get())?,
+            None => write!(f, "omega = {omega} rad/s, ")?,
+        }
+        if objective.response == When::Steady {
+            return write!(f, "steady; Retune {retune}");
+        }
+        write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {rtol:e}")
     }
 }
 
@@ -87,7 +104,7 @@ impl Summary {
         let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
         let [x1, v1, x2, v2] = final_state;
         Self {
-            made_by: MadeBy::new(study),
+            made_by: MadeBy::run(study, &scene),
             e1_max: e1_max.value,
             t_e1_max: e1_max.time,
             e2_max: e2_max.value,
@@ -104,11 +121,6 @@ impl Summary {
             evaluations: work.evaluations,
             parameters: scene,
         }
-    }
-
-    /// What made it.
-    pub fn made_by(&self) -> &MadeBy {
-        &self.made_by
     }
 
     /// The paper's name for the damper: a TMD never touches.

@@ -167,6 +167,44 @@ fn exact_contradictions_in_a_search_are_named() {
 }
 
 #[test]
+fn exact_bands_that_are_none_are_refused() {
+    let refused = |objective: Value, message: &str| {
+        let mut study = tiny();
+        study["optimize"]["objective"] = objective;
+        refused_text(&study.to_string(), message);
+    };
+    refused(
+        json!({ "omega": { "from": 8, "to": 5 } }),
+        "optimize.objective.omega: from = 8 rad/s is not below to = 5 rad/s: the band is empty",
+    );
+    refused(
+        json!({ "omega": { "from": 5, "to": 8, "samples": 1 } }),
+        "optimize.objective.omega.samples: 1 is not allowed here: give a whole number from 2 to 10000",
+    );
+    refused(
+        json!({ "omega": { "from": 0, "to": 8 } }),
+        "optimize.objective.omega.from: 0 is not allowed here: give a finite number above 0",
+    );
+    refused(
+        json!({ "omega": { "from": 5, "till": 8 } }),
+        "optimize.objective.omega: unknown field `till`; allowed: from, to, samples",
+    );
+    refused(json!({ "omega": { "from": 5 } }), "optimize.objective.omega.to: missing, and it has no default");
+    refused(
+        json!({ "omega": 6.5 }),
+        "optimize.objective.omega: wrong type: number `6.5`, expected an object",
+    );
+    refused(
+        json!({ "omga": { "from": 5, "to": 8 } }),
+        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: omega, response",
+    );
+    refused(
+        json!({ "response": "stead" }),
+        "optimize.objective.response: \"stead\" is not allowed here; did you mean `steady`? allowed: window, steady",
+    );
+}
+
+#[test]
 fn exact_a_million_million_points_are_refused_at_once() {
     let mut study = tiny();
     for axis in ["k2", "c2", "D", "C"] {

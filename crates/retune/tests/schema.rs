@@ -57,10 +57,16 @@ fn exact_schema_refuses_what_the_program_refuses() {
         ("/optimize/vary", json!(["k1"])),
         ("/optimize/vary", json!([])),
         ("/optimize/refine/starts", json!(0)),
+        ("/optimize/objective", json!({ "omega": { "from": 5, "to": 8, "samples": 1 } })),
+        ("/optimize/objective", json!({ "omega": { "from": 0, "to": 8 } })),
+        ("/optimize/objective", json!({ "omega": 6.5 })),
+        ("/optimize/objective", json!({ "response": "stead" })),
         ("/optimize/surf/k2/points", json!(0)),
         ("/optimize/surf/k2/scale", json!("cubic")),
     ] {
         let mut study = tiny();
+        study["optimize"]["objective"] = json!({ "omega": { "from": 5, "to": 8, "samples": 3 } });
+        assert!(validator.is_valid(&study));
         *study.pointer_mut(pointer).expect(pointer) = bad.clone();
         assert!(!validator.is_valid(&study), "{pointer} = {bad}");
         let desk = Desk::new();

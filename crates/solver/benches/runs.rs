@@ -50,6 +50,12 @@ fn runs(criterion: &mut Criterion) {
     criterion.bench_function("steady response at one frequency, TMD", |bencher| {
         bencher.iter(|| coupled.steady(black_box(TMD.omega)));
     });
+    criterion.bench_function("steady E1max, the worst over 5 to 8 rad/s, TMD", |bencher| {
+        bencher.iter(|| coupled.steady_e1_max(black_box([5.0, 8.0])));
+    });
+    criterion.bench_function("steady stroke, the worst over 5 to 8 rad/s, TMD", |bencher| {
+        bencher.iter(|| coupled.steady_stroke_max(black_box([5.0, 8.0])));
+    });
     let bare = Bare::new(&tmd.primary, &tmd.forcing);
     criterion.bench_function("steady response at one frequency, no damper", |bencher| {
         bencher.iter(|| bare.steady(black_box(TMD.omega)));

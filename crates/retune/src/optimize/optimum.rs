@@ -3,9 +3,9 @@
 use super::log::short;
 use super::refine::{Refined, Run};
 use super::surf::Surf;
-use crate::study::{PerVariable, Search, Study};
-use crate::summary::Summary;
-use retune_model::Damper;
+use crate::study::{Objective, PerVariable, Search, Study};
+use crate::summary::{MadeBy, Summary};
+use retune_model::{Damper, Worst};
 use retune_optim::{Failures, Minimum, Scaling, Stop, Variable};
 use serde::Serialize;
 
@@ -17,6 +17,9 @@ pub struct Optimum {
     design: Design,
     #[serde(rename = "E1max")]
     e1_max: f64,
+    /// What E1max is, where it is not that of a window at the scene's omega.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    objective: Option<Goal>,
     on_bound: Vec<Variable>,
     surf: Option<GridBest>,
     refine: Refinement,
@@ -24,6 +27,16 @@ pub struct Optimum {
     simulation: Summary,
     #[serde(skip)]
     start: Found,
+    #[serde(skip)]
+    made_by: MadeBy,
+}
+
+/// What was made small, and the ω at which E1max of the best design is reached, rad/s.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Goal {
+    #[serde(flatten)]
+    objective: Objective,
+    worst_omega: f64,
 }
 
 /// A design as in the paper's Table 2: m2, k2, c2, D, C in SI units; and its E1max, J.
@@ -91,13 +104,14 @@ struct FailureNote {
 }
 
 impl Optimum {
-    /// Collects what a search found; `summary` is of a run of the best design.
+    /// Collects what a search found; `summary` is of a run of the best design at its `worst` frequency.
     pub(super) fn new(
         study: &Study,
         search: &Search,
         surf: Option<&Surf>,
         refined: &Refined,
         summary: Summary,
+        worst: Worst,
     ) -> Self {
         let best = refined.best();
         let damper = refined.objective.damper(&best.minimum.x).unwrap_or(search.damper);
@@ -107,6 +121,8 @@ impl Optimum {
             damper_type: summary.damper_type(),
             design: Design::new(&damper),
             e1_max: best.minimum.value,
+            objective: (!study.objective().is_default())
+                .then(|| Goal { objective: study.objective(), worst_omega: worst.frequency }),
             on_bound: on_bound(search, best),
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
@@ -123,6 +139,7 @@ impl Optimum {
             failures: FailureNote::new(surf.map(|surf| &surf.failures), &refined.objective.failures()),
             simulation: summary,
             start: start(search, refined),
+            made_by: MadeBy::new(study),
         }
     }
 
@@ -145,7 +162,7 @@ impl Optimum {
             String::new(),
             table2_header(),
             table2_row(self.damper_type, self.found().design),
-            format!("E1max = {} J; {}", short(self.e1_max), self.simulation.made_by()),
+            format!("E1max = {} J; {}", short(self.e1_max), self.made_by),
             format!(
                 "fminsearch, start {winner} of {}: {} after {iterations} iterations, {func_count} evaluations; \
                  TolX {tol_x:e} is {tol_x_mode}",

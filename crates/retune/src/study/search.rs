@@ -52,6 +52,24 @@ pub enum Rule {
         /// The parameter.
         variable: Variable,
     },
+    /// A band without width.
+    #[error("optimize.objective.omega: from = {from} rad/s is not below to = {to} rad/s: the band is empty")]
+    EmptyBand {
+        /// Lowest as given, rad/s.
+        from: f64,
+        /// Highest as given, rad/s.
+        to: f64,
+    },
+    /// Too few samples of a band, or too many.
+    #[error(
+        "optimize.objective.omega.samples: {samples} is not allowed here: give a whole number from 2 to {most}"
+    )]
+    Samples {
+        /// Their number as given.
+        samples: usize,
+        /// The largest number allowed.
+        most: usize,
+    },
     /// Bounds or an axis for a parameter that is not tuned.
     #[error("optimize.{field}.{variable}: `{variable}` is not tuned: add it to `vary` or leave it out here")]
     NotVaried {
@@ -181,6 +199,7 @@ impl Study {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         let variables = varied(&optimize.vary)?;
+        optimize.objective.check()?;
         let tuned = |field, variable: &Variable| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),
