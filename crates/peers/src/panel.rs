@@ -4,6 +4,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use retune_solver::Method;
 use std::error::Error;
 use std::path::Path;
 
@@ -42,6 +43,19 @@ pub enum Marker {
     Cross,
     /// None.
     Nothing,
+}
+
+/// Colour, width in px and marker of a method of Retune's own, the same on every sheet of the atlas.
+pub fn look(method: Method) -> (RGBColor, u32, Marker) {
+    match method {
+        Method::Hybrid => (VERMILION, 4, Marker::Disc),
+        Method::Ode23s => (INK, 3, Marker::Disc),
+        Method::Ode45 => (BLUE, 2, Marker::Disc),
+        Method::Ode23 => (BLUE, 2, Marker::Square),
+        Method::Dop853 => (BLUE, 2, Marker::Triangle),
+        Method::Rk4 => (GREEN, 2, Marker::Disc),
+        Method::Euler => (GREEN, 2, Marker::Square),
+    }
 }
 
 /// A line with its name.

@@ -94,7 +94,8 @@ const SCREEN: f64 = 2e-3;
 const HALVINGS: u32 = 200;
 
 impl<F> Peak<F> {
-    /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns. The run may end early once
+    /// Watches the quantity whose value and first two time derivatives `rates(drive, y)` returns; the value itself must depend on
+    /// the state alone, for between the ends of a [`Path`] it is asked for without the force. The run may end early once
     /// the value exceeds `cutoff`.
     pub fn new(rates: F, cutoff: f64) -> Self {
         Self {

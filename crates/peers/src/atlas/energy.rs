@@ -1,7 +1,7 @@
 //! Drift of the mechanical energy over 1,000 impacts without any loss: no damping, no force.
 
 use crate::own;
-use crate::panel::{Axis, BLUE, Drawn, GREEN, INK, Line, Marker, Panel, VERMILION, sheet};
+use crate::panel::{Axis, Drawn, Line, Panel, look, sheet};
 use crate::scenes::{SSVI, scene, system};
 use retune_model::{Coupled, NonNegative, Side};
 use retune_solver::observe::{Observer, Segment};
@@ -113,15 +113,6 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 fn draw(path: &Path, all: &[Drift]) -> Drawn {
-    let look = |method| match method {
-        Method::Hybrid => (VERMILION, 4, Marker::Disc),
-        Method::Ode23s => (INK, 3, Marker::Disc),
-        Method::Ode45 => (BLUE, 2, Marker::Disc),
-        Method::Ode23 => (BLUE, 2, Marker::Square),
-        Method::Dop853 => (BLUE, 2, Marker::Triangle),
-        Method::Rk4 => (GREEN, 2, Marker::Disc),
-        Method::Euler => (GREEN, 2, Marker::Square),
-    };
     let panel = |fixed: bool, contacts: Contacts, caption: &str| {
         let lines = runs()
             .into_iter()

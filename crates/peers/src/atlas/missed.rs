@@ -2,7 +2,7 @@
 //! leaves it again before they end.
 
 use crate::own;
-use crate::panel::{Axis, BLUE, Drawn, GREEN, INK, Line, Marker, Panel, VERMILION, sheet};
+use crate::panel::{Axis, Drawn, Line, Panel, look, sheet};
 use crate::scenes::{Case, Numbers, TMD, cases, scene, system};
 use retune_model::{Coupled, Side};
 use retune_solver::observe::{Observer, Segment};
@@ -146,15 +146,6 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 fn draw(path: &Path, shares: &[Shares]) -> Drawn {
-    let look = |method| match method {
-        Method::Hybrid => (VERMILION, 4, Marker::Disc),
-        Method::Ode23s => (INK, 3, Marker::Disc),
-        Method::Ode45 => (BLUE, 2, Marker::Disc),
-        Method::Ode23 => (BLUE, 2, Marker::Square),
-        Method::Dop853 => (BLUE, 2, Marker::Triangle),
-        Method::Rk4 => (GREEN, 2, Marker::Disc),
-        Method::Euler => (GREEN, 2, Marker::Square),
-    };
     let panel = |scene: &str, contacts: Contacts, caption: &str| Panel {
         caption: caption.into(),
         x: Axis::log("longest step allowed, s", 1e-4, 1.0),
