@@ -58,9 +58,13 @@ test *OPTIONS:
 
 # Measure speed
 bench *OPTIONS:
-    cargo bench {{OPTIONS}}
+    cargo bench --bench runs {{OPTIONS}}
 
-# Measure time and memory of a surf of 20^4 runs
+# Count the instructions of a run (needs valgrind): the same on a busy machine as on a quiet one
+bench-instructions:
+    cargo bench --quiet --package retune-solver --bench instructions
+
+# Measure time and memory of a surf of a million runs, and what a second core is worth
 bench-surf:
     cargo bench --quiet --package retune-optim --bench surf
 

@@ -4,6 +4,7 @@ use crate::parameter::{Error, Parameter};
 use rayon::prelude::*;
 use retune_model::{Coupled, Drive, Scene, Side};
 use retune_solver::observe::{Observer, Path, Peak, Segment, Unobserved};
+use retune_solver::steps::Steps;
 use retune_solver::{Hybrid, Motion, Phase, Settings, SolverError};
 use std::f64::consts::TAU;
 
@@ -84,6 +85,7 @@ pub(crate) struct Touches(pub(crate) [u64; 2]);
 impl Observer<4> for Touches {
     fn segment(&mut self, _segment: &impl Segment<4>) {}
     fn path(&mut self, _path: &impl Path<4>) {}
+    fn steps(&mut self, _steps: &Steps<'_, 4>) {}
     fn touch_down(&mut self, _t: f64, side: Side) {
         self.0[side as usize] += 1;
     }
@@ -100,6 +102,9 @@ impl<F: Fn(Drive, &[f64; 4]) -> [f64; 3]> Observer<4> for Watch<F> {
     }
     fn path(&mut self, path: &impl Path<4>) {
         self.peak.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.peak.steps(steps);
     }
     fn touch_down(&mut self, t: f64, side: Side) {
         self.touches.touch_down(t, side);

@@ -2,6 +2,7 @@
 
 use crate::{Bare, Damper, Drive, Forcing, Primary, hertz_energy, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
+use wide::f64x4;
 
 /// The two walls of the cavity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -181,18 +182,37 @@ impl Coupled {
     /// here `G = P cos ωt - c1 v1 + c2 (v2 - v1) + k2 (x2 - x1 - D) - F_con(z1) + F_con(z2)`.
     #[inline]
     pub fn primary_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        let Bare { m1, c1, k1, omega, .. } = self.bare;
-        let (&[x1, v1, x2, v2], [cos, sin]) = (y, drive);
         let [z1, z2] = self.rapprochement(y);
         let contact = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
-        let contact_slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
+        let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
+        let (drive, y) = (drive.map(f64x4::splat), y.map(f64x4::splat));
+        let rates = self.primary_energy_rates_under(&drive, &y, f64x4::splat(contact), f64x4::splat(slope));
+        rates.map(|rate| rate.to_array()[0])
+    }
+
+    /// [`Self::primary_energy_rates`] of four moments side by side at which the damper touches no wall.
+    #[inline(always)]
+    pub fn primary_energy_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.primary_energy_rates_under(drive, y, f64x4::ZERO, f64x4::ZERO)
+    }
+
+    /// Both of the above, from the net contact force on the damper, N, and the sum of the slopes of both forces, N/m.
+    #[inline(always)]
+    fn primary_energy_rates_under(
+        &self,
+        &[cos, sin]: &[f64x4; 2],
+        &[x1, v1, x2, v2]: &[f64x4; 4],
+        contact: f64x4,
+        contact_slope: f64x4,
+    ) -> [f64x4; 3] {
+        let Bare { m1, c1, k1, omega, .. } = self.bare;
         let (stretch, stretch_rate) = (x2 - x1 - self.d, v2 - v1);
-        let on_damper = contact - self.c2 * stretch_rate - self.k2 * stretch;
-        let g = cos - c1 * v1 - on_damper;
-        let (a1, a2) = ((g - k1 * x1) / m1, on_damper / self.m2);
-        let on_damper_rate = -contact_slope * stretch_rate - self.c2 * (a2 - a1) - self.k2 * stretch_rate;
-        let g_rate = -omega * sin - c1 * a1 - on_damper_rate;
-        [self.bare.primary_energy(x1, v1), v1 * g, a1 * g + v1 * g_rate]
+        let on_damper = contact - stretch_rate * self.c2 - stretch * self.k2;
+        let g = cos - v1 * c1 - on_damper;
+        let (a1, a2) = ((g - x1 * k1) / m1, on_damper / self.m2);
+        let on_damper_rate = -contact_slope * stretch_rate - (a2 - a1) * self.c2 - stretch_rate * self.k2;
+        let g_rate = sin * -omega - a1 * c1 - on_damper_rate;
+        [(v1 * v1 * m1 + x1 * x1 * k1) * 0.5, v1 * g, a1 * g + v1 * g_rate]
     }
 
     /// The paper's damper energy `E2 = (m2 v2² + k2 (x2 - D)²) / 2` with its first two time derivatives, in J, W, W/s.

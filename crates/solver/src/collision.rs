@@ -13,15 +13,19 @@
 //! once for all (see `rule::newton`). A contact that is not of this kind is declined, and integrated step by step (see
 //! `contact`).
 
-use crate::contact::Piece;
-use crate::flow::{Expansion, Flow};
-use crate::observe::{Knot, Observer, Path};
-use crate::rule::{DURATION, MOMENTS, Rule, dot, each, product};
+mod motion;
+
+use crate::flow::Flow;
+use crate::observe::{Knot, Observer};
+use crate::polynomial::Polynomial;
+use crate::rule::{DURATION, MOMENTS, Nodes, Rule, at_nodes, dot, product};
+use motion::Collision;
 use retune_model::{Compression, Coupled, Side};
 use std::sync::LazyLock;
+use wide::f64x4;
 
 /// The rules in use, from few nodes to many.
-static RULES: LazyLock<(Rule<8>, Rule<12>, Rule<16>)> =
+static RULES: LazyLock<(Rule<8, 2>, Rule<12, 3>, Rule<16, 4>)> =
     LazyLock::new(|| (Rule::new(), Rule::new(), Rule::new()));
 
 /// How contacts with one wall begin and how their force moves the system.
@@ -38,24 +42,9 @@ pub struct Collisions {
     rtol: f64,
 }
 
-/// A contact from touch-down to lift-off.
-struct Collision<'a, const N: usize> {
-    of: &'a Collisions,
-    rule: &'static Rule<N>,
-    flow: &'a Flow<4>,
-    touch: Knot<4>,
-    duration: f64,
-    /// `q = √z` at the nodes.
-    roots: [f64; N],
-    /// `[x1, v1, x2, v2]` at the nodes, and at lift-off.
-    nodes: [[f64; N]; 4],
-    end: [f64; 4],
-    /// Turns that the iteration took.
-    turns: u32,
-}
-
-/// Most terms of the free motion's Taylor series, and the largest `rate t` for which they are exact: `0.3¹² / 12! = 1e-15`.
-const FREE: usize = 12; // even
+/// Blocks of four terms of the free motion's Taylor series, and the largest `rate t` for which they are exact:
+/// `0.3¹² / 12! = 1e-15`.
+const FREE: usize = 3;
 const BRIEF: f64 = 0.3;
 
 /// The error of the end of a contact over `tail^1.25`, for each rule, where the tail of its force's expansion is the root of the
@@ -100,7 +89,7 @@ impl Collisions {
     }
 
     /// Computes the contact that begins at `touch` and shows it to the observer, if it is nearly an undisturbed collision
-    /// and over before `to`. Returns time and state of lift-off and the number of evaluations of the force.
+    /// and over before `to`. Returns the moment of lift-off and the number of evaluations of the force.
     #[inline(always)]
     pub fn collide(
         &self,
@@ -108,32 +97,33 @@ impl Collisions {
         touch: Knot<4>,
         to: f64,
         observer: &mut impl Observer<4>,
-    ) -> Option<(f64, [f64; 4], u64)> {
+    ) -> Option<(Knot<4>, u64)> {
         let (few, some, many) = &*RULES;
         // From these tolerances on, common contacts pass the test of the rule, and their insides, for which quadrature by Gauss gains
         // nothing, are accurate enough for the energy of the much heavier structure.
         if self.rtol >= 1e-7
-            && let Some(collision) = self.solve(few, flow, touch, to)
+            && let Some(end) = self.solve(few, flow, &touch, to, observer)
         {
-            return Some(collision.finish(observer));
+            return Some(end);
         }
         if self.rtol >= 1e-9
-            && let Some(collision) = self.solve(some, flow, touch, to)
+            && let Some(end) = self.solve(some, flow, &touch, to, observer)
         {
-            return Some(collision.finish(observer));
+            return Some(end);
         }
-        self.solve(many, flow, touch, to).map(|collision| collision.finish(observer))
+        self.solve(many, flow, &touch, to, observer)
     }
 
     /// The contact by one rule; `None` if it is not of the kind that the rule is for.
     #[inline(always)]
-    fn solve<'a, const N: usize>(
-        &'a self,
-        rule: &'static Rule<N>,
-        flow: &'a Flow<4>,
-        touch: Knot<4>,
+    fn solve<const N: usize, const M: usize>(
+        &self,
+        rule: &'static Rule<N, M>,
+        flow: &Flow<4>,
+        touch: &Knot<4>,
         to: f64,
-    ) -> Option<Collision<'a, N>> {
+        observer: &mut impl Observer<4>,
+    ) -> Option<(Knot<4>, u64)> {
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         let depth = self.equations.greatest_depth(speed).powi(2);
         let undisturbed = DURATION * depth / speed;
@@ -143,43 +133,38 @@ impl Collisions {
         let terms = self.longest.iter().position(|&longest| undisturbed < longest)?;
         let free_terms = terms + 4; // their error is about the square of the response's
         let free = flow.expand::<FREE>(touch.drive, &touch.y);
-        let (x1, x2) = (free.component(0), free.component(2));
         // z_free / depth, without the constant term, which is zero.
-        let mut approach = [0.0; FREE - 1];
-        for k in 1..FREE {
-            approach[k - 1] = self.side.sign() / depth * (x2[k] - x1[k]);
-        }
+        let [x1, _, x2, _] = free.0;
+        let to_depth = self.side.sign() / depth;
+        let approach = Polynomial::<FREE>(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * to_depth)).over_s();
         let (mut depths, mut stretch) = (rule.depths, 1.0);
         let (mut moments, mut last) = (rule.undisturbed, rule.undisturbed_last);
         let mut shares = [0.0; 2];
-        let (mut before, mut turns) = (1.0, 0);
+        let (mut before, mut turns): (f64, u32) = (1.0, 0);
         let force = loop {
             let duration = stretch * undisturbed;
-            let (mut pushed, mut pushed_last) = ([0.0; N], 0.0);
+            let (mut pushed, mut pushed_last) = ([f64x4::ZERO; M], 0.0);
             for k in (1..=terms).rev() {
-                for i in 0..N {
-                    pushed[i] = pushed[i] * duration + self.gains[k] * moments[k][i];
+                for i in 0..M {
+                    pushed[i] = pushed[i] * duration + moments[k][i] * self.gains[k];
                 }
                 pushed_last = pushed_last * duration + self.gains[k] * last[k];
             }
             let scale = duration * duration * depth.sqrt();
-            let times = each::<N>(|i| rule.times[i] * duration);
-            let (mut free, mut free_last) = ([0.0; N], 0.0);
-            for a in approach[..free_terms - 1].iter().rev() {
-                for i in 0..N {
-                    free[i] = (free[i] + a) * times[i];
-                }
-                free_last = (free_last + a) * duration;
-            }
-            let residual = each(|i| depths[i] - free[i] + scale * pushed[i]);
+            let times = rule.times.map(|time| time * duration);
+            let mean_rate = at_nodes(&approach, free_terms - 1, &times);
+            let free_last = approach.at(duration) * duration;
+            let residual: Nodes<M> =
+                std::array::from_fn(|i| depths[i] - mean_rate[i] * times[i] + pushed[i] * scale);
             let (change, lengthening) =
                 rule.newton.change(shares, &residual, scale * pushed_last - free_last);
-            for i in 0..N {
+            for i in 0..M {
                 depths[i] -= change[i];
             }
             stretch -= lengthening;
             turns += 1;
-            let size = change.iter().fold(lengthening.abs(), |size, c| size.max(c.abs()));
+            let largest = change.iter().fold(f64x4::splat(lengthening).abs(), |size, c| size.max(c.abs()));
+            let size = largest.to_array().into_iter().fold(0.0, f64::max);
             // Each turn gains about as much as the last: what is left is some `size² / before`.
             let settled = size * size <= 0.3 * self.rtol * before;
             if size.is_nan() || size >= 0.5 * before || turns == TURNS {
@@ -187,9 +172,14 @@ impl Collisions {
             }
             if turns == 1 {
                 shares = rule.newton.shares(&change, lengthening);
+                let (bend, longer) = rule.newton.bend(shares);
+                for i in 0..M {
+                    depths[i] += bend[i];
+                }
+                stretch += longer;
             }
             before = size;
-            let force = each::<N>(|i| depths[i] * depths[i].sqrt());
+            let force = depths.map(|depth| depth * depth.sqrt());
             for k in usize::from(!settled)..=terms {
                 moments[k] = product(&rule.moments[k], &force);
                 last[k] = dot(&rule.last[k], &force);
@@ -204,117 +194,26 @@ impl Collisions {
         if error.is_nan() || error > self.rtol || touch.t + duration >= to {
             return None;
         }
-        let (nodes, mut end) =
-            self.states(rule, &free, [terms, free_terms], (depth, duration), (&moments, &last));
-        end[2] = end[0] + self.wall;
-        let roots = each(|i| (depth * depths[i]).sqrt());
-        Some(Collision { of: self, rule, flow, touch, duration, roots, nodes, end, turns })
-    }
-
-    /// The states `[x1, v1, x2, v2]` at the nodes and at the end, from the free motion and the moments of the force.
-    #[inline(always)]
-    fn states<const N: usize>(
-        &self,
-        rule: &Rule<N>,
-        free: &Expansion<4, FREE>,
-        [terms, free_terms]: [usize; 2],
-        (depth, duration): (f64, f64),
-        (moments, last): (&[[f64; N]; MOMENTS], &[f64; MOMENTS]),
-    ) -> ([[f64; N]; 4], [f64; 4]) {
-        let times = each::<N>(|i| rule.times[i] * duration);
-        let (mut nodes, mut end) = ([[0.0; N]; 4], free.at(duration));
-        for c in 0..4 {
-            for coefficient in free.component(c)[..free_terms].iter().rev() {
-                for i in 0..N {
-                    nodes[c][i] = nodes[c][i] * times[i] + coefficient;
-                }
-            }
-            let mut power = duration * depth * depth.sqrt();
-            for k in 0..=terms {
-                let kick = self.kicks[k][c] * power;
-                for i in 0..N {
-                    nodes[c][i] += kick * moments[k][i];
-                }
-                end[c] += kick * last[k];
-                power *= duration;
-            }
-        }
-        (nodes, end)
-    }
-}
-
-impl<const N: usize> Collision<'_, N> {
-    /// Shows the motion to an observer. Returns time and state of lift-off and the number of evaluations of the force.
-    #[inline(always)]
-    fn finish(&self, observer: &mut impl Observer<4>) -> (f64, [f64; 4], u64) {
-        observer.path(self);
-        (self.touch.t + self.duration, self.end, u64::from(self.turns) * N as u64)
-    }
-
-    /// `τ` of a knot: touch-down, the nodes, lift-off.
-    fn time(&self, knot: usize) -> f64 {
-        match knot {
-            0 => 0.0,
-            node if node <= N => self.rule.times[node - 1],
-            _ => 1.0,
-        }
-    }
-
-    fn knot(&self, knot: usize) -> Knot<4> {
-        let elapsed = self.time(knot) * self.duration;
-        let (y, root) = match knot {
-            0 => (self.touch.y, 0.0),
-            node if node <= N => (self.nodes.map(|component| component[node - 1]), self.roots[node - 1]),
-            _ => (self.end, 0.0),
+        let mut collision = Collision {
+            of: self,
+            rule,
+            flow,
+            touch,
+            free: &free,
+            free_terms,
+            terms,
+            moments: &moments,
+            last: &last,
+            scale: duration * depth * depth.sqrt(),
+            duration,
+            roots: depths.map(|z| (z * depth).sqrt()),
+            end: [0.0; 4],
         };
-        Knot {
-            t: self.touch.t + elapsed,
-            drive: self.flow.drive_after(self.touch.drive, elapsed),
-            y,
-            clock: [root, 0.5 * self.of.side.sign() * (y[3] - y[1])],
-        }
-    }
-}
-
-impl<const N: usize> Path<4> for Collision<'_, N> {
-    fn pieces(&self) -> usize {
-        N + 1
-    }
-
-    #[inline(always)]
-    fn states(&self, mut visit: impl FnMut(&[f64; 4])) {
-        visit(&self.touch.y);
-        for i in 0..N {
-            visit(&[self.nodes[0][i], self.nodes[1][i], self.nodes[2][i], self.nodes[3][i]]);
-        }
-        visit(&self.end);
-    }
-
-    /// A piece between two knots is followed by steps from the first of them.
-    fn show(&self, piece: usize, observer: &mut impl Observer<4>) {
-        let ends = [self.knot(piece), self.knot(piece + 1)];
-        let mut from = self.of.equations.compress(&ends[0].y);
-        from[0] = ends[0].clock[0];
-        let mut equations = self.of.equations;
-        equations.set_drive(0.0, ends[0].drive);
-        // θ = ∫ dt / √z
-        let slope: [f64; N] = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
-        let theta = |knot: usize| match knot {
-            0 => 0.0,
-            node if node <= N => (0..N).map(|j| self.rule.running[j][node - 1] * slope[j]).sum(),
-            _ => dot(&self.rule.whole, &slope),
-        };
-        let length = self.duration * (theta(piece + 1) - theta(piece));
-        let derivative = equations.derivative(&from);
-        observer.segment(&Piece {
-            equations: &equations,
-            touch_down: ends[0].t,
-            from: &from,
-            slope: &derivative,
-            length,
-            steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
-            ends,
-        });
+        collision.end = collision.lift_off();
+        observer.path(&collision);
+        let drive = flow.drive_after(touch.drive, duration);
+        let end = Knot { t: touch.t + duration, drive, y: collision.end, clock: [1.0, 0.0] };
+        Some((end, u64::from(turns) * N as u64))
     }
 }
 

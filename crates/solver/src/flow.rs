@@ -1,65 +1,121 @@
 //! The exact flow of a forced linear system: Taylor series over one step of a fixed length.
 //!
-//! The step is no longer than the inverse of the flow's fastest rate, so the series of the matrix exponential needs no
-//! scaling, loses nothing to cancellation and has converged to rounding after [`TERMS`] terms (`1/20! = 4e-19`). Eigenvectors
-//! are not used: near critical damping they are nearly parallel. The force is two more components that turn with `ωt`, so
-//! resonance is no special case.
+//! The step is little longer than the inverse of the flow's fastest rate, so the series of the matrix exponential needs no
+//! scaling, loses next to nothing to cancellation and has converged to rounding after 20 terms (`1.25²⁰/20! = 4e-17`).
+//! Eigenvectors are not used: near critical damping they are nearly parallel. The force is two more components that turn with
+//! `ωt`, so resonance is no special case. Four steps are made at once, with the powers of the same matrix, and every operation
+//! is one vector instruction.
 
+use crate::polynomial::Polynomial;
 use crate::rule::each;
 use crate::settings::SolverError;
 use crate::system::Linear;
 use retune_model::Drive;
+use wide::f64x4;
 
-/// Terms of a Taylor series over one step.
-pub const TERMS: usize = 20;
+/// Blocks of four terms of a Taylor series over one step.
+pub const BLOCKS: usize = 5;
+
+/// Length of a step times the rate of the flow. Longer steps are fewer, but bounds over them are looser.
+const STEP: f64 = 1.25;
+
+/// Steps that are computed side by side.
+pub const LANES: usize = 4;
+
+/// The moments after 1, 2, … [`LANES`] whole steps, component by component.
+pub struct Stride<const N: usize> {
+    /// `[P cos ωt, P sin ωt]`, N.
+    pub drive: [f64x4; 2],
+    /// States.
+    pub y: [f64x4; N],
+}
 
 /// The flow over a fixed step: `y(t + h) = origin + Φ (y(t) - origin) + Ψ [P cos ωt, P sin ωt]`.
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
     step: f64,
-    phi: [[f64; N]; N],
-    psi: [[f64; N]; 2],
-    turn: [f64; 2],
+    fineness: f64,
+    /// Columns of `Φ`, and of its powers: `phi[j][i]` has what component `j` makes of component `i` after each of the steps.
+    phi: [[f64x4; N]; N],
+    /// The same for the two components of the force.
+    psi: [[f64x4; N]; 2],
+    /// Cosine and sine of the angles by which the force has turned.
+    turn: [f64x4; 2],
+    /// Series of the cosine and the sine by which the force turns.
+    rotation: [Polynomial<BLOCKS>; 2],
     /// The series of which `Φ` and `Ψ` are the values at the end of the step.
     free: [Expansion<N>; N],
     forced: [Expansion<N>; 2],
 }
 
-/// The motion over one step as a polynomial: `y(t + s) = Σ c_k s^k`, `0 <= s <= step`, to the first `K` terms.
+/// The motion over one step, component by component: `y(t + s)` for `0 <= s <= step`, to the first `4 B` terms.
 #[derive(Clone, Copy)]
-pub struct Expansion<const N: usize, const K: usize = TERMS> {
-    coefficients: [[f64; N]; K],
-}
-
-/// The series of one linear combination of the components.
-pub struct Series<const N: usize> {
-    origin: [f64; N],
-    at_origin: f64,
-    free: [[f64; TERMS]; N],
-    forced: [[f64; TERMS]; 2],
-}
+pub struct Expansion<const N: usize, const B: usize = BLOCKS>(pub [Polynomial<B>; N]);
 
 impl<const N: usize> Flow<N> {
-    /// Prepares the flow for steps of `1 / rate` seconds, or of `longest` if that is shorter.
+    /// Prepares the flow for steps of [`STEP`]` / rate` seconds, or of `longest` if that is shorter.
     pub fn new(linear: Linear<N>, longest: f64) -> Self {
-        let step = longest.min(1.0 / linear.rate);
+        let step = longest.min(STEP / linear.rate);
         let unit = |i: usize| -> [f64; N] { std::array::from_fn(|j| f64::from(i == j)) };
         let free = std::array::from_fn(|j| series(&linear, [0.0; 2], unit(j)));
         let forced = [[1.0, 0.0], [0.0, 1.0]].map(|drive| series(&linear, drive, [0.0; N]));
-        Self {
+        let mut coefficients = [[0.0; 2]; 4 * BLOCKS];
+        coefficients[0] = [1.0, 0.0];
+        for k in 1..coefficients.len() {
+            let ([c, s], rate) = (coefficients[k - 1], linear.frequency / k as f64);
+            coefficients[k] = [-rate * s, rate * c];
+        }
+        let rotation = [0, 1].map(|part| Polynomial::new(&coefficients.map(|c| c[part])));
+        let turn = rotation.each_ref().map(|part: &Polynomial<BLOCKS>| part.at(step));
+        let mut flow = Self {
+            phi: [[f64x4::ZERO; N]; N],
+            psi: [[f64x4::ZERO; N]; 2],
+            turn: [f64x4::ZERO; 2],
             linear,
             step,
-            phi: std::array::from_fn(|j| free[j].at(step)),
-            psi: [forced[0].at(step), forced[1].at(step)],
-            turn: rotation(linear.frequency * step),
+            fineness: (linear.rate * step).powi(5),
+            rotation,
             free,
             forced,
+        };
+        let (phi, psi) =
+            (flow.free.each_ref().map(|c| c.at(step)), flow.forced.each_ref().map(|c| c.at(step)));
+        let mut columns: [([f64; 2], [f64; N]); N] = std::array::from_fn(|j| ([0.0; 2], unit(j)));
+        let mut forces = [([1.0, 0.0], [0.0; N]), ([0.0, 1.0], [0.0; N])];
+        for lane in 0..LANES {
+            for (drive, y) in columns.iter_mut().chain(&mut forces) {
+                let mut next = [0.0; N];
+                for (column, weight) in psi.iter().zip(&*drive).chain(phi.iter().zip(&*y)) {
+                    for i in 0..N {
+                        next[i] += column[i] * weight;
+                    }
+                }
+                (*drive, *y) = (turned(*drive, turn), next);
+            }
+            for i in 0..N {
+                for j in 0..N {
+                    flow.phi[j][i].as_mut_array()[lane] = columns[j].1[i];
+                }
+                for j in 0..2 {
+                    flow.psi[j][i].as_mut_array()[lane] = forces[j].1[i];
+                }
+            }
+            for (turn, now) in flow.turn.iter_mut().zip(forces[0].0) {
+                turn.as_mut_array()[lane] = now;
+            }
         }
+        flow
     }
 
     /// Length of a whole step, s.
     pub fn step(&self) -> f64 {
         self.step
+    }
+
+    /// The remainder of the quintic through a quantity's rates at both ends of a step, relative to that over a step of `1 / rate`
+    /// in which the quantity varies as much: `(rate step)⁵`, for it goes with the sixth power of the step.
+    pub fn fineness(&self) -> f64 {
+        self.fineness
     }
 
     /// Refuses a run to time `to` (s) in which a whole step would be lost to rounding.
@@ -84,7 +140,7 @@ impl<const N: usize> Flow<N> {
         let apply = |phi: &[[f64; N]; N], y: &[f64; N]| -> [f64; N] {
             std::array::from_fn(|i| (0..N).map(|j| phi[j][i] * y[j]).sum())
         };
-        let mut power = self.phi;
+        let mut power = self.phi.map(|column| column.map(|lanes| lanes.to_array()[0]));
         while steps > 0 {
             if steps & 1 == 1 {
                 deviation = apply(&power, &deviation);
@@ -95,10 +151,10 @@ impl<const N: usize> Flow<N> {
         deviation
     }
 
-    /// Advances by a whole step.
+    /// The moments after the next whole steps.
     #[inline(always)]
-    pub fn advance(&self, drive: Drive, y: &[f64; N]) -> (Drive, [f64; N]) {
-        let mut next = self.linear.origin;
+    pub fn stride(&self, drive: Drive, y: &[f64; N]) -> Stride<N> {
+        let mut next = self.linear.origin.map(f64x4::splat);
         for (column, force) in self.psi.iter().zip(drive) {
             for i in 0..N {
                 next[i] += column[i] * force;
@@ -110,73 +166,40 @@ impl<const N: usize> Flow<N> {
                 next[i] += column[i] * deviation;
             }
         }
-        (turned(drive, self.turn), next)
+        let ([c, s], [cos, sin]) = (drive, self.turn);
+        Stride { drive: [cos * c - sin * s, cos * s + sin * c], y: next }
     }
 
-    /// The force `s` seconds later.
+    /// The force `s` seconds later, `0 <= s <= step`.
+    #[inline(always)]
     pub fn drive_after(&self, drive: Drive, s: f64) -> Drive {
-        turned(drive, rotation(self.linear.frequency * s))
+        turned(drive, self.rotation.each_ref().map(|part| part.at(s)))
     }
 
     /// The motion from `y` over the next step.
     #[inline(always)]
-    pub fn expand<const K: usize>(&self, drive: Drive, y: &[f64; N]) -> Expansion<N, K> {
-        let mut coefficients = [[0.0; N]; K];
-        for k in 1..K {
-            for (series, force) in self.forced.iter().zip(drive) {
-                for i in 0..N {
-                    coefficients[k][i] += series.coefficients[k][i] * force;
+    pub fn expand<const B: usize>(&self, drive: Drive, y: &[f64; N]) -> Expansion<N, B> {
+        let deviation: [f64; N] = each(|j| y[j] - self.linear.origin[j]);
+        Expansion(std::array::from_fn(|i| {
+            let mut sum = [f64x4::ZERO; B];
+            for b in 0..B {
+                for (series, force) in self.forced.iter().zip(drive) {
+                    sum[b] += series.0[i].0[b] * force;
+                }
+                for (series, deviation) in self.free.iter().zip(deviation) {
+                    sum[b] += series.0[i].0[b] * deviation;
                 }
             }
-            for (j, series) in self.free.iter().enumerate() {
-                let deviation = y[j] - self.linear.origin[j];
-                for i in 0..N {
-                    coefficients[k][i] += series.coefficients[k][i] * deviation;
-                }
-            }
-        }
-        coefficients[0] = *y;
-        Expansion { coefficients }
-    }
-
-    /// Prepares the series of `row · y`.
-    pub fn series(&self, row: &[f64; N]) -> Series<N> {
-        let combined = |e: &Expansion<N>| e.coefficients.map(|c| dot(&c, row));
-        Series {
-            origin: self.linear.origin,
-            at_origin: dot(&self.linear.origin, row),
-            free: self.free.each_ref().map(combined),
-            forced: self.forced.each_ref().map(combined),
-        }
-    }
-}
-
-impl<const N: usize> Series<N> {
-    /// `Σ c_k s^k` from a state on.
-    #[inline(always)]
-    pub fn expand(&self, drive: Drive, y: &[f64; N]) -> [f64; TERMS] {
-        let mut sum = [0.0; TERMS];
-        for (series, force) in self.forced.iter().zip(drive) {
-            for k in 0..TERMS {
-                sum[k] += series[k] * force;
-            }
-        }
-        for (j, series) in self.free.iter().enumerate() {
-            let deviation = y[j] - self.origin[j];
-            for k in 0..TERMS {
-                sum[k] += series[k] * deviation;
-            }
-        }
-        sum[0] += self.at_origin;
-        sum
+            Polynomial(sum).with_constant(y[i])
+        }))
     }
 }
 
 /// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`.
 fn series<const N: usize>(linear: &Linear<N>, mut drive: Drive, deviation: [f64; N]) -> Expansion<N> {
     let Linear { columns, input, frequency, .. } = linear;
-    let mut coefficients = [deviation; TERMS];
-    for k in 1..TERMS {
+    let mut coefficients = [deviation; 4 * BLOCKS];
+    for k in 1..coefficients.len() {
         let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
         let mut next = [0.0; N];
         for i in 0..N {
@@ -190,37 +213,15 @@ fn series<const N: usize>(linear: &Linear<N>, mut drive: Drive, deviation: [f64;
         coefficients[k] = next.map(|c| c * scale);
         drive = [-frequency * scale * drive[1], frequency * scale * drive[0]];
     }
-    Expansion { coefficients }
+    Expansion(std::array::from_fn(|i| Polynomial::new(&coefficients.map(|c| c[i]))))
 }
 
-impl<const N: usize, const K: usize> Expansion<N, K> {
-    /// The state after `s` seconds: even and odd terms apart, so that less waits for less.
+impl<const N: usize, const B: usize> Expansion<N, B> {
+    /// The state after `s` seconds.
     #[inline(always)]
     pub fn at(&self, s: f64) -> [f64; N] {
-        let (mut even, mut odd, square) = ([0.0; N], [0.0; N], s * s);
-        for pair in self.coefficients.chunks_exact(2).rev() {
-            for i in 0..N {
-                even[i] = even[i] * square + pair[0][i];
-                odd[i] = odd[i] * square + pair[1][i];
-            }
-        }
-        each(|i| even[i] + s * odd[i])
+        each(|i| self.0[i].at(s))
     }
-
-    /// The coefficients of one component.
-    #[inline(always)]
-    pub fn component(&self, i: usize) -> [f64; K] {
-        each(|k| self.coefficients[k][i])
-    }
-}
-
-fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn rotation(angle: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
-    [cos, sin]
 }
 
 /// `[f cos, f sin]` of a phase, turned by the angle whose cosine and sine are given.

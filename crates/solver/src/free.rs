@@ -3,39 +3,13 @@
 //! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Dampers only take energy from the transient, so its
 //! energy norm bounds all that it can still do: whether a wall can ever be reached, and whether the record can still fall.
 
-use crate::flow::{Expansion, Flow};
-use crate::observe::{Knot, Observer, Peak, Segment};
+use crate::flow::Flow;
+use crate::observe::{Knot, Observer, Peak, Quantity, Segment};
 use crate::settings::{Extreme, SolverError, Window, Work};
+use crate::steps::{Step, StepClock, Steps};
 use crate::system::LinearSystem;
 use nalgebra::Complex;
-use retune_model::{Coupled, Drive, Side};
-use std::cell::OnceCell;
-
-/// An exact step without walls.
-struct Step<'a, const N: usize> {
-    flow: &'a Flow<N>,
-    ends: [Knot<N>; 2],
-    length: f64,
-    expansion: OnceCell<Expansion<N>>,
-}
-
-impl<const N: usize> Segment<N> for Step<'_, N> {
-    fn ends(&self) -> [&Knot<N>; 2] {
-        [&self.ends[0], &self.ends[1]]
-    }
-    fn length(&self) -> f64 {
-        self.length
-    }
-    fn at(&self, theta: f64) -> Knot<N> {
-        let from = &self.ends[0];
-        let expansion = self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y));
-        let drive = self.flow.drive_after(from.drive, theta);
-        Knot { t: from.t + theta, drive, y: expansion.at(theta), clock: [1.0, 0.0] }
-    }
-    fn at_time(&self, t: f64) -> Knot<N> {
-        Knot { t, ..self.at(t - self.ends[0].t) }
-    }
-}
+use retune_model::{Coupled, Side};
 
 /// A linear scene at a moment of its run.
 pub struct Free<'a, S, const N: usize> {
@@ -66,31 +40,29 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
     /// [`SolverError::TooManySteps`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
-        let (from, mut count) = (self.now.t, 0.0); // time is counted, not accumulated
+        let whole = self.flow.step();
+        let mut clock = StepClock::new(self.now.t, whole);
         while self.now.t < to && !observer.satisfied() {
-            let now = self.now;
-            self.work.steps += 1;
+            let (now, remaining) = (self.now, to - self.now.t);
+            let mut steps = Steps::new(&self.flow, now, clock);
+            steps.keep((remaining / whole) as usize);
+            if steps.count() > 0 {
+                observer.steps(&steps);
+                self.now = steps.knot(steps.count());
+                clock.count(steps.count());
+            } else {
+                let mut step = Step::part(&self.flow, now, &self.flow.expand(now.drive, &now.y), remaining);
+                step.end().t = to;
+                observer.segment(&step);
+                self.now = *step.ends()[1];
+            }
+            self.work.steps += steps.count().max(1) as u64;
             if self.work.steps > self.max_steps {
                 return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
             }
-            let (drive, y) = self.flow.advance(now.drive, &now.y);
-            count += 1.0;
-            let end = Knot { t: from + count * self.flow.step(), drive, y, clock: [1.0, 0.0] };
-            let mut step = Step {
-                flow: &self.flow,
-                ends: [now, end],
-                length: self.flow.step(),
-                expansion: OnceCell::new(),
-            };
-            if to - now.t < step.length {
-                step.length = to - now.t;
-                step.ends[1] = Knot { t: to, ..step.at(step.length) };
-            }
-            if !step.ends[1].y.iter().all(|v| v.is_finite()) {
+            if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }
-            observer.segment(&step);
-            self.now = step.ends[1];
         }
         Ok(())
     }
@@ -123,17 +95,24 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
     ///
     /// # Errors
     /// As [`Self::propagate`].
-    pub fn e1_max<F>(
+    pub fn e1_max<Q>(
         &mut self,
         window: Window,
-        mut peak: Peak<F>,
+        mut peak: Peak<Q>,
         steady_e1: f64,
     ) -> Result<Extreme, SolverError>
     where
-        F: Fn(Drive, &[f64; N]) -> [f64; 3],
+        Q: Quantity<N>,
     {
         /// Steps between looks at the bound.
-        const STRIDE: f64 = 16.0;
+        const STRIDE: f64 = 64.0;
+        // The maximum is near the steady one, more often than not: looked at first, it spares the search most others.
+        let (start, last) = (self.now, window.to - std::f64::consts::PI / self.flow.linear().frequency);
+        if self.system.steady().is_some() && window.from < last {
+            self.jump(last)?;
+            self.propagate(window.to, &mut peak)?;
+            self.now = start;
+        }
         self.jump(window.from)?;
         while self.now.t < window.to && !Observer::<N>::satisfied(&peak) {
             let to = window.to.min(self.now.t + STRIDE * self.flow.step());

@@ -1,39 +1,58 @@
 //! The first contact of an exact flight: no crossing is skipped, however short, down to rounding.
 
-use crate::flow::TERMS;
-use crate::rule::each;
+use crate::polynomial::Polynomial;
+use wide::f64x4;
 
-/// A polynomial `Σ c_k s^k` on one flight step: the gap to a wall, positive in flight.
-type Polynomial = [f64; TERMS];
-
-/// Least of the Bernstein coefficients of the cubic that meets `(value, slope)` at both ends of an interval of length `h`:
-/// the cubic stays above it.
+/// Bernstein coefficients of the cubic that meets `(value, slope)` at both ends of an interval of length `h`: it stays between
+/// the least and the largest of them, and leaves a function by at most [`CUBIC`]` h⁴ max|f⁗|`.
 #[inline(always)]
-pub fn cubic_floor(h: f64, a: [f64; 2], b: [f64; 2]) -> f64 {
+pub fn cubic(h: f64, a: [f64x4; 2], b: [f64x4; 2]) -> [f64x4; 4] {
     let third = h / 3.0;
-    least(least(a[0], a[0] + third * a[1]), least(b[0] - third * b[1], b[0]))
+    [a[0], a[0] + a[1] * third, b[0] - b[1] * third, b[0]]
 }
 
-/// The smaller of two numbers, neither of them NaN: one instruction, where `f64::min` needs three.
+/// Share of `h⁴ max|f⁗|` by which the [`cubic`] may leave a function: `s² (h - s)² / 4!` at `s = h/2`.
+pub const CUBIC: f64 = 1.0 / 384.0;
+
+/// Least of four numbers, in each lane.
 #[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
+pub fn floor([a, b, c, d]: [f64x4; 4]) -> f64x4 {
+    a.fast_min(b).fast_min(c.fast_min(d))
+}
+
+/// Largest of four numbers, in each lane.
+#[inline(always)]
+pub fn ceiling([a, b, c, d]: [f64x4; 4]) -> f64x4 {
+    a.fast_max(b).fast_max(c.fast_max(d))
+}
+
+/// A lower bound of a gap that is zero at the start of an interval, in such units that the gap is open on all of it if the
+/// bound is more than `CUBIC h⁴ max|f⁗|`: its cubic over `s` is a quadratic with Bernstein coefficients
+/// `[3 b1, 3/2 b2, b3] / h`, which leaves the gap over `s` by at most `s (h - s)² / 4! <= h³/162` times `max|f⁗|`.
+#[inline(always)]
+pub fn opening_floor([_, b1, b2, b3]: [f64x4; 4]) -> f64x4 {
+    (b1 * 3.0).fast_min(b2 * 1.5).fast_min(b3) * (162.0 * CUBIC)
 }
 
 /// The first `s` in `(0, to]` at which the gap becomes negative, or `None`.
 ///
 /// `Some(0.0)` means that the gap is closed at the start and closing. A gap of zero that opens is in flight.
-pub fn first_contact(gap: &Polynomial, to: f64) -> Option<f64> {
+pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Option<f64> {
     // At s = 0 the damper may just have left the wall (or rest on it): the root there is divided out.
-    let order = gap.iter().position(|&c| c != 0.0)?;
-    let mut p = [0.0; TERMS];
-    p[..TERMS - order].copy_from_slice(&gap[order..]);
-    if p[0] < 0.0 {
-        return Some(0.0);
+    for _ in 0..4 * B {
+        if gap.coefficient(0) != 0.0 {
+            break;
+        }
+        gap = gap.over_s();
     }
-    let derivative = differentiated(&p);
-    let at = |s: f64| [value(&p, s), value(&derivative, s)];
-    search(&at, fourth_derivative_bound(&p, to), to * 1e-15, (0.0, [p[0], p[1]]), (to, at(to)))
+    let start = gap.coefficient(0);
+    if start <= 0.0 {
+        return (start < 0.0).then_some(0.0);
+    }
+    let derivative = gap.derivative();
+    let at = |s: f64| [gap.at(s), derivative.at(s)];
+    let ends = ((0.0, [start, gap.coefficient(1)]), (to, at(to)));
+    search(&at, gap.fourth_derivative_bound(to), to * 1e-15, ends.0, ends.1)
 }
 
 /// Left half first, so that what is found is the first; an interval ends the search when it is certified open, when it holds
@@ -46,8 +65,8 @@ fn search(
     (b, right): (f64, [f64; 2]),
 ) -> Option<f64> {
     let h = b - a;
-    // |p - cubic| <= h⁴/384 max|p⁗|
-    if cubic_floor(h, left, right) >= h.powi(4) / 384.0 * fourth {
+    let [left_lanes, right_lanes] = [left, right].map(|end| end.map(f64x4::splat));
+    if floor(cubic(h, left_lanes, right_lanes)).to_array()[0] >= CUBIC * h.powi(4) * fourth {
         return None;
     }
     // |p' - cubic'| <= √3 h³/216 max|p⁗|; the cubic's slope stays below the largest of its Bernstein coefficients.
@@ -107,46 +126,12 @@ fn cubic_root(h: f64, [value, slope]: [f64; 2], [value_end, slope_end]: [f64; 2]
     if x.is_nan() { 0.5 * h } else { x * h }
 }
 
-/// `Σ c_k s^k`: four sums in powers of `s⁴`, side by side.
-#[inline(always)]
-fn value(p: &Polynomial, s: f64) -> f64 {
-    let (square, mut lanes) = (s * s, [0.0; 4]);
-    let fourth = square * square;
-    for block in p.chunks_exact(4).rev() {
-        for lane in 0..4 {
-            lanes[lane] = lanes[lane] * fourth + block[lane];
-        }
-    }
-    (lanes[0] + s * lanes[1]) + square * (lanes[2] + s * lanes[3])
-}
-
-fn differentiated(p: &Polynomial) -> Polynomial {
-    each(|k| if k + 1 < TERMS { (k + 1) as f64 * p[k + 1] } else { 0.0 })
-}
-
-/// A bound on `|p''''|` over `[0, to]` from the coefficients alone.
-fn fourth_derivative_bound(p: &Polynomial, to: f64) -> f64 {
-    const FACTORS: Polynomial = {
-        let (mut factors, mut k) = ([0.0; TERMS], 0);
-        while k + 4 < TERMS {
-            factors[k] = ((k + 4) * (k + 3) * (k + 2) * (k + 1)) as f64;
-            k += 1;
-        }
-        factors
-    };
-    let mut sizes = [0.0; TERMS];
-    for k in 4..TERMS {
-        sizes[k - 4] = FACTORS[k - 4] * p[k].abs();
-    }
-    value(&sizes, to)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn polynomial(c: &[f64]) -> Polynomial {
-        std::array::from_fn(|k| c.get(k).copied().unwrap_or(0.0))
+    fn polynomial(coefficients: &[f64]) -> Polynomial<1> {
+        Polynomial::new(coefficients)
     }
 
     #[test]
@@ -154,7 +139,7 @@ mod tests {
         // (s - 0.3)(s - 0.3 - d): positive at both ends, below zero only for a moment.
         for d in [1e-1, 1e-3, 1e-6] {
             let p = polynomial(&[0.3 * (0.3 + d), -0.6 - d, 1.0]);
-            let s = first_contact(&p, 1.0).expect("a crossing");
+            let s = first_contact(p, 1.0).expect("a crossing");
             assert!((s - 0.3).abs() < 1e-15 / d.max(1e-6) * 10.0, "{d} {s}");
         }
     }
@@ -162,22 +147,22 @@ mod tests {
     #[test]
     fn exact_no_contact_when_the_gap_only_nearly_closes() {
         let p = polynomial(&[0.09 + 1e-14, -0.6, 1.0]);
-        assert_eq!(first_contact(&p, 1.0), None);
+        assert_eq!(first_contact(p, 1.0), None);
     }
 
     #[test]
     fn exact_leaving_a_wall_is_not_a_contact_but_returning_is() {
-        assert_eq!(first_contact(&polynomial(&[0.0, 1.0]), 1.0), None);
-        let back = first_contact(&polynomial(&[0.0, 1.0, -4.0]), 1.0).expect("returns");
+        assert_eq!(first_contact(polynomial(&[0.0, 1.0]), 1.0), None);
+        let back = first_contact(polynomial(&[0.0, 1.0, -4.0]), 1.0).expect("returns");
         assert!((back - 0.25).abs() < 1e-15);
-        assert_eq!(first_contact(&polynomial(&[0.0, -1.0, 4.0]), 1.0), Some(0.0));
-        assert_eq!(first_contact(&polynomial(&[0.0, 0.0, -4.0]), 1.0), Some(0.0));
-        assert_eq!(first_contact(&polynomial(&[0.0]), 1.0), None);
+        assert_eq!(first_contact(polynomial(&[0.0, -1.0, 4.0]), 1.0), Some(0.0));
+        assert_eq!(first_contact(polynomial(&[0.0, 0.0, -4.0]), 1.0), Some(0.0));
+        assert_eq!(first_contact(polynomial(&[0.0]), 1.0), None);
     }
 
     #[test]
     fn exact_tiny_bounces_are_found_at_their_own_scale() {
-        let back = first_contact(&polynomial(&[0.0, 1e-12, -1.0]), 0.1).expect("returns");
+        let back = first_contact(polynomial(&[0.0, 1e-12, -1.0]), 0.1).expect("returns");
         assert!((back / 1e-12 - 1.0).abs() < 1e-12, "{back}");
     }
 }

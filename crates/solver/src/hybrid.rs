@@ -6,14 +6,15 @@
 
 use crate::collision::Collisions;
 use crate::contact;
-use crate::flow::{Expansion, Flow, Series, TERMS};
-use crate::gap::{cubic_floor, first_contact};
+use crate::flow::{BLOCKS, Expansion, Flow, LANES};
+use crate::gap::{CUBIC, ceiling, cubic, first_contact, floor, opening_floor};
 use crate::observe::{Knot, Observer, Segment};
-use crate::rule::each;
+use crate::polynomial::Polynomial;
 use crate::settings::{SolverError, Work};
-use crate::system::{Linear, LinearSystem, gap};
+use crate::steps::{Step, StepClock, Steps, shifted};
+use crate::system::{Linear, LinearSystem};
 use retune_model::{Compression, Coupled, Side};
-use std::cell::OnceCell;
+use wide::f64x4;
 
 /// What the damper is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +42,6 @@ pub struct Motion {
 pub struct Hybrid<'a> {
     system: &'a Coupled,
     flow: Flow<4>,
-    stroke: Series<4>,
     contacts: [Compression; 2],
     collisions: [Collisions; 2],
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴.
@@ -57,39 +57,8 @@ enum FlightEnd {
     Stopped(Knot<4>),
 }
 
-/// Steps after which the energy, which bounds how the gap can bend, is looked up.
-const LOOKS: f64 = 4.0;
-
 /// The row that picks `r = x2 - x1` from a state.
 const STROKE: [f64; 4] = [-1.0, 0.0, 1.0, 0.0];
-
-struct Flight<'a> {
-    flow: &'a Flow<4>,
-    ends: [&'a Knot<4>; 2],
-    length: f64,
-    expansion: &'a OnceCell<Expansion<4>>,
-}
-
-impl Segment<4> for Flight<'_> {
-    fn ends(&self) -> [&Knot<4>; 2] {
-        self.ends
-    }
-    fn length(&self) -> f64 {
-        self.length
-    }
-    fn at(&self, theta: f64) -> Knot<4> {
-        let from = self.ends[0];
-        let expansion = self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y));
-        flight_knot(self.flow, from, expansion, theta)
-    }
-    fn at_time(&self, t: f64) -> Knot<4> {
-        Knot { t, ..self.at(t - self.ends[0].t) }
-    }
-}
-
-fn flight_knot(flow: &Flow<4>, from: &Knot<4>, expansion: &Expansion<4>, s: f64) -> Knot<4> {
-    Knot { t: from.t + s, drive: flow.drive_after(from.drive, s), y: expansion.at(s), clock: [1.0, 0.0] }
-}
 
 impl<'a> Hybrid<'a> {
     /// Prepares the propagator. `rtol` is the relative error allowed in a step of a contact, `longest` (s) the longest
@@ -100,7 +69,6 @@ impl<'a> Hybrid<'a> {
         Self {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
-            stroke: flow.series(&STROKE),
             flow,
             contacts: Side::BOTH.map(|side| system.compression(side)),
             fourth: fourth_derivative_bound(system, &linear),
@@ -143,12 +111,12 @@ impl<'a> Hybrid<'a> {
                     if touch.t > from.t || closing > 0.0 {
                         observer.touch_down(touch.t, side);
                     }
-                    if let Some((t, y, evaluations)) =
+                    if let Some((end, evaluations)) =
                         self.collisions[side as usize].collide(&self.flow, touch, to, observer)
                     {
                         self.work.steps += 1;
                         self.work.evaluations += evaluations;
-                        now = self.knot(t, y);
+                        now = end;
                         phase = Phase::Leaving(side);
                         if observer.satisfied() {
                             return stopped(now, phase);
@@ -203,85 +171,120 @@ impl<'a> Hybrid<'a> {
         observer: &mut impl Observer<4>,
     ) -> Result<FlightEnd, SolverError> {
         let whole = self.flow.step();
-        let slack = whole.powi(4) / 384.0;
-        let growth = self.system.energy_norm_growth() * whole;
-        let mut energy = 0.0; // a bound, looked up again after a few steps
+        let mut clock = StepClock::new(from.t, whole);
         let mut now = from;
-        let mut count = 0.0; // steps since `from`: time is counted, not accumulated
         let mut leaving = if let Phase::Leaving(side) = phase { Some(side) } else { None };
         loop {
             let remaining = to - now.t;
             if remaining <= 0.0 {
                 return Ok(FlightEnd::Stopped(now));
             }
-            self.work.steps += 1;
+            let mut steps = Steps::new(&self.flow, now, clock);
+            let (open, near) = self.open_steps(&steps, leaving)?;
+            let seen = open.min((remaining / whole) as usize);
+            let careful = seen < LANES;
+            steps.keep(seen);
+            self.work.steps += seen as u64 + u64::from(careful);
             if self.work.steps > self.max_steps {
                 return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
             }
-            let (drive, y) = self.flow.advance(now.drive, &now.y);
-            if count % LOOKS == 0.0 {
-                energy = self.system.energy_norm(&now.y);
-                if !energy.is_finite() {
-                    return Err(SolverError::NonFinite { t: now.t });
+            if seen > 0 {
+                observer.steps(&steps);
+                now = steps.knot(seen);
+                clock.count(seen);
+                leaving = None;
+                if observer.satisfied() {
+                    return Ok(FlightEnd::Stopped(now));
                 }
             }
-            energy += growth;
-            count += 1.0;
-            let mut end = Knot { t: from.t + count * whole, drive, y, clock: [1.0, 0.0] };
-            let margin = slack * (self.fourth[0] * energy + self.fourth[1]);
-            let rates = |y: &[f64; 4]| [y[2] - y[0], y[3] - y[1]];
-            let ([r0, w0], [r1, w1]) = (rates(&now.y), rates(&end.y));
-            let open = Side::BOTH.map(|side| {
-                let sign = -side.sign();
-                let ends = [[gap(self.system, side, r0), sign * w0], [gap(self.system, side, r1), sign * w1]];
-                cubic_floor(whole, ends[0], ends[1]) > margin
-            });
-            let expansion = OnceCell::new();
-            let mut length = whole;
-            let mut touched = None;
-            if open != [true; 2] || remaining < whole {
-                length = whole.min(remaining);
-                let stroke = self.stroke.expand(now.drive, &now.y);
-                for side in Side::BOTH.into_iter().filter(|&side| !open[side as usize]) {
-                    if let Some(s) = first_contact(&self.gap_polynomial(&stroke, side, leaving), length) {
-                        (length, touched) = (s, Some(side));
-                    }
+            if careful {
+                let remaining = to - now.t;
+                if remaining <= 0.0 {
+                    return Ok(FlightEnd::Stopped(now));
                 }
-                if length < whole {
-                    let motion = self.flow.expand(now.drive, &now.y);
-                    end = flight_knot(&self.flow, &now, &motion, length);
-                    if touched.is_none() {
-                        end.t = to;
-                    }
-                    let _ = expansion.set(motion);
+                let walls = Side::BOTH.into_iter().filter(|&side| seen == open && near[side as usize]);
+                let (step, touched) =
+                    self.careful_step([now, steps.knot(seen + 1)], walls, leaving, remaining);
+                if step.length() > 0.0 {
+                    observer.segment(&step);
                 }
+                now = *step.ends()[1];
+                if let Some(side) = touched {
+                    return Ok(FlightEnd::TouchDown(side, now));
+                }
+                if observer.satisfied() || now.t >= to {
+                    return Ok(FlightEnd::Stopped(now));
+                }
+                clock.count(1);
+                leaving = None;
             }
-            if length > 0.0 {
-                observer.segment(&Flight {
-                    flow: &self.flow,
-                    ends: [&now, &end],
-                    length,
-                    expansion: &expansion,
-                });
-            }
-            if let Some(side) = touched {
-                end.y[2] = end.y[0] + self.system.wall(side);
-                return Ok(FlightEnd::TouchDown(side, end));
-            }
-            if observer.satisfied() {
-                return Ok(FlightEnd::Stopped(end));
-            }
-            now = end;
-            leaving = None;
         }
     }
 
+    /// How many of some steps are certified to touch no wall, and which walls the next one may touch.
+    #[inline(always)]
+    fn open_steps(
+        &self,
+        steps: &Steps<'_, 4>,
+        leaving: Option<Side>,
+    ) -> Result<(usize, [bool; 2]), SolverError> {
+        let (from, to, whole) = (steps.from(), steps.ends(), self.flow.step());
+        let energy = self.system.energy_norm(&from.y);
+        if !energy.is_finite() {
+            return Err(SolverError::NonFinite { t: from.t });
+        }
+        let energy = energy + LANES as f64 * whole * self.system.energy_norm_growth();
+        let margin = CUBIC * whole.powi(4) * (self.fourth[0] * energy + self.fourth[1]);
+        let [x1, v1, x2, v2] = to.y;
+        let ends = [x2 - x1, v2 - v1];
+        let starts = [shifted(from.y[2] - from.y[0], ends[0]), shifted(from.y[3] - from.y[1], ends[1])];
+        let bounds = cubic(whole, starts, ends);
+        let wall = f64x4::splat(self.system.wall(Side::Obstacle));
+        let mut gaps = [floor(bounds), wall - ceiling(bounds)];
+        if let Some(side) = leaving {
+            let sign = f64x4::splat(-side.sign());
+            let gap = |stroke: f64x4| sign * (stroke - self.system.wall(side));
+            let opening =
+                opening_floor(cubic(whole, [f64x4::ZERO, sign * starts[1]], [gap(ends[0]), sign * ends[1]]));
+            gaps[side as usize].as_mut_array()[0] = opening.to_array()[0];
+        }
+        let open = gaps.map(|gap| gap.simd_gt(f64x4::splat(margin)).to_bitmask());
+        let count = (open[0] & open[1]).trailing_ones();
+        Ok((count as usize, open.map(|lanes| lanes >> count & 1 == 0)))
+    }
+
+    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: as far as it goes.
+    fn careful_step(
+        &self,
+        [now, end]: [Knot<4>; 2],
+        walls: impl Iterator<Item = Side>,
+        leaving: Option<Side>,
+        remaining: f64,
+    ) -> (Step<'_, 4>, Option<Side>) {
+        let whole = self.flow.step();
+        let motion = self.flow.expand(now.drive, &now.y);
+        let (mut length, mut touched) = (whole.min(remaining), None);
+        for side in walls {
+            if let Some(s) = first_contact(self.gap_polynomial(&motion, side, leaving), length) {
+                (length, touched) = (s, Some(side));
+            }
+        }
+        if length == whole {
+            return (Step::whole(&self.flow, [now, end]), touched);
+        }
+        let mut step = Step::part(&self.flow, now, &motion, length);
+        match touched {
+            Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
+            None => step.end().t = now.t + remaining,
+        }
+        (step, touched)
+    }
+
     /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.
-    fn gap_polynomial(&self, stroke: &[f64; TERMS], side: Side, leaving: Option<Side>) -> [f64; TERMS] {
-        let mut p: [f64; TERMS] = each(|k| -side.sign() * stroke[k]);
-        p[0] =
-            if leaving == Some(side) { 0.0 } else { (p[0] + side.sign() * self.system.wall(side)).max(0.0) };
-        p
+    fn gap_polynomial(&self, motion: &Expansion<4>, side: Side, leaving: Option<Side>) -> Polynomial<BLOCKS> {
+        let gap = press(motion, -side.sign());
+        let now = gap.coefficient(0) + side.sign() * self.system.wall(side);
+        gap.with_constant(if leaving == Some(side) { 0.0 } else { now.max(0.0) })
     }
 
     /// Starts a contact at a touch-down. One that begins (almost) at rest has no time scale of its own at `q = 0`: it is flown
@@ -302,32 +305,32 @@ impl<'a> Hybrid<'a> {
             return Ok((touch, pressed)); // fast enough to start at q = 0
         }
         let unfelt = |s: f64, z: f64| z > 0.0 && equations.hertz_rate() * z.sqrt() * s * s <= 1e-14;
-        let motion = self.flow.expand(touch.drive, &touch.y);
-        let stroke = self.stroke.expand(touch.drive, &touch.y);
-        let rate: [f64; TERMS - 1] = std::array::from_fn(|k| (k + 1) as f64 * stroke[k + 1]);
         let sign = equations.side().sign();
-        let value = |p: &[f64], s: f64| sign * p.iter().rev().fold(0.0, |sum, c| sum * s + c);
+        let motion = self.flow.expand(touch.drive, &touch.y);
+        let depth = press(&motion, sign);
+        let (mean_rate, rate) = (depth.over_s(), depth.derivative());
         let mut s = self.flow.step();
         for _ in 0..400 {
-            let z = s * value(&stroke[1..], s);
+            let z = s * mean_rate.at(s);
             if unfelt(s, z) {
-                let mut end = flight_knot(&self.flow, &touch, &motion, s);
-                end.y[2] = end.y[0] + self.system.wall(equations.side()) + sign * z;
+                let mut step = Step::part(&self.flow, touch, &motion, s);
+                step.end().y[2] = step.end().y[0] + self.system.wall(equations.side()) + sign * z;
+                observer.segment(&step);
+                let end = *step.ends()[1];
                 let mut pressed = equations.compress(&end.y);
-                (pressed[0], pressed[1]) = (z.sqrt(), value(&rate, s));
-                let expansion = OnceCell::from(motion);
-                observer.segment(&Flight {
-                    flow: &self.flow,
-                    ends: [&touch, &end],
-                    length: s,
-                    expansion: &expansion,
-                });
+                (pressed[0], pressed[1]) = (z.sqrt(), rate.at(s));
                 return Ok((end, pressed));
             }
             s *= 0.5;
         }
         Err(SolverError::StepTooSmall { t: touch.t, h: s })
     }
+}
+
+/// `sign r` over the next step.
+fn press(motion: &Expansion<4>, sign: f64) -> Polynomial<BLOCKS> {
+    let [x1, _, x2, _] = motion.0;
+    Polynomial(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * sign))
 }
 
 /// Coefficients of a bound on `|d⁴r/dt⁴|` in flight, from `r⁗ = ρ A⁴ (y - y0) + P-terms`, with ρ the row of `r`:

@@ -19,10 +19,13 @@ pub mod ode23;
 pub mod ode23s;
 pub mod ode45;
 pub mod onestep;
+mod peak;
+mod polynomial;
 pub mod rk4;
 mod rule;
 mod run;
 mod settings;
+pub mod steps;
 mod system;
 
 pub use hybrid::{Hybrid, Motion, Phase};

@@ -1,8 +1,8 @@
 //! The loop of the general-purpose one-step methods: MATLAB's step control, dense output, contacts located or stepped over.
 
-use crate::flow::TERMS;
 use crate::gap::first_contact;
 use crate::observe::{Knot, Observer, Segment};
+use crate::polynomial::Polynomial;
 use crate::settings::{Contacts, Settings, SolverError, Work};
 use crate::system::System;
 use retune_model::Side;
@@ -258,9 +258,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         let first = Side::BOTH
             .into_iter()
             .filter(|&side| self.contact.is_none_or(|touching| touching == side))
-            .filter_map(|side| {
-                first_contact(&self.open_polynomial(side, h, &attempt), 1.0).map(|s| (s, side))
-            })
+            .filter_map(|side| first_contact(self.open_polynomial(side, h, &attempt), 1.0).map(|s| (s, side)))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((s, side)) = first else { return (h, attempt, None) };
         let (system, sign) = (self.system, self.open_sign(side));
@@ -303,11 +301,11 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
     }
 
     /// What keeps the present phase going, as a polynomial over the step: the gap in flight, the rapprochement in contact.
-    fn open_polynomial(&self, side: Side, h: f64, attempt: &Attempt<N>) -> [f64; TERMS] {
+    fn open_polynomial(&self, side: Side, h: f64, attempt: &Attempt<N>) -> Polynomial<2> {
         let (i, sign) = (side as usize, self.open_sign(side));
         let z = |y: &[f64; N]| sign * self.system.rapprochement(y)[i];
         let origin = z(&[0.0; N]);
-        let mut p = [0.0; TERMS];
+        let mut p = [0.0; 8];
         p[0] = z(&self.now.y).max(0.0);
         if self.leaving && p[0].abs() < 1e-9 {
             p[0] = 0.0;
@@ -315,6 +313,6 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         for (c, dense) in p[1..].iter_mut().zip(&attempt.dense) {
             *c = h * (z(dense) - origin); // the rapprochement is affine in the state
         }
-        p
+        Polynomial::new(&p)
     }
 }

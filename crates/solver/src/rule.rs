@@ -15,8 +15,10 @@ mod quadrature;
 
 pub use newton::Newton;
 
+use crate::polynomial::Polynomial;
 use nalgebra::DMatrix;
 use quadrature::{clock, gauss, legendre, undisturbed_force};
+use wide::f64x4;
 
 /// Duration of the undisturbed collision, in units of greatest depth over touch-down speed: `(4/5) B(2/5, 1/2)`.
 pub const DURATION: f64 = 2.943_275_184_324_705;
@@ -27,30 +29,44 @@ const STIFFNESS: f64 = 1.25 * DURATION * DURATION;
 /// Orders of the moments that are kept.
 pub const MOMENTS: usize = 10;
 
-/// Nodes and weights for forces `f(τ)` on a contact of unit duration. Rows that belong to nodes run fastest.
-pub struct Rule<const N: usize> {
+/// A number for each of `4 M` nodes.
+pub type Nodes<const M: usize> = [f64x4; M];
+
+/// The nodes side by side, of which there are `N = 4 M`.
+pub fn packed<const N: usize, const M: usize>(numbers: &[f64; N]) -> Nodes<M> {
+    std::array::from_fn(|block| f64x4::new(std::array::from_fn(|lane| numbers[4 * block + lane])))
+}
+
+/// The number for node `i`.
+#[inline(always)]
+pub fn node<const M: usize>(nodes: &Nodes<M>, i: usize) -> f64 {
+    nodes[i / 4].to_array()[i % 4]
+}
+
+/// Quadrature for forces `f(τ)` on a contact of unit duration, on `N = 4 M` nodes.
+pub struct Rule<const N: usize, const M: usize> {
     /// Times of the nodes, `0 < τ < 1`.
-    pub times: [f64; N],
+    pub times: Nodes<M>,
     /// Clock rates `dτ/du` at the nodes.
-    pub rates: [f64; N],
+    pub rates: Nodes<M>,
     /// Depths of the undisturbed collision at the nodes.
-    pub depths: [f64; N],
-    /// `moments[k][j][i]`: what the force at node `j` adds to `∫₀^τ (τ - s)^k / k! f(s) ds` at node `i`.
-    pub moments: [[[f64; N]; N]; MOMENTS],
-    /// The same at the end of the contact, `τ = 1`.
-    pub last: [[f64; N]; MOMENTS],
+    pub depths: Nodes<M>,
+    /// `moments[k][j]` at node `i`: what the force at node `j` adds to `∫₀^τ (τ - s)^k / k! f(s) ds` there.
+    pub moments: [[Nodes<M>; N]; MOMENTS],
+    /// The same at the end of the contact, `τ = 1`, for each `j`.
+    pub last: [Nodes<M>; MOMENTS],
     /// Moments of the undisturbed collision's force at the nodes.
-    pub undisturbed: [[f64; N]; MOMENTS],
+    pub undisturbed: [Nodes<M>; MOMENTS],
     /// The same at the end.
     pub undisturbed_last: [f64; MOMENTS],
-    /// `∫₀^u g du` at node `i`, from the values at node `j` of a smooth `g`.
-    pub running: [[f64; N]; N],
-    /// The same at `u = 1`.
-    pub whole: [f64; N],
+    /// `running[j]` at node `i`: what the value at node `j` of a smooth `g` adds to `∫₀^u g du` there.
+    pub running: [Nodes<M>; N],
+    /// The same at `u = 1`, for each `j`.
+    pub whole: Nodes<M>,
     /// The iteration for depths and duration.
-    pub newton: Newton<N>,
+    pub newton: Newton<N, M>,
     /// Rows that give the two highest Legendre coefficients of `c`, from the force `ζ^(3/2) c` at the nodes.
-    pub tails: [[f64; N]; 2],
+    pub tails: [Nodes<M>; 2],
 }
 
 /// An array by its components. Unlike `std::array::from_fn` it is a plain loop, which becomes vector instructions.
@@ -63,38 +79,51 @@ pub fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     array
 }
 
-/// `Σ_j columns[j] vector[j]`, in two chains of dependent operations.
+/// The first terms of a polynomial, in whole blocks of four, at every node.
 #[inline(always)]
-pub fn product<const N: usize>(columns: &[[f64; N]; N], vector: &[f64; N]) -> [f64; N] {
-    let (mut sum, mut other) = ([0.0; N], [0.0; N]);
-    for j in 0..N / 2 {
-        for i in 0..N {
-            sum[i] += columns[j][i] * vector[j];
+pub fn at_nodes<const B: usize, const M: usize>(
+    polynomial: &Polynomial<B>,
+    terms: usize,
+    times: &Nodes<M>,
+) -> Nodes<M> {
+    let mut sum = [f64x4::ZERO; M];
+    for block in polynomial.0.iter().take(terms.div_ceil(4)).rev() {
+        for coefficient in block.to_array().into_iter().rev() {
+            for i in 0..M {
+                sum[i] = sum[i] * times[i] + coefficient;
+            }
         }
-        for i in 0..N {
-            other[i] += columns[N / 2 + j][i] * vector[N / 2 + j];
-        }
-    }
-    for i in 0..N {
-        sum[i] += other[i];
     }
     sum
 }
 
-/// `Σ a b`, in four chains.
+/// `Σ_j columns[j] vector[j]`, in two chains of dependent operations.
 #[inline(always)]
-pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    let mut lanes = [0.0; 4];
-    for block in 0..N / 4 {
-        for lane in 0..4 {
-            lanes[lane] += a[4 * block + lane] * b[4 * block + lane];
+pub fn product<const N: usize, const M: usize>(columns: &[Nodes<M>; N], vector: &Nodes<M>) -> Nodes<M> {
+    let (mut sum, mut other) = ([f64x4::ZERO; M], [f64x4::ZERO; M]);
+    let mut numbers = [0.0; N];
+    for (four, lanes) in numbers.as_chunks_mut().0.iter_mut().zip(vector) {
+        *four = lanes.to_array();
+    }
+    for j in 0..N / 2 {
+        for i in 0..M {
+            sum[i] += columns[j][i] * numbers[j];
+            other[i] += columns[N / 2 + j][i] * numbers[N / 2 + j];
         }
     }
-    (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
+    std::array::from_fn(|i| sum[i] + other[i])
 }
 
-impl<const N: usize> Rule<N> {
-    /// Computes the rule, for `N` a multiple of 4. It takes milliseconds: a program does it once.
+/// `Σ a b`, in four chains.
+#[inline(always)]
+pub fn dot<const M: usize>(a: &Nodes<M>, b: &Nodes<M>) -> f64 {
+    let sum = a.iter().zip(b).fold(f64x4::ZERO, |sum, (a, b)| sum + *a * *b);
+    let [first, second, third, fourth] = sum.to_array();
+    (first + third) + (second + fourth)
+}
+
+impl<const N: usize, const M: usize> Rule<N, M> {
+    /// Computes the rule. It takes milliseconds: a program does it once.
     pub fn new() -> Self {
         let force = undisturbed_force();
         let (nodes, _) = gauss(N, 4);
@@ -129,18 +158,22 @@ impl<const N: usize> Rule<N> {
         }
         let legendre = DMatrix::from_fn(N, N, |i, k| legendre(k, 2.0 * nodes[i] - 1.0));
         let coefficients = legendre.try_inverse().expect("distinct nodes determine a polynomial");
+        let moments_of_all = moments.each_ref().map(|moment| moment.each_ref().map(packed));
+        let last_of_all = last.each_ref().map(packed);
+        let undisturbed = packed(&forces);
         Self {
-            times,
-            rates: nodes.map(|u| clock(u)[1]),
-            depths,
+            times: packed(&times),
+            rates: packed(&nodes.map(|u| clock(u)[1])),
+            depths: packed(&depths),
             newton: Newton::new(&times, &depths, &moments, &last),
-            running,
-            whole,
-            undisturbed: moments.each_ref().map(|moment| product(moment, &forces)),
-            undisturbed_last: last.each_ref().map(|last| dot(last, &forces)),
-            tails: [N - 1, N - 2].map(|k| std::array::from_fn(|j| coefficients[(k, j)] / forces[j])),
-            moments,
-            last,
+            running: running.each_ref().map(packed),
+            whole: packed(&whole),
+            undisturbed: moments_of_all.each_ref().map(|moment| product(moment, &undisturbed)),
+            undisturbed_last: last_of_all.each_ref().map(|last| dot(last, &undisturbed)),
+            tails: [N - 1, N - 2]
+                .map(|k| packed::<N, M>(&std::array::from_fn(|j| coefficients[(k, j)] / forces[j]))),
+            moments: moments_of_all,
+            last: last_of_all,
         }
     }
 }
@@ -170,33 +203,34 @@ mod tests {
     #[test]
     fn exact_moments_of_the_undisturbed_collision() {
         // It leaves as fast as it came, so the impulse is 2 and ζ(1) = 0: DURATION - Λ ∬ ζ^(3/2) = 0.
-        fn check<const N: usize>() {
-            let rule = Rule::<N>::new();
+        fn check<const N: usize, const M: usize>() {
+            let rule = Rule::<N, M>::new();
             let impulse = STIFFNESS / DURATION * rule.undisturbed_last[0];
             assert!((impulse - 2.0).abs() < 1e-13, "{N}: {impulse}");
             assert!((DURATION - STIFFNESS * rule.undisturbed_last[1]).abs() < 1e-13, "{N}");
             for i in 0..N {
-                let depth = DURATION * rule.times[i] - STIFFNESS * rule.undisturbed[1][i];
-                assert!((depth - rule.depths[i]).abs() < 1e-13, "{N}: {depth} {}", rule.depths[i]);
+                let depth = DURATION * node(&rule.times, i) - STIFFNESS * node(&rule.undisturbed[1], i);
+                let expected = node(&rule.depths, i);
+                assert!((depth - expected).abs() < 1e-13, "{N}: {depth} {expected}");
             }
         }
-        check::<8>();
-        check::<12>();
-        check::<16>();
+        check::<8, 2>();
+        check::<12, 3>();
+        check::<16, 4>();
     }
 
     #[test]
     fn order_moments_of_a_disturbed_force() {
         // f = ζ^(3/2) / (1.2 + u): against the rule of most nodes.
-        fn impulse<const N: usize>() -> f64 {
-            let rule = Rule::<N>::new();
+        fn impulse<const N: usize, const M: usize>() -> f64 {
+            let rule = Rule::<N, M>::new();
             let (nodes, _) = gauss(N, 4);
-            let force: [f64; N] = std::array::from_fn(|i| rule.depths[i].powf(1.5) / (1.2 + nodes[i]));
-            dot(&rule.last[0], &force)
+            let force: [f64; N] = std::array::from_fn(|i| node(&rule.depths, i).powf(1.5) / (1.2 + nodes[i]));
+            dot(&rule.last[0], &packed(&force))
         }
-        let exact = impulse::<16>();
-        let errors =
-            [impulse::<4>(), impulse::<8>(), impulse::<12>()].map(|value| (value / exact - 1.0).abs());
+        let exact = impulse::<16, 4>();
+        let errors = [impulse::<4, 1>(), impulse::<8, 2>(), impulse::<12, 3>()]
+            .map(|value| (value / exact - 1.0).abs());
         assert!(errors[0] < 1e-4 && errors[1] < 1e-8 && errors[2] < 1e-11, "{errors:?}");
         assert!(errors[1] < 1e-2 * errors[0], "{errors:?}");
     }

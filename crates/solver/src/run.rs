@@ -4,6 +4,8 @@ use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
 use crate::observe::{Knot, Observer, Path, Peak, Segment, Unobserved};
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
+use crate::steps::Steps;
+use crate::system::PrimaryEnergy;
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -34,8 +36,7 @@ pub fn e1_max(
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut peak =
-                Peak::new(|drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), cutoff);
+            let mut peak = Peak::new(PrimaryEnergy(&system), cutoff);
             if hybrid {
                 let mut free = Free::new(&system, window.to, settings.max_steps);
                 if free.clears_walls() {
@@ -82,7 +83,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
         |sign: f64| move |drive: Drive, y: &[f64; 4]| system.stroke_rates(drive, y).map(|v| sign * v);
     let mut before = Touches::default();
     let mut seen = Everything {
-        e1: Peak::new(|drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), f64::INFINITY),
+        e1: Peak::new(PrimaryEnergy(system), f64::INFINITY),
         e2: Peak::new(|drive: Drive, y: &[f64; 4]| system.damper_energy_rates(drive, y), f64::INFINITY),
         farthest: Peak::new(stroke(1.0), f64::INFINITY),
         nearest: Peak::new(stroke(-1.0), f64::INFINITY),
@@ -114,22 +115,22 @@ struct Touches([u64; 2]);
 impl Observer<4> for Touches {
     fn segment(&mut self, _segment: &impl Segment<4>) {}
     fn path(&mut self, _path: &impl Path<4>) {}
+    fn steps(&mut self, _steps: &Steps<'_, 4>) {}
     fn touch_down(&mut self, _t: f64, side: Side) {
         self.0[side as usize] += 1;
     }
 }
 
-struct Everything<E1, E2, F, G> {
-    e1: Peak<E1>,
+struct Everything<'a, E2, F, G> {
+    e1: Peak<PrimaryEnergy<'a>>,
     e2: Peak<E2>,
     farthest: Peak<F>,
     nearest: Peak<G>,
     touches: Touches,
 }
 
-impl<E1, E2, F, G> Observer<4> for Everything<E1, E2, F, G>
+impl<E2, F, G> Observer<4> for Everything<'_, E2, F, G>
 where
-    E1: Fn(Drive, &[f64; 4]) -> [f64; 3],
     E2: Fn(Drive, &[f64; 4]) -> [f64; 3],
     F: Fn(Drive, &[f64; 4]) -> [f64; 3],
     G: Fn(Drive, &[f64; 4]) -> [f64; 3],
@@ -145,6 +146,12 @@ where
         self.e2.path(path);
         self.farthest.path(path);
         self.nearest.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.e1.steps(steps);
+        self.e2.steps(steps);
+        self.farthest.steps(steps);
+        self.nearest.steps(steps);
     }
     fn touch_down(&mut self, t: f64, side: Side) {
         self.touches.touch_down(t, side);
@@ -174,6 +181,7 @@ struct Times(Vec<(f64, Side)>);
 impl Observer<4> for Times {
     fn segment(&mut self, _segment: &impl Segment<4>) {}
     fn path(&mut self, _path: &impl Path<4>) {}
+    fn steps(&mut self, _steps: &Steps<'_, 4>) {}
     fn touch_down(&mut self, t: f64, side: Side) {
         self.0.push((t, side));
     }

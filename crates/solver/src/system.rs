@@ -1,7 +1,9 @@
 //! What a solver needs to know of a system. The only file here that meets the model's equations by name.
 
+use crate::observe::Quantity;
 use nalgebra::{Complex, SMatrix};
-use retune_model::{Bare, Coupled, Drive, Side};
+use retune_model::{Bare, Coupled, Drive};
+use wide::f64x4;
 
 /// A first-order system `y' = f(t, y)` of `N` equations that general-purpose methods can integrate.
 pub trait System<const N: usize> {
@@ -133,7 +135,16 @@ fn finite<const M: usize>(positions: [Complex<f64>; M], omega: f64) -> Option<[[
         .then(|| positions.map(|x| [x, velocity * x]))
 }
 
-/// Both walls with the sign of the gap to each: `gap = sign_gap (r - wall)`, positive in flight.
-pub(crate) fn gap(system: &Coupled, side: Side, r: f64) -> f64 {
-    -side.sign() * (r - system.wall(side))
+/// The energy of the primary structure, J.
+pub(crate) struct PrimaryEnergy<'a>(pub &'a Coupled);
+
+impl Quantity<4> for PrimaryEnergy<'_> {
+    #[inline(always)]
+    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        self.0.primary_energy_rates(drive, y)
+    }
+    #[inline(always)]
+    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.0.primary_energy_rates_in_flight(drive, y)
+    }
 }

@@ -1,0 +1,132 @@
+//! The motion during a contact that was computed at once.
+
+use super::{Collisions, FREE};
+use crate::contact::Piece;
+use crate::flow::{Expansion, Flow};
+use crate::observe::{Knot, Observer, Path};
+use crate::rule::{MOMENTS, Nodes, Rule, at_nodes, dot, node, product};
+
+/// A contact from touch-down to lift-off.
+pub(super) struct Collision<'a, const N: usize, const M: usize> {
+    pub(super) of: &'a Collisions,
+    pub(super) rule: &'static Rule<N, M>,
+    pub(super) flow: &'a Flow<4>,
+    pub(super) touch: &'a Knot<4>,
+    /// The motion without contact, and the terms of it and of the response to the force that are needed.
+    pub(super) free: &'a Expansion<4, FREE>,
+    pub(super) free_terms: usize,
+    pub(super) terms: usize,
+    /// Moments of the force at the nodes and at lift-off, and what makes impulses (N·s, over `K`) of them.
+    pub(super) moments: &'a [Nodes<M>; MOMENTS],
+    pub(super) last: &'a [f64; MOMENTS],
+    pub(super) scale: f64,
+    pub(super) duration: f64,
+    /// `q = √z` at the nodes.
+    pub(super) roots: Nodes<M>,
+    /// `[x1, v1, x2, v2]` at lift-off.
+    pub(super) end: [f64; 4],
+}
+
+impl<const N: usize, const M: usize> Collision<'_, N, M> {
+    /// The state at lift-off, from the free motion and the moments of the force.
+    #[inline(always)]
+    pub(super) fn lift_off(&self) -> [f64; 4] {
+        let (mut end, mut power) = (self.free.at(self.duration), self.scale);
+        for (moment, kick) in self.last.iter().zip(&self.of.kicks).take(self.terms + 1) {
+            for c in 0..4 {
+                end[c] += kick[c] * power * moment;
+            }
+            power *= self.duration;
+        }
+        end[2] = end[0] + self.of.wall;
+        end
+    }
+
+    /// A component of the state at the nodes.
+    #[inline(always)]
+    fn component(&self, c: usize) -> Nodes<M> {
+        let times = self.rule.times.map(|time| time * self.duration);
+        let mut nodes = at_nodes(&self.free.0[c], self.free_terms, &times);
+        let mut power = self.scale;
+        for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
+            for i in 0..M {
+                nodes[i] += moment[i] * (kick[c] * power);
+            }
+            power *= self.duration;
+        }
+        nodes
+    }
+
+    /// `τ` of a knot: touch-down, the nodes, lift-off.
+    fn time(&self, knot: usize) -> f64 {
+        match knot {
+            0 => 0.0,
+            inner if inner <= N => node(&self.rule.times, inner - 1),
+            _ => 1.0,
+        }
+    }
+
+    fn knot(&self, knot: usize) -> Knot<4> {
+        let elapsed = self.time(knot) * self.duration;
+        let (y, root) = match knot {
+            0 => (self.touch.y, 0.0),
+            inner if inner <= N => {
+                let state = [0, 1, 2, 3].map(|c| node(&self.component(c), inner - 1));
+                (state, node(&self.roots, inner - 1))
+            }
+            _ => (self.end, 0.0),
+        };
+        Knot {
+            t: self.touch.t + elapsed,
+            drive: self.flow.drive_after(self.touch.drive, elapsed),
+            y,
+            clock: [root, 0.5 * self.of.side.sign() * (y[3] - y[1])],
+        }
+    }
+}
+
+impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
+    fn pieces(&self) -> usize {
+        N + 1
+    }
+
+    #[inline(always)]
+    fn states(&self, mut visit: impl FnMut(&[f64; 4])) {
+        visit(&self.touch.y);
+        // Written out, what a visitor does not look at is not computed.
+        let [x1, v1] = [self.component(0), self.component(1)];
+        let [x2, v2] = [self.component(2), self.component(3)];
+        for i in 0..N {
+            visit(&[node(&x1, i), node(&v1, i), node(&x2, i), node(&v2, i)]);
+        }
+        visit(&self.end);
+    }
+
+    /// A piece between two knots is followed by steps from the first of them.
+    fn show(&self, piece: usize, observer: &mut impl Observer<4>) {
+        let ends = [self.knot(piece), self.knot(piece + 1)];
+        let mut from = self.of.equations.compress(&ends[0].y);
+        from[0] = ends[0].clock[0];
+        let mut equations = self.of.equations;
+        equations.set_drive(0.0, ends[0].drive);
+        // θ = ∫ dt / √z
+        let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
+        let running = product(&self.rule.running, &slope);
+        let theta = |knot: usize| match knot {
+            0 => 0.0,
+            inner if inner <= N => node(&running, inner - 1),
+            _ => dot(&self.rule.whole, &slope),
+        };
+        let length = self.duration * (theta(piece + 1) - theta(piece));
+        let derivative = equations.derivative(&from);
+        observer.segment(&Piece {
+            equations: &equations,
+            touch_down: ends[0].t,
+            from: &from,
+            slope: &derivative,
+            length,
+            steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
+            ends,
+        });
+    }
+}
