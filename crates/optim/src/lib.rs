@@ -20,4 +20,4 @@ pub use band::{Band, worst_over};
 pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
 pub use grid::{Axis, AxisError, Grid, GridError, Scale};
 pub use objective::{Failures, PeakEnergy, Unusable, Variable, When, e1_max};
-pub use surf::{best_separated, surf};
+pub use surf::{best_separated, surf, surf_part};

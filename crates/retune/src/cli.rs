@@ -1,5 +1,6 @@
 //! What may be typed: commands, arguments and their help.
 
+use crate::results::Begin;
 use crate::study::{Setting, SettingError};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -87,6 +88,23 @@ pub struct Running {
     /// No log and no progress on screen, only the result
     #[arg(long)]
     pub quiet: bool,
+    /// Go on with unfinished work, if there is any
+    #[arg(long, conflicts_with = "restart")]
+    pub resume: bool,
+    /// Throw unfinished work away and begin anew
+    #[arg(long)]
+    pub restart: bool,
+}
+
+impl Running {
+    /// What becomes of unfinished work.
+    pub fn begin(&self) -> Begin {
+        match (self.resume, self.restart) {
+            (true, _) => Begin::Resume,
+            (false, true) => Begin::Restart,
+            (false, false) => Begin::New,
+        }
+    }
 }
 
 /// `optimize`.

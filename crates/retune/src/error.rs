@@ -42,6 +42,36 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
+    /// A result cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Input {
+        /// The file or directory.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// Another run is at work in the directory.
+    #[error(
+        "{}: another run{} is at work here: wait for it, stop it, or choose another directory with --out",
+        path.display(),
+        holder.map(|process| format!(" (process {process})")).unwrap_or_default()
+    )]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+        /// The other process.
+        holder: Option<u32>,
+    },
+    /// A run was interrupted here, and nobody said what becomes of it.
+    #[error("{}: {}", path.display(), unfinished(*lines, difference.as_deref()))]
+    Unfinished {
+        /// The directory.
+        path: PathBuf,
+        /// How much of it is kept.
+        lines: u64,
+        /// Why this run cannot go on with it, if it cannot.
+        difference: Option<String>,
+    },
     /// The threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -82,6 +112,18 @@ fn example(failures: &Failures) -> String {
     }
 }
 
+fn unfinished(lines: u64, difference: Option<&str>) -> String {
+    match difference {
+        None => format!(
+            "unfinished work was found here ({lines} results are kept): --resume goes on with it, --restart begins anew"
+        ),
+        Some(difference) => format!(
+            "unfinished work was found here ({lines} results are kept), but it is {difference}: finish it as it was begun, \
+             choose another directory with --out, or throw it away with --restart"
+        ),
+    }
+}
+
 impl Error {
     /// 2 where the user can mend it (an input, a place to write to), 1 where the computation failed.
     pub fn exit_code(&self) -> ExitCode {
@@ -90,7 +132,10 @@ impl Error {
             | Self::Setting(_)
             | Self::Rule { .. }
             | Self::Interval { .. }
-            | Self::Output { .. } => 2,
+            | Self::Output { .. }
+            | Self::Input { .. }
+            | Self::Busy { .. }
+            | Self::Unfinished { .. } => 2,
             Self::Threads(_)
             | Self::Run(_)
             | Self::Atlas(_)

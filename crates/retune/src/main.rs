@@ -4,6 +4,7 @@ mod check;
 mod cli;
 mod error;
 mod figure;
+mod interrupt;
 mod optimize;
 mod paper;
 mod results;

@@ -2,6 +2,7 @@
 
 mod band;
 pub mod log;
+pub mod manifest;
 mod optimum;
 pub mod pictures;
 mod refine;
@@ -11,7 +12,8 @@ pub use optimum::{Found, Optimum, table2_header, table2_row};
 
 use crate::cli;
 use crate::error::Error;
-use crate::results::Directory;
+use crate::results::identity::{Identity, study_text};
+use crate::results::{Begin, Directory};
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
@@ -29,7 +31,8 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
     let out = out.unwrap_or_else(|| Path::new("results").join(study.name()));
     let screen = Screen::new(arguments.running.quiet);
     with_threads(arguments.running.threads, || {
-        let optimum = optimize(&study, &out, screen)?;
+        let (optimum, results) = optimize(&study, &out, arguments.running.begin(), screen)?;
+        results.finish()?;
         screen.line(optimum.report())?;
         screen.line(where_results_are(&out)?)
     })
@@ -47,33 +50,57 @@ pub fn with_threads<T: Send>(
     pool.install(work)
 }
 
-/// Searches the best design of a study and writes all results to the directory `out`.
+/// Searches the best design of a study and writes all results to the directory `out`. The work can go on until the directory
+/// is finished.
 ///
 /// # Errors
 /// The study does not say what to tune, nothing can be computed, or the results cannot be written.
-pub fn optimize(study: &Study, out: &Path, screen: Screen) -> Result<Optimum, Error> {
+pub fn optimize(
+    study: &Study,
+    out: &Path,
+    begin: Begin,
+    screen: Screen,
+) -> Result<(Optimum, Directory), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let results = Directory::create(out, is_ours)?;
-    results.write_json("study.json", &study.resolved())?;
+    let results = Directory::open(out, begin, &Identity::of_study(study)?, is_ours)?;
+    match results.journal().known() {
+        0 => {}
+        known => screen.log(format!("goes on: {known} values are known"))?,
+    }
+    match tuned(study, &search, &results, screen).and_then(|optimum| results.publish().map(|()| optimum)) {
+        Ok(optimum) => Ok((optimum, results)),
+        Err(error) => {
+            // What cannot be written may go on once it can; what cannot be computed never will.
+            if !matches!(error, Error::Output { .. }) {
+                results.discard();
+            }
+            Err(error)
+        }
+    }
+}
 
-    let surf = surf::surf(study, &search, &results, screen)?;
+/// Searches and writes.
+fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) -> Result<Optimum, Error> {
+    results.write("study.json", &study_text(study)?)?;
+    let surf = surf::surf(study, search, results, screen)?;
     let starts = match &surf {
-        Some(surf) => surf.starts(&search),
+        Some(surf) => surf.starts(search),
         None => vec![search.variables.iter().map(|variable| variable.get(&search.damper)).collect()],
     };
-    let refined = refine::refine(study, &search, starts, &results, screen)?;
+    let refined = refine::refine(study, search, starts, results, screen)?;
 
     let mut scene = refined.objective.scene(&refined.best().minimum.x)?;
     let worst = refined.objective.worst(&scene, f64::INFINITY)?;
     scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let optimum = Optimum::new(study, &search, surf.as_ref(), &refined, summary, worst);
+    let optimum = Optimum::new(study, search, surf.as_ref(), &refined, summary, worst);
     results.write_json("optimum.json", &optimum)?;
-    pictures::draw(study, &search, surf.as_ref(), &refined, &results)?;
+    pictures::draw(study, search, surf.as_ref(), &refined, results)?;
     if let Some(band) = study.objective().band() {
-        band::write(study, &band, scene, &results)?;
+        band::write(study, &band, scene, results)?;
     }
+    manifest::write(Identity::of_study(study)?, study.solver, results)?;
     Ok(optimum)
 }
 
@@ -86,7 +113,7 @@ fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEner
 
 /// Whether `optimize` writes files of this name.
 fn is_ours(name: &str) -> bool {
-    const NAMES: [&str; 9] = [
+    const NAMES: [&str; 10] = [
         "study.json",
         "surf.csv",
         "fminsearch.csv",
@@ -96,6 +123,7 @@ fn is_ours(name: &str) -> bool {
         "convergence.svg",
         "band.csv",
         "band.svg",
+        manifest::NAME,
     ];
     NAMES.contains(&name) || (name.starts_with("surf-") && name.ends_with(".svg"))
 }

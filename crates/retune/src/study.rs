@@ -4,14 +4,14 @@
 
 mod explain;
 mod objective;
-mod read;
+pub mod read;
 mod search;
 mod set;
 mod table2;
 
 pub use objective::{Objective, Response};
 pub use read::{StudyError, read, read_paper};
-pub use search::{Rule, Search};
+pub use search::{MOST_GRID_POINTS, Rule, Search};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, is_paper, is_table2, read_table2};
 

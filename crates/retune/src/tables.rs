@@ -4,9 +4,10 @@ use crate::cli;
 use crate::error::Error;
 use crate::optimize::log::{joined, short};
 use crate::optimize::{Found, optimize, table2_header, table2_row, where_results_are, with_threads};
-use crate::results::Directory;
+use crate::results::identity::{Identity, study_text};
+use crate::results::{Begin, Directory};
 use crate::screen::Screen;
-use crate::study::{self, PaperStudy};
+use crate::study::{self, PaperStudy, Study};
 use std::path::{Path, PathBuf};
 
 /// Re-optimises each row of Table 2 from the paper's own design, and shows both rows.
@@ -18,16 +19,18 @@ pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/table2"));
     let screen = Screen::new(running.quiet);
-    let mut table = Table::new("table2", "origin", &out)?;
+    let studies = rows.iter().map(|row| &row.study);
+    let mut table = Table::new(["table2", "origin"], &out, running.begin(), studies)?;
     with_threads(running.threads, || {
         for PaperStudy { damper, mut study } in rows {
             if let Some(optimize) = &mut study.optimize {
                 optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
             }
             screen.log(format!("\n{damper}: re-optimised from the paper's design"))?;
-            let optimum = optimize(&study, &out.join(study.name()), screen)?;
+            let (optimum, results) = optimize(&study, &out.join(study.name()), running.begin(), screen)?;
             table.push("paper", &damper, optimum.start());
             table.push("re-optimised", &damper, optimum.found());
+            table.parts.push(results);
         }
         table.finish(screen)
     })
@@ -48,7 +51,8 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/retune"));
     let screen = Screen::new(running.quiet);
-    let mut table = Table::new("retune", "k1", &out)?;
+    let all = studies.iter().map(|(_, _, study)| study);
+    let mut table = Table::new(["retune", "k1"], &out, running.begin(), all)?;
     with_threads(running.threads, || {
         for (k1, damper, study) in studies {
             let scene = study.scene;
@@ -57,8 +61,10 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
                 short(scene.primary.natural_frequency()),
                 scene.forcing.frequency.get()
             ))?;
-            let optimum = optimize(&study, &out.join(format!("k1-{k1}")).join(study.name()), screen)?;
+            let place = out.join(format!("k1-{k1}")).join(study.name());
+            let (optimum, results) = optimize(&study, &place, running.begin(), screen)?;
             table.push(&k1.to_string(), damper, optimum.found());
+            table.parts.push(results);
         }
         table.finish(screen)
     })
@@ -68,17 +74,27 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
 struct Table {
     name: &'static str,
     directory: Directory,
+    /// The results of its searches, which are finished with it: until then a run that goes on reads their journals.
+    parts: Vec<Directory>,
     csv: Vec<String>,
     text: Vec<String>,
 }
 
 impl Table {
-    fn new(name: &'static str, column: &'static str, out: &Path) -> Result<Self, Error> {
-        let directory =
-            Directory::create(out, |file| file == format!("{name}.csv") || file == format!("{name}.txt"))?;
+    /// The table `name` whose first column is `column`, of these studies.
+    fn new<'a>(
+        [name, column]: [&'static str; 2],
+        out: &Path,
+        begin: Begin,
+        studies: impl Iterator<Item = &'a Study>,
+    ) -> Result<Self, Error> {
+        let texts = studies.map(study_text).collect::<Result<Vec<_>, _>>()?;
+        let identity = Identity::of(&texts.concat());
+        let is_ours = move |file: &str| file == format!("{name}.csv") || file == format!("{name}.txt");
+        let directory = Directory::open(out, begin, &identity, is_ours)?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
-        Ok(Self { name, directory, csv, text })
+        Ok(Self { name, directory, parts: Vec::new(), csv, text })
     }
 
     fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
@@ -87,11 +103,15 @@ impl Table {
     }
 
     fn finish(self, screen: Screen) -> Result<(), Error> {
-        let Self { name, directory, csv, text } = self;
+        let Self { name, directory, parts, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
         directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
+        let out = directory.path().to_owned();
+        directory.publish()?;
+        parts.into_iter().try_for_each(Directory::finish)?;
+        directory.finish()?;
         screen.line(format!("\n{}", text.join("\n")))?;
-        screen.line(where_results_are(directory.path())?)
+        screen.line(where_results_are(&out)?)
     }
 }
 

@@ -306,5 +306,5 @@ fn exact_a_run_that_fails_is_no_fault_of_the_input() {
     assert_eq!(code, Some(1));
     let part = "no point of the grid could be computed (24 failed; at [100.0, 100.0, 0.05, 0.1]: the run needed more than";
     assert!(stderr.contains(part), "{stderr}");
-    assert_eq!(desk.names("out"), ["study.json"], "no half files");
+    assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
 }

@@ -6,11 +6,12 @@ use common::{Answer, Desk, studies, tiny};
 use serde_json::{Value, json};
 use std::process::{Child, Output, Stdio};
 
-const RESULTS: [&str; 13] = [
+const RESULTS: [&str; 14] = [
     "convergence.svg",
     "fminsearch-starts.csv",
     "fminsearch.csv",
     "fminsearch.txt",
+    "manifest.json",
     "optimum.json",
     "study.json",
     "surf-D-C.svg",
@@ -117,7 +118,8 @@ fn exact_a_later_run_leaves_nothing_of_an_earlier_one() {
     desk.write_json("study.json", &tiny());
     desk.good(&["optimize", "study.json", "--quiet", "--out", "out"]);
     desk.write("out/notes.txt", "mine");
-    desk.write("out/.fminsearch-starts.csv.4711.tmp", "what a killed run left");
+    desk.write("out/unfinished/.fminsearch-starts.csv.4711.tmp", "what a killed run left");
+    desk.write("out/.lock", "4711 what it left as well\n");
     desk.write("out/.notes.txt.tmp", "mine too");
     let mut study = tiny();
     study["optimize"] = json!({ "vary": ["c2"], "refine": { "scaled": true, "TolX": 0.01 } });
@@ -129,6 +131,7 @@ fn exact_a_later_run_leaves_nothing_of_an_earlier_one() {
         "convergence.svg",
         "fminsearch.csv",
         "fminsearch.txt",
+        "manifest.json",
         "notes.txt",
         "optimum.json",
         "study.json",
@@ -244,6 +247,7 @@ fn paper_table2_puts_our_rows_beside_the_papers() {
     let energy = |row: usize| csv[row][7].parse::<f64>().expect("a number");
     assert!(energy(2) <= energy(1) && energy(4) <= energy(3));
     assert_eq!(desk.names("results/table2"), ["ssvi", "table2.csv", "table2.txt", "tmd"]);
+    assert!(!desk.names("results/table2/ssvi").contains(&"unfinished".to_owned()));
 }
 
 #[test]

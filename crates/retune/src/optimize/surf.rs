@@ -46,8 +46,12 @@ pub(super) fn surf(
 
     let begun = Instant::now();
     let bar = screen.progress("surf", grid.len() as u64);
-    let values = retune_optim::surf(&grid, |design| objective.value(design, f64::INFINITY), |_| bar.inc(1));
+    let journal = results.journal();
+    let value =
+        |point: usize, design: &[f64]| journal.grid_value(point, || objective.value(design, f64::INFINITY));
+    let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));
     bar.finish_and_clear();
+    journal.check()?;
 
     let failures = objective.failures();
     let Some(&best) = best_separated(&grid, &values, 1, 0).first() else {
