@@ -1,5 +1,6 @@
 //! What may be typed: commands, arguments and their help.
 
+use crate::optimize::shard::Shard;
 use crate::results::Begin;
 use crate::study::{Setting, SettingError};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -21,6 +22,10 @@ pub struct Cli {
 pub enum Command {
     /// Tune the damper of a study: a coarse grid (surf), then Nelder-Mead (fminsearch)
     Optimize(Optimize),
+    /// Put the parts of a grid together that `optimize --shard` made, and go on with the search
+    Merge(Merge),
+    /// Run a sample of the rows of results again, and say whether they hold
+    Verify(Verify),
     /// Run one scene and say what happened
     Simulate(Simulate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
@@ -112,9 +117,37 @@ impl Running {
 pub struct Optimize {
     /// The study file
     pub study: PathBuf,
+    /// Compute only share i of N of the grid, into DIR/parts; `merge` puts the shares together
+    #[arg(long, value_name = "i/N")]
+    pub shard: Option<Shard>,
     /// How the search is run.
     #[command(flatten)]
     pub running: Running,
+}
+
+/// `merge`.
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// The study file
+    pub study: PathBuf,
+    /// The parts [default: all in DIR/parts]
+    pub parts: Vec<PathBuf>,
+    /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `verify`.
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// A directory of results
+    pub results: PathBuf,
+    /// Rows of each table that are run again, evenly spread over it
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    pub sample: u32,
+    /// Largest relative difference that counts as held; another machine may round otherwise
+    #[arg(long, value_name = "X", default_value_t = 0.0)]
+    pub within: f64,
 }
 
 /// `reproduce`, `figure`, `table`.

@@ -50,6 +50,41 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
+    /// A part of a grid is not what it must be.
+    #[error("{}: {problem}", path.display())]
+    Part {
+        /// The part.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Points that no part holds.
+    #[error(
+        "{}: no part holds points {points} of {len}: make what is missing with `retune optimize {} --shard i/N`{}",
+        place.display(),
+        study.display(),
+        shards.as_ref().map(|shards| format!(", i/N = {shards}")).unwrap_or_default()
+    )]
+    MissingParts {
+        /// The points.
+        points: String,
+        /// How many the grid has.
+        len: usize,
+        /// The shares that hold them, if that can be told.
+        shards: Option<String>,
+        /// The study.
+        study: PathBuf,
+        /// Where parts are looked for.
+        place: PathBuf,
+    },
+    /// Results that do not hold.
+    #[error("{}: {problem}", path.display())]
+    NotHeld {
+        /// The directory of the results.
+        path: PathBuf,
+        /// What does not hold.
+        problem: String,
+    },
     /// Another run is at work in the directory.
     #[error(
         "{}: another run{} is at work here: wait for it, stop it, or choose another directory with --out",
@@ -134,6 +169,8 @@ impl Error {
             | Self::Interval { .. }
             | Self::Output { .. }
             | Self::Input { .. }
+            | Self::Part { .. }
+            | Self::MissingParts { .. }
             | Self::Busy { .. }
             | Self::Unfinished { .. } => 2,
             Self::Threads(_)
@@ -142,8 +179,12 @@ impl Error {
             | Self::Unusable(_)
             | Self::NoStart(_)
             | Self::Search { .. }
-            | Self::Figure { .. } => 1,
+            | Self::Figure { .. }
+            | Self::NotHeld { .. } => 1,
         }
         .into()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,6 +13,7 @@ mod simulate;
 mod study;
 mod summary;
 mod tables;
+mod verify;
 
 use clap::{CommandFactory, Parser};
 use cli::{Cli, Command, Kind};
@@ -33,6 +34,8 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Optimize(arguments) => optimize::command(&arguments),
+        Command::Merge(arguments) => optimize::merge::command(&arguments),
+        Command::Verify(arguments) => verify::command(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Table2(arguments) => tables::table2(&arguments),
         Command::Retune(arguments) => tables::retune(&arguments),

@@ -3,9 +3,11 @@
 mod band;
 pub mod log;
 pub mod manifest;
+pub mod merge;
 mod optimum;
 pub mod pictures;
 mod refine;
+pub mod shard;
 mod surf;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};
@@ -31,6 +33,9 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
     let out = out.unwrap_or_else(|| Path::new("results").join(study.name()));
     let screen = Screen::new(arguments.running.quiet);
     with_threads(arguments.running.threads, || {
+        if let Some(shard) = arguments.shard {
+            return shard::shard(&study, shard, &out, arguments.running.begin(), screen);
+        }
         let (optimum, results) = optimize(&study, &out, arguments.running.begin(), screen)?;
         results.finish()?;
         screen.line(optimum.report())?;
@@ -61,8 +66,23 @@ pub fn optimize(
     begin: Begin,
     screen: Screen,
 ) -> Result<(Optimum, Directory), Error> {
+    optimize_from(study, out, begin, screen, |_| Ok(()))
+}
+
+/// As [`optimize`], with what `prepare` teaches the directory beforehand.
+///
+/// # Errors
+/// As [`optimize`].
+fn optimize_from(
+    study: &Study,
+    out: &Path,
+    begin: Begin,
+    screen: Screen,
+    prepare: impl FnOnce(&mut Directory) -> Result<(), Error>,
+) -> Result<(Optimum, Directory), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let results = Directory::open(out, begin, &Identity::of_study(study)?, is_ours)?;
+    let mut results = Directory::open(out, begin, &Identity::of_study(study)?, is_ours)?;
+    prepare(&mut results)?;
     match results.journal().known() {
         0 => {}
         known => screen.log(format!("goes on: {known} values are known"))?,
@@ -105,7 +125,7 @@ fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) ->
 }
 
 /// The objective of a study over some parameters of its damper.
-fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
+pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
     let (when, settings) = (study.when(), study.solver.settings());
     PeakEnergy::new(study.scene, search.damper, variables.to_vec(), when, settings)
         .over(study.objective().band())

@@ -19,6 +19,7 @@ pub mod ode23;
 pub mod ode23s;
 pub mod ode45;
 pub mod onestep;
+mod plausible;
 pub mod rk4;
 mod rule;
 mod run;

@@ -14,6 +14,7 @@
 
 use super::identity::{Identity, hexadecimal};
 use crate::error::Error;
+use crate::study::MOST_GRID_POINTS;
 use sha2::{Digest, Sha256};
 use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions};
@@ -131,11 +132,7 @@ impl Known {
         match kind {
             "g" => {
                 let (point, value) = grid_value(text)?;
-                if point >= self.grid.len() {
-                    (point < crate::study::MOST_GRID_POINTS)
-                        .then(|| self.grid.resize(point + 1, f64::NAN))?;
-                }
-                self.grid[point] = value;
+                self.set_grid(point, value)?;
             }
             "e" => {
                 let (name, value) = rest.split_once(' ')?;
@@ -148,6 +145,16 @@ impl Known {
             _ => return None,
         }
         self.lines += 1;
+        Some(())
+    }
+}
+
+impl Known {
+    fn set_grid(&mut self, point: usize, value: f64) -> Option<()> {
+        if point >= self.grid.len() {
+            (point < MOST_GRID_POINTS).then(|| self.grid.resize(point + 1, f64::NAN))?;
+        }
+        self.grid[point] = value;
         Some(())
     }
 }
@@ -221,6 +228,16 @@ impl Journal {
                 }
                 value
             }
+        }
+    }
+
+    /// Learns the value of a point of the grid that was computed elsewhere.
+    pub fn learn_grid(&mut self, point: usize, value: f64) {
+        if self.known.grid.get(point).is_none_or(|value| value.is_nan())
+            && self.known.set_grid(point, value).is_some()
+        {
+            self.known.lines += 1;
+            self.append(&grid_line(point, value));
         }
     }
 

@@ -59,6 +59,24 @@ impl Pending {
         Ok(())
     }
 
+    /// Gives the file its name once it is on the disk, and lets nobody write to it any more.
+    ///
+    /// # Errors
+    /// It cannot be written or renamed.
+    pub fn finish_for_good(mut self) -> Result<(), Error> {
+        let settle = |file: &File| {
+            let mut permissions = file.metadata()?.permissions();
+            permissions.set_readonly(true);
+            file.set_permissions(permissions)?;
+            file.sync_all()
+        };
+        self.file
+            .flush()
+            .and_then(|()| settle(self.file.get_ref()))
+            .map_err(|source| self.refused(source))?;
+        self.finish()
+    }
+
     fn refused(&self, source: std::io::Error) -> Error {
         Error::Output { path: self.path.clone(), source }
     }

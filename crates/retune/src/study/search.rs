@@ -43,6 +43,9 @@ pub enum Rule {
     /// The study does not say what to tune.
     #[error("optimize: missing; it says what to tune, for instance {{ \"vary\": [\"k2\", \"c2\"] }}")]
     NoOptimize,
+    /// Nothing to share out.
+    #[error("optimize.surf: missing, but only the grid can be made in parts")]
+    NoGrid,
     /// No parameter is tuned.
     #[error("optimize.vary: empty: name at least one of k2, c2, D, C")]
     NothingVaried,

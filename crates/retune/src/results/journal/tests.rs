@@ -33,7 +33,7 @@ impl Desk {
 /// Asks for `count` values of two stages and of a grid; says how many had to be computed.
 fn ask(journal: &Journal, count: usize) -> usize {
     let computed = Cell::new(0);
-    let mut compute = |value: f64| {
+    let compute = |value: f64| {
         computed.set(computed.get() + 1);
         value
     };
