@@ -63,7 +63,7 @@ test *OPTIONS:
 # Kill runs at random moments, KILLS times, and say in which stage each fell: results/robustness/kills.md
 test-kills KILLS="240":
     mkdir -p results/robustness
-    RETUNE_KILLS={{KILLS}} cargo test --release --package retune --test kills -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
+    RETUNE_KILLS={{KILLS}} cargo test --package retune --test kills -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
     mv results/robustness/kills.md.tmp results/robustness/kills.md && cat results/robustness/kills.md
 
 # Try the HyperQueue script for real, with two workers on this machine (needs python3): results/robustness/cluster.txt
@@ -72,6 +72,12 @@ test-cluster:
     mkdir -p results/robustness && python3 -m venv target/hyperqueue && target/hyperqueue/bin/pip install --quiet hyperqueue==0.27.0
     target/hyperqueue/bin/python deploy/test_cluster.py target/release/retune > results/robustness/cluster.txt.tmp
     mv results/robustness/cluster.txt.tmp results/robustness/cluster.txt && cat results/robustness/cluster.txt
+
+# Measure what docs/scale.md plans with: results/robustness/scale.txt (after `just test-cluster`, which installs HyperQueue)
+bench-scale:
+    cargo build --release --package retune
+    target/hyperqueue/bin/python deploy/measure_scale.py target/release/retune > results/robustness/scale.txt.tmp
+    mv results/robustness/scale.txt.tmp results/robustness/scale.txt && cat results/robustness/scale.txt
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tries deploy/hyperqueue.py for real, with two HyperQueue workers on this machine, against a single process.
+"""Tries deploy/on_hyperqueue.py for real, with two HyperQueue workers on this machine, against a single process.
 
     python3 deploy/test_cluster.py target/release/retune
 
@@ -40,7 +40,7 @@ def run(*arguments, expect=0):
 def cluster(out, study_file="study.json"):
     """The command that a person types, with two workers."""
     return subprocess.Popen(
-        [sys.executable, HERE / "hyperqueue.py", study_file, "--shards", str(SHARDS), "--out", out, "--local", "2",
+        [sys.executable, HERE / "on_hyperqueue.py", study_file, "--shards", str(SHARDS), "--out", out, "--local", "2",
          "--retune", RETUNE],
         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )

@@ -32,6 +32,9 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
     let out = arguments.running.out.clone();
     let out = out.unwrap_or_else(|| Path::new("results").join(study.name()));
     let screen = Screen::new(arguments.running.quiet);
+    if arguments.shard.is_none() && nothing_to_resume(&study, &out, &arguments.running, screen)? {
+        return Ok(());
+    }
     with_threads(arguments.running.threads, || {
         if let Some(shard) = arguments.shard {
             return shard::shard(&study, shard, &out, arguments.running.begin(), screen);
@@ -41,6 +44,20 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
         screen.line(optimum.report())?;
         screen.line(where_results_are(&out)?)
     })
+}
+
+/// Says so where a run is to go on that is finished.
+fn nothing_to_resume(
+    study: &Study,
+    out: &Path,
+    running: &cli::Running,
+    screen: Screen,
+) -> Result<bool, Error> {
+    let finished = running.resume && manifest::is_finished(out, &Identity::of_study(study)?);
+    if finished {
+        screen.line(format!("finished already: nothing to go on with\n{}", where_results_are(out)?))?;
+    }
+    Ok(finished)
 }
 
 /// Runs `work` on `threads` threads, all cores if none are given.

@@ -78,8 +78,15 @@ impl Directory {
         clear(&unfinished, keep).map_err(refuse)?;
         std::fs::create_dir_all(&unfinished).map_err(refuse)?;
         let journal = Journal::open(&unfinished.join(JOURNAL), identity, known, length)?;
+        // The names of the journal and its directory must outlive a power cut as well.
+        sync_directory(&unfinished).and_then(|()| sync_directory(path)).map_err(refuse)?;
         interrupt::say_how_to_go_on();
         Ok(Self { path: path.to_owned(), unfinished, journal, is_ours: Box::new(is_ours), _lock: lock })
+    }
+
+    /// Whether there is unfinished work in a directory.
+    pub fn is_unfinished(path: &Path) -> bool {
+        path.join(UNFINISHED).exists()
     }
 
     /// The path of the directory.

@@ -99,18 +99,17 @@ fn verify(place: &Path, arguments: &cli::Verify, screen: Screen) -> Result<Vec<S
         if !place.join(name).exists() {
             continue;
         }
-        let (checks, rows) = match name {
-            "optimum.json" => (best(&objective, &optimum), 1),
+        let (checks, what) = match name {
+            "optimum.json" => (best(&objective, &optimum), "its design".to_owned()),
             "band.csv" => band(place, &study, &objective, &optimum, sample)?,
             _ => designs(place, name, first, &objective, sample)?,
         };
-        let count = checks.len();
         let tally = run(&study, &objective, checks);
         let words = match tally.differ {
             0 => "the same to the last bit".to_owned(),
             differ => format!("{differ} differ, by at most {:.1e} of their value", tally.most),
         };
-        screen.line(format!("  {name:<22} {count} numbers of {rows} rows run again: {words}"))?;
+        screen.line(format!("  {name:<22} {what} run again: {words}"))?;
         if tally.most > arguments.within {
             problems.push(format!("{name}, {words}"));
         }
@@ -182,14 +181,14 @@ fn designs(
     first: usize,
     objective: &PeakEnergy,
     sample: usize,
-) -> Result<(Vec<Check>, usize), Error> {
+) -> Result<(Vec<Check>, String), Error> {
     let (rows, count) = rows(place, name, sample)?;
     let check = |fields: &Vec<String>| {
         let design: Vec<f64> = (first..first + 4).map(|i| number(fields, i)).collect();
         let said = number(fields, first + 4);
         objective.scene(&design).ok().map(|scene| Check { said, scene, whole: true })
     };
-    Ok((rows.iter().filter_map(check).collect(), count))
+    Ok((rows.iter().filter_map(check).collect(), of(&rows, count)))
 }
 
 /// The curves over the band: without damper, with that of the study, with the best.
@@ -199,10 +198,11 @@ fn band(
     objective: &PeakEnergy,
     optimum: &Value,
     sample: usize,
-) -> Result<(Vec<Check>, usize), Error> {
+) -> Result<(Vec<Check>, String), Error> {
     let (rows, count) = rows(place, "band.csv", sample)?;
     let mut checks = Vec::new();
-    let Some(tuned) = best_scene(objective, optimum) else { return Ok((checks, count)) };
+    let what = of(&rows, count);
+    let Some(tuned) = best_scene(objective, optimum) else { return Ok((checks, what)) };
     for fields in &rows {
         let Ok(omega) = NonNegative::new(number(fields, 0)) else { continue };
         for (i, mut scene) in [Scene { damper: None, ..tuned }, study.scene, tuned].into_iter().enumerate() {
@@ -210,7 +210,12 @@ fn band(
             checks.push(Check { said: number(fields, i + 1), scene, whole: false });
         }
     }
-    Ok((checks, count))
+    Ok((checks, what))
+}
+
+/// How many rows there are, and how many were taken.
+fn of(rows: &[Vec<String>], count: usize) -> String {
+    format!("{} of {count} rows", rows.len())
 }
 
 /// The best design's E1max, as the search found it and as its run says.

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// A study whose search takes about a second.
 fn longer() -> serde_json::Value {
     let mut study = tiny();
-    study["window"] = json!({ "t0": 20, "T": 60 });
+    study["window"] = json!({ "t0": 10, "T": 40 });
     for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
         axis["points"] = json!(6);
     }
@@ -70,6 +70,35 @@ fn exact_a_killed_run_goes_on_and_ends_in_the_same_bytes() {
     let said = desk.good(&["optimize", "study.json", "--out", "out", "--resume"]);
     assert!(said.starts_with(&format!("goes on: {kept} values are known\n")), "{said}");
     assert_same(&desk, "whole", "out");
+}
+
+/// A loop that tries again until a run succeeds may try once more.
+#[test]
+fn exact_to_go_on_with_what_is_finished_costs_nothing() {
+    let desk = desk();
+    let before =
+        std::fs::metadata(desk.path("whole/surf.csv")).and_then(|file| file.modified()).expect("a time");
+    let said = desk.good(&["optimize", "study.json", "--out", "whole", "--resume"]);
+    assert!(said.starts_with("finished already: nothing to go on with\nresults in whole: "), "{said}");
+    let after =
+        std::fs::metadata(desk.path("whole/surf.csv")).and_then(|file| file.modified()).expect("a time");
+    assert_eq!(before, after);
+    let mut other = longer();
+    other["window"] = json!({ "t0": 1, "T": 2 });
+    desk.write_json("study.json", &other);
+    let said = desk.good(&["optimize", "study.json", "--out", "whole", "--resume"]);
+    assert!(said.starts_with("surf: "), "another study is not finished: {said}");
+}
+
+/// Not even the superuser may write there.
+#[cfg(target_os = "linux")]
+#[test]
+fn exact_a_directory_that_cannot_be_written_is_named() {
+    let desk = Desk::new();
+    desk.write_json("study.json", &longer());
+    let Answer { code, stdout, stderr } = desk.run(&["optimize", "study.json", "--out", "/sys/kernel"]);
+    assert_eq!((code, stdout.as_str()), (Some(2), ""));
+    assert!(stderr.starts_with("error: /sys/kernel/.lock: cannot be written: "), "{stderr}");
 }
 
 #[test]

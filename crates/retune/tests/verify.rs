@@ -18,13 +18,13 @@ fn exact_results_hold_to_the_last_bit() {
     let said = desk.good(&["verify", "out", "--sample", "7"]);
     let lines: Vec<&str> = said.lines().collect();
     assert_eq!(lines[0], "  13 files as they were made");
-    assert_eq!(lines[1], "  surf.csv               7 numbers of 24 rows run again: the same to the last bit");
-    assert!(lines[2].starts_with("  fminsearch.csv         7 numbers of "), "{said}");
-    assert!(lines[3].starts_with("  fminsearch-starts.csv  7 numbers of "), "{said}");
-    assert_eq!(lines[4], "  optimum.json           1 numbers of 1 rows run again: the same to the last bit");
+    assert_eq!(lines[1], "  surf.csv               7 of 24 rows run again: the same to the last bit");
+    assert!(lines[2].starts_with("  fminsearch.csv         7 of "), "{said}");
+    assert!(lines[3].starts_with("  fminsearch-starts.csv  7 of "), "{said}");
+    assert_eq!(lines[4], "  optimum.json           its design run again: the same to the last bit");
     assert_eq!(lines[5], "all that was looked at holds");
     let all = desk.good(&["verify", "out", "--sample", "1000"]);
-    assert!(all.contains("  surf.csv               24 numbers of 24 rows run again: the same"), "{all}");
+    assert!(all.contains("  surf.csv               24 of 24 rows run again: the same"), "{all}");
 }
 
 #[test]
@@ -37,7 +37,12 @@ fn exact_a_changed_row_is_found_twice() {
     desk.write("out/surf.csv", surf.replace(row, &format!("{design},{other}")));
     let Answer { code, stdout, stderr } = desk.run(&["verify", "out", "--sample", "24"]);
     assert_eq!(code, Some(1));
-    assert!(stdout.contains("  surf.csv               24 numbers of 24 rows run again: 1 differ, by at most 1.0e-6 of their value"), "{stdout}");
+    assert!(
+        stdout.contains(
+            "  surf.csv               24 of 24 rows run again: 1 differ, by at most 1.0e-6 of their value"
+        ),
+        "{stdout}"
+    );
     assert_eq!(
         stderr,
         "error: out: does not hold: surf.csv is not as it was made; surf.csv, 1 differ, by at most 1.0e-6 of their value\n"
@@ -70,7 +75,7 @@ fn exact_a_band_and_a_table_are_run_again_too() {
     desk.good(&["optimize", "study.json", "--quiet", "--out", "all/inner/one"]);
     let said = desk.good(&["verify", "all", "--sample", "4"]);
     assert!(said.starts_with("all/band:\n"), "{said}");
-    assert!(said.contains("\n  band.csv               12 numbers of 5 rows run again: the same"), "{said}");
+    assert!(said.contains("\n  band.csv               4 of 5 rows run again: the same"), "{said}");
     assert!(said.contains("\nall/inner/one:\n"), "{said}");
 }
 

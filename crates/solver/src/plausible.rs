@@ -27,12 +27,17 @@ pub fn energy(
     if !value.is_finite() {
         return Err(SolverError::NonFinite { t: window.to });
     }
-    let most = (scene.forcing.amplitude.get() * window.to).powi(2) / (2.0 * scene.primary.mass.get());
+    let most = most(scene, window);
     let gained = settings.method == Method::Hybrid && value > most * (1.0 + SLACK);
     if gained || value < 0.0 || !(window.from..=window.to).contains(&time) {
         return Err(SolverError::Implausible { t: window.to, value, time, most });
     }
     Ok(peak)
+}
+
+/// The most energy that the force can give in a run, J.
+fn most(scene: &Scene, window: Window) -> f64 {
+    (scene.forcing.amplitude.get() * window.to).powi(2) / (2.0 * scene.primary.mass.get())
 }
 
 /// Passes on a response of which every number is finite and the energy can be.
@@ -49,6 +54,10 @@ pub fn response(
         return Ok(found); // nothing was looked at
     }
     energy(scene, window, settings, found.e1_max)?;
+    let Extreme { value, time } = found.e2_max;
+    if value.is_finite() && !(window.from..=window.to).contains(&time) {
+        return Err(SolverError::Implausible { t: window.to, value, time, most: most(scene, window) });
+    }
     let numbers = [found.e2_max.value, found.stroke_max];
     let all = numbers.iter().chain(&found.force_max).chain(&found.final_state);
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }

@@ -39,6 +39,15 @@ proptest! {
         Anything::new(&draws).check();
     }
 
+    /// What is written is read again to the last bit.
+    #[test]
+    fn invariant_any_scene_is_read_as_it_was_written(draws in draws(1.0)) {
+        let scene = Anything::new(&draws).scene;
+        let text = serde_json::to_string(&scene).expect("JSON");
+        let again: retune_model::Scene = serde_json::from_str(&text).expect("a scene");
+        assert_eq!(again, scene, "{}", text);
+    }
+
     #[test]
     fn invariant_scenes_about_the_papers_have_too(draws in draws(0.2)) {
         Anything::new(&draws).check();

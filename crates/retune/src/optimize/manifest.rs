@@ -42,6 +42,17 @@ pub fn write(identity: Identity, solver: Solver, results: &Directory) -> Result<
     results.write_json(NAME, &manifest)
 }
 
+/// Whether the results of this work stand in `out` already, whole.
+pub fn is_finished(out: &Path, identity: &Identity) -> bool {
+    let text = std::fs::read_to_string(out.join(NAME)).unwrap_or_default();
+    let made_by = serde_json::from_str(&text).map(|manifest: Manifest| Identity {
+        study: manifest.study_sha256,
+        version: manifest.retune,
+        arithmetic: manifest.arithmetic,
+    });
+    made_by.is_ok_and(|made_by| made_by == *identity) && !Directory::is_unfinished(out)
+}
+
 /// SHA-256 of a file, in hexadecimal.
 ///
 /// # Errors

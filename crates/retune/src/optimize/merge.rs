@@ -1,7 +1,7 @@
 //! `merge`: the parts of a grid that many machines computed, put together, and the rest of the search.
 
 use super::shard::{self, Head, PARTS};
-use super::{optimize_from, where_results_are, with_threads};
+use super::{nothing_to_resume, optimize_from, where_results_are, with_threads};
 use crate::cli;
 use crate::error::Error;
 use crate::results::Identity;
@@ -23,6 +23,10 @@ pub fn command(arguments: &cli::Merge) -> Result<(), Error> {
     let (_, grid) = study.search().map_err(refuse)?.surf.ok_or_else(|| refuse(Rule::NoGrid))?;
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| Path::new("results").join(study.name()));
+    let screen = Screen::new(running.quiet);
+    if nothing_to_resume(&study, &out, running, screen)? {
+        return Ok(());
+    }
     let paths =
         if arguments.parts.is_empty() { shard::list(&out.join(PARTS))? } else { arguments.parts.clone() };
 
@@ -37,7 +41,6 @@ pub fn command(arguments: &cli::Merge) -> Result<(), Error> {
     }
     check(&mut heads, grid.len(), &arguments.study, &out)?;
 
-    let screen = Screen::new(running.quiet);
     screen.log(format!("{} parts, {} points: complete, disjoint, of this study", heads.len(), grid.len()))?;
     with_threads(running.threads, || {
         let (optimum, results) = optimize_from(&study, &out, running.begin(), screen, |results| {

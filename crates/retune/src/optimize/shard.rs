@@ -112,13 +112,18 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
     bar.finish_and_clear();
     journal.check()?;
 
-    let mut text =
+    let head =
         sealed(&format!("{TITLE} {} shard={shard} points={}-{}", identity.words(), points.start, points.end));
-    points.zip(values).for_each(|(i, value)| text.push_str(&grid_line(i, value)));
-    let hash = hexadecimal(&Sha256::digest(text.as_bytes())[..8]);
+    let lines = || {
+        let rest = points.clone().zip(&values).map(|(i, value)| grid_line(i, *value));
+        std::iter::once(head.clone()).chain(rest)
+    };
+    let mut hash = Sha256::new();
+    lines().for_each(|line| hash.update(line));
+    let hash = hexadecimal(&hash.finalize()[..8]);
     let path = parts.join(format!("{}-{hash}{ENDING}", shard.name()));
     let mut part = Pending::create(&path)?;
-    part.push(&text)?;
+    lines().try_for_each(|line| part.push(&line))?;
     part.finish_for_good()?;
     work.discard();
     let _ = std::fs::remove_dir(&place); // empty by now; if it is not, it is not ours

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Tunes a study as a Slurm job array: the shares of its grid, then one merge. From the directory that holds `studies`:
 #
-#   STUDY=studies/ssvi.json OUT=results/ssvi SHARDS=64 bash deploy/slurm.sh
+#   STUDY=studies/ssvi.json OUT=results/ssvi SHARDS=64 bash deploy/on_slurm.sh
 #
 # The directory of the results must be one that all nodes see. Start it again after any failure: parts that are there are kept,
 # shares that were begun go on, and the merge refuses anything that is not complete.

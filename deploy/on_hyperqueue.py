@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Tunes a study on many machines with HyperQueue (pip install hyperqueue): the shares of its grid as tasks, then one merge.
 
-    python3 deploy/hyperqueue.py studies/ssvi.json --shards 64 --server-dir ~/.hq-server/hq-current   # a running HyperQueue
-    python3 deploy/hyperqueue.py studies/ssvi.json --shards 8 --local 2                               # two workers here
+    python3 deploy/on_hyperqueue.py studies/ssvi.json --shards 64 --server-dir ~/.hq-server/hq-current   # a running HyperQueue
+    python3 deploy/on_hyperqueue.py studies/ssvi.json --shards 8 --local 2                               # two workers here
 
 The directory of the results must be one that all workers see. Whatever dies on the way, start the same command again: parts
 that are there are kept, shares that were begun go on, and the merge refuses anything that is not complete.
