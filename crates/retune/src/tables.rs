@@ -1,4 +1,4 @@
-//! `table2` and `retune`: the same search for several dampers or structures, and a table of what was found.
+//! `table2`: the same search for several dampers, and the table of designs that `retune` makes too.
 
 use crate::cli;
 use crate::error::Error;
@@ -18,7 +18,7 @@ pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/table2"));
     let screen = Screen::new(running.quiet);
-    let mut table = Table::new("table2", "origin", &out)?;
+    let mut table = Table::new("table2", "origin", &out, &[])?;
     with_threads(running.threads, || {
         for PaperStudy { damper, mut study } in rows {
             if let Some(optimize) = &mut study.optimize {
@@ -33,39 +33,8 @@ pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
     })
 }
 
-/// Tunes both dampers anew for each stiffness of the primary structure.
-///
-/// # Errors
-/// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
-pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
-    let rows = study::read_table2(&arguments.study)?;
-    let mut studies = Vec::new();
-    for setting in &arguments.k1 {
-        for PaperStudy { damper, study } in &rows {
-            studies.push((setting.value(), damper, study.with(std::slice::from_ref(setting))?));
-        }
-    }
-    let running = &arguments.running;
-    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/retune"));
-    let screen = Screen::new(running.quiet);
-    let mut table = Table::new("retune", "k1", &out)?;
-    with_threads(running.threads, || {
-        for (k1, damper, study) in studies {
-            let scene = study.scene;
-            screen.log(format!(
-                "\n{damper} at k1 = {k1} N/m (natural frequency {} rad/s), forced at omega = {} rad/s",
-                short(scene.primary.natural_frequency()),
-                scene.forcing.frequency.get()
-            ))?;
-            let optimum = optimize(&study, &out.join(format!("k1-{k1}")).join(study.name()), screen)?;
-            table.push(&k1.to_string(), damper, optimum.found());
-        }
-        table.finish(screen)
-    })
-}
-
 /// A table of designs in the form of the paper's Table 2, with E1max and one column of its own.
-struct Table {
+pub struct Table {
     name: &'static str,
     directory: Directory,
     csv: Vec<String>,
@@ -73,20 +42,35 @@ struct Table {
 }
 
 impl Table {
-    fn new(name: &'static str, column: &'static str, out: &Path) -> Result<Self, Error> {
-        let directory =
-            Directory::create(out, |file| file == format!("{name}.csv") || file == format!("{name}.txt"))?;
+    /// Begins the table `name` in the directory `out`; `column` is its own. `others` are more files that the command writes there.
+    ///
+    /// # Errors
+    /// The directory cannot be written to.
+    pub fn new(name: &'static str, column: &'static str, out: &Path, others: &[&str]) -> Result<Self, Error> {
+        let directory = Directory::create(out, |file| {
+            file == format!("{name}.csv") || file == format!("{name}.txt") || others.contains(&file)
+        })?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
         Ok(Self { name, directory, csv, text })
     }
 
-    fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
+    /// Appends a row.
+    pub fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
         self.csv.push(format!("{label},{},{},{e1_max}", quoted(damper), joined(&design, ",")));
         self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, design), short(e1_max)));
     }
 
-    fn finish(self, screen: Screen) -> Result<(), Error> {
+    /// Where the table goes.
+    pub fn directory(&self) -> &Directory {
+        &self.directory
+    }
+
+    /// Writes the table and shows it.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self, screen: Screen) -> Result<(), Error> {
         let Self { name, directory, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
         directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
@@ -96,7 +80,7 @@ impl Table {
 }
 
 /// A text as a CSV field.
-fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
