@@ -18,11 +18,19 @@ optimize-tmd *OPTIONS:
 optimize-tmd-band *OPTIONS:
     {{retune}} optimize studies/tmd-band.json {{OPTIONS}}
 
+# Tune the SSVI NES, no stiffer than the paper's TMD, for the worst over 5 to 8 rad/s: global search, certificate, into results/ssvi-band
+optimize-ssvi-band:
+    {{retune}} optimize studies/ssvi-band.json
+
+# Certify a design: a study, the optimum.json of a search or the directory of its results, for instance `just certify studies/ssvi.json`
+certify DESIGN *OPTIONS:
+    {{retune}} certify {{DESIGN}} {{OPTIONS}}
+
 # Re-optimise both rows of Table 2, beside the paper's
 table2 *OPTIONS:
     {{retune}} table2 studies/table2.json {{OPTIONS}}
 
-# Re-tune both dampers for other stiffnesses k1 in N/m, for instance `just retune 30000 50000`
+# Re-tune both dampers for other stiffnesses k1 in N/m, and draw how long a tuning lasts, for instance `just retune 30000 50000`
 retune *K1:
     {{retune}} retune {{K1}}
 

@@ -26,11 +26,13 @@ pub enum Command {
     Merge(Merge),
     /// Run a sample of the rows of results again, and say whether they hold
     Verify(Verify),
+    /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
+    Certify(Certify),
     /// Run one scene and say what happened
     Simulate(Simulate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
-    /// Tune both dampers anew for other stiffnesses k1 of the primary structure
+    /// Tune both dampers anew for other stiffnesses k1 of the structure, and show how long a tuning lasts
     Retune(Retune),
     /// Make every table and figure of the paper, on one page beside what the paper says
     Reproduce(Reproduce),
@@ -137,6 +139,17 @@ pub struct Merge {
     pub running: Running,
 }
 
+/// `certify`.
+#[derive(Debug, Args)]
+pub struct Certify {
+    /// A study (the design in its scene is certified), the optimum.json of a search, or the directory of its results
+    #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
+    pub design: PathBuf,
+    /// How it is run; the certificate goes beside an optimum, or to results/certify/<study>, unless --out says otherwise.
+    #[command(flatten)]
+    pub running: Running,
+}
+
 /// `verify`.
 #[derive(Debug, Args)]
 pub struct Verify {
@@ -178,8 +191,8 @@ pub struct Retune {
     /// Stiffnesses of the primary structure, N/m
     #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
     pub k1: Vec<Setting>,
-    /// The table that names the study of each damper
-    #[arg(long, value_name = "FILE", default_value = "studies/table2.json")]
+    /// The table that names the study of each damper; each is tuned for its own k1 as well
+    #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
     pub study: PathBuf,
     /// How the search is run.
     #[command(flatten)]

@@ -122,6 +122,14 @@ pub enum Error {
     /// No point of the grid has a value.
     #[error("no point of the grid could be computed{}", example(.0))]
     NoStart(Failures),
+    /// A global search found nothing to start from.
+    #[error("the global search failed: {source}{}", example(.failures))]
+    Global {
+        /// What it says.
+        source: retune_optim::GlobalError,
+        /// The evaluations that failed.
+        failures: Failures,
+    },
     /// A refinement could not be started.
     #[error("the refinement failed: {source}{}", example(.failures))]
     Search {
@@ -178,6 +186,7 @@ impl Error {
             | Self::Atlas(_)
             | Self::Unusable(_)
             | Self::NoStart(_)
+            | Self::Global { .. }
             | Self::Search { .. }
             | Self::Figure { .. }
             | Self::NotHeld { .. } => 1,

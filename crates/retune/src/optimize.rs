@@ -1,6 +1,7 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
-mod band;
+pub mod band;
+mod global;
 pub mod log;
 pub mod manifest;
 pub mod merge;
@@ -12,15 +13,17 @@ mod surf;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
+use crate::certify::{self, certify};
 use crate::cli;
 use crate::error::Error;
 use crate::results::identity::{Identity, study_text};
-use crate::results::{Begin, Directory};
+use crate::results::{Begin, Directory, Journal};
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
-use retune_model::NonNegative;
-use retune_optim::{PeakEnergy, Unusable, Variable};
+use global::Basins;
+use optimum::Searched;
+use retune_optim::{PeakEnergy, Variable};
 use std::path::{Path, PathBuf};
 
 /// Tunes the damper of a study file.
@@ -120,37 +123,63 @@ fn optimize_from(
 fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) -> Result<Optimum, Error> {
     results.write("study.json", &study_text(study)?)?;
     let surf = surf::surf(study, search, results, screen)?;
-    let starts = match &surf {
-        Some(surf) => surf.starts(search),
-        None => vec![search.variables.iter().map(|variable| variable.get(&search.damper)).collect()],
-    };
+    let explored = global::global(study, search, results.journal(), screen)?;
+    let mut starts = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
+    let on_grid = starts.len();
+    starts.extend(explored.as_ref().map(|explored| explored.starts(search.starts)).unwrap_or_default());
+    starts.extend(search.given.iter().cloned());
+    if starts.is_empty() {
+        starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
+    }
     let refined = refine::refine(study, search, starts, results, screen)?;
+    let basins =
+        explored.as_ref().map(|found| Basins::new(found, search, &refined, results.journal(), on_grid));
+    results.journal().check()?;
+    if let Some(basins) = &basins {
+        basins.write(&refined.objective, results)?;
+    }
 
-    let mut scene = refined.objective.scene(&refined.best().minimum.x)?;
-    let worst = refined.objective.worst(&scene, f64::INFINITY)?;
-    scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
+    let design = refined.objective.scene(&refined.best().minimum.x)?;
+    let found = refined.objective.evaluate(&design, f64::INFINITY)?;
+    let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let optimum = Optimum::new(study, search, surf.as_ref(), &refined, summary, worst);
+    let searched = Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins };
+    let certificate = certify(&Study { scene: design, ..study.clone() })?;
+    results.write_json(certify::FILE, &certificate)?;
+    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short());
     results.write_json("optimum.json", &optimum)?;
     pictures::draw(study, search, surf.as_ref(), &refined, results)?;
-    if let Some(band) = study.objective().band() {
-        band::write(study, &band, scene, results)?;
+    if study.objective().omega.is_some() {
+        band::write(study, design, results)?;
     }
     manifest::write(Identity::of_study(study)?, study.solver, results)?;
     Ok(optimum)
 }
 
+/// An objective as searches call it: what the journal knows of it is not computed again.
+fn kept<'a>(
+    objective: &'a PeakEnergy,
+    journal: &'a Journal,
+    stage: &'static str,
+) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
+    move |design, cutoff| {
+        let known = |value| objective.recall(value);
+        journal.value(stage, design, cutoff, || objective.value(design, cutoff), known)
+    }
+}
+
 /// The objective of a study over some parameters of its damper.
 pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
-    let (when, settings) = (study.when(), study.solver.settings());
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), when, settings)
-        .over(study.objective().band())
+    let (window, settings) = (study.window.window(), study.solver.settings());
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), window, settings).with(study.goal())
 }
 
 /// Whether `optimize` writes files of this name.
 fn is_ours(name: &str) -> bool {
-    const NAMES: [&str; 10] = [
+    const NAMES: [&str; 12] = [
+        certify::FILE,
+        "basins.csv",
         "study.json",
         "surf.csv",
         "fminsearch.csv",

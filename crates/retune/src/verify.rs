@@ -3,13 +3,13 @@
 use crate::cli;
 use crate::error::Error;
 use crate::optimize::manifest::{self, Manifest};
-use crate::optimize::objective;
+use crate::optimize::{band, objective};
 use crate::results::identity::{VERSION, sha256};
 use crate::screen::Screen;
 use crate::study::{self, Study};
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
-use retune_optim::{PeakEnergy, Variable, e1_max};
+use retune_optim::{PeakEnergy, Variable};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -232,14 +232,13 @@ fn best_scene(objective: &PeakEnergy, optimum: &Value) -> Option<Scene> {
 
 /// Runs all again.
 fn run(study: &Study, objective: &PeakEnergy, checks: Vec<Check>) -> Tally {
-    let settings = study.solver.settings();
     let again = |check: &Check| {
-        let found = if check.whole {
-            objective.worst(&check.scene, f64::INFINITY)
+        if check.whole {
+            let found = objective.evaluate(&check.scene, f64::INFINITY);
+            found.map_or(f64::INFINITY, |found| found.value)
         } else {
-            e1_max(&check.scene, study.when(), None, &settings, f64::INFINITY)
-        };
-        found.map_or(f64::INFINITY, |worst| worst.value)
+            band::at_its_own(study, check.scene)
+        }
     };
     let found: Vec<f64> = checks.par_iter().map(again).collect();
     let mut tally = Tally::default();

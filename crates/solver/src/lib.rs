@@ -9,6 +9,7 @@ mod collision;
 mod contact;
 pub mod dop853;
 pub mod euler;
+mod extremes;
 mod flow;
 mod follow;
 mod free;
@@ -26,6 +27,7 @@ mod run;
 mod settings;
 mod system;
 
+pub use extremes::{Ask, Extremes, Settle, extremes, settled};
 pub use hybrid::{Hybrid, Motion, Phase};
 pub use run::{Sample, e1_max, simulate, touch_downs, trajectory};
 pub use settings::{Contacts, Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};

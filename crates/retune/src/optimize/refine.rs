@@ -1,7 +1,7 @@
 //! The fine stage: `fminsearch` from each start, logged as it happens.
 
 use super::log::{self, CSV_HEADER, TXT_HEADER};
-use super::objective;
+use super::{kept, objective};
 use super::surf::design;
 use crate::error::Error;
 use crate::results::{Directory, Journal, Pending};
@@ -89,9 +89,7 @@ fn run(
     let mut rows = Vec::new();
     let mut told = Ok(());
     let found = minimize(
-        |design: &[f64], cutoff| {
-            journal.value("fminsearch", design, cutoff, || objective.value(design, cutoff))
-        },
+        kept(objective, journal, "fminsearch"),
         start,
         search.options.clone(),
         |row| {

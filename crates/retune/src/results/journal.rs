@@ -197,28 +197,44 @@ impl Journal {
         self.known.lines
     }
 
-    /// The value of an objective at `design`: known from before, or computed now and written down. `stage` names the objective;
-    /// `cutoff` is what it may stop at.
-    pub fn value(&self, stage: &str, design: &[f64], cutoff: f64, compute: impl FnOnce() -> f64) -> f64 {
+    /// The value of an objective at `design`: known from before, which `recall` is told, or computed now and written down. `stage`
+    /// names the objective; `cutoff` is what it may stop at.
+    pub fn value(
+        &self,
+        stage: &str,
+        design: &[f64],
+        cutoff: f64,
+        compute: impl FnOnce() -> f64,
+        recall: impl FnOnce(f64),
+    ) -> f64 {
         let key = key(stage, design, cutoff);
-        self.answer(self.known.values.get(&key).copied(), compute, |value| {
+        self.answer(self.known.values.get(&key).copied(), compute, recall, |value| {
             sealed(&format!("e {} {:016x}", hexadecimal(&key), value.to_bits()))
         })
     }
 
     /// The same of a point of the grid, which is known by its number.
-    pub fn grid_value(&self, point: usize, compute: impl FnOnce() -> f64) -> f64 {
-        self.answer(self.known.grid.get(point).copied(), compute, |value| grid_line(point, value))
+    pub fn grid_value(
+        &self,
+        point: usize,
+        compute: impl FnOnce() -> f64,
+        recall: impl FnOnce(f64),
+    ) -> f64 {
+        self.answer(self.known.grid.get(point).copied(), compute, recall, |value| grid_line(point, value))
     }
 
     fn answer(
         &self,
         known: Option<f64>,
         compute: impl FnOnce() -> f64,
+        recall: impl FnOnce(f64),
         line: impl FnOnce(f64) -> String,
     ) -> f64 {
         match known {
-            Some(value) if value.is_finite() => value,
+            Some(value) if value.is_finite() => {
+                recall(value);
+                value
+            }
             // What cannot be kept need not be computed: the search comes to its end at once, and `check` says why.
             _ if self.broken.load(Relaxed) => f64::INFINITY,
             known => {

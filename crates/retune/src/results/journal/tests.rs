@@ -39,10 +39,10 @@ fn ask(journal: &Journal, count: usize) -> usize {
     };
     for i in 0..count {
         let x = i as f64;
-        assert_eq!(journal.value("one", &[x, 1.0], f64::INFINITY, || compute(x)), x);
-        assert_eq!(journal.value("one", &[x, 1.0], 3.0, || compute(x + 0.5)), x + 0.5, "another cutoff");
-        assert_eq!(journal.value("two", &[x, 1.0], 3.0, || compute(x + 0.25)), x + 0.25, "another stage");
-        assert_eq!(journal.grid_value(i, || compute(-x)), -x);
+        assert_eq!(journal.value("one", &[x, 1.0], f64::INFINITY, || compute(x), |_| {}), x);
+        assert_eq!(journal.value("one", &[x, 1.0], 3.0, || compute(x + 0.5), |_| {}), x + 0.5, "another cutoff");
+        assert_eq!(journal.value("two", &[x, 1.0], 3.0, || compute(x + 0.25), |_| {}), x + 0.25, "another stage");
+        assert_eq!(journal.grid_value(i, || compute(-x), |_| {}), -x);
     }
     computed.get()
 }
@@ -96,8 +96,8 @@ fn exact_what_could_not_be_computed_is_tried_again_but_written_once() {
             tries.set(tries.get() + 1);
             f64::INFINITY
         };
-        assert_eq!(journal.value("one", &[1.0], 2.0, compute), f64::INFINITY);
-        assert_eq!(journal.grid_value(7, compute), f64::INFINITY);
+        assert_eq!(journal.value("one", &[1.0], 2.0, compute, |_| {}), f64::INFINITY);
+        assert_eq!(journal.grid_value(7, compute, |_| {}), f64::INFINITY);
         tries.get()
     };
     assert_eq!(fail(&desk.open()), 2);
