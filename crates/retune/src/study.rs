@@ -2,6 +2,8 @@
 //!
 //! The types here are the format: their doc comments are the descriptions of the JSON Schema.
 
+#[cfg(any(test, fuzzing))]
+pub mod any_text;
 mod explain;
 mod global;
 mod objective;

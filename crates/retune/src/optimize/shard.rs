@@ -5,7 +5,7 @@ use super::objective;
 use crate::error::Error;
 use crate::results::identity::{Identity, hexadecimal};
 use crate::results::journal::{grid_line, grid_value, sealed, whole};
-use crate::results::{Begin, Directory, Pending};
+use crate::results::{Begin, Directory};
 use crate::screen::Screen;
 use crate::study::{Rule, Study};
 use sha2::{Digest, Sha256};
@@ -87,15 +87,21 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
     let (variables, grid) = search.surf.clone().ok_or_else(|| refuse(Rule::NoGrid))?;
     let identity = Identity::of_study(study)?;
     let parts = out.join(PARTS);
+    let place = parts.join(shard.name());
     if let Some(path) = find(&parts, shard)? {
         return match identity.difference(&read(&path, |_, _| {})?.identity) {
-            None => screen.line(format!("{} is there already", path.display())),
+            None => {
+                // What made it may have been killed before it had put its work away.
+                if let Some(work) = place.exists().then(|| open(&place, Begin::Restart, &identity)) {
+                    put_away(work?, &place);
+                }
+                screen.line(format!("{} is there already", path.display()))
+            }
             Some(difference) => Err(Error::Part { path, problem: format!("it is {difference}") }),
         };
     }
 
-    let place = parts.join(shard.name());
-    let work = Directory::open(&place, begin, &identity, |_| false)?;
+    let work = open(&place, begin, &identity)?;
     let points = shard.points(grid.len());
     screen.log(format!(
         "shard {shard}: points {} to {} of {}, {} of them known",
@@ -121,13 +127,26 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
     let mut hash = Sha256::new();
     lines().for_each(|line| hash.update(line));
     let hash = hexadecimal(&hash.finalize()[..8]);
-    let path = parts.join(format!("{}-{hash}{ENDING}", shard.name()));
-    let mut part = Pending::create(&path)?;
+    let name = format!("{}-{hash}{ENDING}", shard.name());
+    let mut part = work.file(&name)?;
     lines().try_for_each(|line| part.push(&line))?;
     part.finish_for_good()?;
-    work.discard();
-    let _ = std::fs::remove_dir(&place); // empty by now; if it is not, it is not ours
+    let path = parts.join(&name);
+    std::fs::rename(work.whole_path(&name), &path)
+        .map_err(|source| Error::Output { path: path.clone(), source })?;
+    put_away(work, &place);
     screen.line(format!("wrote {}", path.display()))
+}
+
+/// The directory in which a part comes about; it has no results of its own.
+fn open(place: &Path, begin: Begin, identity: &Identity) -> Result<Directory, Error> {
+    Directory::open(place, begin, identity, |_| false)
+}
+
+/// Removes the directory in which a part came about.
+fn put_away(work: Directory, place: &Path) {
+    work.discard();
+    let _ = std::fs::remove_dir(place); // empty by now; if it is not, it is not ours
 }
 
 /// The part of a shard, if it is there.
