@@ -152,6 +152,7 @@ struct Peaks<E, S> {
     stroke: Option<[Peak<S>; 2]>,
 }
 
+#[expect(clippy::type_complexity, reason = "closures have no names")]
 fn peaks<'a>(
     system: &'a Coupled,
     ask: Ask,
