@@ -46,12 +46,12 @@ pub(super) fn global(study: &Study, search: &Search, screen: Screen) -> Result<O
     let most = u64::from(global.samples) + global.searches as u64 * global.evaluations;
     let bar = screen.progress("global", most);
     let value = |design: &[f64], cutoff: f64| objective.value(design, cutoff);
-    let found = explore(&value, &space, &global, || bar.inc(1));
+    let found = explore(value, &space, &global, || bar.inc(1));
     bar.finish_and_clear();
     let failures = objective.failures();
     let searches = found.map_err(|source| Error::Global { source, failures: failures.clone() })?;
     let ends: Vec<Point> = searches.iter().map(|search| search.found.clone()).collect();
-    let basins = basins(&value, &space, &ends, apart);
+    let basins = basins(value, &space, &ends, apart);
     let counts = objective.counts();
     let explored = Explored { searches, basins, space, apart, failures, counts };
     screen.log(explored.report(search, begun.elapsed().as_secs_f64()))?;
