@@ -22,6 +22,10 @@ optimize-tmd-band *OPTIONS:
 optimize-ssvi-band:
     {{retune}} optimize studies/ssvi-band.json
 
+# Tune any study, for instance `just optimize studies/ssvi-robust.json`
+optimize STUDY *OPTIONS:
+    {{retune}} optimize {{STUDY}} {{OPTIONS}}
+
 # Certify a design: a study, the optimum.json of a search or the directory of its results, for instance `just certify studies/ssvi.json`
 certify DESIGN *OPTIONS:
     {{retune}} certify {{DESIGN}} {{OPTIONS}}

@@ -14,7 +14,7 @@ pub(crate) fn in_groups<T: Send + Sync>(
     mut enough: impl FnMut(&[T]) -> bool,
 ) -> Vec<T> {
     let mut results: Vec<T> = Vec::with_capacity(count);
-    while results.len() < count && !(!results.is_empty() && enough(&results)) {
+    while results.len() < count && (results.is_empty() || !enough(&results)) {
         let group = results.len()..count.min(results.len() + together.max(1));
         let before = &results;
         let fresh: Vec<T> = group.into_par_iter().map(|i| value(i, before)).collect();

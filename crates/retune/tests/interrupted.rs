@@ -239,3 +239,23 @@ fn exact_table2_goes_on_where_it_was_killed() {
     }
     assert_eq!(desk.read("whole/table2.csv"), desk.read("out/table2.csv"));
 }
+
+/// The global search goes on as well, and counts what it looked at as if it had not been broken off.
+#[test]
+fn exact_a_global_search_goes_on_where_it_was_killed() {
+    let desk = Desk::new();
+    let mut study = longer();
+    study["optimize"]["surf"] = json!(null);
+    study["optimize"]["bounds"] =
+        json!({ "k2": [50, 800], "c2": [50, 400], "D": [0.02, 0.2], "C": [0.05, 0.6] });
+    study["optimize"]["global"] = json!({ "samples": 256, "searches": 2, "evaluations": 200 });
+    desk.write_json("study.json", &study);
+    desk.good(&["optimize", "study.json", "--quiet", "--out", "whole"]);
+    for lines in [100, 400] {
+        let mut child = begun(&desk, &RUN, "out", lines);
+        child.kill().and_then(|()| child.wait()).expect("killed");
+        desk.good(&["optimize", "study.json", "--quiet", "--out", "out", "--resume"]);
+        assert_same(&desk, "whole", "out");
+        std::fs::remove_dir_all(desk.path("out")).expect("the results");
+    }
+}

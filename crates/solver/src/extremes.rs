@@ -4,6 +4,7 @@
 use crate::follow::{follow_bare_from, follow_coupled_from};
 use crate::free::Free;
 use crate::observe::{Observer, Path, Peak, Segment, Unobserved};
+use crate::plausible;
 use crate::run::e1_max;
 use crate::settings::{Extreme, Method, Settings, SolverError, Window};
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
@@ -88,6 +89,7 @@ pub fn extremes(
         }
     };
     seen.e1_max.time -= start;
+    plausible::energy(scene, window, settings, seen.e1_max)?;
     Ok(seen)
 }
 
@@ -137,6 +139,7 @@ pub fn settled(
         }
     };
     seen.e1_max.time -= start;
+    plausible::energy(scene, Window { from: 0.0, ..window }, settings, seen.e1_max)?;
     Ok(seen)
 }
 
@@ -152,6 +155,7 @@ struct Peaks<E, S> {
     stroke: Option<[Peak<S>; 2]>,
 }
 
+#[expect(clippy::type_complexity, reason = "closures have no names")]
 fn peaks<'a>(
     system: &'a Coupled,
     ask: Ask,

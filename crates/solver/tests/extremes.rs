@@ -75,7 +75,7 @@ fn rest(scene: &Scene, method: Method, settle: Settle) -> Extremes {
 fn exact_a_linear_motion_settles_at_its_steady_response() {
     let (scene, settle) = (TMD.scene(), Settle { tolerance: 1e-9, ..Settle::default() });
     let system = Coupled::new(&scene.primary, &scene.forcing, &TMD.damper());
-    let steady = system.steady(6.28);
+    let steady = system.steady(TMD.omega);
     for method in [Method::Hybrid, Method::Dop853] {
         let found = rest(&scene, method, settle);
         assert!(found.settled);
@@ -83,7 +83,7 @@ fn exact_a_linear_motion_settles_at_its_steady_response() {
         assert!((found.stroke / steady.stroke() - 1.0).abs() < 1e-6 && found.force == 0.0, "{found:?}");
     }
     let bare = rest(&Scene { damper: None, ..scene }, Method::Hybrid, settle);
-    assert_eq!(bare.e1_max.value, Bare::new(&scene.primary, &scene.forcing).steady(6.28).e1_max);
+    assert_eq!(bare.e1_max.value, Bare::new(&scene.primary, &scene.forcing).steady(TMD.omega).e1_max);
 }
 
 /// Table 2's damper repeats after two periods of this force, with one impact.
@@ -107,7 +107,7 @@ fn exact_a_motion_that_has_not_settled_says_so() {
     assert!(!never.settled);
     let settings = Settings { rtol: 1e-9, ..Settings::default() };
     // The first block that begins after 50 s does so at the ninth of 6 periods.
-    let from = 9.0 * 6.0 * 2.0 * PI / 6.28;
+    let from = 9.0 * 6.0 * 2.0 * PI / SSVI.omega;
     let window = Window { from, ..LONG };
     let run = extremes(&scene, window, &settings, Ask { walls: true, ..Ask::default() }).expect("a run");
     assert!((never.e1_max.value / run.e1_max.value - 1.0).abs() < 0.05, "{never:?} {run:?}");

@@ -250,7 +250,7 @@ impl Certificate {
                 format!("{parameter} off by {worst_at_percent:+} % gives {} J", short(*worst))
             });
         match worst {
-            Some(worst) if !(worst.worst <= (1.0 + SHARP) * e1_max) => {
+            Some(worst) if worst.worst > (1.0 + SHARP) * e1_max => {
                 (Verdict::Sharp, format!("sharp: {said}, {} times as much", short(worst.worst / e1_max)))
             }
             _ => (Verdict::Robust, format!("robust: at worst {said}")),

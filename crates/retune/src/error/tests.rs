@@ -38,8 +38,8 @@ fn rules() -> Vec<Rule> {
         Rule::NoGrid,
         Rule::NothingVaried,
         Rule::VariedTwice { variable },
-        Rule::EmptyBand { from: 8.0, to: 5.0 },
-        Rule::Samples { samples: 1, most: 10_000 },
+        Rule::EmptyBand { field: "optimize.objective.omega".into(), unit: " rad/s", from: 8.0, to: 5.0 },
+        Rule::Samples { field: "optimize.objective.omega".into(), samples: 1, most: 10_000 },
         Rule::NotVaried { field: "bounds", variable },
         Rule::Bounds { variable, bounds },
         Rule::Axis { variable, source: AxisError::NotANumber { name: "from", value: f64::NAN } },
@@ -54,6 +54,13 @@ fn rules() -> Vec<Rule> {
         Rule::NoRows,
         Rule::SameName { name },
         Rule::Tolerance { name: "TolX", value },
+        Rule::NotAllowed {
+            field: "optimize.global.searches".into(),
+            value: "0".into(),
+            allowed: "a whole number above 0",
+        },
+        Rule::SumAndMore { path: "optimize.objective".into() },
+        Rule::NoEnd { variable },
     ]
 }
 
@@ -107,6 +114,8 @@ fn unusable() -> Vec<Unusable> {
     vec![
         Unusable::OutOfRange { variable: Variable::K2, source: out_of_range() },
         Unusable::Frequency(out_of_range()),
+        Unusable::Stiffness(out_of_range()),
+        Unusable::Member(out_of_range()),
         Unusable::Run(SolverError::NonFinite { t: 1.5 }),
         Unusable::Touches { omega: 6.3, stroke: 0.4, room: 0.06 },
     ]
@@ -147,6 +156,7 @@ fn errors() -> Vec<Error> {
             source: retune_optim::Error::StartValue { value: f64::INFINITY },
             failures: failures(),
         },
+        Error::Global { source: retune_optim::GlobalError::NoStart { samples: 64 }, failures: failures() },
         Error::Figure { name: "surf-k2-c2.svg".into(), problem: "no room".into() },
     ]
 }
@@ -155,12 +165,13 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld Busy Unfinished
-            Threads Run Atlas Unusable NoStart Search Figure),
+            Threads Run Atlas Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
-            Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance),
-        each!(unusable(), Unusable: OutOfRange Frequency Run Touches),
+            Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
+            NotAllowed SumAndMore NoEnd),
+        each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Touches),
         each!(solvers(), SolverError: StepTooSmall TooManySteps Implausible NonFinite),
     ]
     .concat();

@@ -1,9 +1,9 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
 use super::log::{joined, short};
-use super::{kept, objective};
 use super::refine::{Refined, Run};
 use super::surf::design;
+use super::{kept, objective};
 use crate::error::Error;
 use crate::results::{Directory, Journal};
 use crate::screen::Screen;
@@ -57,7 +57,7 @@ pub(super) fn global(
     let failures = objective.failures();
     let searches = found.map_err(|source| Error::Global { source, failures: failures.clone() })?;
     let ends: Vec<Point> = searches.iter().map(|search| search.found.clone()).collect();
-    let basins = basins(&value, &space, &ends, apart);
+    let basins = basins(value, &space, &ends, apart);
     let counts = objective.counts();
     let explored = Explored { searches, basins, space, apart, failures, counts };
     screen.log(explored.report(search, begun.elapsed().as_secs_f64()))?;

@@ -1,8 +1,8 @@
 //! The fine stage: `fminsearch` from each start, logged as it happens.
 
 use super::log::{self, CSV_HEADER, TXT_HEADER};
-use super::{kept, objective};
 use super::surf::design;
+use super::{kept, objective};
 use crate::error::Error;
 use crate::results::{Directory, Journal, Pending};
 use crate::screen::Screen;
@@ -88,22 +88,15 @@ fn run(
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
     let mut told = Ok(());
-    let found = minimize(
-        kept(objective, journal, "fminsearch"),
-        start,
-        search.options.clone(),
-        |row| {
-            if journal.is_broken() {
-                return ControlFlow::Break(());
-            }
-            rows.push(row.clone());
-            told = objective
-                .damper(&row.best)
-                .map_err(Error::from)
-                .and_then(|damper| tell(row, &design(&damper)));
-            if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        },
-    );
+    let found = minimize(kept(objective, journal, "fminsearch"), start, search.options.clone(), |row| {
+        if journal.is_broken() {
+            return ControlFlow::Break(());
+        }
+        rows.push(row.clone());
+        told =
+            objective.damper(&row.best).map_err(Error::from).and_then(|damper| tell(row, &design(&damper)));
+        if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
     told?;
     journal.check()?;
     let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;

@@ -49,11 +49,10 @@ pub(super) fn surf(
     let begun = Instant::now();
     let bar = screen.progress("surf", grid.len() as u64);
     let journal = results.journal();
-    let value =
-        |point: usize, design: &[f64]| {
-            let known = |value| objective.recall(value);
-            journal.grid_value(point, || objective.value(design, f64::INFINITY), known)
-        };
+    let value = |point: usize, design: &[f64]| {
+        let known = |value| objective.recall(value);
+        journal.grid_value(point, || objective.value(design, f64::INFINITY), known)
+    };
     let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));
     bar.finish_and_clear();
     journal.check()?;

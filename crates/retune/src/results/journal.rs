@@ -214,12 +214,7 @@ impl Journal {
     }
 
     /// The same of a point of the grid, which is known by its number.
-    pub fn grid_value(
-        &self,
-        point: usize,
-        compute: impl FnOnce() -> f64,
-        recall: impl FnOnce(f64),
-    ) -> f64 {
+    pub fn grid_value(&self, point: usize, compute: impl FnOnce() -> f64, recall: impl FnOnce(f64)) -> f64 {
         self.answer(self.known.grid.get(point).copied(), compute, recall, |value| grid_line(point, value))
     }
 

@@ -40,8 +40,16 @@ fn ask(journal: &Journal, count: usize) -> usize {
     for i in 0..count {
         let x = i as f64;
         assert_eq!(journal.value("one", &[x, 1.0], f64::INFINITY, || compute(x), |_| {}), x);
-        assert_eq!(journal.value("one", &[x, 1.0], 3.0, || compute(x + 0.5), |_| {}), x + 0.5, "another cutoff");
-        assert_eq!(journal.value("two", &[x, 1.0], 3.0, || compute(x + 0.25), |_| {}), x + 0.25, "another stage");
+        assert_eq!(
+            journal.value("one", &[x, 1.0], 3.0, || compute(x + 0.5), |_| {}),
+            x + 0.5,
+            "another cutoff"
+        );
+        assert_eq!(
+            journal.value("two", &[x, 1.0], 3.0, || compute(x + 0.25), |_| {}),
+            x + 0.25,
+            "another stage"
+        );
         assert_eq!(journal.grid_value(i, || compute(-x), |_| {}), -x);
     }
     computed.get()
