@@ -143,6 +143,10 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
         self.jump(window.from)?;
         while self.now.t < window.to && !Observer::<N>::satisfied(&peak) {
             let to = window.to.min(self.now.t + STRIDE * self.flow.step());
+            if to <= self.now.t {
+                // Late in a run a step may be less than the spacing of the numbers there.
+                return Err(SolverError::StepTooSmall { t: self.now.t, h: self.flow.step() });
+            }
             self.propagate(to, &mut peak)?;
             let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
             if bound <= peak.record().value {

@@ -106,3 +106,16 @@ fn regress_a_damper_that_rests_on_a_wall_is_in_contact() {
     assert!(found.impacts == [0; 2] && found.force_max != [0.0; 2], "{found:?}");
     assert_eq!(found.scene, SceneKind::Contact);
 }
+
+/// Found by the fuzzer: a stiff linear scene whose steps are below the spacing of numbers late in its run did not end.
+#[test]
+fn regress_steps_below_the_spacing_of_time_end() {
+    let numbers = Numbers { m1: 3.17e-5, c1: 0.0, k1: 3.71e11, m2: 1.9e-6, k2: 3.6e-4, c2: 7e9, ..SSVI };
+    let scene = Numbers { omega: 0.0, d: 1.9e6, c: 1.14e7, ..numbers }.scene();
+    let window = Window { from: 99.85, to: 99.95 };
+    let found = e1_max(&scene, window, &Settings::default(), f64::INFINITY);
+    assert!(
+        matches!(found, Err(SolverError::StepTooSmall { t, .. }) if t >= 99.0 && t < window.to),
+        "{found:?}"
+    );
+}
