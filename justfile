@@ -7,24 +7,40 @@ default:
     @just --list --unsorted
 
 # Tune the SSVI NES of the paper: grid, fminsearch, log and figures into results/ssvi
-optimize-ssvi:
-    {{retune}} optimize studies/ssvi.json
+optimize-ssvi *OPTIONS:
+    {{retune}} optimize studies/ssvi.json {{OPTIONS}}
 
 # Tune the linear TMD of the paper into results/tmd
-optimize-tmd:
-    {{retune}} optimize studies/tmd.json
+optimize-tmd *OPTIONS:
+    {{retune}} optimize studies/tmd.json {{OPTIONS}}
 
 # Tune the TMD for the worst over 5 to 8 rad/s, steady, into results/tmd-band
-optimize-tmd-band:
-    {{retune}} optimize studies/tmd-band.json
+optimize-tmd-band *OPTIONS:
+    {{retune}} optimize studies/tmd-band.json {{OPTIONS}}
+
+# Tune the SSVI NES, no stiffer than the paper's TMD, for the worst over 5 to 8 rad/s: global search, certificate, into results/ssvi-band
+optimize-ssvi-band:
+    {{retune}} optimize studies/ssvi-band.json
+
+# Tune any study, for instance `just optimize studies/ssvi-robust.json`
+optimize STUDY *OPTIONS:
+    {{retune}} optimize {{STUDY}} {{OPTIONS}}
+
+# Certify a design: a study, the optimum.json of a search or the directory of its results, for instance `just certify studies/ssvi.json`
+certify DESIGN *OPTIONS:
+    {{retune}} certify {{DESIGN}} {{OPTIONS}}
 
 # Re-optimise both rows of Table 2, beside the paper's
-table2:
-    {{retune}} table2 studies/table2.json
+table2 *OPTIONS:
+    {{retune}} table2 studies/table2.json {{OPTIONS}}
 
-# Re-tune both dampers for other stiffnesses k1 in N/m, for instance `just retune 30000 50000`
+# Re-tune both dampers for other stiffnesses k1 in N/m, and draw how long a tuning lasts, for instance `just retune 30000 50000`
 retune *K1:
     {{retune}} retune {{K1}}
+
+# Whether results hold: runs a sample of their rows again, for instance `just verify results/ssvi --sample 100`
+verify RESULTS *OPTIONS:
+    {{retune}} verify {{RESULTS}} {{OPTIONS}}
 
 # Run one scene, for instance `just simulate studies/ssvi.json --set k1=30000 --json`
 simulate STUDY="studies/ssvi.json" *OPTIONS:
@@ -55,6 +71,37 @@ schema:
 # Run all tests
 test *OPTIONS:
     cargo test {{OPTIONS}}
+
+# Kill runs at random moments, KILLS times, and say in which stage each fell: results/robustness/kills.md
+test-kills KILLS="240":
+    mkdir -p results/robustness
+    RETUNE_KILLS={{KILLS}} cargo test --package retune --test kills -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
+    mv results/robustness/kills.md.tmp results/robustness/kills.md && cat results/robustness/kills.md
+
+# Try the HyperQueue script for real, with two workers on this machine (needs python3): results/robustness/cluster.txt
+test-cluster:
+    cargo build --release --package retune
+    mkdir -p results/robustness && python3 -m venv target/hyperqueue && target/hyperqueue/bin/pip install --quiet hyperqueue==0.27.0
+    target/hyperqueue/bin/python deploy/test_cluster.py target/release/retune > results/robustness/cluster.txt.tmp
+    mv results/robustness/cluster.txt.tmp results/robustness/cluster.txt && cat results/robustness/cluster.txt
+
+# Measure what docs/scale.md plans with: results/robustness/scale.txt (after `just test-cluster`, which installs HyperQueue)
+bench-scale:
+    cargo build --release --package retune
+    target/hyperqueue/bin/python deploy/measure_scale.py target/release/retune > results/robustness/scale.txt.tmp
+    mv results/robustness/scale.txt.tmp results/robustness/scale.txt && cat results/robustness/scale.txt
+
+# Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
+fuzz TARGET="numbers" SECONDS="1800":
+    cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}
+
+# Licences, sources, duplicates and advisories of what is built in
+deny:
+    .ci/deny
+
+# Pack every crate as it would be published, and build it from its package
+package:
+    cargo package --workspace --exclude retune-peers --allow-dirty
 
 # Measure speed
 bench *OPTIONS:

@@ -1,5 +1,6 @@
 //! The largest value of a function over a band of frequencies, by samples and a search about each of their maxima.
 
+use crate::chunks::{TOGETHER, in_groups};
 use rayon::prelude::*;
 use retune_model::Worst;
 
@@ -27,18 +28,27 @@ const REFINEMENTS: usize = 12;
 
 /// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is
 /// not below them. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any
-/// number of them. It is a lower bound: a peak that shows at no sample is missed. Once a sample is above `cutoff`, the largest sample is the answer.
+/// number of them. It is a lower bound: a peak that shows at no sample is missed. Samples are taken in groups, each spread over the
+/// band; once one of a group is above `cutoff`, the largest sample so far is the answer.
 ///
 /// # Errors
-/// The first of the band's failures, in the order of the frequencies, samples before searches.
-pub fn worst_over<E: Send>(
+/// The first failure in the order of the frequencies, samples before searches, of the groups that were taken.
+pub fn worst_over<E: Send + Sync>(
     band: &Band,
     value: impl Fn(f64) -> Result<f64, E> + Sync,
     cutoff: f64,
 ) -> Result<Worst, E> {
-    let sample = |i: usize| Ok(Worst { frequency: band.at(i), value: value(band.at(i))? });
-    let samples: Vec<Result<Worst, E>> = (0..band.samples.max(2)).into_par_iter().map(sample).collect();
-    let samples = samples.into_iter().collect::<Result<Vec<Worst>, E>>()?;
+    let count = band.samples.max(2);
+    let groups = count.div_ceil(TOGETHER);
+    // Group g has the samples g, g + groups, g + 2 groups, …
+    let order: Vec<usize> = (0..groups).flat_map(|g| (g..count).step_by(groups)).collect();
+    let sample = |&i: &usize| (i, value(band.at(i)).map(|value| Worst { frequency: band.at(i), value }));
+    let above = |(_, sample): &(usize, Result<Worst, E>)| !sample.as_ref().is_ok_and(|s| s.value <= cutoff);
+    let ends = |taken: &[(usize, Result<Worst, E>)]| taken.iter().any(above);
+    let together = if cutoff.is_finite() { TOGETHER } else { count };
+    let mut samples = in_groups(count, together, |place, _| sample(&order[place]), ends);
+    samples.sort_by_key(|(i, _)| *i);
+    let samples = samples.into_iter().map(|(_, sample)| sample).collect::<Result<Vec<Worst>, E>>()?;
     let largest =
         |all: &[Worst], first| all.iter().fold(first, |a: Worst, b| if b.value > a.value { *b } else { a });
     let worst = largest(&samples, samples[0]);
@@ -51,8 +61,9 @@ pub fn worst_over<E: Send>(
         (i == 0 || value > samples[i - 1].value) && (i == last || value >= samples[i + 1].value)
     };
     let peaks: Vec<usize> = (0..=last).filter(is_peak).collect();
-    let refine =
-        |&i: &usize| local_maximum(&value, [samples[i.max(1) - 1], samples[i], samples[last.min(i + 1)]]);
+    let refine = |&i: &usize| {
+        local_maximum(&value, [samples[i.max(1) - 1], samples[i], samples[last.min(i + 1)]], cutoff)
+    };
     let refined: Vec<Result<Worst, E>> = peaks.par_iter().map(refine).collect();
     Ok(largest(&refined.into_iter().collect::<Result<Vec<Worst>, E>>()?, worst))
 }
@@ -62,6 +73,7 @@ pub fn worst_over<E: Send>(
 fn local_maximum<E>(
     value: &impl Fn(f64) -> Result<f64, E>,
     [left, best, right]: [Worst; 3],
+    cutoff: f64,
 ) -> Result<Worst, E> {
     const GOLDEN: f64 = 0.381_966_011_250_105_1;
     let (mut a, mut b) = (left.frequency, right.frequency);
@@ -87,6 +99,9 @@ fn local_maximum<E>(
         let step_taken = if step.abs() < tolerance { tolerance.copysign(step) } else { step };
         let frequency = (x.frequency + step_taken).clamp(a, b);
         let tried = Worst { frequency, value: value(frequency)? };
+        if tried.value > cutoff {
+            return Ok(tried);
+        }
         if tried.value >= x.value {
             if frequency < x.frequency {
                 b = x.frequency

@@ -11,13 +11,24 @@
 //!   each iteration and can be saved and continued.
 
 pub mod band;
+mod chunks;
+pub mod ensemble;
 pub mod fminsearch;
+pub mod global;
+pub mod goal;
 pub mod grid;
+pub mod limits;
 pub mod objective;
+pub mod space;
 pub mod surf;
 
 pub use band::{Band, worst_over};
+pub use ensemble::{Ensemble, MOST_MEMBERS, Statistic};
 pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
+pub use global::{Basin, Descent, Global, GlobalError, Point, basins, explore};
+pub use goal::{Evaluation, Frequencies, Goal, Place, Stiffnesses, Term, When};
 pub use grid::{Axis, AxisError, Grid, GridError, Scale};
-pub use objective::{Failures, PeakEnergy, Unusable, Variable, When, e1_max};
-pub use surf::{best_separated, surf};
+pub use limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
+pub use objective::{Counts, Failures, PeakEnergy, Unusable, Variable, e1_max};
+pub use space::{Side, Space};
+pub use surf::{best_separated, surf, surf_part};

@@ -1,10 +1,12 @@
 //! What is made small: the largest energy of the primary structure as a function of the damper's design.
 
-use crate::band::{Band, worst_over};
-use retune_model::{Bare, Coupled, Damper, NonNegative, OutOfRange, Scene, Worst};
-use retune_solver::{Settings, SolverError, Window};
+use crate::band::Band;
+use crate::goal::{Evaluation, Frequencies, Goal, Term, When};
+use retune_model::{Damper, NonNegative, OutOfRange, Scene, Worst};
+use retune_solver::{Settings, SolverError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use thiserror::Error;
 
@@ -89,6 +91,12 @@ pub enum Unusable {
         /// Its value and what is allowed.
         source: OutOfRange,
     },
+    /// A stiffness that no structure can have.
+    #[error("k1: {0}")]
+    Stiffness(OutOfRange),
+    /// A member of an ensemble with a parameter out of its range.
+    #[error("a member of the ensemble: {0}")]
+    Member(OutOfRange),
     /// A frequency that no force can have.
     #[error("omega: {0}")]
     Frequency(OutOfRange),
@@ -110,25 +118,8 @@ pub enum Unusable {
     },
 }
 
-/// When E1max is taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum When {
-    /// In a window of a run from rest.
-    Window(Window),
-    /// Once all transients have died, in closed form: for scenes without contacts only.
-    Steady,
-}
-
-impl From<Window> for When {
-    fn from(window: Window) -> Self {
-        Self::Window(window)
-    }
-}
-
 /// E1max of a scene, J, and the ω at which it is: at the scene's own, or the worst over `band`. Any value above `cutoff` as
-/// soon as it is known to be above.
-///
-/// In a window it comes from runs ([`worst_over`]); the steady one is exact over the whole band ([`Coupled::steady_e1_max`]).
+/// soon as it is known to be above; see [`Goal::evaluate`].
 ///
 /// # Errors
 /// A run could not be finished, or the damper of a steady motion reaches a wall.
@@ -139,33 +130,9 @@ pub fn e1_max(
     settings: &Settings,
     cutoff: f64,
 ) -> Result<Worst, Unusable> {
-    let own = scene.forcing.frequency.get();
-    let Scene { primary, forcing, damper } = scene;
-    match when {
-        When::Window(window) => {
-            let run = |omega: f64| -> Result<f64, Unusable> {
-                let mut scene = *scene;
-                scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
-                Ok(retune_solver::e1_max(&scene, window, settings, cutoff)?.value)
-            };
-            match band {
-                Some(band) => worst_over(&band, run, cutoff),
-                None => Ok(Worst { value: run(own)?, frequency: own }),
-            }
-        }
-        When::Steady => {
-            let band = band.map_or([own; 2], |band| [band.from, band.to]);
-            let Some(damper) = damper else { return Ok(Bare::new(primary, forcing).steady_e1_max(band)) };
-            let system = Coupled::new(primary, forcing, damper);
-            let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
-            let room = damper.rest_distance.get().min(damper.clearance.get());
-            if stroke < room {
-                Ok(system.steady_e1_max(band))
-            } else {
-                Err(Unusable::Touches { omega, stroke, room })
-            }
-        }
-    }
+    let term = Term { omega: band.map(Frequencies::from), ..Term::new(when) };
+    let Evaluation { value, worst, .. } = Goal::one(term).evaluate(scene, settings, cutoff)?;
+    Ok(Worst { value, frequency: worst.scene.forcing.frequency.get() })
 }
 
 /// The designs that could not be evaluated.
@@ -178,7 +145,17 @@ pub struct Failures {
     pub example: Option<(Vec<f64>, Unusable)>,
 }
 
-/// E1max, J, of a scene whose damper is varied. It may be shared by threads.
+/// How many designs were looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Values asked for.
+    pub evaluations: u64,
+    /// Of these, values of designs that were found to break a limit. One that was given up as too energetic before that is
+    /// not among them.
+    pub infeasible: u64,
+}
+
+/// The goal of a search as a function of a design: a value for each varied parameter of the damper. It may be shared by threads.
 ///
 /// A design that cannot be evaluated counts as +∞, and is kept in [`Self::failures`].
 #[derive(Debug)]
@@ -186,10 +163,10 @@ pub struct PeakEnergy {
     scene: Scene,
     damper: Damper,
     variables: Vec<Variable>,
-    when: When,
-    band: Option<Band>,
+    goal: Goal,
     settings: Settings,
     failures: Mutex<Failures>,
+    counts: [AtomicU64; 2],
 }
 
 impl PeakEnergy {
@@ -201,14 +178,20 @@ impl PeakEnergy {
         when: impl Into<When>,
         settings: Settings,
     ) -> Self {
-        let when = when.into();
-        Self { scene, damper, variables, when, band: None, settings, failures: Mutex::default() }
+        let goal = Goal::one(Term::new(when));
+        let (failures, counts) = Default::default();
+        Self { scene, damper, variables, goal, settings, failures, counts }
     }
 
-    /// The worst over `band` instead of the value at the scene's own ω; `None` for that again.
+    /// The same for another goal.
     #[must_use]
-    pub fn over(self, band: Option<Band>) -> Self {
-        Self { band, ..self }
+    pub fn with(self, goal: Goal) -> Self {
+        Self { goal, ..self }
+    }
+
+    /// What is made small.
+    pub fn goal(&self) -> &Goal {
+        &self.goal
     }
 
     /// The varied parameters, in the order of a design.
@@ -236,26 +219,46 @@ impl PeakEnergy {
         Ok(Scene { damper: Some(self.damper(design)?), ..self.scene })
     }
 
-    /// E1max of `design`, J; any number above `cutoff` as soon as it is known to be above; +∞ where there is none.
+    /// What searches make small: the goal's energy of `design`, J, or above [`INFEASIBLE`](crate::INFEASIBLE) if it breaks a
+    /// limit; any number above `cutoff` as soon as it is known to be above; +∞ where there is none.
     pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
-        let worst = self.scene(design).and_then(|scene| self.worst(&scene, cutoff));
-        worst.map(|worst| worst.value).unwrap_or_else(|reason| {
-            self.note(design, reason);
-            f64::INFINITY
-        })
+        self.counts[0].fetch_add(1, Relaxed);
+        match self.scene(design).and_then(|scene| self.evaluate(&scene, cutoff)) {
+            Ok(found) => {
+                self.counts[1].fetch_add(u64::from(found.violation > 0.0), Relaxed);
+                found.value
+            }
+            Err(reason) => {
+                self.note(design, reason);
+                f64::INFINITY
+            }
+        }
     }
 
-    /// E1max of a scene as this objective takes it, J, with its ω; see [`e1_max`].
+    /// Takes note of a value that [`Self::value`] gave in an earlier run of the same search, so that [`Self::counts`] are those of an
+    /// unbroken one.
+    pub fn recall(&self, value: f64) {
+        self.counts[0].fetch_add(1, Relaxed);
+        self.counts[1].fetch_add(u64::from(value > crate::INFEASIBLE), Relaxed);
+    }
+
+    /// The value of a scene as this objective takes it, and what it was made of; see [`Goal::evaluate`].
     ///
     /// # Errors
-    /// As [`e1_max`].
-    pub fn worst(&self, scene: &Scene, cutoff: f64) -> Result<Worst, Unusable> {
-        e1_max(scene, self.when, self.band, &self.settings, cutoff)
+    /// As [`Goal::evaluate`].
+    pub fn evaluate(&self, scene: &Scene, cutoff: f64) -> Result<Evaluation, Unusable> {
+        self.goal.evaluate(scene, &self.settings, cutoff)
     }
 
     /// The evaluations that failed so far.
     pub fn failures(&self) -> Failures {
         self.failures.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// How many designs were looked at so far.
+    pub fn counts(&self) -> Counts {
+        let [evaluations, infeasible] = [0, 1].map(|i| self.counts[i].load(Relaxed));
+        Counts { evaluations, infeasible }
     }
 
     fn note(&self, design: &[f64], reason: Unusable) {

@@ -3,6 +3,7 @@
 use crate::grid::Grid;
 use rayon::prelude::*;
 use std::cmp::Ordering;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// The objective at every point of `grid`, in the grid's order.
@@ -18,14 +19,28 @@ pub fn surf(
     objective: impl Fn(&[f64]) -> f64 + Sync,
     progress: impl Fn(u64) + Sync,
 ) -> Vec<f64> {
+    surf_part(grid, 0..grid.len(), |_, point| objective(point), progress)
+}
+
+/// As [`surf`] on some of the points alone; the objective is also given the number of the point.
+///
+/// # Panics
+/// If the grid has no such points.
+pub fn surf_part(
+    grid: &Grid,
+    points: Range<usize>,
+    objective: impl Fn(usize, &[f64]) -> f64 + Sync,
+    progress: impl Fn(u64) + Sync,
+) -> Vec<f64> {
+    assert!(points.end <= grid.len(), "points {points:?} of a grid of {}", grid.len());
     let done = AtomicU64::new(0);
-    (0..grid.len())
+    points
         .into_par_iter()
         .map_init(
             || vec![0.0; grid.dim()], // once for a run of points, not once for a point
             |point, i| {
                 grid.point(i, point);
-                let value = objective(point);
+                let value = objective(i, point);
                 progress(done.fetch_add(1, Relaxed) + 1);
                 value
             },

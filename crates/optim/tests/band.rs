@@ -6,7 +6,8 @@ mod scenes;
 use rayon::ThreadPoolBuilder;
 use retune_model::Worst;
 use retune_optim::{
-    Band, Bounds, Options, PeakEnergy, Scaling, Unusable, Variable, When, e1_max, minimize, worst_over,
+    Band, Bounds, Goal, Options, PeakEnergy, Scaling, Term, Unusable, Variable, When, e1_max, minimize,
+    worst_over,
 };
 use retune_solver::{Settings, Window};
 use scenes::{Numbers, SSVI, TMD};
@@ -58,7 +59,7 @@ fn exact_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
     assert!(count.load(Relaxed) <= 61 + 12 * 31, "{}", count.load(Relaxed));
     count.store(0, Relaxed);
     worst_over(&BAND, rugged, -2.0).expect("no failures");
-    assert_eq!(count.load(Relaxed), 61);
+    assert_eq!(count.load(Relaxed), 8, "one group of samples is enough");
 }
 
 #[test]
@@ -120,7 +121,7 @@ fn best(numbers: Numbers, band: Band, start: [f64; 2]) -> [f64; 3] {
     let (scene, damper) = (numbers.scene(), numbers.damper());
     let objective =
         PeakEnergy::new(scene, damper, vec![Variable::K2, Variable::C2], When::Steady, Settings::default())
-            .over(Some(band));
+            .with(Goal::one(Term { omega: Some(band.into()), ..Term::new(When::Steady) }));
     let mut x = start.to_vec();
     let mut value = f64::INFINITY;
     for _ in 0..4 {

@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::optimize::log::{joined, short};
 use crate::paper::Plan;
 use crate::screen::Screen;
-use crate::study::{self, Response, Study};
-use retune_optim::Band;
+use crate::study::{self, Part, Response, Search, Study};
+use retune_optim::Limit;
 use std::path::Path;
 
 /// Checks a study file and shows what it asks for.
@@ -46,23 +46,70 @@ fn describe(study: &Study) -> String {
         )),
     }
     if let Ok(search) = study.search() {
-        let from = match &search.surf {
-            Some((variables, grid)) => {
-                format!("a grid of {} points over {}", grid.len(), joined(variables, ", "))
-            }
-            None => "the damper of the scene".to_owned(),
-        };
-        lines.push(format!("tunes {} from {from}", joined(&search.variables, ", ")));
-        let objective = study.objective();
-        if let Some(Band { from, to, samples }) = objective.band() {
-            let how = match objective.response {
-                Response::Window => format!("in the window, on {samples} samples and refined at their peaks"),
-                Response::Steady => "steady, exact".to_owned(),
-            };
-            lines.push(format!("for the worst E1max over omega = {from} to {to} rad/s, {how}"));
-        } else if objective.response == Response::Steady {
-            lines.push("for the steady E1max".to_owned());
-        }
+        lines.push(format!("tunes {} from {}", joined(&search.variables, ", "), starts(&search)));
+        lines.extend(goal(study));
     }
     lines.join("\n  ")
+}
+
+/// Where the refinements of a search start.
+fn starts(search: &Search) -> String {
+    let mut from = Vec::new();
+    if let Some((variables, grid)) = &search.surf {
+        from.push(format!("a grid of {} points over {}", grid.len(), joined(variables, ", ")));
+    }
+    if let Some((global, ..)) = &search.global {
+        from.push(format!(
+            "a global search ({} designs, {} CMA-ES searches)",
+            global.samples, global.searches
+        ));
+    }
+    if !search.given.is_empty() {
+        from.push(format!("{} given designs", search.given.len()));
+    }
+    if from.is_empty() { "the damper of the scene".to_owned() } else { from.join(" and ") }
+}
+
+/// What is made small, where it is not E1max in the window at the scene's omega, and the limits.
+fn goal(study: &Study) -> Vec<String> {
+    let mut lines = Vec::new();
+    let objective = study.objective();
+    let omega = study.scene.forcing.frequency.get();
+    let steady = objective.response == Response::Steady;
+    let how = match (objective.response, objective.omega) {
+        (Response::Window, Some(band)) => {
+            format!("in the window, on {} samples and refined at their peaks", band.samples)
+        }
+        (Response::Settled, Some(band)) => {
+            format!("settled, on {} samples and refined at their peaks", band.samples)
+        }
+        (Response::Window, None) => "in the window".to_owned(),
+        (Response::Settled, None) => "settled".to_owned(),
+        (Response::Steady, _) => "steady, exact".to_owned(),
+    };
+    if !objective.sum.is_empty() {
+        lines.push(format!("for the {}", objective.over(omega)));
+        let part = |part: &Part| {
+            format!("  {} times E1max, {}", short(part.weight.get()), part.objective.over(omega))
+        };
+        lines.extend(objective.sum.iter().map(part));
+    } else if objective.ensemble.is_none() && objective.k1.is_none() && objective.omega.is_none() {
+        if steady {
+            lines.push("for the steady E1max".to_owned());
+        } else if objective.response == Response::Settled {
+            lines.push("for the settled E1max".to_owned());
+        }
+    } else {
+        let over = objective.over(omega).replacen("worst over", "worst E1max over", 1);
+        lines.push(format!("for the {over}, {how}"));
+    }
+    let limits = study.goal().limits;
+    let words: Vec<String> = Limit::ALL
+        .into_iter()
+        .filter_map(|limit| Some(format!("{limit} at most {} {}", short(limits.get(limit)?), limit.unit())))
+        .collect();
+    if !words.is_empty() {
+        lines.push(format!("under limits: {}", words.join(", ")));
+    }
+    lines
 }

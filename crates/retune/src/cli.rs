@@ -1,5 +1,7 @@
 //! What may be typed: commands, arguments and their help.
 
+use crate::optimize::shard::Shard;
+use crate::results::Begin;
 use crate::study::{Setting, SettingError};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -20,11 +22,17 @@ pub struct Cli {
 pub enum Command {
     /// Tune the damper of a study: a coarse grid (surf), then Nelder-Mead (fminsearch)
     Optimize(Optimize),
+    /// Put the parts of a grid together that `optimize --shard` made, and go on with the search
+    Merge(Merge),
+    /// Run a sample of the rows of results again, and say whether they hold
+    Verify(Verify),
+    /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
+    Certify(Certify),
     /// Run one scene and say what happened
     Simulate(Simulate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
-    /// Tune both dampers anew for other stiffnesses k1 of the primary structure
+    /// Tune both dampers anew for other stiffnesses k1 of the structure, and show how long a tuning lasts
     Retune(Retune),
     /// Make every table and figure of the paper, on one page beside what the paper says
     Reproduce(Reproduce),
@@ -87,6 +95,23 @@ pub struct Running {
     /// No log and no progress on screen, only the result
     #[arg(long)]
     pub quiet: bool,
+    /// Go on with unfinished work, if there is any
+    #[arg(long, conflicts_with = "restart")]
+    pub resume: bool,
+    /// Throw unfinished work away and begin anew
+    #[arg(long)]
+    pub restart: bool,
+}
+
+impl Running {
+    /// What becomes of unfinished work.
+    pub fn begin(&self) -> Begin {
+        match (self.resume, self.restart) {
+            (true, _) => Begin::Resume,
+            (false, true) => Begin::Restart,
+            (false, false) => Begin::New,
+        }
+    }
 }
 
 /// `optimize`.
@@ -94,9 +119,48 @@ pub struct Running {
 pub struct Optimize {
     /// The study file
     pub study: PathBuf,
+    /// Compute only share i of N of the grid, into DIR/parts; `merge` puts the shares together
+    #[arg(long, value_name = "i/N")]
+    pub shard: Option<Shard>,
     /// How the search is run.
     #[command(flatten)]
     pub running: Running,
+}
+
+/// `merge`.
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// The study file
+    pub study: PathBuf,
+    /// The parts [default: all in DIR/parts]
+    pub parts: Vec<PathBuf>,
+    /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `certify`.
+#[derive(Debug, Args)]
+pub struct Certify {
+    /// A study (the design in its scene is certified), the optimum.json of a search, or the directory of its results
+    #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
+    pub design: PathBuf,
+    /// How it is run; the certificate goes beside an optimum, or to results/certify/<study>, unless --out says otherwise.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `verify`.
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// A directory of results
+    pub results: PathBuf,
+    /// Rows of each table that are run again, evenly spread over it
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    pub sample: u32,
+    /// Largest relative difference that counts as held; another machine may round otherwise
+    #[arg(long, value_name = "X", default_value_t = 0.0)]
+    pub within: f64,
 }
 
 /// `reproduce`, `figure`, `table`.
@@ -127,8 +191,8 @@ pub struct Retune {
     /// Stiffnesses of the primary structure, N/m
     #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
     pub k1: Vec<Setting>,
-    /// The table that names the study of each damper
-    #[arg(long, value_name = "FILE", default_value = "studies/table2.json")]
+    /// The table that names the study of each damper; each is tuned for its own k1 as well
+    #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
     pub study: PathBuf,
     /// How the search is run.
     #[command(flatten)]

@@ -42,6 +42,71 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
+    /// A result cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Input {
+        /// The file or directory.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A part of a grid is not what it must be.
+    #[error("{}: {problem}", path.display())]
+    Part {
+        /// The part.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Points that no part holds.
+    #[error(
+        "{}: no part holds points {points} of {len}: make what is missing with `retune optimize {} --shard i/N`{}",
+        place.display(),
+        study.display(),
+        shards.as_ref().map(|shards| format!(", i/N = {shards}")).unwrap_or_default()
+    )]
+    MissingParts {
+        /// The points.
+        points: String,
+        /// How many the grid has.
+        len: usize,
+        /// The shares that hold them, if that can be told.
+        shards: Option<String>,
+        /// The study.
+        study: PathBuf,
+        /// Where parts are looked for.
+        place: PathBuf,
+    },
+    /// Results that do not hold.
+    #[error("{}: {problem}", path.display())]
+    NotHeld {
+        /// The directory of the results.
+        path: PathBuf,
+        /// What does not hold.
+        problem: String,
+    },
+    /// Another run is at work in the directory.
+    #[error(
+        "{}: another run{} is at work here: wait for it, stop it, or choose another directory with --out",
+        path.display(),
+        holder.map(|process| format!(" (process {process})")).unwrap_or_default()
+    )]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+        /// The other process.
+        holder: Option<u32>,
+    },
+    /// A run was interrupted here, and nobody said what becomes of it.
+    #[error("{}: {}", path.display(), unfinished(*lines, difference.as_deref()))]
+    Unfinished {
+        /// The directory.
+        path: PathBuf,
+        /// How much of it is kept.
+        lines: u64,
+        /// Why this run cannot go on with it, if it cannot.
+        difference: Option<String>,
+    },
     /// The threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -57,6 +122,14 @@ pub enum Error {
     /// No point of the grid has a value.
     #[error("no point of the grid could be computed{}", example(.0))]
     NoStart(Failures),
+    /// A global search found nothing to start from.
+    #[error("the global search failed: {source}{}", example(.failures))]
+    Global {
+        /// What it says.
+        source: retune_optim::GlobalError,
+        /// The evaluations that failed.
+        failures: Failures,
+    },
     /// A refinement could not be started.
     #[error("the refinement failed: {source}{}", example(.failures))]
     Search {
@@ -82,6 +155,18 @@ fn example(failures: &Failures) -> String {
     }
 }
 
+fn unfinished(lines: u64, difference: Option<&str>) -> String {
+    match difference {
+        None => format!(
+            "unfinished work was found here ({lines} results are kept): --resume goes on with it, --restart begins anew"
+        ),
+        Some(difference) => format!(
+            "unfinished work was found here ({lines} results are kept), but it is {difference}: finish it as it was begun, \
+             choose another directory with --out, or throw it away with --restart"
+        ),
+    }
+}
+
 impl Error {
     /// 2 where the user can mend it (an input, a place to write to), 1 where the computation failed.
     pub fn exit_code(&self) -> ExitCode {
@@ -90,15 +175,25 @@ impl Error {
             | Self::Setting(_)
             | Self::Rule { .. }
             | Self::Interval { .. }
-            | Self::Output { .. } => 2,
+            | Self::Output { .. }
+            | Self::Input { .. }
+            | Self::Part { .. }
+            | Self::MissingParts { .. }
+            | Self::Busy { .. }
+            | Self::Unfinished { .. } => 2,
             Self::Threads(_)
             | Self::Run(_)
             | Self::Atlas(_)
             | Self::Unusable(_)
             | Self::NoStart(_)
+            | Self::Global { .. }
             | Self::Search { .. }
-            | Self::Figure { .. } => 1,
+            | Self::Figure { .. }
+            | Self::NotHeld { .. } => 1,
         }
         .into()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,17 +1,21 @@
 //! Retune: tunes vibration dampers from the command line.
 
+mod certify;
 mod check;
 mod cli;
 mod error;
 mod figure;
+mod interrupt;
 mod optimize;
 mod paper;
 mod results;
+mod retention;
 mod screen;
 mod simulate;
 mod study;
 mod summary;
 mod tables;
+mod verify;
 
 use clap::{CommandFactory, Parser};
 use cli::{Cli, Command, Kind};
@@ -32,9 +36,12 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Optimize(arguments) => optimize::command(&arguments),
+        Command::Merge(arguments) => optimize::merge::command(&arguments),
+        Command::Verify(arguments) => verify::command(&arguments),
+        Command::Certify(arguments) => certify::command(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Table2(arguments) => tables::table2(&arguments),
-        Command::Retune(arguments) => tables::retune(&arguments),
+        Command::Retune(arguments) => retention::retune(&arguments),
         Command::Reproduce(arguments) => paper::reproduce(&arguments),
         Command::Figure { number, paper } => paper::one(&format!("figure{number}"), &paper),
         Command::Table { number, paper } => paper::one(&format!("table{number}"), &paper),

@@ -1,22 +1,29 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
-mod band;
+pub mod band;
+mod global;
 pub mod log;
+pub mod manifest;
+pub mod merge;
 mod optimum;
 pub mod pictures;
 mod refine;
+pub mod shard;
 mod surf;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
+use crate::certify::{self, certify};
 use crate::cli;
 use crate::error::Error;
-use crate::results::Directory;
+use crate::results::identity::{Identity, study_text};
+use crate::results::{Begin, Directory, Journal};
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
-use retune_model::NonNegative;
-use retune_optim::{PeakEnergy, Unusable, Variable};
+use global::Basins;
+use optimum::Searched;
+use retune_optim::{PeakEnergy, Variable};
 use std::path::{Path, PathBuf};
 
 /// Tunes the damper of a study file.
@@ -28,11 +35,32 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
     let out = arguments.running.out.clone();
     let out = out.unwrap_or_else(|| Path::new("results").join(study.name()));
     let screen = Screen::new(arguments.running.quiet);
+    if arguments.shard.is_none() && nothing_to_resume(&study, &out, &arguments.running, screen)? {
+        return Ok(());
+    }
     with_threads(arguments.running.threads, || {
-        let optimum = optimize(&study, &out, screen)?;
+        if let Some(shard) = arguments.shard {
+            return shard::shard(&study, shard, &out, arguments.running.begin(), screen);
+        }
+        let (optimum, results) = optimize(&study, &out, arguments.running.begin(), screen)?;
+        results.finish()?;
         screen.line(optimum.report())?;
         screen.line(where_results_are(&out)?)
     })
+}
+
+/// Says so where a run is to go on that is finished.
+fn nothing_to_resume(
+    study: &Study,
+    out: &Path,
+    running: &cli::Running,
+    screen: Screen,
+) -> Result<bool, Error> {
+    let finished = running.resume && manifest::is_finished(out, &Identity::of_study(study)?);
+    if finished {
+        screen.line(format!("finished already: nothing to go on with\n{}", where_results_are(out)?))?;
+    }
+    Ok(finished)
 }
 
 /// Runs `work` on `threads` threads, all cores if none are given.
@@ -47,46 +75,111 @@ pub fn with_threads<T: Send>(
     pool.install(work)
 }
 
-/// Searches the best design of a study and writes all results to the directory `out`.
+/// Searches the best design of a study and writes all results to the directory `out`. The work can go on until the directory
+/// is finished.
 ///
 /// # Errors
 /// The study does not say what to tune, nothing can be computed, or the results cannot be written.
-pub fn optimize(study: &Study, out: &Path, screen: Screen) -> Result<Optimum, Error> {
+pub fn optimize(
+    study: &Study,
+    out: &Path,
+    begin: Begin,
+    screen: Screen,
+) -> Result<(Optimum, Directory), Error> {
+    optimize_from(study, out, begin, screen, |_| Ok(()))
+}
+
+/// As [`optimize`], with what `prepare` teaches the directory beforehand.
+///
+/// # Errors
+/// As [`optimize`].
+fn optimize_from(
+    study: &Study,
+    out: &Path,
+    begin: Begin,
+    screen: Screen,
+    prepare: impl FnOnce(&mut Directory) -> Result<(), Error>,
+) -> Result<(Optimum, Directory), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let results = Directory::create(out, is_ours)?;
-    results.write_json("study.json", &study.resolved())?;
+    let mut results = Directory::open(out, begin, &Identity::of_study(study)?, is_ours)?;
+    prepare(&mut results)?;
+    match results.journal().known() {
+        0 => {}
+        known => screen.log(format!("goes on: {known} values are known"))?,
+    }
+    match tuned(study, &search, &results, screen).and_then(|optimum| results.publish().map(|()| optimum)) {
+        Ok(optimum) => Ok((optimum, results)),
+        Err(error) => {
+            // What cannot be written may go on once it can; what cannot be computed never will.
+            if !matches!(error, Error::Output { .. }) {
+                results.discard();
+            }
+            Err(error)
+        }
+    }
+}
 
-    let surf = surf::surf(study, &search, &results, screen)?;
-    let starts = match &surf {
-        Some(surf) => surf.starts(&search),
-        None => vec![search.variables.iter().map(|variable| variable.get(&search.damper)).collect()],
-    };
-    let refined = refine::refine(study, &search, starts, &results, screen)?;
+/// Searches and writes.
+fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) -> Result<Optimum, Error> {
+    results.write("study.json", &study_text(study)?)?;
+    let surf = surf::surf(study, search, results, screen)?;
+    let explored = global::global(study, search, results.journal(), screen)?;
+    let mut starts = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
+    let on_grid = starts.len();
+    starts.extend(explored.as_ref().map(|explored| explored.starts(search.starts)).unwrap_or_default());
+    starts.extend(search.given.iter().cloned());
+    if starts.is_empty() {
+        starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
+    }
+    let refined = refine::refine(study, search, starts, results, screen)?;
+    let basins =
+        explored.as_ref().map(|found| Basins::new(found, search, &refined, results.journal(), on_grid));
+    results.journal().check()?;
+    if let Some(basins) = &basins {
+        basins.write(&refined.objective, results)?;
+    }
 
-    let mut scene = refined.objective.scene(&refined.best().minimum.x)?;
-    let worst = refined.objective.worst(&scene, f64::INFINITY)?;
-    scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
+    let design = refined.objective.scene(&refined.best().minimum.x)?;
+    let found = refined.objective.evaluate(&design, f64::INFINITY)?;
+    let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let optimum = Optimum::new(study, &search, surf.as_ref(), &refined, summary, worst);
+    let searched = Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins };
+    let certificate = certify(&Study { scene: design, ..study.clone() })?;
+    results.write_json(certify::FILE, &certificate)?;
+    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short());
     results.write_json("optimum.json", &optimum)?;
-    pictures::draw(study, &search, surf.as_ref(), &refined, &results)?;
-    if let Some(band) = study.objective().band() {
-        band::write(study, &band, scene, &results)?;
+    pictures::draw(study, search, surf.as_ref(), &refined, results)?;
+    if study.objective().omega.is_some() {
+        band::write(study, design, results)?;
     }
+    manifest::write(Identity::of_study(study)?, study.solver, results)?;
     Ok(optimum)
 }
 
+/// An objective as searches call it: what the journal knows of it is not computed again.
+fn kept<'a>(
+    objective: &'a PeakEnergy,
+    journal: &'a Journal,
+    stage: &'static str,
+) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
+    move |design, cutoff| {
+        let known = |value| objective.recall(value);
+        journal.value(stage, design, cutoff, || objective.value(design, cutoff), known)
+    }
+}
+
 /// The objective of a study over some parameters of its damper.
-fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
-    let (when, settings) = (study.when(), study.solver.settings());
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), when, settings)
-        .over(study.objective().band())
+pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
+    let (window, settings) = (study.window.window(), study.solver.settings());
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), window, settings).with(study.goal())
 }
 
 /// Whether `optimize` writes files of this name.
 fn is_ours(name: &str) -> bool {
-    const NAMES: [&str; 9] = [
+    const NAMES: [&str; 12] = [
+        certify::FILE,
+        "basins.csv",
         "study.json",
         "surf.csv",
         "fminsearch.csv",
@@ -96,6 +189,7 @@ fn is_ours(name: &str) -> bool {
         "convergence.svg",
         "band.csv",
         "band.svg",
+        manifest::NAME,
     ];
     NAMES.contains(&name) || (name.starts_with("surf-") && name.ends_with(".svg"))
 }

@@ -21,8 +21,8 @@ pub use plan::{PaperPlan, Plan};
 
 use crate::cli::Reproduce;
 use crate::error::Error;
-use crate::optimize::{where_results_are, with_threads};
-use crate::results::Directory;
+use crate::optimize::{manifest, where_results_are, with_threads};
+use crate::results::{Directory, Identity};
 use crate::screen::Screen;
 use item::Item;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ const ITEMS: [(&str, Maker); 8] = [
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
 pub fn reproduce(arguments: &Reproduce) -> Result<(), Error> {
-    run(arguments, |_| true, true)
+    run(arguments, None)
 }
 
 /// Makes the item `name`.
@@ -55,30 +55,57 @@ pub fn reproduce(arguments: &Reproduce) -> Result<(), Error> {
 /// # Errors
 /// As [`reproduce`].
 pub fn one(name: &str, arguments: &Reproduce) -> Result<(), Error> {
-    run(arguments, |other| other == name, false)
+    run(arguments, Some(name.to_owned()))
 }
 
-fn run(arguments: &Reproduce, wanted: impl Fn(&str) -> bool + Sync, page: bool) -> Result<(), Error> {
+/// Makes one item, or all and the page.
+fn run(arguments: &Reproduce, only: Option<String>) -> Result<(), Error> {
     let running = &arguments.running;
     let screen = Screen::new(running.quiet);
     let plan = Plan::read(&arguments.study, screen)?;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/paper"));
-    let results =
-        Directory::create(&out, |file| ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name)))?;
+    let is_page = only.is_none();
+    let wanted = move |name: &str| only.as_deref().is_none_or(|only| only == name);
+    let items: Vec<_> = ITEMS.into_iter().filter(|(name, _)| wanted(name)).collect();
+    // A manifest is of the whole page: an item that is made anew leaves none.
+    let is_ours = move |file: &str| {
+        file == manifest::NAME || ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name))
+    };
+    let identity = Identity::of(&plan.resolved()?);
+    let results = Directory::open(&out, running.begin(), &identity, is_ours)?;
     with_threads(running.threads, || {
         results.write_json("study.json", &plan.file)?;
-        let mut items = Vec::new();
-        for (_, make) in ITEMS.iter().filter(|(name, _)| wanted(name)) {
-            let item = make(&plan)?;
+        let mut made = Vec::new();
+        for (name, make) in items {
+            let item = kept_or_made(name, make, &plan, &results)?;
             write(&item, &results)?;
             screen.line(report(&item))?;
-            items.push(item);
+            made.push(item);
         }
-        if page {
-            results.write("index.html", &page::page(&items))?;
+        if is_page {
+            results.write("index.html", &page::page(&made))?;
+            results.write(plan::RESOLVED, &plan.resolved()?)?;
+            manifest::write(identity, plan.ssvi.solver, &results)?;
         }
+        results.finish()?;
         screen.line(where_results_are(&out)?)
     })
+}
+
+/// An item of a run that was interrupted, or else made now and kept in case that this run is.
+fn kept_or_made(name: &str, make: Maker, plan: &Plan, results: &Directory) -> Result<Item, Error> {
+    let (file, journal) = (format!("{name}.item"), results.journal());
+    if journal.is_marked(name) {
+        let kept = results.read(&file).and_then(|text| serde_json::from_str(&text).ok());
+        if let Some(item) = kept {
+            return Ok(item);
+        }
+    }
+    let item = make(plan)?;
+    results.write_json(&file, &item)?;
+    journal.mark(name);
+    journal.check()?;
+    Ok(item)
 }
 
 fn is_of(file: &str, name: &str) -> bool {

@@ -1,35 +1,92 @@
-//! Results on disk. A file has its name only once it is whole: it is written beside its place and then renamed.
+//! Results on disk. New results come about in a directory of their own, `unfinished`, inside that of the results; only when all
+//! are whole do they take the place of the earlier ones. What a run computed on the way is in its [`Journal`] there, so a run
+//! that was stopped, killed or cut off can go on.
+
+pub mod identity;
+pub mod journal;
+mod lock;
+mod pending;
+
+pub use identity::{Identity, json_text};
+pub use journal::Journal;
+pub use pending::Pending;
 
 use crate::error::Error;
+use crate::interrupt;
+use journal::Known;
+use lock::Lock;
 use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A directory of results.
-#[derive(Debug)]
+/// Where new results come about.
+pub const UNFINISHED: &str = "unfinished";
+
+/// The journal, in [`UNFINISHED`].
+const JOURNAL: &str = "journal";
+
+/// What becomes of unfinished work that is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Begin {
+    /// Nothing: it is announced, and the run refused.
+    #[default]
+    New,
+    /// The run goes on with it.
+    Resume,
+    /// It is thrown away.
+    Restart,
+}
+
+/// A directory of results while they are made. One process at a time has it.
 pub struct Directory {
     path: PathBuf,
+    unfinished: PathBuf,
+    journal: Journal,
+    is_ours: Box<dyn Fn(&str) -> bool + Send + Sync>,
+    _lock: Lock,
 }
 
 impl Directory {
-    /// Opens the directory, made if there is none. Of an earlier run in it, the files `is_ours` names are removed: results of
-    /// two studies must not stand side by side. So is what a killed run left of them under temporary names.
+    /// Opens the directory, made if there is none, for a work of this identity. Of an earlier work, the files that `is_ours`
+    /// names stay until the new ones are whole, and then go: results of two studies must not stand side by side.
     ///
     /// # Errors
-    /// The directory cannot be made or written to.
-    pub fn create(path: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Self, Error> {
+    /// The directory cannot be made or written to; another process has it; or there is unfinished work of another study in it, or
+    /// any if `begin` does not say what becomes of it.
+    pub fn open(
+        path: &Path,
+        begin: Begin,
+        identity: &Identity,
+        is_ours: impl Fn(&str) -> bool + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
         let refuse = |source| Error::Output { path: path.to_owned(), source };
         std::fs::create_dir_all(path).map_err(refuse)?;
-        let directory = Self { path: path.to_owned() };
-        drop(directory.file("probe")?); // may we write here at all?
-        for entry in std::fs::read_dir(path).map_err(refuse)? {
-            let entry = entry.map_err(refuse)?;
-            let is_stale = |name: &str| is_ours(final_name(name));
-            if entry.file_name().to_str().is_some_and(is_stale) {
-                std::fs::remove_file(entry.path()).map_err(refuse)?;
+        let lock = Lock::take(path)?;
+        let unfinished = path.join(UNFINISHED);
+        let found = journal::read(&unfinished.join(JOURNAL)).map_err(refuse)?;
+        let (known, length) = match found {
+            Some((of, known, length)) if begin != Begin::Restart && known.lines > 0 => {
+                let difference = identity.difference(&of);
+                if begin == Begin::New || difference.is_some() {
+                    let lines = known.lines;
+                    return Err(Error::Unfinished { path: path.to_owned(), lines, difference });
+                }
+                (known, length)
             }
-        }
-        Ok(directory)
+            _ => (Known::default(), 0),
+        };
+        let keep = |name: &str| length > 0 && (name == JOURNAL || name.ends_with(".item"));
+        clear(&unfinished, keep).map_err(refuse)?;
+        std::fs::create_dir_all(&unfinished).map_err(refuse)?;
+        let journal = Journal::open(&unfinished.join(JOURNAL), identity, known, length)?;
+        // The names of the journal and its directory must outlive a power cut as well.
+        sync_directory(&unfinished).and_then(|()| sync_directory(path)).map_err(refuse)?;
+        interrupt::say_how_to_go_on();
+        Ok(Self { path: path.to_owned(), unfinished, journal, is_ours: Box::new(is_ours), _lock: lock })
+    }
+
+    /// Whether there is unfinished work in a directory.
+    pub fn is_unfinished(path: &Path) -> bool {
+        path.join(UNFINISHED).exists()
     }
 
     /// The path of the directory.
@@ -37,12 +94,22 @@ impl Directory {
         &self.path
     }
 
+    /// The journal of the work.
+    pub fn journal(&self) -> &Journal {
+        &self.journal
+    }
+
+    /// Teaches the journal the value of a point of the grid that was computed elsewhere.
+    pub fn know(&mut self, point: usize, value: f64) {
+        self.journal.learn_grid(point, value);
+    }
+
     /// Begins the file `name`.
     ///
     /// # Errors
     /// It cannot be made.
     pub fn file(&self, name: &str) -> Result<Pending, Error> {
-        Pending::create(&self.path.join(name))
+        Pending::create(&self.unfinished.join(name))
     }
 
     /// Writes the whole file `name`.
@@ -60,74 +127,69 @@ impl Directory {
     /// # Errors
     /// It cannot be written.
     pub fn write_json(&self, name: &str, value: &impl serde::Serialize) -> Result<(), Error> {
-        let text = serde_json::to_string_pretty(value)
-            .map_err(|error| Error::Output { path: self.path.join(name), source: error.into() })?;
-        self.write(name, &(text + "\n"))
+        self.write(name, &json_text(value, name)?)
     }
-}
 
-/// The name that a file will have when it is whole: of `.surf.csv.4711.tmp`, the temporary of process 4711, `surf.csv`; of any
-/// other, its own.
-fn final_name(name: &str) -> &str {
-    let inner = name.strip_prefix('.').and_then(|name| name.strip_suffix(".tmp"));
-    match inner.and_then(|inner| inner.rsplit_once('.')) {
-        Some((inner, process)) if process.parse::<u32>().is_ok() => inner,
-        _ => name,
+    /// The text of a file that was written before the work was interrupted.
+    pub fn read(&self, name: &str) -> Option<String> {
+        std::fs::read_to_string(self.unfinished.join(name)).ok()
     }
-}
 
-/// A file that is being written under a temporary name. It vanishes unless it is finished.
-#[derive(Debug)]
-pub struct Pending {
-    path: PathBuf,
-    temporary: PathBuf,
-    file: BufWriter<File>,
-    finished: bool,
-}
-
-impl Pending {
-    /// Begins the file at `path`.
+    /// The names of the results that are whole, sorted.
     ///
     /// # Errors
-    /// It cannot be made.
-    pub fn create(path: &Path) -> Result<Self, Error> {
-        let refuse = |source| Error::Output { path: path.to_owned(), source };
-        let name = path.file_name().ok_or_else(|| refuse(std::io::ErrorKind::IsADirectory.into()))?;
-        if path.is_dir() {
-            return Err(refuse(std::io::ErrorKind::IsADirectory.into()));
+    /// The directory cannot be read.
+    pub fn whole(&self) -> Result<Vec<String>, Error> {
+        let mut names = names(&self.unfinished).map_err(|source| self.refused(source))?;
+        names.retain(|name| name != JOURNAL && !name.ends_with(".item") && !name.starts_with('.'));
+        Ok(names)
+    }
+
+    /// The path of a result that is whole but not yet in its place.
+    pub fn whole_path(&self, name: &str) -> PathBuf {
+        self.unfinished.join(name)
+    }
+
+    /// Puts the new results into the place of the earlier ones. They are on the disk before an earlier one goes; the journal stays
+    /// until [`Self::finish`].
+    ///
+    /// # Errors
+    /// A file cannot be written, moved or removed.
+    pub fn publish(&self) -> Result<(), Error> {
+        self.journal.check()?;
+        let new = self.whole()?;
+        if new.is_empty() {
+            return Ok(()); // they are in their place already
         }
-        let temporary =
-            path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
-        let file = BufWriter::new(File::create(&temporary).map_err(refuse)?);
-        Ok(Self { path: path.to_owned(), temporary, file, finished: false })
+        let place = || -> std::io::Result<()> {
+            for name in &new {
+                File::open(self.unfinished.join(name))?.sync_all()?;
+            }
+            for name in names(&self.path)? {
+                if (self.is_ours)(&name) && !new.contains(&name) {
+                    std::fs::remove_file(self.path.join(&name))?;
+                }
+            }
+            for name in &new {
+                std::fs::rename(self.unfinished.join(name), self.path.join(name))?;
+            }
+            sync_directory(&self.path)
+        };
+        place().map_err(|source| self.refused(source))
     }
 
-    /// Appends `text`.
+    /// Puts the new results into place and removes what the work left behind.
     ///
     /// # Errors
-    /// It cannot be written.
-    pub fn push(&mut self, text: &str) -> Result<(), Error> {
-        self.file.write_all(text.as_bytes()).map_err(|source| self.refused(source))
+    /// As [`Self::publish`].
+    pub fn finish(self) -> Result<(), Error> {
+        self.publish()?;
+        std::fs::remove_dir_all(&self.unfinished).map_err(|source| self.refused(source))
     }
 
-    /// Appends `line` and hands it to the system at once, so that whoever follows the file sees it.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn push_line(&mut self, line: &str) -> Result<(), Error> {
-        let written = writeln!(self.file, "{line}").and_then(|()| self.file.flush());
-        written.map_err(|source| self.refused(source))
-    }
-
-    /// Gives the file its name.
-    ///
-    /// # Errors
-    /// It cannot be written or renamed.
-    pub fn finish(mut self) -> Result<(), Error> {
-        let named = self.file.flush().and_then(|()| std::fs::rename(&self.temporary, &self.path));
-        named.map_err(|source| self.refused(source))?;
-        self.finished = true;
-        Ok(())
+    /// Throws the unfinished work away: it has come to an end that it would come to again. Earlier results stay.
+    pub fn discard(self) {
+        let _ = std::fs::remove_dir_all(&self.unfinished); // what is left of it is cleared by the next run
     }
 
     fn refused(&self, source: std::io::Error) -> Error {
@@ -135,10 +197,44 @@ impl Pending {
     }
 }
 
-impl Drop for Pending {
+impl Drop for Directory {
+    /// Where nothing was computed there is nothing to go on with.
     fn drop(&mut self) {
-        if !self.finished {
-            let _ = std::fs::remove_file(&self.temporary); // nothing is left to be done if this fails
+        if self.journal.is_empty() {
+            let _ = std::fs::remove_dir_all(&self.unfinished); // an empty journal does no harm either
         }
     }
+}
+
+/// Removes everything in a directory but what is to be kept.
+fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
+    if !directory.exists() {
+        return Ok(());
+    }
+    for name in names(directory)?.iter().filter(|name| !keep(name)) {
+        std::fs::remove_file(directory.join(name))?;
+    }
+    Ok(())
+}
+
+/// The names in a directory, sorted.
+fn names(directory: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(directory)? {
+        names.extend(entry?.file_name().into_string());
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// Waits until the names in a directory are on the disk.
+#[cfg(unix)]
+fn sync_directory(path: &Path) -> std::io::Result<()> {
+    File::open(path)?.sync_all()
+}
+
+/// Elsewhere a directory cannot be waited for.
+#[cfg(not(unix))]
+fn sync_directory(_path: &Path) -> std::io::Result<()> {
+    Ok(())
 }

@@ -2,18 +2,25 @@
 //!
 //! The types here are the format: their doc comments are the descriptions of the JSON Schema.
 
+#[cfg(any(test, fuzzing))]
+pub mod any_text;
 mod explain;
+mod global;
 mod objective;
-mod read;
+pub mod read;
+mod rule;
 mod search;
 mod set;
 mod table2;
+mod words;
 
-pub use objective::{Objective, Response};
+pub use global::GlobalSearch;
+pub use objective::{LimitsGiven, Objective, Part, Response};
 pub use read::{StudyError, read, read_paper};
-pub use search::{Rule, Search};
+pub use rule::Rule;
+pub use search::{MOST_GRID_POINTS, Search};
 pub use set::{Setting, SettingError};
-pub use table2::{PaperStudy, Table2, is_paper, is_table2, read_table2};
+pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
 
 use retune_model::{NonNegative, Positive, Scene};
 use retune_optim::{Options, Scale, Variable};
@@ -88,10 +95,19 @@ pub struct Optimize {
     /// Smallest and largest value allowed for a tuned parameter; null for no largest value. Default: `[0, null]`.
     #[serde(default)]
     pub bounds: PerVariable<(f64, Option<f64>)>,
-    /// The coarse grid (the paper's `surf`), over all tuned parameters or some of them. Without it the refinement starts at the
-    /// damper of `scene`.
+    /// Largest stroke, contact force and cavity allowed. Default: none.
+    #[serde(default, skip_serializing_if = "LimitsGiven::is_empty")]
+    pub limits: LimitsGiven,
+    /// The coarse grid (the paper's `surf`), over all tuned parameters or some of them. Without it, without `global` and without
+    /// `starts` the refinement starts at the damper of `scene`.
     #[serde(default)]
     pub surf: Option<PerVariable<GridAxis>>,
+    /// A global search beside the grid. Default: none; `{}` takes all its defaults.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub global: Option<GlobalSearch>,
+    /// Designs that start a refinement each, beside those that `surf` and `global` find. What one leaves out is that of `scene`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub starts: Vec<PerVariable<f64>>,
     /// The refinement (the paper's `fminsearch`).
     #[serde(default)]
     pub refine: Refine,
@@ -131,11 +147,11 @@ pub struct GridAxis {
     pub scale: Scale,
 }
 
-/// The refinement: MATLAB's `fminsearch` from the best points of the grid, with MATLAB's names and defaults.
+/// The refinement: MATLAB's `fminsearch` from the best points of the grid and the best basins, with MATLAB's names and defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Refine {
-    /// How many of the grid's best points start a refinement each.
+    /// How many of the grid's best points, and how many of the best basins, start a refinement each.
     #[schemars(range(min = 1))]
     pub starts: usize,
     /// Grid steps between any two starts, along at least one axis.

@@ -1,6 +1,6 @@
 //! What a run gave: one type, from which JSON and text are made.
 
-use crate::study::{Objective, Response as When, Solver, Span, Study};
+use crate::study::{Objective, Solver, Span, Study};
 use retune_model::{Scene, energy_ratios};
 use retune_solver::{Response, SceneKind};
 use serde::Serialize;
@@ -85,11 +85,8 @@ impl std::fmt::Display for MadeBy {
         let (t0, end) = (window.t0.get(), window.end.get());
         let rtol = solver.rtol;
         write!(f, "study {study}, ")?;
-        match objective.omega {
-            Some(band) => write!(f, "worst over omega = {} to {} rad/s, ", band.from.get(), band.to.get())?,
-            None => write!(f, "omega = {omega} rad/s, ")?,
-        }
-        if objective.response == When::Steady {
+        write!(f, "{}, ", objective.over(*omega))?;
+        if objective.is_steady() {
             return write!(f, "steady; Retune {retune}");
         }
         write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {rtol:e}")

@@ -1,12 +1,13 @@
-//! `table2` and `retune`: the same search for several dampers or structures, and a table of what was found.
+//! `table2`: the same search for several dampers, and the table of designs that `retune` makes too.
 
 use crate::cli;
 use crate::error::Error;
 use crate::optimize::log::{joined, short};
 use crate::optimize::{Found, optimize, table2_header, table2_row, where_results_are, with_threads};
-use crate::results::Directory;
+use crate::results::identity::{Identity, study_text};
+use crate::results::{Begin, Directory};
 use crate::screen::Screen;
-use crate::study::{self, PaperStudy};
+use crate::study::{self, PaperStudy, Study};
 use std::path::{Path, PathBuf};
 
 /// Re-optimises each row of Table 2 from the paper's own design, and shows both rows.
@@ -18,85 +19,92 @@ pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/table2"));
     let screen = Screen::new(running.quiet);
-    let mut table = Table::new("table2", "origin", &out)?;
+    let studies = rows.iter().map(|row| &row.study);
+    let mut table = Table::new(["table2", "origin"], &[], &out, running.begin(), studies)?;
     with_threads(running.threads, || {
         for PaperStudy { damper, mut study } in rows {
             if let Some(optimize) = &mut study.optimize {
                 optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
             }
             screen.log(format!("\n{damper}: re-optimised from the paper's design"))?;
-            let optimum = optimize(&study, &out.join(study.name()), screen)?;
+            let (optimum, results) = optimize(&study, &out.join(study.name()), running.begin(), screen)?;
             table.push("paper", &damper, optimum.start());
             table.push("re-optimised", &damper, optimum.found());
-        }
-        table.finish(screen)
-    })
-}
-
-/// Tunes both dampers anew for each stiffness of the primary structure.
-///
-/// # Errors
-/// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
-pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
-    let rows = study::read_table2(&arguments.study)?;
-    let mut studies = Vec::new();
-    for setting in &arguments.k1 {
-        for PaperStudy { damper, study } in &rows {
-            studies.push((setting.value(), damper, study.with(std::slice::from_ref(setting))?));
-        }
-    }
-    let running = &arguments.running;
-    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/retune"));
-    let screen = Screen::new(running.quiet);
-    let mut table = Table::new("retune", "k1", &out)?;
-    with_threads(running.threads, || {
-        for (k1, damper, study) in studies {
-            let scene = study.scene;
-            screen.log(format!(
-                "\n{damper} at k1 = {k1} N/m (natural frequency {} rad/s), forced at omega = {} rad/s",
-                short(scene.primary.natural_frequency()),
-                scene.forcing.frequency.get()
-            ))?;
-            let optimum = optimize(&study, &out.join(format!("k1-{k1}")).join(study.name()), screen)?;
-            table.push(&k1.to_string(), damper, optimum.found());
+            table.keep(results);
         }
         table.finish(screen)
     })
 }
 
 /// A table of designs in the form of the paper's Table 2, with E1max and one column of its own.
-struct Table {
+pub struct Table {
     name: &'static str,
     directory: Directory,
+    /// The results of its searches, which are finished with it: until then a run that goes on reads their journals.
+    parts: Vec<Directory>,
     csv: Vec<String>,
     text: Vec<String>,
 }
 
 impl Table {
-    fn new(name: &'static str, column: &'static str, out: &Path) -> Result<Self, Error> {
-        let directory =
-            Directory::create(out, |file| file == format!("{name}.csv") || file == format!("{name}.txt"))?;
+    /// Begins the table `name`, whose first column is `column`, in the directory `out`. It is made of searches of `studies`;
+    /// `others` are more files that the command writes there.
+    ///
+    /// # Errors
+    /// The directory cannot be written to.
+    pub fn new<'a>(
+        [name, column]: [&'static str; 2],
+        others: &'static [&'static str],
+        out: &Path,
+        begin: Begin,
+        studies: impl Iterator<Item = &'a Study>,
+    ) -> Result<Self, Error> {
+        let texts = studies.map(study_text).collect::<Result<Vec<_>, _>>()?;
+        let identity = Identity::of(&texts.concat());
+        let is_ours = move |file: &str| {
+            file == format!("{name}.csv") || file == format!("{name}.txt") || others.contains(&file)
+        };
+        let directory = Directory::open(out, begin, &identity, is_ours)?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
-        Ok(Self { name, directory, csv, text })
+        Ok(Self { name, directory, parts: Vec::new(), csv, text })
     }
 
-    fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
+    /// Appends a row.
+    pub fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
         self.csv.push(format!("{label},{},{},{e1_max}", quoted(damper), joined(&design, ",")));
         self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, design), short(e1_max)));
     }
 
-    fn finish(self, screen: Screen) -> Result<(), Error> {
-        let Self { name, directory, csv, text } = self;
+    /// Takes the results of a search, to be finished with the table.
+    pub fn keep(&mut self, results: Directory) {
+        self.parts.push(results);
+    }
+
+    /// Where the table goes.
+    pub fn directory(&self) -> &Directory {
+        &self.directory
+    }
+
+    /// Writes the table and shows it.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self, screen: Screen) -> Result<(), Error> {
+        let Self { name, directory, parts, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
         directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
+        let out = directory.path().to_owned();
+        directory.publish()?;
+        parts.into_iter().try_for_each(Directory::finish)?;
+        directory.finish()?;
         screen.line(format!("\n{}", text.join("\n")))?;
-        screen.line(where_results_are(directory.path())?)
+        screen.line(where_results_are(&out)?)
     }
 }
 
 /// A text as a CSV field.
-fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

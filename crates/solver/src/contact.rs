@@ -204,6 +204,10 @@ pub fn integrate(
             if !y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t });
             }
+            // Steps that are tried are work as well.
+            if work.steps + work.rejected > max_steps {
+                return Err(SolverError::TooManySteps { t, limit: max_steps });
+            }
             if plan.h < shortest {
                 return Err(SolverError::StepTooSmall { t, h: plan.h * y[Q] });
             }

@@ -22,7 +22,7 @@ pub fn follow_bare(
     observer: &mut impl Observer<2>,
 ) -> Followed<2> {
     if settings.method != Method::Hybrid {
-        return general(system, system.rest(), window, settings, before, observer);
+        return general(system, 0.0, system.rest(), window, settings, before, observer);
     }
     let mut free = Free::new(system, window.to, settings.max_steps);
     free.propagate(window.from, before)?;
@@ -40,7 +40,7 @@ pub fn follow_coupled(
     observer: &mut impl Observer<4>,
 ) -> Followed<4> {
     if settings.method != Method::Hybrid {
-        return general(system, system.rest(), window, settings, before, observer);
+        return general(system, 0.0, system.rest(), window, settings, before, observer);
     }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
     let start = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
@@ -51,6 +51,7 @@ pub fn follow_coupled(
 
 fn general<S: System<N>, const N: usize>(
     system: &S,
+    start: f64,
     rest: [f64; N],
     window: Window,
     settings: &Settings,
@@ -61,7 +62,7 @@ where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
     let longest = settings.longest_step(window.to);
-    let mut run = Run::new(system, settings, 0.0, rest, longest);
+    let mut run = Run::new(system, settings, start, rest, longest);
     let follow = match settings.method {
         Method::Hybrid | Method::Dop853 => one_step::<Dop853, _, _, _, N>,
         Method::Ode23s => one_step::<Ode23s, _, _, _, N>,
@@ -82,4 +83,43 @@ fn one_step<M: OneStep<N>, S: System<N>, B: Observer<N>, O: Observer<N>, const N
 ) -> Result<(), SolverError> {
     run.integrate::<M>(window.from, before)?;
     run.integrate::<M>(window.to, observer)
+}
+
+/// As [`follow_bare`], from rest at `start` (s) on.
+pub fn follow_bare_from(
+    system: &Bare,
+    start: f64,
+    window: Window,
+    settings: &Settings,
+    before: &mut impl Observer<2>,
+    observer: &mut impl Observer<2>,
+) -> Followed<2> {
+    if settings.method != Method::Hybrid {
+        return general(system, start, system.rest(), window, settings, before, observer);
+    }
+    let mut free = Free::new(system, window.to, settings.max_steps).started(start);
+    if window.from > start {
+        free.propagate(window.from, before)?;
+    }
+    free.propagate(window.to, observer)?;
+    Ok((free.state(), free.work))
+}
+
+/// As [`follow_coupled`], from rest at `start` (s) on.
+pub fn follow_coupled_from(
+    system: &Coupled,
+    start: f64,
+    window: Window,
+    settings: &Settings,
+    before: &mut impl Observer<4>,
+    observer: &mut impl Observer<4>,
+) -> Followed<4> {
+    if settings.method != Method::Hybrid {
+        return general(system, start, system.rest(), window, settings, before, observer);
+    }
+    let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
+    let rest = Motion { t: start, y: system.rest(), phase: Phase::Flight };
+    let middle = if window.from > start { hybrid.propagate(rest, window.from, before)? } else { rest };
+    let end = hybrid.propagate(middle, window.to, observer)?;
+    Ok((end.y, hybrid.work))
 }

@@ -29,6 +29,12 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
         Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
     }
 
+    /// The same at rest at `t` (s) instead.
+    pub fn started(mut self, t: f64) -> Self {
+        (self.now.t, self.now.drive) = (t, self.system.drive(t));
+        self
+    }
+
     /// The state reached.
     pub fn state(&self) -> [f64; N] {
         self.now.y
@@ -116,6 +122,10 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
         self.jump(window.from)?;
         while self.now.t < window.to && !Observer::<N>::satisfied(&peak) {
             let to = window.to.min(self.now.t + STRIDE * self.flow.step());
+            if to <= self.now.t {
+                // Late in a run a step may be less than the spacing of the numbers there.
+                return Err(SolverError::StepTooSmall { t: self.now.t, h: self.flow.step() });
+            }
             self.propagate(to, &mut peak)?;
             let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
             if bound <= peak.record().value {

@@ -152,7 +152,9 @@ impl<Q> Peak<Q> {
                 let step = -slope / curvature;
                 let gain = 0.5 * slope * step;
                 if curvature < 0.0 && gain <= 1e-10 * value.abs() {
-                    return note(&mut self.record, value + gain, t + step * (rate + 0.5 * step * rate_slope));
+                    // Where the quantity is all but level, the parabola's top may lie far outside the bracket.
+                    let way = step.max(lower - theta).min(upper - theta);
+                    return note(&mut self.record, value + gain, t + way * (rate + 0.5 * way * rate_slope));
                 }
                 let newton = theta + step;
                 theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };

@@ -3,6 +3,7 @@
 use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
 use crate::observe::{Knot, Observer, Path, Peak, Segment, Unobserved};
+use crate::plausible;
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
 use crate::steps::Steps;
 use crate::system::PrimaryEnergy;
@@ -16,6 +17,17 @@ use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 /// # Errors
 /// [`SolverError`] with the time reached.
 pub fn e1_max(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    cutoff: f64,
+) -> Result<Extreme, SolverError> {
+    largest_energy(scene, window, settings, cutoff)
+        .map_err(|error| plausible::error(window, error))
+        .and_then(|peak| plausible::energy(scene, window, settings, peak))
+}
+
+fn largest_energy(
     scene: &Scene,
     window: Window,
     settings: &Settings,
@@ -54,12 +66,15 @@ pub fn e1_max(
 /// # Errors
 /// [`SolverError`] with the time reached.
 pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    match &scene.damper {
+    let found = match &scene.damper {
         None => simulate_bare(&Bare::new(&scene.primary, &scene.forcing), window, settings),
         Some(damper) => {
             simulate_coupled(&Coupled::new(&scene.primary, &scene.forcing, damper), window, settings)
         }
-    }
+    };
+    found
+        .map_err(|error| plausible::error(window, error))
+        .and_then(|found| plausible::response(scene, window, settings, found))
 }
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
@@ -92,15 +107,15 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let (final_state, work) = follow_coupled(system, window, settings, &mut before, &mut seen)?;
     let (nearest, farthest) = (-seen.nearest.record().value, seen.farthest.record().value);
     let force = |side: Side, z: f64| hertz_force(system.hertz(side), z);
-    let touched = before.0 != [0; 2] || seen.touches.0 != [0; 2];
+    let force_max =
+        [force(Side::Primary, -nearest), force(Side::Obstacle, farthest - system.wall(Side::Obstacle))];
+    // A damper that rests on a wall at t = 0 presses it without a touch-down.
+    let touched = before.0 != [0; 2] || seen.touches.0 != [0; 2] || force_max != [0.0; 2];
     Ok(Response {
         e1_max: seen.e1.record(),
         e2_max: seen.e2.record(),
         impacts: seen.touches.0,
-        force_max: [
-            force(Side::Primary, -nearest),
-            force(Side::Obstacle, farthest - system.wall(Side::Obstacle)),
-        ],
+        force_max,
         stroke_max: farthest.abs().max(nearest.abs()),
         final_state,
         scene: if touched { SceneKind::Contact } else { SceneKind::Linear },

@@ -191,6 +191,21 @@ pub enum SolverError {
         /// The limit.
         limit: u64,
     },
+    /// The motion has more energy than the force can have given it, or its largest at a time that is not in the window.
+    #[error(
+        "the motion cannot be: an energy of {value:e} J at {time:e} s, in a run to t = {t} s whose force can give {most:e} J; \
+         the parameters are too far apart to be computed"
+    )]
+    Implausible {
+        /// End of the run, s.
+        t: f64,
+        /// Largest energy of the structure or the damper as computed, J.
+        value: f64,
+        /// When it was reached, as computed, s.
+        time: f64,
+        /// The most that it can have, (P t)²/(2 m1), J.
+        most: f64,
+    },
     /// The state overflowed.
     #[error(
         "the motion is no longer a finite number at t = {t} s; the parameters are beyond what can be computed"

@@ -4,6 +4,7 @@
 
 use super::axis::Axis;
 use retune_optim::Scale;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -73,7 +74,7 @@ const NARROW: f64 = 800.0;
 const TEXT: f64 = 27.0;
 
 /// A picture, and the same for a narrow screen where the picture itself would be too small to read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Drawing {
     /// For print and wide screens.
     pub wide: String,

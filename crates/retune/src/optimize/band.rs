@@ -8,29 +8,36 @@ use crate::study::Study;
 use crate::summary::MadeBy;
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
-use retune_optim::{Band, When, e1_max};
+use retune_optim::{Band, Goal, Term, When};
 
 /// Frequencies of the curves where each costs next to nothing.
 const FINE: usize = 601;
+/// How many times the samples of the search the curves have where each is a run.
+const FINER: usize = 4;
 
 /// Writes `band.csv` and `band.svg`; `tuned` is the scene with the damper that was found. What has no value (a steady motion
 /// that reaches a wall, a run that fails) is an empty field and a gap.
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn write(study: &Study, band: &Band, tuned: Scene, results: &Directory) -> Result<(), Error> {
-    let samples = if study.when() == When::Steady { FINE.max(band.samples) } else { band.samples };
-    let fine = Band { samples, ..*band };
+pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<(), Error> {
+    let Goal { terms, .. } = study.goal();
+    let Some((term, band)) = terms.first().and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
+    else {
+        return Ok(());
+    };
+    let samples =
+        if term.when == When::Steady { FINE.max(band.samples) } else { FINER * (band.samples - 1) + 1 };
+    let fine = Band { samples, ..band };
     let scenes = [Scene { damper: None, ..tuned }, study.scene, tuned];
-    let worst = scenes.map(|scene| energy(study, scene, Some(*band)));
+    let worst = scenes.map(|scene| energy(study, scene, term));
+    let single = Term { omega: None, ..term.clone() };
     let rows: Vec<(f64, [f64; 3])> = (0..samples)
         .into_par_iter()
         .map(|i| {
-            (
-                fine.at(i),
-                scenes
-                    .map(|scene| at(fine.at(i), scene).map_or(f64::NAN, |scene| energy(study, scene, None))),
-            )
+            let omega = fine.at(i);
+            let energy = |scene| at(omega, scene).map_or(f64::NAN, |scene| energy(study, scene, &single));
+            (omega, scenes.map(energy))
         })
         .collect();
 
@@ -49,10 +56,16 @@ fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
     Some(scene)
 }
 
-/// E1max of a scene, J, over a band or at its own frequency; NaN where it has none.
-fn energy(study: &Study, scene: Scene, band: Option<Band>) -> f64 {
-    let value = e1_max(&scene, study.when(), band, &study.solver.settings(), f64::INFINITY);
-    value.map_or(f64::NAN, |worst| worst.value)
+/// E1max of a scene as a term takes it, without limits, J; NaN where it has none.
+fn energy(study: &Study, scene: Scene, term: &Term) -> f64 {
+    let value = Goal::one(term.clone()).evaluate(&scene, &study.solver.settings(), f64::INFINITY);
+    value.map_or(f64::NAN, |found| found.energy)
+}
+
+/// E1max of a scene at its own frequency, J, as `band.csv` has it; NaN where it has none.
+pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
+    let Goal { terms, .. } = study.goal();
+    terms.first().map_or(f64::NAN, |term| energy(study, scene, &Term { omega: None, ..term.clone() }))
 }
 
 fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {

@@ -1,12 +1,14 @@
 //! What a search found: one type, from which `optimum.json` and the last lines on screen are made.
 
+use super::global::{Basins, Explored};
 use super::log::short;
 use super::refine::{Refined, Run};
 use super::surf::Surf;
-use crate::study::{Objective, PerVariable, Search, Study};
+use crate::certify::Short;
+use crate::study::{LimitsGiven, Objective, PerVariable, Search, Study};
 use crate::summary::{MadeBy, Summary};
-use retune_model::{Damper, Worst};
-use retune_optim::{Failures, Minimum, Scaling, Stop, Variable};
+use retune_model::{Damper, Scene};
+use retune_optim::{Evaluation, Failures, Limit, Minimum, Scaling, Stop, Variable, When, energy};
 use serde::Serialize;
 
 /// The best design and how it was found. SI units.
@@ -21,9 +23,17 @@ pub struct Optimum {
     #[serde(skip_serializing_if = "Option::is_none")]
     objective: Option<Goal>,
     on_bound: Vec<Variable>,
+    /// How the limits of the study are kept, where it has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<LimitNote>,
     surf: Option<GridBest>,
+    /// What the global search found, where there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    global: Option<Basins>,
     refine: Refinement,
     failures: FailureNote,
+    /// The short form of `certificate.json`.
+    certificate: Short,
     simulation: Summary,
     #[serde(skip)]
     start: Found,
@@ -32,11 +42,45 @@ pub struct Optimum {
 }
 
 /// What was made small, and the ω at which E1max of the best design is reached, rad/s.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct Goal {
     #[serde(flatten)]
     objective: Objective,
     worst_omega: f64,
+    /// The stiffness k1 at which it is reached, N/m, where several were looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    worst_k1: Option<f64>,
+    /// Of the runs of the best design, those that were to settle and did not; their E1max is that of the window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unsettled: Option<u64>,
+    /// Runs that its value is made of; a steady response in closed form counts as one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    runs: Option<u64>,
+}
+
+/// How the limits are kept by the best design.
+#[derive(Clone, Debug, Serialize)]
+struct LimitNote {
+    allowed: LimitsGiven,
+    /// The largest values in any run of the objective, SI units.
+    stroke: f64,
+    force: f64,
+    cavity: f64,
+    feasible: bool,
+    /// The sum of reached / limit - 1 over the limits that are broken.
+    violation: f64,
+    /// The limits that are broken, or reached to within 1 %: they decide the optimum.
+    active: Vec<Limit>,
+    /// Designs that were evaluated, and those among them that were seen to break a limit.
+    evaluations: u64,
+    infeasible: u64,
+}
+
+/// What came before the refinement.
+pub(super) struct Searched<'a> {
+    pub surf: Option<&'a Surf>,
+    pub explored: Option<&'a Explored>,
+    pub basins: Option<Basins>,
 }
 
 /// A design as in the paper's Table 2: m2, k2, c2, D, C in SI units; and its E1max, J.
@@ -104,14 +148,15 @@ struct FailureNote {
 }
 
 impl Optimum {
-    /// Collects what a search found; `summary` is of a run of the best design at its `worst` frequency.
+    /// Collects what a search found; `summary` is of a run of the best design at the worst frequency of `evaluation`.
     pub(super) fn new(
         study: &Study,
         search: &Search,
-        surf: Option<&Surf>,
+        Searched { surf, explored, basins }: Searched,
         refined: &Refined,
         summary: Summary,
-        worst: Worst,
+        evaluation: Evaluation,
+        certificate: Short,
     ) -> Self {
         let best = refined.best();
         let damper = refined.objective.damper(&best.minimum.x).unwrap_or(search.damper);
@@ -120,15 +165,16 @@ impl Optimum {
         Self {
             damper_type: summary.damper_type(),
             design: Design::new(&damper),
-            e1_max: best.minimum.value,
-            objective: (!study.objective().is_default())
-                .then(|| Goal { objective: study.objective(), worst_omega: worst.frequency }),
+            e1_max: evaluation.energy,
+            objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: on_bound(search, best),
+            limits: LimitNote::new(study, &evaluation, surf, explored, refined),
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
                 best: per_variable(&surf.variables, &surf.point(surf.best)),
-                e1_max: surf.values[surf.best],
+                e1_max: energy(surf.values[surf.best]),
             }),
+            global: basins,
             refine: Refinement {
                 tol_x_mode: tol_x_mode(best.minimum.scaling),
                 tol_x: refine.tol_x,
@@ -136,7 +182,12 @@ impl Optimum {
                 winner: refined.winner + 1,
                 runs: refined.runs.iter().map(|run| RunNote::new(run, over)).collect(),
             },
-            failures: FailureNote::new(surf.map(|surf| &surf.failures), &refined.objective.failures()),
+            failures: FailureNote::new(&[
+                surf.map(|surf| &surf.failures),
+                explored.map(|explored| &explored.failures),
+                Some(&refined.objective.failures()),
+            ]),
+            certificate,
             simulation: summary,
             start: start(search, refined),
             made_by: MadeBy::new(study),
@@ -170,6 +221,14 @@ impl Optimum {
                 stop_words(*stop),
             ),
         ];
+        lines.extend(self.global.as_ref().map(Basins::report));
+        lines.extend(self.limits.as_ref().map(LimitNote::report));
+        if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
+            lines.push(format!(
+                "note: {unsettled} of {runs} runs of this design had not settled at T; their E1max is that of the window"
+            ));
+        }
+        lines.push(self.certificate.to_string());
         if !self.on_bound.is_empty() {
             let names = super::log::joined(&self.on_bound, ", ");
             lines.push(format!("note: {names} ended on a bound of the study; a wider one may give less"));
@@ -178,6 +237,64 @@ impl Optimum {
             lines.push(format!("note: {count} designs could not be computed, for instance {example}"));
         }
         lines.join("\n")
+    }
+}
+
+impl Goal {
+    fn new(study: &Study, evaluation: &Evaluation) -> Self {
+        let goal = study.goal();
+        let Scene { primary, forcing, .. } = evaluation.worst.scene;
+        let settles = goal.terms.iter().any(|term| matches!(term.when, When::Settled(..)));
+        Self {
+            objective: study.objective(),
+            worst_omega: forcing.frequency.get(),
+            worst_k1: goal.terms.iter().any(|term| term.k1.is_some()).then_some(primary.stiffness.get()),
+            unsettled: settles.then_some(evaluation.unsettled),
+            runs: settles.then_some(evaluation.runs),
+        }
+    }
+}
+
+impl LimitNote {
+    fn new(
+        study: &Study,
+        evaluation: &Evaluation,
+        surf: Option<&Surf>,
+        explored: Option<&Explored>,
+        refined: &Refined,
+    ) -> Option<Self> {
+        let allowed = study.optimize.as_ref()?.limits;
+        let limits = allowed.limits();
+        let Evaluation { reached, violation, .. } = *evaluation;
+        let counts = [surf.map(|surf| surf.counts), explored.map(|explored| explored.counts)];
+        let counts = || counts.iter().flatten().copied().chain([refined.objective.counts()]);
+        (!limits.is_empty()).then(|| Self {
+            allowed,
+            stroke: reached.get(Limit::Stroke),
+            force: reached.get(Limit::Force),
+            cavity: reached.get(Limit::Cavity),
+            feasible: violation == 0.0,
+            violation,
+            active: limits.active(&reached),
+            evaluations: counts().map(|counts| counts.evaluations).sum(),
+            infeasible: counts().map(|counts| counts.infeasible).sum(),
+        })
+    }
+
+    fn report(&self) -> String {
+        let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
+        let limits = allowed.limits();
+        let reached = [self.stroke, self.force, self.cavity];
+        let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
+            let allowed = limits.get(limit)?;
+            let active = if active.contains(&limit) { ", active" } else { "" };
+            Some(format!("{limit} {} of {} {}{active}", short(reached), short(allowed), limit.unit()))
+        });
+        let kept = if *feasible { "limits kept" } else { "NO DESIGN KEEPS THE LIMITS; the nearest" };
+        format!(
+            "{kept}: {}; {infeasible} of {evaluations} evaluations broke one",
+            words.collect::<Vec<_>>().join("; ")
+        )
     }
 }
 
@@ -202,7 +319,7 @@ fn start(search: &Search, refined: &Refined) -> Found {
     let first = refined.best().rows.first();
     let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
     let Design { m2, k2, c2, d, c } = Design::new(&damper);
-    Found { design: [m2, k2, c2, d, c], e1_max: first.map_or(f64::NAN, |row| row.value) }
+    Found { design: [m2, k2, c2, d, c], e1_max: first.map_or(f64::NAN, |row| energy(row.value)) }
 }
 
 impl Design {
@@ -216,23 +333,33 @@ impl RunNote {
     fn new(run: &Run, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
         let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
         let (start, e1_max_start) = match run.rows.first() {
-            Some(row) => (over(&row.best), row.value),
+            Some(row) => (over(&row.best), energy(row.value)),
             None => (PerVariable::default(), f64::NAN),
         };
         let (iterations, func_count) = (*iterations, *func_count);
-        Self { start, e1_max_start, found: over(x), e1_max: *value, iterations, func_count, stop: *stop }
+        Self {
+            start,
+            e1_max_start,
+            found: over(x),
+            e1_max: energy(*value),
+            iterations,
+            func_count,
+            stop: *stop,
+        }
     }
 }
 
 impl FailureNote {
-    fn new(surf: Option<&Failures>, refine: &Failures) -> Self {
-        let count = surf.map_or(0, |failures| failures.count) + refine.count;
-        let first = surf.and_then(|failures| failures.example.as_ref()).or(refine.example.as_ref());
+    /// Of all stages, in their order.
+    fn new(stages: &[Option<&Failures>]) -> Self {
+        let count = stages.iter().flatten().map(|failures| failures.count).sum();
+        let first = stages.iter().flatten().find_map(|failures| failures.example.as_ref());
         Self { count, example: first.map(|(design, reason)| format!("{design:?}: {reason}")) }
     }
 }
 
-fn per_variable(variables: &[Variable], values: &[f64]) -> PerVariable<f64> {
+/// The values by the names of their parameters.
+pub(super) fn per_variable(variables: &[Variable], values: &[f64]) -> PerVariable<f64> {
     let mut all = PerVariable::default();
     for (&variable, &value) in variables.iter().zip(values) {
         *all.get_mut(variable) = Some(value);

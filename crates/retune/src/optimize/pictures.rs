@@ -1,6 +1,6 @@
 //! The figures of a search: Figure 2's surfaces, and the way of the refinement.
 
-use super::log::short;
+use super::global::worth;
 use super::refine::Refined;
 use super::surf::Surf;
 use crate::error::Error;
@@ -8,7 +8,7 @@ use crate::figure::{self, Mark, Nodes, Panel};
 use crate::results::Directory;
 use crate::study::{Search, Study};
 use crate::summary::MadeBy;
-use retune_optim::{Scale, Variable};
+use retune_optim::{Scale, Variable, energy};
 
 /// The label of E1max.
 pub const ENERGY: &str = "E_{1max}, J";
@@ -53,7 +53,7 @@ fn heat_map(
     for (i, &value) in surf.values.iter().enumerate() {
         surf.grid.steps(i, &mut steps);
         let cell = &mut least[steps[y] * columns + steps[x]];
-        *cell = cell.min(value);
+        *cell = cell.min(energy(value)); // NaN, of an infeasible design, is never the smaller
     }
     let best = surf.point(surf.best);
     let found = |axis: usize| {
@@ -73,12 +73,12 @@ fn heat_map(
         Mark::Grid {
             x: best[x],
             y: best[y],
-            label: format!("best of the grid, {} J", short(surf.values[surf.best])),
+            label: format!("best of the grid, {}", worth(surf.values[surf.best])),
         },
         Mark::Optimum {
             x: found(x),
             y: found(y),
-            label: format!("refined, {} J", short(refined.best().minimum.value)),
+            label: format!("refined, {}", worth(refined.best().minimum.value)),
         },
     ];
     figure::heat_map(
@@ -101,7 +101,7 @@ fn nodes(surf: &Surf, axis: usize) -> Nodes {
 fn convergence(search: &Search, refined: &Refined, made_by: &str) -> Result<String, String> {
     let rows = &refined.best().rows;
     let x: Vec<f64> = rows.iter().map(|row| row.iteration as f64).collect();
-    let energies: Vec<f64> = rows.iter().map(|row| row.value).collect();
+    let energies: Vec<f64> = rows.iter().map(|row| energy(row.value)).collect();
     let mut panels = vec![Panel::new(ENERGY.to_owned(), figure::scale_for(&energies), energies)];
     for (i, &variable) in search.variables.iter().enumerate() {
         let values = rows.iter().map(|row| row.best[i]).collect();

@@ -1,10 +1,10 @@
 //! The fine stage: `fminsearch` from each start, logged as it happens.
 
 use super::log::{self, CSV_HEADER, TXT_HEADER};
-use super::objective;
 use super::surf::design;
+use super::{kept, objective};
 use crate::error::Error;
-use crate::results::{Directory, Pending};
+use crate::results::{Directory, Journal, Pending};
 use crate::screen::Screen;
 use crate::study::{Search, Study};
 use crate::summary::MadeBy;
@@ -60,7 +60,7 @@ pub(super) fn refine(
             starts.len(),
             log::SCREEN_HEADER
         ))?;
-        let run = run(&objective, search, start, |row, design| {
+        let run = run(&objective, search, start, results.journal(), |row, design| {
             all.push_line(&format!("{},{}", number + 1, log::csv(row, design)))?;
             screen.log(log::screen(row, design))
         })?;
@@ -83,24 +83,22 @@ fn run(
     objective: &PeakEnergy,
     search: &Search,
     start: &[f64],
+    journal: &Journal,
     mut tell: impl FnMut(&Row, &[f64; 4]) -> Result<(), Error>,
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
     let mut told = Ok(());
-    let found = minimize(
-        |design: &[f64], cutoff| objective.value(design, cutoff),
-        start,
-        search.options.clone(),
-        |row| {
-            rows.push(row.clone());
-            told = objective
-                .damper(&row.best)
-                .map_err(Error::from)
-                .and_then(|damper| tell(row, &design(&damper)));
-            if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        },
-    );
+    let found = minimize(kept(objective, journal, "fminsearch"), start, search.options.clone(), |row| {
+        if journal.is_broken() {
+            return ControlFlow::Break(());
+        }
+        rows.push(row.clone());
+        told =
+            objective.damper(&row.best).map_err(Error::from).and_then(|damper| tell(row, &design(&damper)));
+        if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
     told?;
+    journal.check()?;
     let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;
     Ok(Run { rows, minimum })
 }

@@ -7,7 +7,7 @@ use crate::results::Directory;
 use crate::screen::Screen;
 use crate::study::{Search, Study};
 use retune_model::Damper;
-use retune_optim::{Failures, Grid, PeakEnergy, Variable, best_separated};
+use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
 use std::time::Instant;
 
 /// E1max at every point of the grid.
@@ -22,6 +22,8 @@ pub struct Surf {
     pub best: usize,
     /// The points that could not be computed.
     pub failures: Failures,
+    /// How many were looked at.
+    pub counts: Counts,
 }
 
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
@@ -46,15 +48,22 @@ pub(super) fn surf(
 
     let begun = Instant::now();
     let bar = screen.progress("surf", grid.len() as u64);
-    let values = retune_optim::surf(&grid, |design| objective.value(design, f64::INFINITY), |_| bar.inc(1));
+    let journal = results.journal();
+    let value = |point: usize, design: &[f64]| {
+        let known = |value| objective.recall(value);
+        journal.grid_value(point, || objective.value(design, f64::INFINITY), known)
+    };
+    let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));
     bar.finish_and_clear();
+    journal.check()?;
 
     let failures = objective.failures();
     let Some(&best) = best_separated(&grid, &values, 1, 0).first() else {
         return Err(Error::NoStart(failures));
     };
     write(&objective, &grid, &values, results)?;
-    let surf = Surf { variables, grid, values, best, failures };
+    let counts = objective.counts();
+    let surf = Surf { variables, grid, values, best, failures, counts };
     screen.log(surf.report(begun.elapsed().as_secs_f64()))?;
     Ok(Some(surf))
 }
@@ -113,7 +122,7 @@ impl Surf {
             .zip(point)
             .map(|(variable, value)| format!("{variable} = {value}"))
             .collect();
-        let least = super::log::short(self.values[self.best]);
-        format!("surf: {seconds:.1} s; least E1max {least} J at {}{failed}", at.join(", "))
+        let least = super::global::worth(self.values[self.best]);
+        format!("surf: {seconds:.1} s; least E1max {least} at {}{failed}", at.join(", "))
     }
 }

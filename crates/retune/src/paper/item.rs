@@ -1,10 +1,10 @@
 //! A table or figure of the paper, made again: what the paper says, what was found, and a verdict on each statement.
 
 use crate::figure::sheet::Drawing;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What becomes of a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// It holds under our settings.
@@ -41,7 +41,7 @@ impl Verdict {
 }
 
 /// A statement of the paper beside what was found.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Statement {
     /// The paper's words, or nearly.
     pub paper: String,
@@ -54,7 +54,7 @@ pub struct Statement {
 }
 
 /// A table to be read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Grid {
     /// What it shows.
     pub caption: String,
@@ -89,7 +89,7 @@ impl Grid {
 }
 
 /// A picture with its words.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Picture {
     /// File name without its ending.
     pub name: String,
@@ -100,7 +100,7 @@ pub struct Picture {
 }
 
 /// A table or figure of the paper, made again.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Item {
     /// `table1`, `figure4`.
     pub name: String,

@@ -38,7 +38,7 @@ pub fn page(items: &[Item]) -> String {
                     nav { ul { @for item in items { li { a href={ "#" (item.name) } { (item.title) } } } } }
                 }
                 main { @for item in items { (section(item)) } }
-                footer { p { "Made by " code { "retune reproduce" } ". All data stand beside this page as CSV, all figures as SVG; the study is " a href="study.json" { "study.json" } "." } }
+                footer { p { "Made by " code { "retune reproduce" } ". All data stand beside this page as CSV, all figures as SVG; the study is " a href="study.json" { "study.json" } ", with all that it names " a href="resolved.json" { "resolved.json" } "; what made each file stands in " a href="manifest.json" { "manifest.json" } "." } }
             }
         }
     };

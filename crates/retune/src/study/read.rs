@@ -78,11 +78,18 @@ pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, Stu
 /// # Errors
 /// [`StudyError`]: the file, the field, its value and what is allowed.
 pub fn read(path: &Path) -> Result<Study, StudyError> {
-    let file = path.display().to_string();
-    let mut study: Study = parse(&read_text(path)?, &file)?;
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    from_text(&read_text(path)?, &path.display().to_string())
+}
+
+/// Checks the text of a study file as [`read`] does.
+///
+/// # Errors
+/// As [`read`].
+pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
+    let mut study: Study = parse(text, file)?;
+    let stem = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     study.name = study.name.or(stem);
-    study.check().map_err(|rule| StudyError::Rule { file, rule })?;
+    study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     Ok(study)
 }
 

@@ -1,149 +1,11 @@
 //! From what a study says to what is searched; the rules that hold between its fields.
 
-use super::{GridAxis, Optimize, PerVariable, Study};
+use super::{GlobalSearch, GridAxis, Optimize, PerVariable, Rule, Study};
 use retune_model::Damper;
-use retune_optim::{Axis, AxisError, Bounds, Grid, GridError, Options, Scaling, Variable};
-use thiserror::Error;
+use retune_optim::{Axis, Bounds, Global, Grid, Options, Scaling, Space, Variable};
 
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
 pub const MOST_GRID_POINTS: usize = 10_000_000;
-
-/// A contradiction between the fields of a study.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum Rule {
-    /// The name cannot be that of a directory.
-    #[error("name: \"{name}\" is not allowed: give letters, digits, `-`, `_` and `.`, not starting with `.`")]
-    Name {
-        /// The name as given.
-        name: String,
-    },
-    /// The window is empty.
-    #[error("window: t0 = {t0} s is not before T = {end} s: the window is empty")]
-    EmptyWindow {
-        /// Start as given, s.
-        t0: f64,
-        /// End as given, s.
-        end: f64,
-    },
-    /// The relative tolerance is none.
-    #[error("solver.rtol: {value} is not allowed here: give a number above 0 and at most 0.1")]
-    Rtol {
-        /// The tolerance as given.
-        value: f64,
-    },
-    /// The absolute tolerance is none.
-    #[error("solver.atol: {value} is not allowed here: give a finite number not below 0")]
-    Atol {
-        /// The tolerance as given.
-        value: f64,
-    },
-    /// Nothing to tune in a scene without a damper.
-    #[error("scene.damper: missing, but `optimize` tunes the damper")]
-    NoDamper,
-    /// The study does not say what to tune.
-    #[error("optimize: missing; it says what to tune, for instance {{ \"vary\": [\"k2\", \"c2\"] }}")]
-    NoOptimize,
-    /// No parameter is tuned.
-    #[error("optimize.vary: empty: name at least one of k2, c2, D, C")]
-    NothingVaried,
-    /// A parameter is named twice.
-    #[error("optimize.vary: `{variable}` is named twice")]
-    VariedTwice {
-        /// The parameter.
-        variable: Variable,
-    },
-    /// A band without width.
-    #[error("optimize.objective.omega: from = {from} rad/s is not below to = {to} rad/s: the band is empty")]
-    EmptyBand {
-        /// Lowest as given, rad/s.
-        from: f64,
-        /// Highest as given, rad/s.
-        to: f64,
-    },
-    /// Too few samples of a band, or too many.
-    #[error(
-        "optimize.objective.omega.samples: {samples} is not allowed here: give a whole number from 2 to {most}"
-    )]
-    Samples {
-        /// Their number as given.
-        samples: usize,
-        /// The largest number allowed.
-        most: usize,
-    },
-    /// Bounds or an axis for a parameter that is not tuned.
-    #[error("optimize.{field}.{variable}: `{variable}` is not tuned: add it to `vary` or leave it out here")]
-    NotVaried {
-        /// `bounds` or `surf`.
-        field: &'static str,
-        /// The parameter.
-        variable: Variable,
-    },
-    /// Bounds that leave no room, or allow what cannot be.
-    #[error(
-        "optimize.bounds.{variable}: {bounds} is not allowed here: give [smallest, largest] with 0 <= smallest < largest"
-    )]
-    Bounds {
-        /// The parameter.
-        variable: Variable,
-        /// Its bounds.
-        bounds: Bounds,
-    },
-    /// An axis that is none.
-    #[error("optimize.surf.{variable}: {source}")]
-    Axis {
-        /// The parameter.
-        variable: Variable,
-        /// What is wrong with its axis.
-        source: AxisError,
-    },
-    /// A grid that reaches out of the bounds.
-    #[error("optimize.surf.{variable}: from {from} to {to} leaves the bounds {bounds}")]
-    GridOutside {
-        /// The parameter.
-        variable: Variable,
-        /// First value.
-        from: f64,
-        /// Last value.
-        to: f64,
-        /// The bounds of the parameter.
-        bounds: Bounds,
-    },
-    /// The grid is empty or too large.
-    #[error("optimize.surf: {0}")]
-    Grid(#[from] GridError),
-    /// The start lies outside its bounds.
-    #[error(
-        "scene.damper.{variable}: {value} is where the refinement starts, but lies outside the bounds {bounds}"
-    )]
-    StartOutside {
-        /// The parameter.
-        variable: Variable,
-        /// Its value in the scene.
-        value: f64,
-        /// The bounds of the parameter.
-        bounds: Bounds,
-    },
-    /// No refinement.
-    #[error("optimize.refine.starts: 0 is not allowed here: give a whole number above 0")]
-    NoStarts,
-    /// A table without rows.
-    #[error("rows: empty: give at least one")]
-    NoRows,
-    /// Two rows whose results would share a directory.
-    #[error("rows: two studies are named \"{name}\"")]
-    SameName {
-        /// The name.
-        name: String,
-    },
-    /// A tolerance that is none.
-    #[error("optimize.refine.{name}: {value} is not allowed here: give a finite number not below 0")]
-    Tolerance {
-        /// `TolX` or `TolFun`.
-        name: &'static str,
-        /// The tolerance as given.
-        value: f64,
-    },
-}
 
 /// What is searched, and how.
 #[derive(Clone, Debug)]
@@ -158,6 +20,10 @@ pub struct Search {
     pub starts: usize,
     /// Grid steps between any two starts.
     pub apart: usize,
+    /// The global search, its box, and how near its ends are to be one basin; if any.
+    pub global: Option<(Global, Space, f64)>,
+    /// Designs that start a refinement each beside those that were found.
+    pub given: Vec<Vec<f64>>,
     /// The settings of a refinement.
     pub options: Options,
 }
@@ -199,7 +65,7 @@ impl Study {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         let variables = varied(&optimize.vary)?;
-        optimize.objective.check()?;
+        optimize.objective.check("optimize.objective", self.scene.forcing.frequency.get())?;
         let tuned = |field, variable: &Variable| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),
@@ -215,7 +81,20 @@ impl Study {
                 Some((over, grid(axes, bounds_of)?))
             }
         };
-        let on_grid = |variable| surf.as_ref().is_some_and(|(over, _)| over.contains(variable));
+        let space = |global: &GlobalSearch| -> Result<_, Rule> {
+            global.sides.variables().iter().try_for_each(|variable| tuned("global.box", variable))?;
+            Ok((global.global(), global.space(&variables, &bounds)?, global.basin))
+        };
+        let global = optimize.global.as_ref().map(space).transpose()?;
+        let given = optimize.starts.iter().enumerate();
+        let given = given
+            .map(|(i, start)| given_start(i, start, &variables, &bounds, &damper))
+            .collect::<Result<Vec<_>, _>>()?;
+        let found_elsewhere = global.is_some() || !given.is_empty();
+        let on_grid = |variable| {
+            found_elsewhere && surf.is_none()
+                || surf.as_ref().is_some_and(|(over, _)| over.contains(variable))
+        };
         for (variable, bounds) in variables.iter().zip(&bounds).filter(|(variable, _)| !on_grid(variable)) {
             let value = variable.get(&damper);
             if !bounds.contain(value) {
@@ -227,7 +106,8 @@ impl Study {
             return Err(Rule::NoStarts);
         }
         let options = options(optimize, bounds)?;
-        Ok(Search { damper, variables, surf, starts: refine.starts, apart: refine.apart, options })
+        let (starts, apart) = (refine.starts, refine.apart);
+        Ok(Search { damper, variables, surf, starts, apart, global, given, options })
     }
 
     /// The same study with every default written out, and the version that did it.
@@ -258,6 +138,31 @@ fn varied(vary: &[Variable]) -> Result<Vec<Variable>, Rule> {
         Some(pair) => Err(Rule::VariedTwice { variable: pair[0] }),
         None => Ok(variables),
     }
+}
+
+/// A start that the study gives: what it leaves out is that of the damper.
+fn given_start(
+    i: usize,
+    start: &PerVariable<f64>,
+    variables: &[Variable],
+    bounds: &[Bounds],
+    damper: &Damper,
+) -> Result<Vec<f64>, Rule> {
+    if let Some(other) = start.variables().into_iter().find(|variable| !variables.contains(variable)) {
+        return Err(Rule::NotVaried { field: "starts", variable: other });
+    }
+    let value = |(&variable, bounds): (&Variable, &Bounds)| {
+        let value = start.get(variable).unwrap_or_else(|| variable.get(damper));
+        match bounds.contain(value) {
+            true => Ok(value),
+            false => Err(Rule::NotAllowed {
+                field: format!("optimize.starts[{i}].{variable}"),
+                value: value.to_string(),
+                allowed: "a value within its bounds",
+            }),
+        }
+    };
+    variables.iter().zip(bounds).map(value).collect()
 }
 
 fn bounds(given: &PerVariable<(f64, Option<f64>)>, variable: Variable) -> Result<Bounds, Rule> {

@@ -1,7 +1,7 @@
 //! `--set NAME=VALUE`: one number of a study, changed on the command line.
 
 use super::{Rule, Study};
-use retune_model::{Damper, NonNegative, OutOfRange, Positive};
+use retune_model::{Damper, NonNegative, OutOfRange, Positive, Scene};
 use std::str::FromStr;
 use thiserror::Error;
 
@@ -58,6 +58,11 @@ pub enum SettingError {
 }
 
 impl Setting {
+    /// Sets the parameter `name`, one of those that the command line knows.
+    pub fn new(name: &'static str, value: f64) -> Self {
+        Self { name, value }
+    }
+
     /// The number that is set, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value
@@ -92,6 +97,39 @@ impl Study {
         settings.iter().try_for_each(|setting| study.set(setting))?;
         study.check()?;
         Ok(study)
+    }
+
+    /// The scene with one more setting. Bounds and other rules of the search are not looked at.
+    ///
+    /// # Errors
+    /// The setting is refused.
+    pub fn scene_with(&self, setting: &Setting) -> Result<Scene, SettingError> {
+        let mut study = self.clone();
+        study.set(setting)?;
+        Ok(study.scene)
+    }
+
+    /// The number that a setting of this name would change; none of a damper that is not there.
+    pub fn value_of(&self, name: &str) -> Option<f64> {
+        let (primary, forcing) = (&self.scene.primary, &self.scene.forcing);
+        let damper = self.scene.damper.as_ref();
+        let value = match name {
+            "m1" => primary.mass.get(),
+            "c1" => primary.damping.get(),
+            "k1" => primary.stiffness.get(),
+            "P" => forcing.amplitude.get(),
+            "omega" => forcing.frequency.get(),
+            "t0" => self.window.t0.get(),
+            "T" => self.window.end.get(),
+            "m2" => damper?.mass.get(),
+            "k2" => damper?.stiffness.get(),
+            "c2" => damper?.damping.get(),
+            "D" => damper?.rest_distance.get(),
+            "C" => damper?.clearance.get(),
+            "R" => damper?.contact.radius.get(),
+            _ => return None,
+        };
+        Some(value)
     }
 
     fn set(&mut self, &Setting { name, value }: &Setting) -> Result<(), SettingError> {

@@ -58,7 +58,9 @@ fn reference_contacts_at_once_agree_with_contacts_step_by_step() {
             let (system, side, touch) = contact(&mut draw);
             let flow = Flow::new(crate::LinearSystem::linear(&system), 1.0);
             let collisions = Collisions::new(&system, side, &flow, rtol);
-            let Some((Knot { t, y, .. }, _)) = collisions.collide(&flow, touch, 1e9, &mut Unobserved) else { continue };
+            let Some((Knot { t, y, .. }, _)) = collisions.collide(&flow, touch, 1e9, &mut Unobserved) else {
+                continue;
+            };
             let expected = step_by_step(&system, side, &touch);
             let speed = (touch.y[3] - touch.y[1]).abs();
             let velocity = (y[1] - expected.y[1]).abs().max((y[3] - expected.y[3]).abs()) / speed;

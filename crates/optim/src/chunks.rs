@@ -1,0 +1,24 @@
+//! Evaluating many things in parallel and stopping early, the same way at any number of threads.
+
+use rayon::prelude::*;
+
+/// Evaluations that are begun together: enough for the cores of a desk, few enough that stopping early saves most of the rest.
+pub(crate) const TOGETHER: usize = 8;
+
+/// `value(i, before)` for `i` in `0..count`, `together` at a time in parallel; `before` are the results of all earlier groups.
+/// Ends early, after a whole group, once `enough` says so of the results so far.
+pub(crate) fn in_groups<T: Send + Sync>(
+    count: usize,
+    together: usize,
+    value: impl Fn(usize, &[T]) -> T + Sync,
+    mut enough: impl FnMut(&[T]) -> bool,
+) -> Vec<T> {
+    let mut results: Vec<T> = Vec::with_capacity(count);
+    while results.len() < count && (results.is_empty() || !enough(&results)) {
+        let group = results.len()..count.min(results.len() + together.max(1));
+        let before = &results;
+        let fresh: Vec<T> = group.into_par_iter().map(|i| value(i, before)).collect();
+        results.extend(fresh);
+    }
+    results
+}

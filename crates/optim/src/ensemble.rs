@@ -1,0 +1,114 @@
+//! A deterministic ensemble of scenes about one: other phases of the force, small errors of parameters. Where the motion is
+//! irregular one run is a draw from a distribution; a statistic of the ensemble is a property of the design.
+
+use crate::chunks::{TOGETHER, in_groups};
+use retune_model::{NonNegative, OutOfRange, Scene};
+use std::f64::consts::TAU;
+
+/// What is taken of the members' E1max.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Statistic {
+    /// The mean.
+    Mean,
+    /// The largest.
+    Worst,
+    /// The smallest value that at least this share of the members does not exceed, above 0 and at most 1.
+    Quantile(f64),
+}
+
+/// An ensemble: the points of an Owen-scrambled Sobol sequence (B. Burley, Practical Hash-based Owen Scrambling, J. Comput.
+/// Graph. Tech. 9(4), 2020), so that a few members fill their space evenly. Every design meets the same members.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ensemble {
+    /// How many members, at least 1 and at most [`MOST_MEMBERS`].
+    pub members: u32,
+    /// Whether the force of each begins at its own phase, evenly spread over a turn, instead of at a crest.
+    pub phases: bool,
+    /// k1, k2, c2, D and C of each are off by at most this share, independently and evenly spread; below 1.
+    pub errors: f64,
+    /// Chooses the members.
+    pub seed: u32,
+    /// What is taken of them.
+    pub statistic: Statistic,
+}
+
+/// Most members: the length of the sequence.
+pub const MOST_MEMBERS: u32 = 1 << 16;
+
+impl Ensemble {
+    /// The scene of member `i`, and the phase of its force, rad.
+    ///
+    /// # Errors
+    /// A parameter that overflows.
+    pub fn member(&self, scene: &Scene, i: u32) -> Result<(Scene, f64), OutOfRange> {
+        let point = |dimension| f64::from(sobol_burley::sample(i, dimension, self.seed));
+        let phase = if self.phases { TAU * point(0) } else { 0.0 };
+        let mut scene = *scene;
+        let off = |value: &mut NonNegative, dimension| -> Result<(), OutOfRange> {
+            *value = NonNegative::new(value.get() * (1.0 + self.errors * (2.0 * point(dimension) - 1.0)))?;
+            Ok(())
+        };
+        if self.errors > 0.0 {
+            off(&mut scene.primary.stiffness, 1)?;
+            if let Some(damper) = &mut scene.damper {
+                off(&mut damper.stiffness, 2)?;
+                off(&mut damper.damping, 3)?;
+                off(&mut damper.rest_distance, 4)?;
+                off(&mut damper.clearance, 5)?;
+            }
+        }
+        Ok((scene, phase))
+    }
+
+    /// The statistic of `value(member, cutoff)` over all members. The values are not negative. A result above `cutoff` is only
+    /// known to be above, and so may be those that `value` gives above the cutoff it is given.
+    ///
+    /// # Errors
+    /// The first of a member.
+    pub fn over<E: Send + Sync + Clone>(
+        &self,
+        value: impl Fn(u32, f64) -> Result<f64, E> + Sync,
+        cutoff: f64,
+    ) -> Result<f64, E> {
+        let count = self.members.max(1) as usize;
+        let known = |results: &[Result<f64, E>]| -> Vec<f64> { results.iter().flatten().copied().collect() };
+        let failed = |results: &[Result<f64, E>]| results.iter().any(Result::is_err);
+        // A mean is above the cutoff once a part of its sum is, by more than the rounding of either.
+        let most = count as f64 * cutoff * SLACK;
+        let rank = rank(self.statistic, count);
+        let results = in_groups(
+            count,
+            TOGETHER,
+            |i, before| match self.statistic {
+                Statistic::Mean => value(i as u32, most - known(before).iter().sum::<f64>()),
+                _ => value(i as u32, cutoff),
+            },
+            |results| {
+                failed(results)
+                    || match self.statistic {
+                        Statistic::Mean => known(results).iter().sum::<f64>() > most,
+                        _ => known(results).iter().filter(|e| **e > cutoff).count() > count - rank,
+                    }
+            },
+        );
+        let mut energies = results.into_iter().collect::<Result<Vec<f64>, E>>()?;
+        if self.statistic == Statistic::Mean {
+            return Ok(energies.iter().sum::<f64>() / count as f64);
+        }
+        energies.sort_by(f64::total_cmp);
+        // Of a group that ended early the largest is above the cutoff.
+        let place = if energies.len() < count { energies.len() } else { rank };
+        Ok(energies[place - 1])
+    }
+}
+
+/// Share by which a sum must pass a cutoff to be above it whatever its rounding.
+pub(crate) const SLACK: f64 = 1.0 + 1e-9;
+
+/// The place of a statistic among `count` sorted values, from 1.
+fn rank(statistic: Statistic, count: usize) -> usize {
+    match statistic {
+        Statistic::Quantile(share) => ((share * count as f64).ceil() as usize).clamp(1, count),
+        Statistic::Mean | Statistic::Worst => count,
+    }
+}

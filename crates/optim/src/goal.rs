@@ -1,0 +1,320 @@
+//! What a search makes small: E1max composed over frequencies, stiffnesses, an ensemble and several terms, under limits.
+//!
+//! `value = Σ weight · statistic over the ensemble of (largest over k1 of (largest over ω of E1max))`. Each level is one
+//! function of a cutoff, above which it may stop; every rule for stopping is exact: a value at most at the cutoff is computed in
+//! full.
+
+use crate::band::{Band, worst_over};
+use crate::chunks::in_groups;
+use crate::ensemble::{Ensemble, SLACK};
+use crate::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
+use crate::objective::Unusable;
+use retune_model::{Bare, Coupled, NonNegative, Primary, Scene, Worst};
+use retune_solver::{Ask, Settings, Settle, Window, extremes, settled};
+use std::sync::{Mutex, PoisonError};
+
+/// When E1max is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// In a window of a run from rest.
+    Window(Window),
+    /// Once all transients have died, in closed form: for scenes without contacts only.
+    Steady,
+    /// Once successive blocks of a run from rest agree; in the window, if they do not by its end.
+    Settled(Window, Settle),
+}
+
+impl From<Window> for When {
+    fn from(window: Window) -> Self {
+        Self::Window(window)
+    }
+}
+
+/// The frequencies over which E1max is the largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frequencies {
+    /// The band, rad/s or, where it is relative, multiples of the structure's natural frequency.
+    pub band: Band,
+    /// Whether it moves with the structure's natural frequency √(k1/m1).
+    pub relative: bool,
+}
+
+impl From<Band> for Frequencies {
+    fn from(band: Band) -> Self {
+        Self { band, relative: false }
+    }
+}
+
+impl Frequencies {
+    /// The band for a structure, rad/s.
+    pub fn of(&self, primary: &Primary) -> Band {
+        let unit = if self.relative { primary.natural_frequency() } else { 1.0 };
+        let Band { from, to, samples } = self.band;
+        Band { from: unit * from, to: unit * to, samples }
+    }
+}
+
+/// The stiffnesses k1 of the structure over which E1max is the largest, N/m.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stiffnesses {
+    /// Each of these.
+    Set(Vec<f64>),
+    /// A range, searched as a band of frequencies is.
+    Range(Band),
+}
+
+/// One term of a goal. Everything that is left out stays as it is in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Its weight in the sum, above 0.
+    pub weight: f64,
+    /// When E1max is taken.
+    pub when: When,
+    /// The largest over these frequencies.
+    pub omega: Option<Frequencies>,
+    /// The largest over these stiffnesses of the structure.
+    pub k1: Option<Stiffnesses>,
+    /// A statistic over an ensemble.
+    pub ensemble: Option<Ensemble>,
+}
+
+impl Term {
+    /// E1max of the scene itself.
+    pub fn new(when: impl Into<When>) -> Self {
+        Self { weight: 1.0, when: when.into(), omega: None, k1: None, ensemble: None }
+    }
+}
+
+/// What is made small, and the limits that are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goal {
+    /// The terms, at least one; their weighted sum is made small.
+    pub terms: Vec<Term>,
+    /// The limits, on the largest over all runs of all terms.
+    pub limits: Limits,
+}
+
+/// The run with the largest E1max among those that a value was made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Its E1max, J.
+    pub e1_max: f64,
+    /// Its scene, an error of its parameters included.
+    pub scene: Scene,
+    /// Phase of its force, rad.
+    pub phase: f64,
+    /// Number of its term.
+    pub term: usize,
+}
+
+/// A design's value and what it was made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluation {
+    /// What searches make small: the energy of a feasible design, more than [`INFEASIBLE`] of any other.
+    pub value: f64,
+    /// The weighted sum of the terms, J.
+    pub energy: f64,
+    /// By how much limits are broken; see [`Limits::violation`].
+    pub violation: f64,
+    /// The largest stroke, force and cavity; stroke and force are 0 where no limit asks for them.
+    pub reached: PerLimit<f64>,
+    /// The worst run.
+    pub worst: Place,
+    /// Runs made; a steady response in closed form counts as one.
+    pub runs: u64,
+    /// Runs that were to settle and did not.
+    pub unsettled: u64,
+}
+
+impl Evaluation {
+    /// The scene of a single run that shows it: `scene` at the ω and the k1 of the worst run, without the error of a member of an
+    /// ensemble and with the force at a crest.
+    pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
+        scene.forcing.frequency = self.worst.scene.forcing.frequency;
+        if goal.terms.get(self.worst.term).is_some_and(|term| term.k1.is_some()) {
+            scene.primary.stiffness = self.worst.scene.primary.stiffness;
+        }
+        scene
+    }
+}
+
+impl Goal {
+    /// A goal of one term without limits.
+    pub fn one(term: Term) -> Self {
+        Self { terms: vec![term], limits: Limits::default() }
+    }
+
+    /// The value of a scene. Any value above `cutoff` as soon as it is known to be above: the rest is then incomplete.
+    ///
+    /// # Errors
+    /// A run could not be finished, or the damper of a steady motion reaches a wall.
+    pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
+        let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
+        let nothing = Place { e1_max: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
+        let mut reached = PerLimit::default();
+        reached.set(Limit::Cavity, cavity);
+        let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
+        let watch = Watch { settings, walls: self.limits.needs_walls(), seen: Mutex::new(seen) };
+        // Too large a cavity needs no run to be worse than anything feasible.
+        let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
+            f64::INFINITY
+        } else {
+            let cutoff = if cutoff < INFEASIBLE { cutoff } else { f64::INFINITY };
+            self.energy(scene, cutoff, &watch)?
+        };
+        let Seen { reached, worst, runs, unsettled } =
+            watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let violation = self.limits.violation(&reached);
+        Ok(Evaluation {
+            value: ranked(energy, violation),
+            energy,
+            violation,
+            reached,
+            worst,
+            runs,
+            unsettled,
+        })
+    }
+
+    /// The weighted sum, J.
+    fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
+        if let [Term { weight: 1.0, .. }] = self.terms[..] {
+            return watch.term(scene, (0, &self.terms[0]), cutoff);
+        }
+        let (mut sum, most) = (0.0, cutoff * SLACK);
+        for (i, term) in self.terms.iter().enumerate() {
+            sum += term.weight * watch.term(scene, (i, term), (most - sum) / term.weight)?;
+            if sum > most {
+                break;
+            }
+        }
+        Ok(sum)
+    }
+}
+
+/// The largest values so far. Only maxima and counts: the order in which threads bring them does not matter.
+struct Seen {
+    reached: PerLimit<f64>,
+    worst: Place,
+    runs: u64,
+    unsettled: u64,
+}
+
+/// How runs of a goal are made, and what is kept of them.
+struct Watch<'a> {
+    settings: &'a Settings,
+    walls: bool,
+    seen: Mutex<Seen>,
+}
+
+/// A term with its number.
+type Numbered<'a> = (usize, &'a Term);
+
+impl Watch<'_> {
+    fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+        let Some(ensemble) = &term.1.ensemble else { return self.over_k1(scene, 0.0, term, cutoff) };
+        let member = |i: u32, cutoff: f64| {
+            let (scene, phase) = ensemble.member(scene, i).map_err(Unusable::Member)?;
+            self.over_k1(&scene, phase, term, cutoff)
+        };
+        ensemble.over(member, cutoff)
+    }
+
+    fn over_k1(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+        let own = scene.primary.stiffness.get();
+        let at = |k1: f64| -> Result<f64, Unusable> {
+            let mut scene = *scene;
+            scene.primary.stiffness = NonNegative::new(k1).map_err(Unusable::Stiffness)?;
+            self.over_omega(&scene, phase, term, cutoff)
+        };
+        match &term.1.k1 {
+            None => self.over_omega(scene, phase, term, cutoff),
+            Some(Stiffnesses::Range(range)) => Ok(worst_over(range, at, cutoff)?.value),
+            Some(Stiffnesses::Set(set)) => {
+                let above = |results: &[Result<f64, Unusable>]| match results.last() {
+                    Some(Ok(value)) => *value > cutoff,
+                    Some(Err(_)) => true,
+                    None => false,
+                };
+                let k1 = |i: usize| set.get(i).copied().unwrap_or(own);
+                let results = in_groups(set.len(), 1, |i, _| at(k1(i)), above);
+                results.into_iter().try_fold(0.0, |worst: f64, value| Ok(worst.max(value?)))
+            }
+        }
+    }
+
+    fn over_omega(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+        let own = scene.forcing.frequency.get();
+        let band = term.1.omega.map(|frequencies| frequencies.of(&scene.primary));
+        if term.1.when == When::Steady {
+            return self.steady(scene, band.map_or([own; 2], |band| [band.from, band.to]), term.0);
+        }
+        let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
+        match band {
+            Some(band) => Ok(worst_over(&band, at, cutoff)?.value),
+            None => at(own),
+        }
+    }
+
+    fn run(
+        &self,
+        scene: &Scene,
+        omega: f64,
+        phase: f64,
+        (number, term): Numbered,
+        cutoff: f64,
+    ) -> Result<f64, Unusable> {
+        let mut scene = *scene;
+        scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
+        let ask = Ask { phase, walls: self.walls, cutoff };
+        let found = match term.when {
+            When::Settled(window, settle) => settled(&scene, window, settle, self.settings, ask)?,
+            When::Window(window) => extremes(&scene, window, self.settings, ask)?,
+            When::Steady => return self.steady(&scene, [omega; 2], number),
+        };
+        let place = Place { e1_max: found.e1_max.value, scene, phase, term: number };
+        self.see(place, found.stroke, found.force, found.settled);
+        Ok(found.e1_max.value)
+    }
+
+    fn steady(&self, scene: &Scene, band: [f64; 2], number: usize) -> Result<f64, Unusable> {
+        let Scene { primary, forcing, damper } = scene;
+        let (worst, stroke) = match damper {
+            None => (Bare::new(primary, forcing).steady_e1_max(band), 0.0),
+            Some(damper) => {
+                let system = Coupled::new(primary, forcing, damper);
+                let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
+                let room = damper.rest_distance.get().min(damper.clearance.get());
+                if stroke >= room {
+                    return Err(Unusable::Touches { omega, stroke, room });
+                }
+                (system.steady_e1_max(band), stroke)
+            }
+        };
+        let mut scene = *scene;
+        scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
+        let place = Place { e1_max: worst.value, scene, phase: 0.0, term: number };
+        self.see(place, stroke, 0.0, true);
+        Ok(worst.value)
+    }
+
+    fn see(&self, place: Place, stroke: f64, force: f64, settled: bool) {
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        seen.runs += 1;
+        seen.unsettled += u64::from(!settled);
+        for (limit, value) in [(Limit::Stroke, stroke), (Limit::Force, force)] {
+            let largest = seen.reached.get(limit).max(value);
+            seen.reached.set(limit, largest);
+        }
+        let key = |place: &Place| {
+            let Scene { primary, forcing, .. } = place.scene;
+            [-place.e1_max, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]
+        };
+        // Of equals the first by term, ω, k1 and phase.
+        let order =
+            key(&place).iter().zip(&key(&seen.worst)).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne());
+        if order.is_some_and(|order| order.is_lt()) {
+            seen.worst = place;
+        }
+    }
+}

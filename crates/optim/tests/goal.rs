@@ -1,0 +1,148 @@
+//! Objectives composed: stiffnesses, ensembles and sums give what their runs give one by one, and a cutoff changes nothing below it.
+
+#[path = "../../model/tests/scenes/mod.rs"]
+mod scenes;
+
+use retune_model::Scene;
+use retune_optim::{
+    Band, Ensemble, Evaluation, Frequencies, Goal, Limits, Statistic, Stiffnesses, Term, When, e1_max,
+};
+use retune_solver::{Ask, Settings, Settle, Window, extremes};
+use scenes::{Numbers, SSVI, TMD};
+
+const WINDOW: Window = Window { from: 2.0, to: 8.0 };
+const BAND: Band = Band { from: 5.5, to: 7.0, samples: 4 };
+
+fn evaluate(term: Term, scene: &Scene, cutoff: f64) -> Evaluation {
+    Goal::one(term).evaluate(scene, &Settings::default(), cutoff).expect("a value")
+}
+
+fn value(term: &Term, scene: &Scene) -> f64 {
+    evaluate(term.clone(), scene, f64::INFINITY).value
+}
+
+fn ensemble(statistic: Statistic) -> Ensemble {
+    Ensemble { members: 12, phases: true, errors: 0.01, seed: 3, statistic }
+}
+
+#[test]
+fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
+    let term = Term { omega: Some(BAND.into()), ..Term::new(WINDOW) };
+    let stiffnesses = [5e4, 3e4, 3.95e4];
+    let each = stiffnesses.map(|k1| value(&term, &Numbers { k1, ..SSVI }.scene()));
+    let set = Term { k1: Some(Stiffnesses::Set(stiffnesses.to_vec())), ..term.clone() };
+    let found = evaluate(set, &SSVI.scene(), f64::INFINITY);
+    let worst = each.iter().copied().fold(0.0, f64::max);
+    assert!(
+        found.value == worst && each[1] == worst,
+        "the worst is neither the first nor the last: {each:?}"
+    );
+    let k1 = found.worst.scene.primary.stiffness.get();
+    assert_eq!(each[stiffnesses.iter().position(|other| *other == k1).expect("one of them")], worst);
+    // A range holds its ends and refines what is between: of the bare structure at ω = 6, in closed form, k1 = m1 ω².
+    let range = Stiffnesses::Range(Band { from: 3e4, to: 5e4, samples: 5 });
+    let bare = Numbers { omega: 6.0, ..TMD }.bare_scene();
+    let found = evaluate(Term { k1: Some(range), ..Term::new(When::Steady) }, &bare, f64::INFINITY);
+    let near = 0.5 * (800.0_f64 / (452.0 * 6.0)).powi(2) * 3.6e4;
+    assert!((found.value / near - 1.0).abs() < 0.01 && found.value >= near, "{} {near}", found.value);
+    assert!((found.worst.scene.primary.stiffness.get() / 3.6e4 - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn exact_a_relative_band_moves_with_the_structure() {
+    let relative = Frequencies { band: Band { from: 0.9, to: 1.1, samples: 3 }, relative: true };
+    for k1 in [2e4, 3.95e4] {
+        let scene = Numbers { k1, ..TMD }.scene();
+        let natural = (k1 / TMD.m1).sqrt();
+        let found = value(&Term { omega: Some(relative), ..Term::new(When::Steady) }, &scene);
+        let steady = Numbers { k1, ..TMD }.coupled().steady_e1_max([0.9 * natural, 1.1 * natural]);
+        assert!((found / steady.value - 1.0).abs() < 1e-14, "{found} {steady:?}");
+    }
+}
+
+#[test]
+fn exact_statistics_are_those_of_the_members() {
+    let each: Vec<f64> = (0..12)
+        .map(|i| {
+            let (scene, phase) = ensemble(Statistic::Mean).member(&SSVI.scene(), i).expect("a member");
+            let ask = Ask { phase, ..Ask::default() };
+            extremes(&scene, WINDOW, &Settings::default(), ask).expect("a run").e1_max.value
+        })
+        .collect();
+    let mut sorted = each.clone();
+    sorted.sort_by(f64::total_cmp);
+    assert!(sorted[0] < 0.95 * sorted[11], "the members differ: {sorted:?}");
+    let of =
+        |statistic| value(&Term { ensemble: Some(ensemble(statistic)), ..Term::new(WINDOW) }, &SSVI.scene());
+    assert!((of(Statistic::Mean) / (each.iter().sum::<f64>() / 12.0) - 1.0).abs() < 1e-14);
+    assert_eq!(of(Statistic::Worst), sorted[11]);
+    // 0.75 of 12 members are 9; a little more needs a tenth.
+    assert_eq!([of(Statistic::Quantile(0.75)), of(Statistic::Quantile(0.76))], [sorted[8], sorted[9]]);
+    assert_eq!([of(Statistic::Quantile(1e-9)), of(Statistic::Quantile(1.0))], [sorted[0], sorted[11]]);
+}
+
+#[test]
+fn exact_members_fill_their_space_and_stay_within_their_errors() {
+    let all = Ensemble { members: 64, ..ensemble(Statistic::Mean) };
+    let mut phases = Vec::new();
+    for i in 0..64 {
+        let (scene, phase) = all.member(&SSVI.scene(), i).expect("a member");
+        let damper = scene.damper.expect("a damper");
+        for (value, own) in [
+            (scene.primary.stiffness.get(), SSVI.k1),
+            (damper.stiffness.get(), SSVI.k2),
+            (damper.damping.get(), SSVI.c2),
+            (damper.rest_distance.get(), SSVI.d),
+            (damper.clearance.get(), SSVI.c),
+        ] {
+            assert!((value / own - 1.0).abs() <= 0.01 && value != own, "{value} {own}");
+        }
+        phases.push(phase / std::f64::consts::TAU);
+    }
+    phases.sort_by(f64::total_cmp);
+    // A Sobol sequence has one of its first 64 points in each 64th of every axis.
+    assert!(phases.iter().enumerate().all(|(i, p)| (p * 64.0).floor() == i as f64), "{phases:?}");
+    let exact = Ensemble { phases: false, errors: 0.0, ..all };
+    assert_eq!(exact.member(&SSVI.scene(), 5), Ok((SSVI.scene(), 0.0)));
+}
+
+#[test]
+fn exact_a_sum_is_weighted_and_nothing_is_hidden_below_a_cutoff() {
+    let [one, two] = [Window { from: 0.0, to: 4.0 }, WINDOW].map(Term::new);
+    let robust = |statistic| Term { ensemble: Some(ensemble(statistic)), ..Term::new(WINDOW) };
+    let scene = SSVI.scene();
+    let [a, b] = [&one, &two].map(|term| value(term, &scene));
+    let sum = vec![Term { weight: 0.25, ..one }, Term { weight: 2.0, ..two }];
+    let goals = [
+        sum,
+        vec![robust(Statistic::Mean)],
+        vec![robust(Statistic::Worst)],
+        vec![robust(Statistic::Quantile(0.6))],
+        vec![Term { omega: Some(BAND.into()), ..Term::new(WINDOW) }],
+        vec![Term { k1: Some(Stiffnesses::Set(vec![3e4, 4e4])), ..Term::new(WINDOW) }],
+    ]
+    .map(|terms| Goal { terms, limits: Limits::default() });
+    let of =
+        |goal: &Goal, cutoff| goal.evaluate(&scene, &Settings::default(), cutoff).expect("a value").value;
+    assert!((of(&goals[0], f64::INFINITY) / (0.25 * a + 2.0 * b) - 1.0).abs() < 1e-14);
+    for goal in &goals {
+        let full = of(goal, f64::INFINITY);
+        for share in [0.0, 0.3, 0.9, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.1] {
+            let (cutoff, cut) = (share * full, of(goal, share * full));
+            assert!(if full <= cutoff { cut == full } else { cut > cutoff }, "{share}: {cut} {full}");
+        }
+    }
+}
+
+/// A settled objective without contacts is the steady one; with them it counts what has not settled.
+#[test]
+fn exact_settled_is_steady_where_nothing_touches() {
+    let window = Window { from: 20.0, to: 60.0 };
+    let term = |settle| Term { omega: Some(BAND.into()), ..Term::new(When::Settled(window, settle)) };
+    let found = evaluate(term(Settle::default()), &TMD.scene(), f64::INFINITY);
+    let steady = e1_max(&TMD.scene(), When::Steady, Some(BAND), &Settings::default(), f64::INFINITY);
+    assert!((found.value / steady.expect("a value").value - 1.0).abs() < 1e-7 && found.unsettled == 0);
+    let never = Settle { tolerance: 1e-300, ..Settle::default() };
+    let found = evaluate(term(never), &SSVI.scene(), f64::INFINITY);
+    assert!(found.unsettled == found.runs && found.runs >= 4, "{found:?}");
+}

@@ -1,0 +1,66 @@
+//! `certify`: what a design's E1max is worth. An error bar, how it takes small errors, what motion it is, a verdict.
+
+mod certificate;
+mod measure;
+
+pub use certificate::{Certificate, Short};
+
+use crate::cli;
+use crate::error::Error;
+use crate::optimize::{where_results_are, with_threads};
+use crate::results::{Directory, Identity};
+use crate::screen::Screen;
+use crate::study::{self, Rule, Study};
+use std::path::{Path, PathBuf};
+
+/// The file that a certificate is written to.
+pub const FILE: &str = "certificate.json";
+
+/// Certifies the design of a study, or the one that a search found.
+///
+/// # Errors
+/// The input is wrong, the design cannot be run, or the certificate cannot be written.
+pub fn command(arguments: &cli::Certify) -> Result<(), Error> {
+    let (study, beside) = read(&arguments.design)?;
+    let out = arguments.running.out.clone().or(beside);
+    let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
+    let screen = Screen::new(arguments.running.quiet);
+    with_threads(arguments.running.threads, || {
+        let certificate = certify(&study)?;
+        let identity = Identity::of_study(&study)?;
+        let results = Directory::open(&out, arguments.running.begin(), &identity, |name| name == FILE)?;
+        results.write_json(FILE, &certificate)?;
+        results.finish()?;
+        screen.line(&certificate)?;
+        screen.line(where_results_are(&out)?)
+    })
+}
+
+/// The certificate of the damper in the scene of a study, under the study's objective.
+///
+/// # Errors
+/// There is no damper, or the design has no value.
+pub fn certify(study: &Study) -> Result<Certificate, Error> {
+    if study.scene.damper.is_none() {
+        let rule = Rule::NotAllowed {
+            field: "scene.damper".to_owned(),
+            value: "none".to_owned(),
+            allowed: "a damper, for that is what is certified",
+        };
+        return Err(Error::Rule { name: study.name().to_owned(), rule });
+    }
+    measure::measure(study)
+}
+
+/// The study whose scene has the design, and where its certificate goes if that is beside what was read.
+fn read(path: &Path) -> Result<(Study, Option<PathBuf>), Error> {
+    let optimum = if path.is_dir() { path.join("optimum.json") } else { path.to_owned() };
+    if !path.is_dir() && !study::is_optimum(path)? {
+        return Ok((study::read(path)?, None));
+    }
+    let directory = optimum.parent().unwrap_or(Path::new("")).to_owned();
+    let study = study::read(&directory.join("study.json"))?;
+    let name = study.name().to_owned();
+    let study = study::at_found(study, &optimum)?.map_err(|rule| Error::Rule { name, rule })?;
+    Ok((study, Some(directory)))
+}

@@ -1,0 +1,123 @@
+//! The measurements behind a certificate.
+
+use super::certificate::{Certificate, FINER, Motion, Neighbourhood, Rung, Sensitivity, WorstRun};
+use crate::error::Error;
+use crate::study::{Setting, Study};
+use crate::summary::MadeBy;
+use rayon::prelude::*;
+use retune_atlas::{Stretch, classify, follow};
+use retune_model::Scene;
+use retune_optim::{Ensemble, Evaluation, Frequencies, Goal, Place, Statistic, Unusable, When};
+use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
+
+/// Relative errors of a parameter that its sensitivity is read from.
+const ERRORS: [f64; 6] = [-0.01, -0.005, -0.0025, 0.0025, 0.005, 0.01];
+/// The neighbourhood: designs whose k1, k2, c2, D and C are off by at most a thousandth.
+const NEIGHBOURS: Ensemble =
+    Ensemble { members: 64, phases: false, errors: 1e-3, seed: 0, statistic: Statistic::Mean };
+/// The ladder: the study's own method at three tolerances, and two methods that share nothing with it but the equations.
+const LADDER: [(Method, f64); 5] = [
+    (Method::Hybrid, 1e-8),
+    (Method::Hybrid, 1e-10),
+    (Method::Hybrid, 1e-12),
+    (Method::Dop853, 1e-12),
+    (Method::Ode45, 1e-10),
+];
+/// How long a steady motion is followed by the methods that step in time, s, and when it has settled.
+const LONG: f64 = 2000.0;
+const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
+
+/// All of them.
+///
+/// # Errors
+/// The design itself has no value, or its worst run cannot be followed.
+pub(super) fn measure(study: &Study) -> Result<Certificate, Error> {
+    let (goal, settings) = (study.goal(), study.solver.settings());
+    let own = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
+    let sensitivities = sensitivities(study, &goal, &settings);
+    let neighbourhood = neighbourhood(&study.scene, &goal, &settings);
+    let ladder = ladder(&own.worst, &goal, &settings)?;
+    let finer = finer(&goal).map(|goal| energy(goal.evaluate(&study.scene, &settings, f64::INFINITY)));
+    let record = follow(&own.worst.scene, None, Stretch::default(), &settings)?;
+    let motion = Motion::new(&classify(&record));
+    let Place { e1_max, scene, phase, .. } = own.worst;
+    let worst =
+        WorstRun { e1_max, omega: scene.forcing.frequency.get(), k1: scene.primary.stiffness.get(), phase };
+    Ok(Certificate::new(
+        study,
+        MadeBy::new(study),
+        &own,
+        worst,
+        ladder,
+        finer,
+        sensitivities,
+        neighbourhood,
+        motion,
+    ))
+}
+
+/// The goal with more samples, if any of its bands of frequencies is sampled.
+fn finer(goal: &Goal) -> Option<Goal> {
+    let mut goal = goal.clone();
+    let sampled = goal.terms.iter_mut().filter(|term| term.when != When::Steady);
+    let bands: Vec<&mut Frequencies> = sampled.filter_map(|term| term.omega.as_mut()).collect();
+    if bands.is_empty() {
+        return None;
+    }
+    for Frequencies { band, .. } in bands {
+        band.samples = FINER * (band.samples - 1) + 1;
+    }
+    Some(goal)
+}
+
+/// E1max of the worst run by every rung.
+fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, SolverError> {
+    let when = goal.terms.get(worst.term).map_or(When::Steady, |term| term.when);
+    let rung = |&(method, rtol): &(Method, f64)| {
+        let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
+        let ask = Ask { phase: worst.phase, ..Ask::default() };
+        let found = match when {
+            When::Window(window) => extremes(&worst.scene, window, &settings, ask)?,
+            When::Settled(window, settle) => settled(&worst.scene, window, settle, &settings, ask)?,
+            When::Steady => settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?,
+        };
+        Ok(Rung { method, rtol, e1_max: found.e1_max.value })
+    };
+    LADDER.par_iter().map(rung).collect()
+}
+
+/// The objective with each parameter a little off; parameters that are zero have no relative error.
+fn sensitivities(study: &Study, goal: &Goal, settings: &Settings) -> Vec<Sensitivity> {
+    let omega = goal.terms.iter().any(|term| term.omega.is_none()).then_some("omega");
+    let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(omega);
+    let known =
+        names.filter_map(|name| Some((name, study.value_of(name)?))).filter(|(_, value)| *value != 0.0);
+    let known: Vec<(&'static str, f64)> = known.collect();
+    let values: Vec<f64> = known
+        .par_iter()
+        .flat_map(|&(name, value)| ERRORS.par_iter().map(move |error| (name, value * (1.0 + error))))
+        .map(|(name, value)| {
+            let scene = study.scene_with(&Setting::new(name, value));
+            scene.map_or(f64::INFINITY, |scene| energy(goal.evaluate(&scene, settings, f64::INFINITY)))
+        })
+        .collect();
+    let read = |(&(name, value), energies): (&(&'static str, f64), &[f64])| {
+        Sensitivity::new(name, value, &ERRORS, energies)
+    };
+    known.iter().zip(values.chunks(ERRORS.len())).map(read).collect()
+}
+
+/// The objective of the neighbours.
+fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings) -> Neighbourhood {
+    let member = |i: u32| {
+        let (scene, _) = NEIGHBOURS.member(scene, i).map_err(Unusable::Member)?;
+        goal.evaluate(&scene, settings, f64::INFINITY)
+    };
+    let energies = (0..NEIGHBOURS.members).into_par_iter().map(|i| energy(member(i))).collect();
+    Neighbourhood::new(NEIGHBOURS.errors, energies)
+}
+
+/// The energy of an evaluation, J, infinite where there is none.
+fn energy(found: Result<Evaluation, Unusable>) -> f64 {
+    found.map_or(f64::INFINITY, |found| found.energy)
+}

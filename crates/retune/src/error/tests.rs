@@ -1,0 +1,210 @@
+//! The words of every error, beside each other in `words.txt`. A new one is refused by the compiler until it stands here;
+//! `RETUNE_WORDS=write cargo test -p retune words` writes the file anew.
+
+use super::*;
+use crate::study::read::StudyError;
+use retune_model::{OutOfRange, Positive};
+use retune_optim::{AxisError, Bounds, GridError, Variable};
+use std::io::ErrorKind;
+
+/// Checks that there is a sample of each variant; that all are named is up to the compiler.
+macro_rules! each {
+    ($samples:expr, $kind:ident: $($variant:ident)*) => {{
+        #[allow(dead_code, reason = "only the compiler reads it")]
+        fn named(error: &$kind) -> &'static str {
+            match error { $($kind::$variant { .. } => stringify!($variant),)* }
+        }
+        let seen: Vec<&str> = $samples.iter().map(named).collect();
+        $(assert!(seen.contains(&stringify!($variant)), "no sample of {}", stringify!($variant));)*
+        $samples.iter().map(|error| format!("{}::{}\n    {error}\n", stringify!($kind), named(error))).collect::<String>()
+    }};
+}
+
+fn out_of_range() -> OutOfRange {
+    Positive::new(-1.0).expect_err("no positive number")
+}
+
+fn rules() -> Vec<Rule> {
+    let bounds = Bounds { lower: Some(10.0), upper: None };
+    let (variable, value) = (Variable::K2, -1.0);
+    let name = "a/b".to_owned();
+    vec![
+        Rule::Name { name: name.clone() },
+        Rule::EmptyWindow { t0: 4.0, end: 4.0 },
+        Rule::Rtol { value },
+        Rule::Atol { value },
+        Rule::NoDamper,
+        Rule::NoOptimize,
+        Rule::NoGrid,
+        Rule::NothingVaried,
+        Rule::VariedTwice { variable },
+        Rule::EmptyBand { field: "optimize.objective.omega".into(), unit: " rad/s", from: 8.0, to: 5.0 },
+        Rule::Samples { field: "optimize.objective.omega".into(), samples: 1, most: 10_000 },
+        Rule::NotVaried { field: "bounds", variable },
+        Rule::Bounds { variable, bounds },
+        Rule::Axis { variable, source: AxisError::NotANumber { name: "from", value: f64::NAN } },
+        Rule::Axis { variable, source: AxisError::NotPositive { name: "from", value: 0.0 } },
+        Rule::Axis { variable, source: AxisError::Reversed { from: 3.0, to: 2.0 } },
+        Rule::Axis { variable, source: AxisError::Points { points: 1, from: 2.0, to: 3.0 } },
+        Rule::GridOutside { variable, from: 1.0, to: 2.0, bounds },
+        Rule::Grid(GridError::NoAxes),
+        Rule::Grid(GridError::TooLarge { points: 1_000_000_000_000, limit: 10_000_000 }),
+        Rule::StartOutside { variable, value, bounds },
+        Rule::NoStarts,
+        Rule::NoRows,
+        Rule::SameName { name },
+        Rule::Tolerance { name: "TolX", value },
+        Rule::NotAllowed {
+            field: "optimize.global.searches".into(),
+            value: "0".into(),
+            allowed: "a whole number above 0",
+        },
+        Rule::SumAndMore { path: "optimize.objective".into() },
+        Rule::NoEnd { variable },
+    ]
+}
+
+fn studies() -> Vec<StudyError> {
+    let file = "study.json".to_owned();
+    vec![
+        StudyError::Unreadable { file: file.clone(), source: ErrorKind::NotFound.into() },
+        StudyError::NotText { file: file.clone(), byte: 9 },
+        StudyError::Field {
+            file: file.clone(),
+            line: 3,
+            column: 5,
+            problem: "scene.primary.k1: missing".into(),
+        },
+        StudyError::List { file: file.clone(), field: "window".into() },
+        StudyError::Rule { file: file.clone(), rule: Rule::NoDamper },
+        StudyError::Paper { file, problem: "k1: give at least one number above 0".into() },
+    ]
+}
+
+fn settings() -> Vec<SettingError> {
+    let name = "k2";
+    vec![
+        SettingError::Form { text: "k1".into() },
+        SettingError::Name { name: "k3".into() },
+        SettingError::Number { name, text: "soft".into() },
+        SettingError::OutOfRange { name, source: out_of_range() },
+        SettingError::NoDamper { name },
+        SettingError::Rule(Rule::EmptyWindow { t0: 9.0, end: 4.0 }),
+    ]
+}
+
+fn solvers() -> Vec<SolverError> {
+    vec![
+        SolverError::StepTooSmall { t: 1.5, h: 1e-17 },
+        SolverError::TooManySteps { t: 1.5, limit: 1000 },
+        SolverError::Implausible { t: 4.0, value: 1e87, time: 2.5, most: 320.0 },
+        SolverError::NonFinite { t: 1.5 },
+    ]
+}
+
+fn failures() -> Failures {
+    let source = out_of_range();
+    Failures {
+        count: 24,
+        example: Some((vec![100.0], Unusable::OutOfRange { variable: Variable::K2, source })),
+    }
+}
+
+fn unusable() -> Vec<Unusable> {
+    vec![
+        Unusable::OutOfRange { variable: Variable::K2, source: out_of_range() },
+        Unusable::Frequency(out_of_range()),
+        Unusable::Stiffness(out_of_range()),
+        Unusable::Member(out_of_range()),
+        Unusable::Run(SolverError::NonFinite { t: 1.5 }),
+        Unusable::Touches { omega: 6.3, stroke: 0.4, room: 0.06 },
+    ]
+}
+
+fn errors() -> Vec<Error> {
+    let path = PathBuf::from("results/ssvi");
+    let full = || std::io::Error::from(ErrorKind::StorageFull);
+    let threads = rayon::ThreadPoolBuilder::new().spawn_handler(|_| Err(full())).num_threads(1).build();
+    vec![
+        Error::Study(StudyError::List { file: "study.json".into(), field: "window".into() }),
+        Error::Setting(SettingError::NoDamper { name: "k2" }),
+        Error::Rule { name: "ssvi".into(), rule: Rule::NoOptimize },
+        Error::Interval { value: 0.0, most: 100 },
+        Error::Output { path: path.clone(), source: full() },
+        Error::Output { path: path.clone(), source: ErrorKind::ReadOnlyFilesystem.into() },
+        Error::Input { path: path.clone(), source: ErrorKind::NotFound.into() },
+        Error::Part { path: path.clone(), problem: "it is damaged at point 23: make it again".into() },
+        Error::MissingParts {
+            points: "6 to 11".into(),
+            len: 24,
+            shards: Some("2/4".into()),
+            study: "study.json".into(),
+            place: path.join("parts"),
+        },
+        Error::NotHeld { path: path.clone(), problem: "does not hold: surf.csv is missing".into() },
+        Error::Busy { path: path.clone(), holder: Some(4711) },
+        Error::Busy { path: path.clone(), holder: None },
+        Error::Unfinished { path: path.clone(), lines: 321, difference: None },
+        Error::Unfinished { path, lines: 321, difference: Some("of Retune 0.0.9, this is 0.1.0".into()) },
+        Error::Threads(threads.expect_err("no threads")),
+        Error::Run(SolverError::NonFinite { t: 1.5 }),
+        Error::Atlas(retune_atlas::Error::NoPeriod),
+        Error::Unusable(Unusable::Run(SolverError::NonFinite { t: 1.5 })),
+        Error::NoStart(Failures::default()),
+        Error::NoStart(failures()),
+        Error::Search {
+            source: retune_optim::Error::StartValue { value: f64::INFINITY },
+            failures: failures(),
+        },
+        Error::Global { source: retune_optim::GlobalError::NoStart { samples: 64 }, failures: failures() },
+        Error::Figure { name: "surf-k2-c2.svg".into(), problem: "no room".into() },
+    ]
+}
+
+#[test]
+fn regress_the_words_of_every_error() {
+    let words = [
+        each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld Busy Unfinished
+            Threads Run Atlas Unusable NoStart Global Search Figure),
+        each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
+        each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
+        each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
+            Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
+            NotAllowed SumAndMore NoEnd),
+        each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Touches),
+        each!(solvers(), SolverError: StepTooSmall TooManySteps Implausible NonFinite),
+    ]
+    .concat();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/error/words.txt");
+    if std::env::var("RETUNE_WORDS").is_ok_and(|what| what == "write") {
+        std::fs::write(file, &words).expect("the file");
+    }
+    let expected = std::fs::read_to_string(file).expect("the file");
+    for (found, expected) in words.lines().zip(expected.lines()) {
+        assert_eq!(found, expected);
+    }
+    assert_eq!(words.lines().count(), expected.lines().count());
+}
+
+/// What the user can mend has exit code 2, what failed in the computation 1.
+#[test]
+fn exact_exit_codes_say_whose_fault_it_is() {
+    let code = |error: &Error| format!("{:?}", error.exit_code());
+    for error in errors() {
+        let mendable = matches!(
+            error,
+            Error::Study(_)
+                | Error::Setting(_)
+                | Error::Rule { .. }
+                | Error::Interval { .. }
+                | Error::Output { .. }
+                | Error::Input { .. }
+                | Error::Part { .. }
+                | Error::MissingParts { .. }
+                | Error::Busy { .. }
+                | Error::Unfinished { .. }
+        );
+        let expected = format!("{:?}", ExitCode::from(if mendable { 2 } else { 1 }));
+        assert_eq!(code(&error), expected, "{error}");
+    }
+}

@@ -1,0 +1,91 @@
+//! A file has its name only once it is whole: it is written beside its place and then renamed.
+
+use crate::error::Error;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file that is being written under a temporary name. It vanishes unless it is finished.
+#[derive(Debug)]
+pub struct Pending {
+    path: PathBuf,
+    temporary: PathBuf,
+    file: BufWriter<File>,
+    finished: bool,
+}
+
+impl Pending {
+    /// Begins the file at `path`.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn create(path: &Path) -> Result<Self, Error> {
+        let refuse = |source| Error::Output { path: path.to_owned(), source };
+        let name = path.file_name().ok_or_else(|| refuse(std::io::ErrorKind::IsADirectory.into()))?;
+        if path.is_dir() {
+            return Err(refuse(std::io::ErrorKind::IsADirectory.into()));
+        }
+        let temporary =
+            path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
+        let file = BufWriter::new(File::create(&temporary).map_err(refuse)?);
+        Ok(Self { path: path.to_owned(), temporary, file, finished: false })
+    }
+
+    /// Appends `text`.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn push(&mut self, text: &str) -> Result<(), Error> {
+        self.file.write_all(text.as_bytes()).map_err(|source| self.refused(source))
+    }
+
+    /// Appends `line` and hands it to the system at once, so that whoever follows the file sees it.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn push_line(&mut self, line: &str) -> Result<(), Error> {
+        let written = writeln!(self.file, "{line}").and_then(|()| self.file.flush());
+        written.map_err(|source| self.refused(source))
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// It cannot be written or renamed.
+    pub fn finish(mut self) -> Result<(), Error> {
+        let named = self.file.flush().and_then(|()| std::fs::rename(&self.temporary, &self.path));
+        named.map_err(|source| self.refused(source))?;
+        self.finished = true;
+        Ok(())
+    }
+
+    /// Gives the file its name once it is on the disk, and lets nobody write to it any more.
+    ///
+    /// # Errors
+    /// It cannot be written or renamed.
+    pub fn finish_for_good(mut self) -> Result<(), Error> {
+        let settle = |file: &File| {
+            let mut permissions = file.metadata()?.permissions();
+            permissions.set_readonly(true);
+            file.set_permissions(permissions)?;
+            file.sync_all()
+        };
+        self.file
+            .flush()
+            .and_then(|()| settle(self.file.get_ref()))
+            .map_err(|source| self.refused(source))?;
+        self.finish()
+    }
+
+    fn refused(&self, source: std::io::Error) -> Error {
+        Error::Output { path: self.path.clone(), source }
+    }
+}
+
+impl Drop for Pending {
+    fn drop(&mut self) {
+        if !self.finished {
+            let _ = std::fs::remove_file(&self.temporary); // nothing is left to be done if this fails
+        }
+    }
+}

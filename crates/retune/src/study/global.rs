@@ -1,0 +1,129 @@
+//! The global search of a study: an even look at the whole box, then CMA-ES from the best places.
+
+use super::{PerVariable, Rule};
+use retune_optim::{Bounds, Global, Scale, Side, Space, Variable};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A global search before the refinement: the points of a scrambled Sobol sequence over a box, then a CMA-ES search from each of
+/// the best that lie apart. What several searches came to is one basin; the best basins are refined. The results are the same
+/// for the same seed, at any number of threads.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GlobalSearch {
+    /// Designs of the first look, spread evenly over the box.
+    #[schemars(range(min = 1, max = 65536))]
+    pub samples: u32,
+    /// CMA-ES searches, each from one of the best of them.
+    #[schemars(range(min = 1, max = 1000))]
+    pub searches: usize,
+    /// Least distance between two starts along at least one side of the box, as a share of that side.
+    pub apart: f64,
+    /// Standard deviation of the first generation of a search, as a share of each side.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
+    pub spread: f64,
+    /// A search ends once its standard deviation is below this share of every side.
+    #[schemars(range(min = 0.0))]
+    pub tolerance: f64,
+    /// Most evaluations of a search.
+    #[schemars(range(min = 1))]
+    pub evaluations: u64,
+    /// Ends of searches and of refinements nearer than this share of every side are one basin.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
+    pub basin: f64,
+    /// Chooses the designs of the first look and the random numbers of the searches.
+    pub seed: u32,
+    /// The box; what is left out takes its bounds, in ratios where they span a decade or more.
+    #[serde(rename = "box")]
+    pub sides: PerVariable<BoxSide>,
+}
+
+/// A side of the box.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSide {
+    /// Smallest value.
+    pub from: f64,
+    /// Largest value.
+    pub to: f64,
+    /// Whether distances are differences or ratios.
+    pub scale: Scale,
+}
+
+impl Default for GlobalSearch {
+    fn default() -> Self {
+        let Global { samples, searches, apart, spread, tolerance, evaluations, seed } = Global::default();
+        let sides = PerVariable::default();
+        Self { samples, searches, apart, spread, tolerance, evaluations, basin: 0.05, seed, sides }
+    }
+}
+
+impl GlobalSearch {
+    /// The search as it is made.
+    pub fn global(&self) -> Global {
+        let Self { samples, searches, apart, spread, tolerance, evaluations, seed, .. } = *self;
+        Global { samples, searches, apart, spread, tolerance, evaluations, seed }
+    }
+
+    /// The box that is searched.
+    ///
+    /// # Errors
+    /// The first [`Rule`] that is broken.
+    pub(super) fn space(&self, variables: &[Variable], bounds: &[Bounds]) -> Result<Space, Rule> {
+        let share = |name: &str, value: f64, good: bool| match good {
+            true => Ok(()),
+            false => Err(Rule::NotAllowed {
+                field: format!("optimize.global.{name}"),
+                value: value.to_string(),
+                allowed: "a number above 0 and at most 1",
+            }),
+        };
+        share("spread", self.spread, self.spread > 0.0 && self.spread <= 1.0)?;
+        share("basin", self.basin, self.basin > 0.0 && self.basin <= 1.0)?;
+        share("apart", self.apart, self.apart > 0.0 && self.apart <= 1.0)?;
+        let count = |name: &str, value: u64, most: u64| match value {
+            value if (1..=most).contains(&value) => Ok(()),
+            _ => Err(Rule::NotAllowed {
+                field: format!("optimize.global.{name}"),
+                value: value.to_string(),
+                allowed: "a whole number above 0 (at most 65536 samples, 1000 searches)",
+            }),
+        };
+        count("samples", self.samples.into(), 65_536)?;
+        count("searches", self.searches as u64, 1000)?;
+        count("evaluations", self.evaluations, u64::MAX)?;
+        if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
+            return Err(Rule::NotAllowed {
+                field: "optimize.global.tolerance".to_owned(),
+                value: self.tolerance.to_string(),
+                allowed: "a finite number not below 0",
+            });
+        }
+        let sides = variables.iter().zip(bounds).map(|(&variable, bounds)| self.side(variable, bounds));
+        sides.collect::<Result<Vec<Side>, Rule>>().map(Space)
+    }
+
+    fn side(&self, variable: Variable, bounds: &Bounds) -> Result<Side, Rule> {
+        let side = match (self.sides.get(variable), bounds.lower.zip(bounds.upper)) {
+            (Some(BoxSide { from, to, scale }), _) => Side { from, to, scale },
+            (None, Some((from, to))) => Side::natural(from, to),
+            (None, None) => return Err(Rule::NoEnd { variable }),
+        };
+        let Side { from, to, scale } = side;
+        if !(bounds.contain(from) && bounds.contain(to) && from < to && to.is_finite()) {
+            return Err(Rule::NotAllowed {
+                field: format!("optimize.global.box.{variable}"),
+                value: format!("{from} to {to}"),
+                allowed: "`from` below `to`, both within the bounds",
+            });
+        }
+        if scale == Scale::Log && from <= 0.0 {
+            return Err(Rule::NotAllowed {
+                field: format!("optimize.global.box.{variable}.from"),
+                value: from.to_string(),
+                allowed: "a number above 0 on a side of ratios (\"log\")",
+            });
+        }
+        Ok(side)
+    }
+}

@@ -1,0 +1,174 @@
+//! The rules that hold between the fields of a study.
+
+use retune_optim::{AxisError, Bounds, GridError, Variable};
+use thiserror::Error;
+
+/// A contradiction between the fields of a study.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Rule {
+    /// The name cannot be that of a directory.
+    #[error("name: \"{name}\" is not allowed: give letters, digits, `-`, `_` and `.`, not starting with `.`")]
+    Name {
+        /// The name as given.
+        name: String,
+    },
+    /// The window is empty.
+    #[error("window: t0 = {t0} s is not before T = {end} s: the window is empty")]
+    EmptyWindow {
+        /// Start as given, s.
+        t0: f64,
+        /// End as given, s.
+        end: f64,
+    },
+    /// The relative tolerance is none.
+    #[error("solver.rtol: {value} is not allowed here: give a number above 0 and at most 0.1")]
+    Rtol {
+        /// The tolerance as given.
+        value: f64,
+    },
+    /// The absolute tolerance is none.
+    #[error("solver.atol: {value} is not allowed here: give a finite number not below 0")]
+    Atol {
+        /// The tolerance as given.
+        value: f64,
+    },
+    /// Nothing to tune in a scene without a damper.
+    #[error("scene.damper: missing, but `optimize` tunes the damper")]
+    NoDamper,
+    /// The study does not say what to tune.
+    #[error("optimize: missing; it says what to tune, for instance {{ \"vary\": [\"k2\", \"c2\"] }}")]
+    NoOptimize,
+    /// Nothing to share out.
+    #[error("optimize.surf: missing, but only the grid can be made in parts")]
+    NoGrid,
+    /// No parameter is tuned.
+    #[error("optimize.vary: empty: name at least one of k2, c2, D, C")]
+    NothingVaried,
+    /// A parameter is named twice.
+    #[error("optimize.vary: `{variable}` is named twice")]
+    VariedTwice {
+        /// The parameter.
+        variable: Variable,
+    },
+    /// A band or a range without width.
+    #[error("{field}: from = {from}{unit} is not below to = {to}{unit}: the band is empty")]
+    EmptyBand {
+        /// Its path.
+        field: String,
+        /// Its unit, after a space.
+        unit: &'static str,
+        /// Lowest as given.
+        from: f64,
+        /// Highest as given.
+        to: f64,
+    },
+    /// Too few samples of a band, or too many.
+    #[error("{field}.samples: {samples} is not allowed here: give a whole number from 2 to {most}")]
+    Samples {
+        /// The path of the band.
+        field: String,
+        /// Their number as given.
+        samples: usize,
+        /// The largest number allowed.
+        most: usize,
+    },
+    /// Bounds or an axis for a parameter that is not tuned.
+    #[error("optimize.{field}.{variable}: `{variable}` is not tuned: add it to `vary` or leave it out here")]
+    NotVaried {
+        /// `bounds` or `surf`.
+        field: &'static str,
+        /// The parameter.
+        variable: Variable,
+    },
+    /// Bounds that leave no room, or allow what cannot be.
+    #[error(
+        "optimize.bounds.{variable}: {bounds} is not allowed here: give [smallest, largest] with 0 <= smallest < largest"
+    )]
+    Bounds {
+        /// The parameter.
+        variable: Variable,
+        /// Its bounds.
+        bounds: Bounds,
+    },
+    /// An axis that is none.
+    #[error("optimize.surf.{variable}: {source}")]
+    Axis {
+        /// The parameter.
+        variable: Variable,
+        /// What is wrong with its axis.
+        source: AxisError,
+    },
+    /// A grid that reaches out of the bounds.
+    #[error("optimize.surf.{variable}: from {from} to {to} leaves the bounds {bounds}")]
+    GridOutside {
+        /// The parameter.
+        variable: Variable,
+        /// First value.
+        from: f64,
+        /// Last value.
+        to: f64,
+        /// The bounds of the parameter.
+        bounds: Bounds,
+    },
+    /// The grid is empty or too large.
+    #[error("optimize.surf: {0}")]
+    Grid(#[from] GridError),
+    /// The start lies outside its bounds.
+    #[error(
+        "scene.damper.{variable}: {value} is where the refinement starts, but lies outside the bounds {bounds}"
+    )]
+    StartOutside {
+        /// The parameter.
+        variable: Variable,
+        /// Its value in the scene.
+        value: f64,
+        /// The bounds of the parameter.
+        bounds: Bounds,
+    },
+    /// No refinement.
+    #[error("optimize.refine.starts: 0 is not allowed here: give a whole number above 0")]
+    NoStarts,
+    /// A table without rows.
+    #[error("rows: empty: give at least one")]
+    NoRows,
+    /// Two rows whose results would share a directory.
+    #[error("rows: two studies are named \"{name}\"")]
+    SameName {
+        /// The name.
+        name: String,
+    },
+    /// A tolerance that is none.
+    #[error("optimize.refine.{name}: {value} is not allowed here: give a finite number not below 0")]
+    Tolerance {
+        /// `TolX` or `TolFun`.
+        name: &'static str,
+        /// The tolerance as given.
+        value: f64,
+    },
+    /// A value that a field cannot have.
+    #[error("{field}: {value} is not allowed here: give {allowed}")]
+    NotAllowed {
+        /// Its path.
+        field: String,
+        /// The value as given.
+        value: String,
+        /// What is allowed, in words.
+        allowed: &'static str,
+    },
+    /// A sum beside what it takes the place of.
+    #[error(
+        "{path}.sum: stands in the place of omega, k1, response, settle and ensemble: move them into its parts"
+    )]
+    SumAndMore {
+        /// The path of the objective.
+        path: String,
+    },
+    /// A global search over a parameter without an end.
+    #[error(
+        "optimize.global.box.{variable}: missing, and optimize.bounds.{variable} has no largest value: give one of them"
+    )]
+    NoEnd {
+        /// The parameter.
+        variable: Variable,
+    },
+}

@@ -1,0 +1,114 @@
+//! The largest values beside E1max: strokes, forces, phases of the force, and settled motions.
+
+#[path = "../../model/tests/scenes/mod.rs"]
+mod scenes;
+
+use retune_model::{Bare, Coupled, Scene};
+use retune_solver::{
+    Ask, Extremes, Method, Settings, Settle, Window, extremes, settled, simulate, trajectory,
+};
+use scenes::{Numbers, SSVI, TMD};
+use std::f64::consts::PI;
+
+const SHORT: Window = Window { from: 2.0, to: 12.0 };
+
+fn seen(scene: &Scene, method: Method, phase: f64, walls: bool) -> Extremes {
+    let settings = Settings { method, ..Settings::default() };
+    extremes(scene, SHORT, &settings, Ask { phase, walls, ..Ask::default() }).expect("a run")
+}
+
+#[test]
+fn exact_stroke_and_force_are_those_of_the_motion() {
+    for scene in [SSVI.scene(), TMD.scene()] {
+        let found = seen(&scene, Method::Hybrid, 0.0, true);
+        let run = simulate(&scene, SHORT, &Settings::default()).expect("a run");
+        let rest = scene.damper.expect("a damper").rest_distance.get();
+        let mut largest = 0.0_f64;
+        trajectory(&scene, SHORT, &Settings::default(), 1e-4, &mut |sample| {
+            largest = largest.max((sample.state[2] - sample.state[0] - rest).abs());
+        })
+        .expect("a run");
+        assert!(largest <= found.stroke && found.stroke - largest < 1e-6, "{largest} {}", found.stroke);
+        assert_eq!(found.force, run.force_max[0].max(run.force_max[1]));
+        assert_eq!(found.e1_max, run.e1_max);
+    }
+    assert_eq!(seen(&SSVI.scene(), Method::Hybrid, 0.0, false).stroke, 0.0);
+}
+
+/// Half a turn of the force mirrors a motion without contacts; a whole turn changes nothing.
+#[test]
+fn exact_phases_of_the_force_turn_the_motion() {
+    let bare = Scene { damper: None, ..TMD.scene() };
+    for scene in [bare, TMD.scene()] {
+        for method in [Method::Hybrid, Method::Dop853] {
+            let [here, opposite, quarter] =
+                [0.0, PI, 0.5 * PI].map(|phase| seen(&scene, method, phase, false).e1_max);
+            assert!((here.value / opposite.value - 1.0).abs() < 1e-7, "{here:?} {opposite:?}");
+            assert!((here.time - opposite.time).abs() < 1e-4, "{here:?} {opposite:?}");
+            assert!((here.value / quarter.value - 1.0).abs() > 1e-3, "{here:?} {quarter:?}");
+        }
+    }
+    let [here, round] = [0.0, 2.0 * PI].map(|phase| seen(&SSVI.scene(), Method::Hybrid, phase, false).e1_max);
+    assert!((here.value / round.value - 1.0).abs() < 1e-7, "{here:?} {round:?}");
+}
+
+#[test]
+fn reference_a_phase_with_contacts_is_the_same_by_another_method() {
+    let [a, b] = [Method::Hybrid, Method::Dop853].map(|method| seen(&SSVI.scene(), method, 1.0, true));
+    assert!((a.e1_max.value / b.e1_max.value - 1.0).abs() < 1e-6, "{a:?} {b:?}");
+    assert!(
+        (a.stroke / b.stroke - 1.0).abs() < 1e-6 && (a.force / b.force - 1.0).abs() < 1e-4,
+        "{a:?} {b:?}"
+    );
+    let zero = seen(&SSVI.scene(), Method::Hybrid, 0.0, true);
+    assert!((a.e1_max.value / zero.e1_max.value - 1.0).abs() > 1e-3);
+}
+
+const LONG: Window = Window { from: 50.0, to: 400.0 };
+
+fn rest(scene: &Scene, method: Method, settle: Settle) -> Extremes {
+    let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
+    settled(scene, LONG, settle, &settings, Ask { walls: true, ..Ask::default() }).expect("a run")
+}
+
+#[test]
+fn exact_a_linear_motion_settles_at_its_steady_response() {
+    let (scene, settle) = (TMD.scene(), Settle { tolerance: 1e-9, ..Settle::default() });
+    let system = Coupled::new(&scene.primary, &scene.forcing, &TMD.damper());
+    let steady = system.steady(TMD.omega);
+    for method in [Method::Hybrid, Method::Dop853] {
+        let found = rest(&scene, method, settle);
+        assert!(found.settled);
+        assert!((found.e1_max.value / steady.e1_max - 1.0).abs() < 1e-6, "{found:?}");
+        assert!((found.stroke / steady.stroke() - 1.0).abs() < 1e-6 && found.force == 0.0, "{found:?}");
+    }
+    let bare = rest(&Scene { damper: None, ..scene }, Method::Hybrid, settle);
+    assert_eq!(bare.e1_max.value, Bare::new(&scene.primary, &scene.forcing).steady(TMD.omega).e1_max);
+}
+
+/// Table 2's damper repeats after two periods of this force, with one impact.
+#[test]
+fn exact_a_motion_with_contacts_settles_at_what_a_late_window_shows() {
+    let scene = Numbers { omega: 5.958, ..SSVI }.scene();
+    let found = rest(&scene, Method::Hybrid, Settle::default());
+    assert!(found.settled && found.force > 0.0, "{found:?}");
+    let late = Window { from: 300.0, to: 400.0 };
+    let ask = Ask { walls: true, ..Ask::default() };
+    let run = extremes(&scene, late, &Settings::default(), ask).expect("a run");
+    assert!((found.e1_max.value / run.e1_max.value - 1.0).abs() < 1e-4, "{found:?} {run:?}");
+    assert!((found.stroke / run.stroke - 1.0).abs() < 1e-3, "{found:?} {run:?}");
+}
+
+/// A tolerance that nothing meets: the value is that of the window, and the answer says that it has not settled.
+#[test]
+fn exact_a_motion_that_has_not_settled_says_so() {
+    let scene = SSVI.scene();
+    let never = rest(&scene, Method::Hybrid, Settle { tolerance: 1e-300, ..Settle::default() });
+    assert!(!never.settled);
+    let settings = Settings { rtol: 1e-9, ..Settings::default() };
+    // The first block that begins after 50 s does so at the ninth of 6 periods.
+    let from = 9.0 * 6.0 * 2.0 * PI / SSVI.omega;
+    let window = Window { from, ..LONG };
+    let run = extremes(&scene, window, &settings, Ask { walls: true, ..Ask::default() }).expect("a run");
+    assert!((never.e1_max.value / run.e1_max.value - 1.0).abs() < 0.05, "{never:?} {run:?}");
+}
