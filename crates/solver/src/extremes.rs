@@ -3,10 +3,12 @@
 
 use crate::follow::{follow_bare_from, follow_coupled_from};
 use crate::free::Free;
-use crate::observe::{Observer, Path, Peak, Segment, Unobserved};
+use crate::observe::{Observer, Path, Peak, Quantity, Segment, Unobserved};
 use crate::plausible;
 use crate::run::e1_max;
 use crate::settings::{Extreme, Method, Settings, SolverError, Window};
+use crate::steps::Steps;
+use crate::system::PrimaryEnergy;
 use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
 use std::f64::consts::TAU;
 
@@ -155,14 +157,13 @@ struct Peaks<E, S> {
     stroke: Option<[Peak<S>; 2]>,
 }
 
-#[expect(clippy::type_complexity, reason = "closures have no names")]
 fn peaks<'a>(
     system: &'a Coupled,
     ask: Ask,
-) -> Peaks<impl Fn(Drive, &[f64; 4]) -> [f64; 3] + 'a, impl Fn(Drive, &[f64; 4]) -> [f64; 3] + 'a> {
+) -> Peaks<PrimaryEnergy<'a>, impl Fn(Drive, &[f64; 4]) -> [f64; 3] + 'a> {
     let side = |sign: f64| move |drive: Drive, y: &[f64; 4]| system.stroke_rates(drive, y).map(|v| sign * v);
     Peaks {
-        e1: Peak::new(move |drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y), ask.cutoff),
+        e1: Peak::new(PrimaryEnergy(system), ask.cutoff),
         stroke: ask.walls.then(|| [1.0, -1.0].map(|sign| Peak::new(side(sign), f64::INFINITY))),
     }
 }
@@ -186,7 +187,7 @@ impl<E, S> Peaks<E, S> {
 
 impl<E, S> Observer<4> for Peaks<E, S>
 where
-    E: Fn(Drive, &[f64; 4]) -> [f64; 3],
+    E: Quantity<4>,
     S: Fn(Drive, &[f64; 4]) -> [f64; 3],
 {
     fn segment(&mut self, segment: &impl Segment<4>) {
@@ -196,6 +197,10 @@ where
     fn path(&mut self, path: &impl Path<4>) {
         self.e1.path(path);
         self.stroke.iter_mut().flatten().for_each(|peak| peak.path(path));
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.e1.steps(steps);
+        self.stroke.iter_mut().flatten().for_each(|peak| peak.steps(steps));
     }
     fn satisfied(&self) -> bool {
         Observer::<4>::satisfied(&self.e1)
