@@ -46,6 +46,10 @@ verify RESULTS *OPTIONS:
 simulate STUDY="studies/ssvi.json" *OPTIONS:
     {{retune}} simulate {{STUDY}} {{OPTIONS}}
 
+# Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-band.json`
+evaluate STUDY *OPTIONS:
+    {{retune}} evaluate {{STUDY}} {{OPTIONS}}
+
 # Make every table and figure of the paper, on one page: results/paper/index.html
 reproduce *OPTIONS:
     {{retune}} reproduce {{OPTIONS}}
@@ -137,6 +141,11 @@ accuracy-external:
 # Where methods fail, and how, into results/stability
 stability:
     cargo run --release -p retune-peers --bin stability
+
+# SciPy's optimisers beside Retune's own searches on the same objectives (needs numpy and scipy for python3), into results/rivals
+rivals *PROBLEMS:
+    cargo build --release --package retune
+    python3 tests/reference/rivals.py target/release/retune {{PROBLEMS}}
 
 # Test the comparison itself, every cell of the atlas among it; `just test-peers --features integrators` with the peers
 test-peers *OPTIONS:

@@ -107,6 +107,41 @@ fn exact_bare_peak_is_that_of_the_text_books() {
     assert!((worst.value / (0.5 * SSVI.k1 * amplitude * amplitude) - 1.0).abs() < 1e-12);
 }
 
+/// Den Hartog (Mechanical Vibrations, 4th ed. 1956, section 3.3): without damping of the structure all curves of |X1| pass through
+/// two points, whatever c2 is; at f = 1/(1 + μ) both are as high as √(1 + 2/μ) P/k1. His ζ = √(3μ/8(1 + μ)) makes the curve
+/// nearly flat there: its largest is above by a share of order μ at most.
+#[test]
+fn exact_fixed_points_of_den_hartog() {
+    for mu in [1e-3, 1e-2, 0.06, 0.5_f64] {
+        let f = 1.0 / (1.0 + mu);
+        let natural = (TMD.k1 / TMD.m1).sqrt();
+        let (m2, damper_frequency) = (mu * TMD.m1, f * natural);
+        let system = |zeta: f64| -> Coupled {
+            let (k2, c2) = (m2 * damper_frequency * damper_frequency, 2.0 * m2 * damper_frequency * zeta);
+            Numbers { c1: 0.0, m2, k2, c2, ..TMD }.coupled()
+        };
+        let height = (1.0 + 2.0 / mu).sqrt() * TMD.p / TMD.k1;
+        let spring = 0.5 * TMD.k1 * height * height;
+        // At this f: g² = (1 ∓ √(μ/(2 + μ))) / (1 + μ).
+        let squares = [-1.0, 1.0].map(|sign| (1.0 + sign * (mu / (2.0 + mu)).sqrt()) * f);
+        for g2 in squares {
+            for zeta in [1e-3, 0.1, 0.3, 2.0] {
+                let steady = system(zeta).steady(g2.sqrt() * natural);
+                assert!((steady.x1.norm() / height - 1.0).abs() < 1e-9, "{mu} {g2} {zeta}");
+                // Below √(k1/m1) E1max is the spring's, above it the mass's: there it is g² as much, so that his tuning, which
+                // levels displacements, does not level energies.
+                assert!((steady.e1_max / (spring * g2.max(1.0)) - 1.0).abs() < 1e-9, "{mu} {g2} {zeta}");
+            }
+        }
+        let best = system((3.0 * mu / (8.0 * (1.0 + mu))).sqrt());
+        let band = [0.5 * natural, 2.0 * natural];
+        let share = best.steady_displacement_max(band).value / height - 1.0;
+        assert!((0.0..0.1 * mu).contains(&share), "{mu} {share}");
+        let share = best.steady_e1_max(band).value / (spring * squares[1].max(1.0)) - 1.0;
+        assert!((0.0..mu).contains(&share), "{mu} {share}");
+    }
+}
+
 /// The exact H∞ optimum of the displacement of an undamped structure (O. Nishihara & T. Asami, J. Vib. Acoust. 124, 576, 2002,
 /// the exact solution that Den Hartog's formulas approximate): its height, and that no design beside it is lower.
 #[test]

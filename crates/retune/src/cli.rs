@@ -30,6 +30,8 @@ pub enum Command {
     Certify(Certify),
     /// Run one scene and say what happened
     Simulate(Simulate),
+    /// Read designs from standard input, one a line, and answer each with the value that `optimize` makes small
+    Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
     /// Tune both dampers anew for other stiffnesses k1 of the structure, and show how long a tuning lasts
@@ -225,6 +227,16 @@ pub struct Simulate {
     /// Time between two rows of the trajectory, s
     #[arg(long, value_name = "S", default_value_t = 0.005, requires = "trajectory")]
     pub interval: f64,
+}
+
+/// `evaluate`.
+#[derive(Debug, Args)]
+pub struct Evaluate {
+    /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C
+    pub study: PathBuf,
+    /// Threads of the runs of a value; the values are the same for any number [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 }
 
 fn stiffness(text: &str) -> Result<Setting, SettingError> {

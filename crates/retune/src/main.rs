@@ -4,6 +4,7 @@ mod certify;
 mod check;
 mod cli;
 mod error;
+mod evaluate;
 mod figure;
 mod interrupt;
 mod optimize;
@@ -40,6 +41,7 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Verify(arguments) => verify::command(&arguments),
         Command::Certify(arguments) => certify::command(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Evaluate(arguments) => evaluate::evaluate(&arguments),
         Command::Table2(arguments) => tables::table2(&arguments),
         Command::Retune(arguments) => retention::retune(&arguments),
         Command::Reproduce(arguments) => paper::reproduce(&arguments),

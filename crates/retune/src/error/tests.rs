@@ -2,6 +2,7 @@
 //! `RETUNE_WORDS=write cargo test -p retune words` writes the file anew.
 
 use super::*;
+use crate::evaluate::LineError;
 use crate::study::read::StudyError;
 use retune_model::{OutOfRange, Positive};
 use retune_optim::{AxisError, Bounds, GridError, Variable};
@@ -121,6 +122,14 @@ fn unusable() -> Vec<Unusable> {
     ]
 }
 
+fn lines() -> Vec<LineError> {
+    vec![
+        LineError::Count { found: 1, wanted: vec![Variable::K2, Variable::C2] },
+        LineError::Number { variable: Variable::K2, text: "soft".into() },
+        LineError::Unusable(Unusable::Run(SolverError::NonFinite { t: 1.5 })),
+    ]
+}
+
 fn errors() -> Vec<Error> {
     let path = PathBuf::from("results/ssvi");
     let full = || std::io::Error::from(ErrorKind::StorageFull);
@@ -173,6 +182,7 @@ fn regress_the_words_of_every_error() {
             NotAllowed SumAndMore NoEnd),
         each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Touches),
         each!(solvers(), SolverError: StepTooSmall TooManySteps Implausible NonFinite),
+        each!(lines(), LineError: Count Number Unusable),
     ]
     .concat();
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/error/words.txt");
