@@ -24,6 +24,8 @@ use std::path::{Path, PathBuf};
 const ROOM: f64 = 0.99;
 /// E1max that differs by less than this share is the same.
 const SAME: f64 = 0.01;
+/// The verdict of a damper that no search found.
+const GIVEN: &str = "of the study";
 
 /// A design, looked at on the samples of the study of fronts.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +123,7 @@ impl Fronts {
             let (name, study) = fronts.plan.dampers[damper].clone();
             if let Some(place) = study.scene.damper {
                 let at = Variable::ALL.map(|variable| variable.get(&place));
-                fronts.given.extend(fronts.look(damper, at, ""));
+                fronts.given.extend(fronts.look(damper, at, GIVEN));
             }
             for sweep in Sweep::ALL {
                 for bound in fronts.plan.values(sweep) {
@@ -192,7 +194,8 @@ impl Fronts {
     fn rows(&self, sweep: Sweep) -> Vec<Row<'_>> {
         let row = |bound: f64, damper: usize| {
             let kept = |design: &&Design| design.damper == damper && design.excess(sweep, bound) == 0.0;
-            let design = self.designs.iter().filter(kept).min_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
+            let all = self.designs.iter().chain(&self.given);
+            let design = all.filter(kept).min_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
             Row { sweep, bound, damper, design }
         };
         let dampers = 0..self.plan.dampers.len();
@@ -224,9 +227,14 @@ impl Fronts {
         let mut gains: Vec<(f64, Row, Option<f64>)> = Vec::new();
         for row in Sweep::ALL.into_iter().flat_map(|sweep| self.rows(sweep)).filter(|row| row.damper > 0) {
             let rival = self.rival(&row);
-            let Some(design) = row.design.filter(|design| design.force > 0.0) else { continue };
+            let Some(design) = row.design.filter(|design| design.force > 0.0 && design.verdict != GIVEN)
+            else {
+                continue;
+            };
             let share = rival.map_or(0.0, |rival| design.e1_max / rival);
-            if share < 1.0 - SAME && gains.iter().all(|(_, other, _)| !other.design.is_some_and(|other| other.is_like(design))) {
+            if share < 1.0 - SAME
+                && gains.iter().all(|(_, other, _)| !other.design.is_some_and(|other| other.is_like(design)))
+            {
                 gains.push((share, row, rival));
             }
         }
