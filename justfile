@@ -38,6 +38,10 @@ table2 *OPTIONS:
 retune *K1:
     {{retune}} retune {{K1}}
 
+# What the SSVI NES is good for: the best of each damper under bounds on k2 and on the stroke, into results/fronts
+fronts STUDY="studies/fronts.json" *OPTIONS:
+    {{retune}} fronts {{STUDY}} {{OPTIONS}}
+
 # Whether results hold: runs a sample of their rows again, for instance `just verify results/ssvi --sample 100`
 verify RESULTS *OPTIONS:
     {{retune}} verify {{RESULTS}} {{OPTIONS}}
@@ -70,6 +74,7 @@ check STUDY:
 schema:
     {{retune}} schema study > studies/study.schema.json.tmp && mv studies/study.schema.json.tmp studies/study.schema.json
     {{retune}} schema table2 > studies/table2.schema.json.tmp && mv studies/table2.schema.json.tmp studies/table2.schema.json
+    {{retune}} schema fronts > studies/fronts.schema.json.tmp && mv studies/fronts.schema.json.tmp studies/fronts.schema.json
     {{retune}} schema paper > studies/paper.schema.json.tmp && mv studies/paper.schema.json.tmp studies/paper.schema.json
 
 # Run all tests

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::optimize::log::{joined, short};
 use crate::paper::Plan;
 use crate::screen::Screen;
-use crate::study::{self, Part, Response, Search, Study};
+use crate::study::{self, Part, Response, Search, Study, Sweep};
 use retune_optim::Limit;
 use std::path::Path;
 
@@ -17,6 +17,15 @@ pub fn check(path: &Path) -> Result<(), Error> {
     if study::is_table2(path)? {
         for row in study::read_table2(path)? {
             screen.line(format!("{}: {}", row.damper, describe(&row.study)))?;
+        }
+    } else if study::is_fronts(path)? {
+        let plan = study::read_fronts(path)?;
+        for (damper, study) in &plan.dampers {
+            screen.line(format!("{damper}: {}", describe(study)))?;
+        }
+        for sweep in Sweep::ALL {
+            let values = joined(&plan.values(sweep), ", ");
+            screen.line(format!("each for {} at most {values} {}", sweep.name(), sweep.unit()))?;
         }
     } else if study::is_paper(path)? {
         Plan::read(path, screen)?;

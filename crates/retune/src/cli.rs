@@ -36,6 +36,8 @@ pub enum Command {
     Table2(Table2),
     /// Tune both dampers anew for other stiffnesses k1 of the structure, and show how long a tuning lasts
     Retune(Retune),
+    /// Tune dampers under ever looser bounds on k2 and on the stroke, and draw what each is good for
+    Fronts(Fronts),
     /// Make every table and figure of the paper, on one page beside what the paper says
     Reproduce(Reproduce),
     /// Make one figure of the paper
@@ -81,6 +83,8 @@ pub enum Kind {
     Study,
     /// The paper's Table 2
     Table2,
+    /// What dampers are good for
+    Fronts,
     /// The whole paper
     Paper,
 }
@@ -197,6 +201,17 @@ pub struct Retune {
     #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
     pub study: PathBuf,
     /// How the search is run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// `fronts`.
+#[derive(Debug, Args)]
+pub struct Fronts {
+    /// The study file
+    #[arg(default_value = "studies/fronts.json")]
+    pub study: PathBuf,
+    /// How the searches are run.
     #[command(flatten)]
     pub running: Running,
 }

@@ -6,6 +6,7 @@ mod cli;
 mod error;
 mod evaluate;
 mod figure;
+mod fronts;
 mod interrupt;
 mod optimize;
 mod paper;
@@ -44,12 +45,14 @@ fn run(command: Command) -> Result<(), Error> {
         Command::Evaluate(arguments) => evaluate::evaluate(&arguments),
         Command::Table2(arguments) => tables::table2(&arguments),
         Command::Retune(arguments) => retention::retune(&arguments),
+        Command::Fronts(arguments) => fronts::fronts(&arguments),
         Command::Reproduce(arguments) => paper::reproduce(&arguments),
         Command::Figure { number, paper } => paper::one(&format!("figure{number}"), &paper),
         Command::Table { number, paper } => paper::one(&format!("table{number}"), &paper),
         Command::Check { study } => check::check(&study),
         Command::Schema { kind: Kind::Study } => print_schema(&schemars::schema_for!(study::Study)),
         Command::Schema { kind: Kind::Table2 } => print_schema(&schemars::schema_for!(study::Table2)),
+        Command::Schema { kind: Kind::Fronts } => print_schema(&schemars::schema_for!(study::Fronts)),
         Command::Schema { kind: Kind::Paper } => print_schema(&schemars::schema_for!(paper::PaperPlan)),
         Command::Completions { shell } => print_completions(shell),
     }

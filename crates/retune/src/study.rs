@@ -5,6 +5,7 @@
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod explain;
+mod fronts;
 mod global;
 mod objective;
 pub mod read;
@@ -14,6 +15,7 @@ mod set;
 mod table2;
 mod words;
 
+pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, is_fronts, read_fronts};
 pub use global::GlobalSearch;
 pub use objective::{LimitsGiven, Objective, Part, Response};
 pub use read::{StudyError, read, read_paper};

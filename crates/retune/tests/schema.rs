@@ -13,7 +13,7 @@ fn committed(name: &str) -> Value {
 #[test]
 fn exact_committed_schemas_are_current() {
     let desk = Desk::new();
-    for kind in ["study", "table2", "paper"] {
+    for kind in ["study", "table2", "paper", "fronts"] {
         let printed = desk.good(&["schema", kind]);
         let file = std::fs::read_to_string(studies().join(format!("{kind}.schema.json"))).expect("a schema");
         assert_eq!(printed, file, "run `just schema`");

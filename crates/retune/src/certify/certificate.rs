@@ -142,6 +142,24 @@ pub struct Short {
     exponent: f64,
 }
 
+impl Verdict {
+    /// Its word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Robust => "robust",
+            Self::Sharp => "sharp",
+            Self::Draw => "draw",
+        }
+    }
+}
+
+impl Short {
+    /// The verdict.
+    pub fn verdict(&self) -> Verdict {
+        self.verdict
+    }
+}
+
 impl Motion {
     pub(super) fn new(regime: &Regime) -> Self {
         let periods = match (regime.kind, regime.period) {

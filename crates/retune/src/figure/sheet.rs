@@ -57,6 +57,7 @@ pub struct Chart {
 }
 
 /// How a line or an area of the legend looks.
+#[derive(Clone, Copy, Debug)]
 pub enum Key {
     /// A line.
     Line(&'static str, &'static str),

@@ -168,6 +168,11 @@ impl Optimum {
         Found { design: [m2, k2, c2, d, c], e1_max: self.e1_max }
     }
 
+    /// The verdict of its certificate.
+    pub fn verdict(&self) -> &'static str {
+        self.certificate.verdict().name()
+    }
+
     /// The design at which the best refinement started.
     pub fn start(&self) -> Found {
         self.start

@@ -142,7 +142,7 @@ pub fn is_paper(path: &Path) -> Result<bool, StudyError> {
 }
 
 /// Whether a file is JSON with this field at its top.
-fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
+pub(super) fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
     let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
     Ok(json.is_ok_and(|json| json.get(field).is_some()))
 }
