@@ -69,6 +69,17 @@ impl Bare {
         0.5 * (self.m1 * v1 * v1 + self.k1 * x1 * x1)
     }
 
+    /// Largest growth of `√(2E)`, `P / √m1`, √J/s, with `E` the mechanical energy of the structure and of whatever hangs on it: the
+    /// power of the force is at most `P |v1| <= P √(2E / m1)`, and all else only takes energy.
+    pub fn energy_norm_growth(&self) -> f64 {
+        self.p / self.m1.sqrt()
+    }
+
+    /// The most energy that the force can give from rest on in `t` seconds, J: `(P t)² / (2 m1)`, see [`Self::energy_norm_growth`].
+    pub fn most_energy(&self, t: f64) -> f64 {
+        0.5 * (self.energy_norm_growth() * t).powi(2)
+    }
+
     /// `[E1, dE1/dt, d²E1/dt²]` in J, W, W/s.
     ///
     /// With `G` the sum of all forces on the PS but its spring, `dE1/dt = v1 (m1 a1 + k1 x1) = v1 G` and

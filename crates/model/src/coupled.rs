@@ -139,9 +139,9 @@ impl Coupled {
         (2.0 * self.bare.primary_energy(x1, v1) + self.m2 * v2 * v2 + self.k2 * stretch * stretch).sqrt()
     }
 
-    /// Largest growth of [`Self::energy_norm`], `P / √m1`, √J/s.
+    /// Largest growth of [`Self::energy_norm`], √J/s; see [`Bare::energy_norm_growth`].
     pub fn energy_norm_growth(&self) -> f64 {
-        self.bare.p / self.bare.m1.sqrt()
+        self.bare.energy_norm_growth()
     }
 
     /// The largest `|row · (y - y0)|` over all states of energy norm 1 (the dual norm); infinite if `row` weighs a coordinate

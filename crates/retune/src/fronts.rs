@@ -181,9 +181,7 @@ impl Fronts {
     fn finer(&self, damper: usize, at: [f64; 4]) -> Option<Study> {
         let (_, study) = self.plan.dampers.get(damper)?;
         let mut study = study.clone();
-        for (name, value) in ["k2", "c2", "D", "C"].into_iter().zip(at) {
-            study.scene = study.scene_with(&Setting::new(name, value)).ok()?;
-        }
+        study.scene = study.scene_with(&Setting::design(at)).ok()?;
         if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
             band.samples = self.plan.said.samples;
         }

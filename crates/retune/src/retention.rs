@@ -162,12 +162,7 @@ impl Tuned {
     fn scene(&self, k1: f64) -> Option<Scene> {
         let (_, Found { design: [_, k2, c2, d, c], .. }) =
             self.designs.iter().find(|(other, _)| *other == k1)?;
-        let set = [("k2", *k2), ("c2", *c2), ("D", *d), ("C", *c)];
-        let mut study = self.study.clone();
-        for (name, value) in set {
-            study.scene = study.scene_with(&Setting::new(name, value)).ok()?;
-        }
-        Some(study.scene)
+        self.study.scene_with(&Setting::design([*k2, *c2, *d, *c])).ok()
     }
 
     /// E1max of the design for a stiffness at it, J, if it is one of those tuned for.

@@ -1,7 +1,8 @@
 //! What a run gave: one type, from which JSON and text are made.
 
 use crate::study::{Objective, Solver, Span, Study};
-use retune_model::{Scene, energy_ratios};
+use retune_model::{Damper, Scene, energy_ratios};
+use retune_optim::Variable;
 use retune_solver::{Response, SceneKind};
 use serde::Serialize;
 
@@ -32,6 +33,26 @@ pub struct Summary {
     rejected: u64,
     evaluations: u64,
     parameters: Scene,
+}
+
+/// A damper as in the paper's Table 2, SI units.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Design {
+    pub m2: f64,
+    pub k2: f64,
+    pub c2: f64,
+    #[serde(rename = "D")]
+    pub d: f64,
+    #[serde(rename = "C")]
+    pub c: f64,
+}
+
+impl Design {
+    /// That of a damper.
+    pub fn new(damper: &Damper) -> Self {
+        let [k2, c2, d, c] = Variable::ALL.map(|variable| variable.get(damper));
+        Self { m2: damper.mass.get(), k2, c2, d, c }
+    }
 }
 
 /// What made a result.

@@ -1,4 +1,5 @@
-//! Instructions of a run of 100 s, counted by valgrind: the same on a busy machine as on a quiet one. `just bench-instructions`.
+//! Instructions of a run of 100 s, counted by valgrind: the same on a busy machine as on a quiet one; and the least time of many.
+//! `just bench-instructions`.
 //!
 //! The program runs itself under callgrind, with many runs and with few; the difference is that of the runs alone.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
@@ -10,6 +11,7 @@ use retune_solver::{Settings, Window, e1_max};
 use scenes::{Numbers, ROW3, SSVI, TMD};
 use std::hint::black_box;
 use std::process::Command;
+use std::time::Instant;
 
 const WHOLE: Window = Window { from: 0.0, to: 100.0 };
 const SCENES: [(&str, Numbers); 3] = [("SSVI, Table 2", SSVI), ("SSVI, Table 1 row 3", ROW3), ("TMD", TMD)];
@@ -17,6 +19,8 @@ const RTOLS: [f64; 3] = [1e-6, 1e-9, 1e-10];
 /// The two numbers of runs whose difference is taken. The first run of a program also computes the rules for contacts.
 const FEW: u64 = 2;
 const MANY: u64 = 12;
+/// Runs of which the least time is taken.
+const TIMED: u32 = 3000;
 
 fn value(scene: usize, rtol: f64) -> f64 {
     let settings = Settings { rtol, ..Settings::default() };
@@ -38,7 +42,7 @@ fn main() {
         }
         return;
     }
-    println!("{:<22}{:>8}{:>14}{:>14}", "scene", "rtol", "error", "instructions");
+    println!("{:<22}{:>8}{:>10}{:>14}{:>14}", "scene", "rtol", "error", "instructions", "least, us");
     for (scene, (name, _)) in SCENES.iter().enumerate() {
         let converged = value(scene, 1e-12);
         for (number, rtol) in RTOLS.into_iter().enumerate() {
@@ -46,7 +50,8 @@ fn main() {
             match (count(scene, number, FEW), count(scene, number, MANY)) {
                 (Ok(few), Ok(many)) => {
                     let each = (many - few) / (MANY - FEW);
-                    println!("{name:<22}{rtol:>8e}{error:>14.0e}{each:>14}");
+                    let least = 1e6 * least_time(scene, rtol);
+                    println!("{name:<22}{rtol:>8e}{error:>10.0e}{each:>14}{least:>14.1}");
                 }
                 (Err(reason), _) | (_, Err(reason)) => {
                     println!("callgrind could not count (is valgrind installed?): {reason}");
@@ -55,6 +60,16 @@ fn main() {
             }
         }
     }
+}
+
+/// The least time of many runs, s.
+fn least_time(scene: usize, rtol: f64) -> f64 {
+    let timed = |_| {
+        let begun = Instant::now();
+        black_box(value(scene, rtol));
+        begun.elapsed().as_secs_f64()
+    };
+    (0..TIMED).map(timed).fold(f64::INFINITY, f64::min)
 }
 
 /// Instructions of this program when it makes `runs` runs.

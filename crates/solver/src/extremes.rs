@@ -1,7 +1,7 @@
 //! The largest values of a run beside E1max: those that limits are set on, from any phase of the force, in a window or once the
 //! motion has settled. Only what is asked for is looked at.
 
-use crate::follow::{follow_bare_from, follow_coupled_from};
+use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
 use crate::observe::{Observer, Path, Peak, Quantity, Segment, Unobserved};
 use crate::plausible;
@@ -80,13 +80,13 @@ pub fn extremes(
             let system = Bare::new(&scene.primary, &scene.forcing);
             let mut peak =
                 Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), ask.cutoff);
-            follow_bare_from(&system, start, later, settings, &mut Unobserved, &mut peak)?;
+            follow_bare(&system, start, later, settings, &mut Unobserved, &mut peak)?;
             Extremes { e1_max: peak.record(), stroke: 0.0, force: 0.0, settled: true }
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
             let mut peaks = peaks(&system, ask);
-            follow_coupled_from(&system, start, later, settings, &mut Unobserved, &mut peaks)?;
+            follow_coupled(&system, start, later, settings, &mut Unobserved, &mut peaks)?;
             peaks.extremes(&system)
         }
     };
@@ -136,7 +136,7 @@ pub fn settled(
                 return Ok(closed(steady.e1_max, steady.stroke()));
             }
             let mut blocks = Blocks::new(timing, || peaks(&system, ask), |peaks| peaks.extremes(&system));
-            follow_coupled_from(&system, start, whole, settings, &mut Unobserved, &mut blocks)?;
+            follow_coupled(&system, start, whole, settings, &mut Unobserved, &mut blocks)?;
             blocks.verdict()
         }
     };

@@ -13,38 +13,43 @@ use retune_model::{Bare, Coupled};
 /// The state at the end of a run, and what it cost.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// Follows the bare structure from rest: `before` sees the motion to the window, `observer` that inside it.
+/// Follows the bare structure from rest at `start` (s) on: `before` sees the motion to the window, `observer` that inside it.
 pub fn follow_bare(
     system: &Bare,
+    start: f64,
     window: Window,
     settings: &Settings,
     before: &mut impl Observer<2>,
     observer: &mut impl Observer<2>,
 ) -> Followed<2> {
     if settings.method != Method::Hybrid {
-        return general(system, 0.0, system.rest(), window, settings, before, observer);
+        return general(system, start, system.rest(), window, settings, before, observer);
     }
-    let mut free = Free::new(system, window.to, settings.max_steps);
-    free.propagate(window.from, before)?;
+    let mut free = Free::new(system, window.to, settings.max_steps).started(start);
+    if window.from > start {
+        free.propagate(window.from, before)?;
+    }
     free.propagate(window.to, observer)?;
     Ok((free.state(), free.work))
 }
 
-/// Follows a structure and its damper from rest: `before` sees the motion to the window, `observer` that inside it.
+/// Follows a structure and its damper from rest at `start` (s) on: `before` sees the motion to the window, `observer` that inside
+/// it.
 #[inline(always)]
 pub fn follow_coupled(
     system: &Coupled,
+    start: f64,
     window: Window,
     settings: &Settings,
     before: &mut impl Observer<4>,
     observer: &mut impl Observer<4>,
 ) -> Followed<4> {
     if settings.method != Method::Hybrid {
-        return general(system, 0.0, system.rest(), window, settings, before, observer);
+        return general(system, start, system.rest(), window, settings, before, observer);
     }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-    let start = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
-    let middle = if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
+    let rest = Motion { t: start, y: system.rest(), phase: Phase::Flight };
+    let middle = if window.from > start { hybrid.propagate(rest, window.from, before)? } else { rest };
     let end = hybrid.propagate(middle, window.to, observer)?;
     Ok((end.y, hybrid.work))
 }
@@ -83,43 +88,4 @@ fn one_step<M: OneStep<N>, S: System<N>, B: Observer<N>, O: Observer<N>, const N
 ) -> Result<(), SolverError> {
     run.integrate::<M>(window.from, before)?;
     run.integrate::<M>(window.to, observer)
-}
-
-/// As [`follow_bare`], from rest at `start` (s) on.
-pub fn follow_bare_from(
-    system: &Bare,
-    start: f64,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<2>,
-    observer: &mut impl Observer<2>,
-) -> Followed<2> {
-    if settings.method != Method::Hybrid {
-        return general(system, start, system.rest(), window, settings, before, observer);
-    }
-    let mut free = Free::new(system, window.to, settings.max_steps).started(start);
-    if window.from > start {
-        free.propagate(window.from, before)?;
-    }
-    free.propagate(window.to, observer)?;
-    Ok((free.state(), free.work))
-}
-
-/// As [`follow_coupled`], from rest at `start` (s) on.
-pub fn follow_coupled_from(
-    system: &Coupled,
-    start: f64,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<4>,
-    observer: &mut impl Observer<4>,
-) -> Followed<4> {
-    if settings.method != Method::Hybrid {
-        return general(system, start, system.rest(), window, settings, before, observer);
-    }
-    let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-    let rest = Motion { t: start, y: system.rest(), phase: Phase::Flight };
-    let middle = if window.from > start { hybrid.propagate(rest, window.from, before)? } else { rest };
-    let end = hybrid.propagate(middle, window.to, observer)?;
-    Ok((end.y, hybrid.work))
 }

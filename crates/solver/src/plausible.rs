@@ -1,16 +1,16 @@
 //! What no motion can do: the last look at a run before its numbers are believed.
 
 use crate::settings::{Extreme, Method, Response, Settings, SolverError, Window};
-use retune_model::Scene;
+use retune_model::{Bare, Scene};
 
 /// Rounding that the bound on the energy is given.
 const SLACK: f64 = 1e-6;
 
 /// Passes on a largest energy of the primary structure that can be.
 ///
-/// From rest, the power of the force is at most P √(2E/m1), so that the energy of the whole is at most (P t)²/(2 m1) after a
-/// time t. A run of the exact method that has more has lost its digits to parameters too far apart; the other methods are not
-/// held to it, for what they make of energy at a fixed step or a loose tolerance is their own.
+/// A run of the exact method that has more than the force can give (see [`Bare::most_energy`]) has lost its digits to parameters too
+/// far apart; the other methods are not held
+/// to it, for what they make of energy at a fixed step or a loose tolerance is their own.
 ///
 /// # Errors
 /// [`SolverError::NonFinite`], [`SolverError::Implausible`].
@@ -37,7 +37,7 @@ pub fn energy(
 
 /// The most energy that the force can give in a run, J.
 fn most(scene: &Scene, window: Window) -> f64 {
-    (scene.forcing.amplitude.get() * window.to).powi(2) / (2.0 * scene.primary.mass.get())
+    Bare::new(&scene.primary, &scene.forcing).most_energy(window.to)
 }
 
 /// Passes on a response of which every number is finite and the energy can be.

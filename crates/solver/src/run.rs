@@ -43,7 +43,7 @@ fn largest_energy(
                 let steady = system.steady(system.frequency()).e1_max;
                 return Free::new(&system, window.to, settings.max_steps).e1_max(window, peak, steady);
             }
-            follow_bare(&system, window, settings, &mut Unobserved, &mut peak)?;
+            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
             Ok(peak.record())
         }
         Some(damper) => {
@@ -55,7 +55,7 @@ fn largest_energy(
                     return free.e1_max(window, peak, system.steady(system.bare().frequency()).e1_max);
                 }
             }
-            follow_coupled(&system, window, settings, &mut Unobserved, &mut peak)?;
+            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
             Ok(peak.record())
         }
     }
@@ -80,7 +80,7 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
     let mut peak =
         Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), f64::INFINITY);
-    let (state, work) = follow_bare(system, window, settings, &mut Unobserved, &mut peak)?;
+    let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
     Ok(Response {
         e1_max: peak.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
@@ -104,7 +104,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
         nearest: Peak::new(stroke(-1.0), f64::INFINITY),
         touches: Touches::default(),
     };
-    let (final_state, work) = follow_coupled(system, window, settings, &mut before, &mut seen)?;
+    let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
     let (nearest, farthest) = (-seen.nearest.record().value, seen.farthest.record().value);
     let force = |side: Side, z: f64| hertz_force(system.hertz(side), z);
     let force_max =
@@ -185,7 +185,7 @@ pub fn touch_downs(
     let mut times = Times::default();
     if let Some(damper) = &scene.damper {
         let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-        follow_coupled(&system, window, settings, &mut Unobserved, &mut times)?;
+        follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut times)?;
     }
     Ok(times.0)
 }
@@ -242,7 +242,7 @@ pub fn trajectory(
                 });
             };
             let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
-            follow_bare(&system, window, settings, &mut Unobserved, &mut recorder)?;
+            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
@@ -256,7 +256,7 @@ pub fn trajectory(
                 });
             };
             let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
-            follow_coupled(&system, window, settings, &mut Unobserved, &mut recorder)?;
+            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
         }
     }
     Ok(())

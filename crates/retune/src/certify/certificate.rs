@@ -4,9 +4,9 @@ mod text;
 
 use crate::optimize::log::short;
 use crate::study::Study;
-use crate::summary::MadeBy;
+use crate::summary::{Design, MadeBy};
 use retune_atlas::{Kind, Regime};
-use retune_optim::{Evaluation, Variable};
+use retune_optim::Evaluation;
 use retune_solver::Method;
 use serde::Serialize;
 
@@ -47,18 +47,6 @@ pub struct Certificate {
     motion: Motion,
     sensitivity: Vec<Sensitivity>,
     neighbourhood: Neighbourhood,
-}
-
-/// A damper as in the paper's Table 2.
-#[derive(Clone, Copy, Debug, Serialize)]
-struct Design {
-    m2: f64,
-    k2: f64,
-    c2: f64,
-    #[serde(rename = "D")]
-    d: f64,
-    #[serde(rename = "C")]
-    c: f64,
 }
 
 /// A verdict.
@@ -223,15 +211,12 @@ impl Certificate {
         neighbourhood: Neighbourhood,
         motion: Motion,
     ) -> Self {
-        let get = |variable: Variable| study.scene.damper.map_or(0.0, |damper| variable.get(&damper));
-        let [k2, c2, d, c] = Variable::ALL.map(get);
-        let m2 = study.scene.damper.map_or(0.0, |damper| damper.mass.get());
         let off = |rung: &Rung| (rung.e1_max - worst_run.e1_max).abs();
         let missed = finer.map_or(0.0, |finer| (finer - own.energy).abs());
         let error_bar = ladder.iter().map(off).fold(missed, f64::max);
         let mut certificate = Self {
             made_by,
-            design: Design { m2, k2, c2, d, c },
+            design: study.scene.damper.as_ref().map(Design::new).unwrap_or_default(),
             e1_max: own.energy,
             error_bar,
             predictable: error_bar <= PREDICTABLE * worst_run.e1_max,

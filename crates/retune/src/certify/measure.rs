@@ -97,7 +97,7 @@ fn sensitivities(study: &Study, goal: &Goal, settings: &Settings) -> Vec<Sensiti
         .par_iter()
         .flat_map(|&(name, value)| ERRORS.par_iter().map(move |error| (name, value * (1.0 + error))))
         .map(|(name, value)| {
-            let scene = study.scene_with(&Setting::new(name, value));
+            let scene = study.scene_with(&[Setting::new(name, value)]);
             scene.map_or(f64::INFINITY, |scene| energy(goal.evaluate(&scene, settings, f64::INFINITY)))
         })
         .collect();

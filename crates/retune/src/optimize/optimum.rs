@@ -8,9 +8,8 @@ use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::certify::Short;
 use crate::study::{PerVariable, Search, Study};
-use crate::summary::{MadeBy, Summary};
+use crate::summary::{Design, MadeBy, Summary};
 use notes::{Goal, LimitNote};
-use retune_model::Damper;
 use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Variable, energy};
 use serde::Serialize;
 
@@ -58,18 +57,6 @@ pub struct Found {
     pub design: [f64; 5],
     /// E1max, J.
     pub e1_max: f64,
-}
-
-/// A damper as in the paper's Table 2.
-#[derive(Clone, Copy, Debug, Serialize)]
-struct Design {
-    m2: f64,
-    k2: f64,
-    c2: f64,
-    #[serde(rename = "D")]
-    d: f64,
-    #[serde(rename = "C")]
-    c: f64,
 }
 
 /// The best point of the grid.
@@ -235,13 +222,6 @@ fn start(search: &Search, refined: &Refined) -> Found {
     let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
     let Design { m2, k2, c2, d, c } = Design::new(&damper);
     Found { design: [m2, k2, c2, d, c], e1_max: first.map_or(f64::NAN, |row| energy(row.value)) }
-}
-
-impl Design {
-    fn new(damper: &Damper) -> Self {
-        let [k2, c2, d, c] = super::surf::design(damper);
-        Self { m2: damper.mass.get(), k2, c2, d, c }
-    }
 }
 
 impl RunNote {

@@ -147,9 +147,7 @@ impl Known {
         self.lines += 1;
         Some(())
     }
-}
 
-impl Known {
     fn set_grid(&mut self, point: usize, value: f64) -> Option<()> {
         if point >= self.grid.len() {
             (point < MOST_GRID_POINTS).then(|| self.grid.resize(point + 1, f64::NAN))?;

@@ -63,6 +63,11 @@ impl Setting {
         Self { name, value }
     }
 
+    /// Sets k2, c2, D and C, in SI units.
+    pub fn design([k2, c2, d, c]: [f64; 4]) -> [Self; 4] {
+        [Self::new("k2", k2), Self::new("c2", c2), Self::new("D", d), Self::new("C", c)]
+    }
+
     /// The number that is set, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value
@@ -99,13 +104,13 @@ impl Study {
         Ok(study)
     }
 
-    /// The scene with one more setting. Bounds and other rules of the search are not looked at.
+    /// The scene with `settings` applied, first to last. Bounds and other rules of the search are not looked at.
     ///
     /// # Errors
-    /// The setting is refused.
-    pub fn scene_with(&self, setting: &Setting) -> Result<Scene, SettingError> {
+    /// The first setting that is refused.
+    pub fn scene_with(&self, settings: &[Setting]) -> Result<Scene, SettingError> {
         let mut study = self.clone();
-        study.set(setting)?;
+        settings.iter().try_for_each(|setting| study.set(setting))?;
         Ok(study.scene)
     }
 

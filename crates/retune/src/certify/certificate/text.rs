@@ -1,7 +1,8 @@
 //! A certificate as text.
 
-use super::{Certificate, Design, FINER, Motion, Neighbourhood, Rung, Sensitivity, Short, WorstRun};
+use super::{Certificate, FINER, Motion, Neighbourhood, Rung, Sensitivity, Short, WorstRun};
 use crate::optimize::log::short;
+use crate::summary::Design;
 
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
