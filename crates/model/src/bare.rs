@@ -80,6 +80,12 @@ impl Bare {
         0.5 * (self.energy_norm_growth() * t).powi(2)
     }
 
+    /// A bound on `|x1|`, m, over a stretch of so many seconds that ends at `x1` and on which the primary energy is at most `e1`:
+    /// `√(2 E1 / k1)`, or what speeds of at most `√(2 E1 / m1)` allow.
+    pub fn reach(&self, e1: f64, x1: f64, seconds: f64) -> f64 {
+        (2.0 * e1 / self.k1).sqrt().min(x1.abs() + (2.0 * e1 / self.m1).sqrt() * seconds)
+    }
+
     /// `[E1, dE1/dt, d²E1/dt²]` in J, W, W/s.
     ///
     /// With `G` the sum of all forces on the PS but its spring, `dE1/dt = v1 (m1 a1 + k1 x1) = v1 G` and

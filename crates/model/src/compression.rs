@@ -104,12 +104,14 @@ impl Compression {
         [(self.sign * resisting - push(1)) - self.sign * drive, (self.sign * push(0) - resisting) + drive]
     }
 
-    /// How large the terms are whose sum accelerates the PS away from contact, m/s²: that sum is rounded at their size.
-    pub fn size_of_terms(&self, y: &Compressed) -> f64 {
-        let &[_, _, x1, v1, _] = y;
+    /// How large the terms are whose sum accelerates the PS, m/s²: that sum is rounded at their size.
+    pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &Compressed) -> f64 {
         self.primary[0] * self.cos[0].hypot(self.sin[0])
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()
+            + self.hertz[0] * q.abs().powi(3)
+            + self.dashpot[0] * w.abs()
+            + self.spring[0] * (q * q + self.stretch).abs()
     }
 
     /// Derivative with respect to `θ` of every component.

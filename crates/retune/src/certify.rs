@@ -8,7 +8,8 @@ pub use certificate::{Certificate, Short};
 use crate::cli;
 use crate::error::Error;
 use crate::optimize::{where_results_are, with_threads};
-use crate::results::{Directory, Identity};
+use crate::results::identity::study_text;
+use crate::results::{Directory, Identity, manifest};
 use crate::screen::Screen;
 use crate::study::{self, Rule, Study};
 use std::path::{Path, PathBuf};
@@ -21,15 +22,23 @@ pub const FILE: &str = "certificate.json";
 /// # Errors
 /// The input is wrong, the design cannot be run, or the certificate cannot be written.
 pub fn command(arguments: &cli::Certify) -> Result<(), Error> {
-    let (study, beside) = read(&arguments.design)?;
-    let out = arguments.running.out.clone().or(beside);
+    let (study, found_in) = read(&arguments.design)?;
+    // Beside the search that found the design, whose study and manifest stay.
+    let beside = found_in.is_some() && arguments.running.out.is_none();
+    let out = arguments.running.out.clone().or(found_in);
     let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
     let screen = Screen::new(arguments.running.quiet);
     with_threads(arguments.running.threads, || {
         let certificate = certify(&study)?;
         let identity = Identity::of_study(&study)?;
-        let results = Directory::open(&out, arguments.running.begin(), &identity, |name| name == FILE)?;
+        let is_ours =
+            move |name: &str| name == FILE || !beside && ["study.json", manifest::NAME].contains(&name);
+        let results = Directory::open(&out, arguments.running.begin(), &identity, is_ours)?;
         results.write_json(FILE, &certificate)?;
+        if !beside {
+            results.write("study.json", &study_text(&study)?)?;
+            manifest::write(identity, [study.solver], &results)?;
+        }
         results.finish()?;
         screen.line(&certificate)?;
         screen.line(where_results_are(&out)?)

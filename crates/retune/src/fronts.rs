@@ -10,13 +10,13 @@ mod page;
 use crate::certify::{Certificate, certify};
 use crate::cli;
 use crate::error::Error;
-use crate::optimize::log::short;
 use crate::optimize::{Found, optimize, where_results_are, with_threads};
-use crate::results::identity::{Identity, json_text, study_text};
-use crate::results::{Begin, Directory};
+use crate::results::resolved::{self, Resolved};
+use crate::results::{Begin, Directory, Identity, manifest};
 use crate::screen::Screen;
 use crate::study::{self, FrontsPlan, PerVariable, Setting, Study, Sweep};
-use retune_optim::{Goal, Limit, PerLimit, Variable, When};
+use retune_optim::{Evaluation, Goal, Limit, PerLimit, Variable, When};
+use serde_json::json;
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
@@ -77,11 +77,11 @@ pub fn fronts(arguments: &cli::Fronts) -> Result<(), Error> {
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/fronts"));
     let screen = Screen::new(running.quiet);
-    let mut text = json_text(&plan.said, "fronts.json")?;
-    for (_, study) in &plan.dampers {
-        text += &study_text(study)?;
-    }
-    let directory = Directory::open(&out, running.begin(), &Identity::of(&text), is_ours)?;
+    let dampers = plan.dampers.iter().map(|(name, study)| (name.as_str(), study));
+    let resolved = Resolved::new(json!(plan.said), dampers).text()?;
+    let solvers: Vec<_> = plan.dampers.iter().map(|(_, study)| study.solver).collect();
+    let identity = Identity::of(&resolved);
+    let directory = Directory::open(&out, running.begin(), &identity, is_ours)?;
     with_threads(running.threads, || {
         let (fronts, parts) = Fronts::search(plan, &out, running.begin(), screen)?;
         for sweep in Sweep::ALL {
@@ -95,6 +95,8 @@ pub fn fronts(arguments: &cli::Fronts) -> Result<(), Error> {
             directory.write_json(file, certificate)?;
         }
         directory.write("README.md", &page::page(&fronts, &certified))?;
+        directory.write(resolved::NAME, &resolved)?;
+        manifest::write(identity, solvers, &directory)?;
         directory.publish()?;
         parts.into_iter().try_for_each(Directory::finish)?;
         directory.finish()?;
@@ -104,9 +106,40 @@ pub fn fronts(arguments: &cli::Fronts) -> Result<(), Error> {
 }
 
 fn is_ours(name: &str) -> bool {
-    const NAMES: [&str; 7] =
-        ["k2.csv", "k2.svg", "stroke.csv", "stroke.svg", "front.csv", "front.svg", "README.md"];
+    const NAMES: [&str; 9] = [
+        "k2.csv",
+        "k2.svg",
+        "stroke.csv",
+        "stroke.svg",
+        "front.csv",
+        "front.svg",
+        "README.md",
+        resolved::NAME,
+        manifest::NAME,
+    ];
     NAMES.contains(&name) || (name.starts_with("certificate-") && name.ends_with(".json"))
+}
+
+/// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
+pub fn energy(study: &Study, samples: usize, at: [f64; 4]) -> Option<f64> {
+    Some(look(&finer(study, samples, at)?)?.energy)
+}
+
+/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
+fn finer(study: &Study, samples: usize, at: [f64; 4]) -> Option<Study> {
+    let mut study = study.clone();
+    study.scene = study.scene_with(&Setting::design(at)).ok()?;
+    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
+        band.samples = samples;
+    }
+    Some(study)
+}
+
+/// The worst of the scene of a study over its band; none where it cannot be run.
+fn look(study: &Study) -> Option<Evaluation> {
+    // Limits that no run reaches: they have stroke and force measured.
+    let goal = Goal { limits: PerLimit([Some(f64::MAX), Some(f64::MAX), None]), ..study.goal() };
+    goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }
 
 impl Fronts {
@@ -169,10 +202,7 @@ impl Fronts {
 
     /// A design on the samples of the study of fronts; none where it cannot be run.
     fn look(&self, damper: usize, at: [f64; 4], verdict: &'static str) -> Option<Design> {
-        let study = self.finer(damper, at)?;
-        // Limits that no run reaches: they have stroke and force measured.
-        let goal = Goal { limits: PerLimit([Some(f64::MAX), Some(f64::MAX), None]), ..study.goal() };
-        let found = goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()?;
+        let found = look(&self.finer(damper, at)?)?;
         let [stroke, force] = [Limit::Stroke, Limit::Force].map(|limit| found.reached.get(limit));
         Some(Design { damper, at, e1_max: found.energy, stroke, force, verdict })
     }
@@ -180,12 +210,7 @@ impl Fronts {
     /// The study of a damper with a design in its scene, its bands on the samples of the study of fronts.
     fn finer(&self, damper: usize, at: [f64; 4]) -> Option<Study> {
         let (_, study) = self.plan.dampers.get(damper)?;
-        let mut study = study.clone();
-        study.scene = study.scene_with(&Setting::design(at)).ok()?;
-        if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
-            band.samples = self.plan.said.samples;
-        }
-        Some(study)
+        finer(study, self.plan.said.samples, at)
     }
 
     /// The best designs under each bound, the dampers in their order under each.
@@ -294,9 +319,8 @@ impl Design {
     }
 
     fn fields(&self) -> String {
-        let [k2, c2, d, c] = self.at.map(short);
-        let [e1_max, stroke, force] = [self.e1_max, self.stroke, self.force].map(short);
-        format!("{e1_max},{k2},{c2},{d},{c},{stroke},{force},{}", self.verdict)
+        let Self { at: [k2, c2, d, c], e1_max, stroke, force, verdict, .. } = self;
+        format!("{e1_max},{k2},{c2},{d},{c},{stroke},{force},{verdict}")
     }
 }
 

@@ -3,7 +3,6 @@
 pub mod band;
 mod global;
 pub mod log;
-pub mod manifest;
 pub mod merge;
 mod optimum;
 pub mod pictures;
@@ -17,7 +16,7 @@ use crate::certify::{self, certify};
 use crate::cli;
 use crate::error::Error;
 use crate::results::identity::{Identity, study_text};
-use crate::results::{Begin, Directory, Journal};
+use crate::results::{Begin, Directory, Journal, manifest};
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
@@ -153,7 +152,7 @@ fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) ->
     if study.objective().omega.is_some() {
         band::write(study, design, results)?;
     }
-    manifest::write(Identity::of_study(study)?, study.solver, results)?;
+    manifest::write(Identity::of_study(study)?, [study.solver], results)?;
     Ok(optimum)
 }
 

@@ -21,8 +21,8 @@ pub use plan::{PaperPlan, Plan};
 
 use crate::cli::Reproduce;
 use crate::error::Error;
-use crate::optimize::{manifest, where_results_are, with_threads};
-use crate::results::{Directory, Identity};
+use crate::optimize::{where_results_are, with_threads};
+use crate::results::{Directory, Identity, manifest, resolved};
 use crate::screen::Screen;
 use item::Item;
 use std::path::PathBuf;
@@ -71,7 +71,8 @@ fn run(arguments: &Reproduce, only: Option<String>) -> Result<(), Error> {
     let is_ours = move |file: &str| {
         file == manifest::NAME || ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name))
     };
-    let identity = Identity::of(&plan.resolved()?);
+    let resolved = plan.resolved().text()?;
+    let identity = Identity::of(&resolved);
     let results = Directory::open(&out, running.begin(), &identity, is_ours)?;
     with_threads(running.threads, || {
         results.write_json("study.json", &plan.file)?;
@@ -84,8 +85,8 @@ fn run(arguments: &Reproduce, only: Option<String>) -> Result<(), Error> {
         }
         if is_page {
             results.write("index.html", &page::page(&made))?;
-            results.write(plan::RESOLVED, &plan.resolved()?)?;
-            manifest::write(identity, plan.ssvi.solver, &results)?;
+            results.write(resolved::NAME, &resolved)?;
+            manifest::write(identity, [plan.ssvi.solver, plan.tmd.solver], &results)?;
         }
         results.finish()?;
         screen.line(where_results_are(&out)?)

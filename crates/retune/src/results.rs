@@ -5,7 +5,9 @@
 pub mod identity;
 pub mod journal;
 mod lock;
+pub mod manifest;
 mod pending;
+pub mod resolved;
 
 pub use identity::{Identity, json_text};
 pub use journal::Journal;

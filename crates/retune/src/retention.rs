@@ -15,6 +15,7 @@ use crate::study::{self, PaperStudy, Setting, Study};
 use crate::tables::{Table, quoted};
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Stiffnesses between the smallest and the largest at which the retention is drawn, and those that were tuned for.
@@ -43,8 +44,9 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/retune"));
     let screen = Screen::new(running.quiet);
     const FILES: [&str; 3] = ["retention.csv", "retention.svg", "path.svg"];
-    let studies = rows.iter().map(|row| &row.study);
-    let mut table = Table::new(["retune", "k1"], &FILES, &out, running.begin(), studies)?;
+    let k1: Vec<f64> = arguments.k1.iter().map(Setting::value).collect();
+    let plan = json!({ "k1": k1 });
+    let mut table = Table::new(["retune", "k1"], &FILES, &out, running.begin(), plan, &rows)?;
     with_threads(running.threads, || {
         let tuned = rows
             .into_iter()
@@ -151,7 +153,7 @@ fn retention(tuned: &[Tuned]) -> Curves {
 }
 
 /// The objective of a study, without its limits, for a scene at another stiffness, J.
-fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
+pub fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
     scene.primary.stiffness = NonNegative::new(k1).ok()?;
     let found = study.goal().evaluate(&scene, &study.solver.settings(), f64::INFINITY).ok()?;
     Some(found.energy)
@@ -171,10 +173,15 @@ impl Tuned {
     }
 }
 
+/// The column of a damper as it was tuned for the stiffness of its study, N/m.
+pub fn kept(name: &str, home: f64) -> String {
+    format!("{name} tuned for {home}")
+}
+
 /// A row for each stiffness; what has no value is an empty field.
 fn csv(tuned: &[Tuned], curves: &Curves) -> String {
     let columns = tuned.iter().map(|Tuned { name, home, .. }| {
-        let columns = [format!("{name} tuned for {home}"), format!("{name} re-tuned")];
+        let columns = [kept(name, *home), format!("{name} re-tuned")];
         columns.map(|column| quoted(&column)).join(",")
     });
     let mut text = format!("k1,none,{}\n", columns.collect::<Vec<_>>().join(","));

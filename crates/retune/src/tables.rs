@@ -4,10 +4,11 @@ use crate::cli;
 use crate::error::Error;
 use crate::optimize::log::{joined, short};
 use crate::optimize::{Found, optimize, table2_header, table2_row, where_results_are, with_threads};
-use crate::results::identity::{Identity, study_text};
-use crate::results::{Begin, Directory};
+use crate::results::resolved::{self, Resolved};
+use crate::results::{Begin, Directory, Identity, manifest};
 use crate::screen::Screen;
-use crate::study::{self, PaperStudy, Study};
+use crate::study::{self, PaperStudy, Solver};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Re-optimises each row of Table 2 from the paper's own design, and shows both rows.
@@ -15,17 +16,18 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// A study is wrong, nothing can be computed, or the results cannot be written.
 pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
-    let rows = study::read_table2(&arguments.study)?;
+    let mut rows = study::read_table2(&arguments.study)?;
     let running = &arguments.running;
     let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/table2"));
     let screen = Screen::new(running.quiet);
-    let studies = rows.iter().map(|row| &row.study);
-    let mut table = Table::new(["table2", "origin"], &[], &out, running.begin(), studies)?;
+    for PaperStudy { study, .. } in &mut rows {
+        if let Some(optimize) = &mut study.optimize {
+            optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
+        }
+    }
+    let mut table = Table::new(["table2", "origin"], &[], &out, running.begin(), json!({}), &rows)?;
     with_threads(running.threads, || {
-        for PaperStudy { damper, mut study } in rows {
-            if let Some(optimize) = &mut study.optimize {
-                optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
-            }
+        for PaperStudy { damper, study } in rows {
             screen.log(format!("\n{damper}: re-optimised from the paper's design"))?;
             let (optimum, results) = optimize(&study, &out.join(study.name()), running.begin(), screen)?;
             table.push("paper", &damper, optimum.start());
@@ -40,6 +42,8 @@ pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
 pub struct Table {
     name: &'static str,
     directory: Directory,
+    resolved: String,
+    solvers: Vec<Solver>,
     /// The results of its searches, which are finished with it: until then a run that goes on reads their journals.
     parts: Vec<Directory>,
     csv: Vec<String>,
@@ -47,27 +51,33 @@ pub struct Table {
 }
 
 impl Table {
-    /// Begins the table `name`, whose first column is `column`, in the directory `out`. It is made of searches of `studies`;
-    /// `others` are more files that the command writes there.
+    /// Begins the table `name`, whose first column is `column`, in the directory `out`. It is made of searches of the studies of
+    /// `rows`, for all that `plan` says; `others` are more files that the command writes there.
     ///
     /// # Errors
     /// The directory cannot be written to.
-    pub fn new<'a>(
+    pub fn new(
         [name, column]: [&'static str; 2],
         others: &'static [&'static str],
         out: &Path,
         begin: Begin,
-        studies: impl Iterator<Item = &'a Study>,
+        plan: serde_json::Value,
+        rows: &[PaperStudy],
     ) -> Result<Self, Error> {
-        let texts = studies.map(study_text).collect::<Result<Vec<_>, _>>()?;
-        let identity = Identity::of(&texts.concat());
+        let resolved =
+            Resolved::new(plan, rows.iter().map(|row| (row.damper.as_str(), &row.study))).text()?;
+        let solvers = rows.iter().map(|row| row.study.solver).collect();
+        let identity = Identity::of(&resolved);
         let is_ours = move |file: &str| {
-            file == format!("{name}.csv") || file == format!("{name}.txt") || others.contains(&file)
+            file == format!("{name}.csv")
+                || file == format!("{name}.txt")
+                || [resolved::NAME, manifest::NAME].contains(&file)
+                || others.contains(&file)
         };
         let directory = Directory::open(out, begin, &identity, is_ours)?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
-        Ok(Self { name, directory, parts: Vec::new(), csv, text })
+        Ok(Self { name, directory, resolved, solvers, parts: Vec::new(), csv, text })
     }
 
     /// Appends a row.
@@ -91,9 +101,11 @@ impl Table {
     /// # Errors
     /// It cannot be written.
     pub fn finish(self, screen: Screen) -> Result<(), Error> {
-        let Self { name, directory, parts, csv, text } = self;
+        let Self { name, directory, resolved, solvers, parts, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
         directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
+        directory.write(resolved::NAME, &resolved)?;
+        manifest::write(Identity::of(&resolved), solvers, &directory)?;
         let out = directory.path().to_owned();
         directory.publish()?;
         parts.into_iter().try_for_each(Directory::finish)?;

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Answer, Desk, tiny};
+use common::{Answer, Desk, altered, tiny};
 use serde_json::json;
 
 fn desk() -> Desk {
@@ -84,8 +84,52 @@ fn exact_what_is_no_result_is_refused() {
     let desk = Desk::new();
     desk.write("none/a.txt", "");
     let Answer { code, stderr, .. } = desk.run(&["verify", "none"]);
-    let words = "error: none: cannot be read: there is no study.json in it: these are no results\n";
+    let words = "error: none: cannot be read: there is no manifest.json and no study.json in it: these are no results\n";
     assert_eq!((code, stderr.as_str()), (Some(2), words));
     let Answer { code, stderr, .. } = desk.run(&["verify", "nowhere"]);
     assert!(code == Some(2) && stderr.starts_with("error: nowhere: cannot be read: "), "{stderr}");
+}
+
+/// `certify`, `fronts` and `retune` say of their own results, too, what made them, and have their rows run again.
+#[test]
+fn exact_results_of_several_studies_and_certificates_hold_and_a_changed_digit_is_found() {
+    let desk = Desk::new();
+    let mut study = tiny();
+    study["optimize"]["surf"] = json!(null);
+    study["optimize"]["vary"] = json!(["k2", "c2"]);
+    study["optimize"]["refine"] = json!({ "MaxFunEvals": 8 });
+    study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 2 } });
+    desk.write_json("one.json", &study);
+    let damper = json!({ "damper": "NES, \"single-sided\"", "study": "one.json" });
+    let mut row = damper.clone();
+    row["paper"] = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
+    desk.write_json("table2.json", &json!({ "rows": [row] }));
+    desk.write_json(
+        "fronts.json",
+        &json!({ "dampers": [damper], "k2": [300], "stroke": [0.9], "samples": 5 }),
+    );
+    for (arguments, tables) in [
+        (["certify", "one.json"].as_slice(), ["certificate.json"].as_slice()),
+        (&["table2", "table2.json"], &["table2.csv"]),
+        (&["retune", "3e4", "--study", "table2.json"], &["retune.csv", "retention.csv"]),
+        (&["fronts", "fronts.json"], &["k2.csv", "stroke.csv", "front.csv"]),
+    ] {
+        let out = arguments[0];
+        desk.good(&[arguments, &["--quiet", "--out", out]].concat());
+        let said = desk.good(&["verify", out]);
+        assert!(said.contains("files as they were made\n"), "{said}");
+        for table in tables {
+            let line = said.lines().find(|line| line.starts_with(&format!("  {table} "))).expect(table);
+            assert!(line.ends_with(" run again: the same to the last bit"), "{line}");
+            assert!(!line.contains(" 0 of "), "{line}");
+            let file = format!("{out}/{table}");
+            let whole = desk.read(&file);
+            desk.write(&file, altered(&whole));
+            let Answer { code, stderr, .. } = desk.run(&["verify", out, "--sample", "1000"]);
+            assert_eq!(code, Some(1), "{table}: {stderr}");
+            assert!(stderr.contains(&format!("{table} is not as it was made; ")), "{stderr}");
+            assert!(stderr.contains(&format!("{table}, 1 differ, by at most ")), "{stderr}");
+            desk.write(&file, whole);
+        }
+    }
 }

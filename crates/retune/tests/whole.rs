@@ -248,7 +248,10 @@ fn paper_table2_puts_our_rows_beside_the_papers() {
     assert_eq!(csv[3][..7], ["paper", "TMD", "60", "600", "262", "2.08", "4.7"]);
     let energy = |row: usize| csv[row][7].parse::<f64>().expect("a number");
     assert!(energy(2) <= energy(1) && energy(4) <= energy(3));
-    assert_eq!(desk.names("results/table2"), ["ssvi", "table2.csv", "table2.txt", "tmd"]);
+    assert_eq!(
+        desk.names("results/table2"),
+        ["manifest.json", "resolved.json", "ssvi", "table2.csv", "table2.txt", "tmd"]
+    );
     assert!(!desk.names("results/table2/ssvi").contains(&"unfinished".to_owned()));
 }
 

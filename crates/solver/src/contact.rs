@@ -105,7 +105,7 @@ fn at_elapsed(advance: impl Fn(f64) -> Compressed, length: f64, elapsed: f64) ->
 
 /// The natural sizes of a contact, and the steps planned for it.
 struct Plan {
-    /// Largest `q` (√m) and speed (m/s) seen or expected: errors are measured against them.
+    /// Largest `q` (√m) and speed (m/s) expected or, lately, seen: errors are measured against them.
     q: f64,
     w: f64,
     /// The speed below which `rtol` asks for more than rounding leaves.
@@ -122,6 +122,9 @@ impl Plan {
     /// DOP853 on the undisturbed collision puts it.
     const DEEPEST: f64 = 0.118;
 
+    /// Share of the sizes seen that is left after a step of a long press.
+    const FORGET: f64 = 0.8;
+
     /// Steps of a collision; a contact with more is a long press, and its steps follow the error estimate alone.
     const COLLISION: u32 = 40;
 
@@ -130,10 +133,16 @@ impl Plan {
         let w = y[W].abs().max(equations.speed_at_depth(y[Q]));
         let q = equations.greatest_depth(w);
         let h = Self::DEEPEST * (rtol / 1e-9).powf(1.0 / 8.0) * 2.0 * q / w;
-        // The weights of the error estimate add up to about 50; a contact lasts about `3 q² / w`.
         let mass_ratio = equations.mass_ratio();
-        let rounding = 150.0 * f64::EPSILON * equations.size_of_terms(y) * q * q / w * mass_ratio / rtol;
-        Self { q, w, rounding, mass_ratio, h, taken: 0 }
+        let mut plan = Self { q, w, rounding: 0.0, mass_ratio, h, taken: 0 };
+        // A contact lasts about `3 q² / w`.
+        plan.round(equations, y, 3.0 * q * q / w, rtol);
+        plan
+    }
+
+    /// Sees what rounding leaves of a speed in so many seconds; the weights of the error estimate add up to about 50.
+    fn round(&mut self, equations: &Compression, y: &Compressed, seconds: f64, rtol: f64) {
+        self.rounding = 50.0 * f64::EPSILON * equations.size_of_terms(y) * seconds * self.mass_ratio / rtol;
     }
 
     /// The step from a state: the nearest singularity of a collision lies above its deepest point, so steps may be longer
@@ -152,14 +161,26 @@ impl Plan {
         step.error(h, [(Q, q), (W, w), (V1, w * self.mass_ratio)])
     }
 
-    /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate.
-    fn adapt(&mut self, error: f64, y: &Compressed) {
+    /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate. In a long press
+    /// time goes by as the present `q` says, however deep it was before.
+    fn adapt(&mut self, equations: &Compression, error: f64, y: &Compressed, rtol: f64) {
         self.taken += 1;
         if self.taken > Self::COLLISION {
             self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.7, 1.5);
+            self.q *= Self::FORGET;
+            self.w = (self.w * Self::FORGET).max(equations.speed_at_depth(y[Q]));
+            self.round(equations, y, self.h * self.q, rtol);
         }
         self.q = self.q.max(y[Q].abs());
         self.w = self.w.max(y[W].abs());
+    }
+
+    /// Learns from a step `h` that was refused: a collision that other forces rule does not reach as deep as one that is left
+    /// to itself.
+    fn refuse(&mut self, error: f64, shortened: f64, y: &Compressed) {
+        let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
+        self.h *= factor * shortened;
+        self.q = self.q.min(y[Q].abs() + 0.5 * y[W].abs() * self.h * f64::from(Self::COLLISION));
     }
 }
 
@@ -197,10 +218,14 @@ pub fn integrate(
         work.evaluations += EVALUATIONS + 1;
         let error = plan.error(h, &tried, rtol);
         let t = touch_down + y[TIME];
-        if error.is_nan() || error > 1.0 {
+        let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
+        let wall = if lifting { reach_wall(&equations, &tried.y, &plan, rtol, work) } else { None };
+        // Past the wall there is no contact: a step must end where the wall can be reached from. Nor may it outrun the force.
+        let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
+        let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * Compression::TURN;
+        if error.is_nan() || error > 1.0 || lost {
             work.rejected += 1;
-            let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
-            plan.h *= factor * (h / planned).min(1.0);
+            plan.refuse(if lost { f64::INFINITY } else { error }, (h / planned).min(1.0), &y);
             if !y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t });
             }
@@ -218,9 +243,8 @@ pub fn integrate(
             return Err(SolverError::TooManySteps { t, limit: max_steps });
         }
         let (mut next, mut length) = (tried.y, h);
-        let lifted = next[W] < 0.0 && next[Q] < 0.02 * plan.q;
-        if lifted {
-            next = reach_wall(&equations, &tried.y, work);
+        if let Some(wall) = wall {
+            next = wall;
             length -= 4.0 * tried.y[Q] / (tried.y[W] + next[W]); // dq/dθ = w/2
         }
         let over = touch_down + next[TIME] >= to;
@@ -245,10 +269,10 @@ pub fn integrate(
         if over || observer.satisfied() {
             return Ok(End::Pressed(end));
         }
-        if lifted {
+        if wall.is_some() {
             return Ok(End::LiftOff(end));
         }
-        plan.adapt(error, &next);
+        plan.adapt(&equations, error, &next, rtol);
         y = next;
         start = end;
     }
@@ -256,8 +280,14 @@ pub fn integrate(
 
 /// The state at the wall, `q = 0`, from one near it on either side (past lift-off the polynomial equations still hold), with
 /// `q` as the independent variable: one step of the classical Runge–Kutta method if the speed and the force hardly change on
-/// the way, else one of DOP853.
-fn reach_wall(equations: &Compression, y: &Compressed, work: &mut Work) -> Compressed {
+/// the way, else one of DOP853; none where that is not good enough, for the damper leaves too slowly.
+fn reach_wall(
+    equations: &Compression,
+    y: &Compressed,
+    plan: &Plan,
+    rtol: f64,
+    work: &mut Work,
+) -> Option<Compressed> {
     let by_q = |y: &Compressed| {
         let slope = equations.derivative(y);
         slope.map(|s| s / slope[Q])
@@ -274,8 +304,13 @@ fn reach_wall(equations: &Compression, y: &Compressed, work: &mut Work) -> Compr
         along(&std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0), h)
     } else {
         work.evaluations += EVALUATIONS + 1;
-        dop853::step(by_q, y, &k1, h).y
+        let step = dop853::step(by_q, y, &k1, h);
+        let error = plan.error(h, &step, rtol);
+        if error.is_nan() || error > 1.0 || step.y[W] >= 0.0 {
+            return None;
+        }
+        step.y
     };
     end[Q] = 0.0;
-    end
+    Some(end)
 }

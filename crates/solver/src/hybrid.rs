@@ -124,7 +124,10 @@ impl<'a> Hybrid<'a> {
                         continue;
                     }
                     let equations = self.contacts[side as usize];
-                    let (begin, pressed) = self.press_in(equations, touch, observer)?;
+                    let (begin, pressed) = self.press_in(equations, touch, to, observer)?;
+                    if begin.t >= to {
+                        return stopped(begin, Phase::Pressed(side));
+                    }
                     match self.contact(equations, &begin, pressed, to, observer)? {
                         contact::End::Pressed(end) => return stopped(end, Phase::Pressed(side)),
                         contact::End::LiftOff(end) => now = self.knot(end.t, end.y),
@@ -288,11 +291,12 @@ impl<'a> Hybrid<'a> {
     }
 
     /// Starts a contact at a touch-down. One that begins (almost) at rest has no time scale of its own at `q = 0`: it is flown
-    /// on for the moment in which the contact force cannot be felt, less than one part in 1e14 of the motion.
+    /// on for the moment in which the contact force cannot be felt, less than one part in 1e14 of the motion, at most to time `to`.
     fn press_in(
         &mut self,
         mut equations: Compression,
         touch: Knot<4>,
+        to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<(Knot<4>, retune_model::Compressed), SolverError> {
         let mut pressed = equations.compress(&touch.y);
@@ -309,7 +313,7 @@ impl<'a> Hybrid<'a> {
         let motion = self.flow.expand(touch.drive, &touch.y);
         let depth = press(&motion, sign);
         let (mean_rate, rate) = (depth.over_s(), depth.derivative());
-        let mut s = self.flow.step();
+        let mut s = self.flow.step().min(to - touch.t);
         for _ in 0..400 {
             let z = s * mean_rate.at(s);
             if unfelt(s, z) {

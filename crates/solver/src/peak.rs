@@ -26,7 +26,7 @@ const SCREEN: f64 = 2e-3;
 
 /// Most halvings in a segment. A motion needs a few; only where a quantity is level to rounding (a stroke that touches its
 /// record of 0 at each lift-off, the energy of a damper that does not move yet) is there no end of them.
-const HALVINGS: u32 = 200;
+const HALVINGS: u32 = 64;
 
 impl<Q> Peak<Q> {
     /// Watches a quantity; the run may end early once its value exceeds `cutoff`.

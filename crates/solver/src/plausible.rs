@@ -6,6 +6,9 @@ use retune_model::{Bare, Scene};
 /// Rounding that the bound on the energy is given.
 const SLACK: f64 = 1e-6;
 
+/// Roundings of a position between the search for touch-downs and that for the largest stroke, which do not compute it alike.
+const ROUNDINGS: f64 = 64.0;
+
 /// Passes on a largest energy of the primary structure that can be.
 ///
 /// A run of the exact method that has more than the force can give (see [`Bare::most_energy`]) has lost its digits to parameters too
@@ -63,6 +66,18 @@ pub fn response(
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }
 
+/// The depth, m, of a wall that was never touched, which is none: at positions of this size, m, rounding alone may put a damper
+/// a little inside.
+///
+/// # Errors
+/// [`SolverError::Missed`]: rounding cannot have done it.
+pub fn untouched(depth: f64, position: f64, t: f64) -> Result<f64, SolverError> {
+    if depth > ROUNDINGS * f64::EPSILON * position {
+        return Err(SolverError::Missed { t, depth });
+    }
+    Ok(depth.min(0.0))
+}
+
 /// The same error with a time that can be: where digits are lost, that of a step may be among them.
 pub fn error(window: Window, error: SolverError) -> SolverError {
     let sound = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
@@ -70,6 +85,46 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
         SolverError::StepTooSmall { t, h } => SolverError::StepTooSmall { t: sound(t), h },
         SolverError::TooManySteps { t, limit } => SolverError::TooManySteps { t: sound(t), limit },
         SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
+        SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
         SolverError::Implausible { .. } => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::{Forcing, NonNegative, Positive, Primary};
+
+    /// 2 kg pushed by 4 N for 3 s have 36 J at most.
+    #[test]
+    fn exact_energy_that_the_force_cannot_give_is_refused_of_the_exact_method() {
+        let number = |value| NonNegative::new(value).expect("a number");
+        let mass = Positive::new(2.0).expect("a mass");
+        let scene = Scene {
+            primary: Primary { mass, damping: number(0.0), stiffness: number(0.0) },
+            forcing: Forcing { amplitude: number(4.0), frequency: number(0.0) },
+            damper: None,
+        };
+        let window = Window { from: 1.0, to: 3.0 };
+        let ask = |value, time, method| {
+            energy(&scene, window, &Settings { method, ..Settings::default() }, Extreme { value, time })
+        };
+        assert!(ask(36.0, 3.0, Method::Hybrid).is_ok());
+        let refused = ask(36.1, 3.0, Method::Hybrid);
+        let Err(SolverError::Implausible { t, value, time, most }) = refused else {
+            panic!("{refused:?}");
+        };
+        assert!((t, value, time) == (3.0, 36.1, 3.0) && (most - 36.0).abs() < 1e-12);
+        assert!(ask(36.1, 3.0, Method::Euler).is_ok());
+        assert!(matches!(ask(-1.0, 3.0, Method::Euler), Err(SolverError::Implausible { .. })));
+        assert!(matches!(ask(1.0, 0.5, Method::Hybrid), Err(SolverError::Implausible { time: 0.5, .. })));
+        assert_eq!(ask(f64::NAN, 3.0, Method::Hybrid), Err(SolverError::NonFinite { t: 3.0 }));
+    }
+
+    #[test]
+    fn exact_a_wall_that_was_never_touched_is_pressed_by_rounding_alone() {
+        assert_eq!(untouched(-0.5, 1.0, 3.0), Ok(-0.5));
+        assert_eq!(untouched(1e-16, 1.0, 3.0), Ok(0.0));
+        assert_eq!(untouched(1e-12, 1.0, 3.0), Err(SolverError::Missed { t: 3.0, depth: 1e-12 }));
     }
 }

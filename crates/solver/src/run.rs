@@ -106,17 +106,29 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     };
     let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
     let (nearest, farthest) = (-seen.nearest.record().value, seen.farthest.record().value);
-    let force = |side: Side, z: f64| hertz_force(system.hertz(side), z);
-    let force_max =
-        [force(Side::Primary, -nearest), force(Side::Obstacle, farthest - system.wall(Side::Obstacle))];
+    let e1_max = seen.e1.record();
+    let stroke_max = farthest.abs().max(nearest.abs());
+    let mut depths = [-nearest, farthest - system.wall(Side::Obstacle)];
+    if settings.method == Method::Hybrid {
+        for side in Side::BOTH {
+            let i = side as usize;
+            let rests = system.wall(side) == system.rest_distance();
+            if !rests && before.0[i] + seen.touches.0[i] == 0 {
+                let reach = system.bare().reach(e1_max.value, final_state[0], window.to - window.from);
+                let position = 2.0 * reach + system.rest_distance() + stroke_max;
+                depths[i] = plausible::untouched(depths[i], position, window.to)?;
+            }
+        }
+    }
+    let force_max = Side::BOTH.map(|side| hertz_force(system.hertz(side), depths[side as usize]));
     // A damper that rests on a wall at t = 0 presses it without a touch-down.
     let touched = before.0 != [0; 2] || seen.touches.0 != [0; 2] || force_max != [0.0; 2];
     Ok(Response {
-        e1_max: seen.e1.record(),
+        e1_max,
         e2_max: seen.e2.record(),
         impacts: seen.touches.0,
         force_max,
-        stroke_max: farthest.abs().max(nearest.abs()),
+        stroke_max,
         final_state,
         scene: if touched { SceneKind::Contact } else { SceneKind::Linear },
         work,

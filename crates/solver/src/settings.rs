@@ -206,6 +206,17 @@ pub enum SolverError {
         /// The most that it can have, (P t)²/(2 m1), J.
         most: f64,
     },
+    /// The damper was inside a wall that it never touched.
+    #[error(
+        "a contact was missed in a run to t = {t} s: the damper is {depth:e} m inside a wall that it never touched; \
+         please report this scene"
+    )]
+    Missed {
+        /// End of the run, s.
+        t: f64,
+        /// How far inside it is, m.
+        depth: f64,
+    },
     /// The state overflowed.
     #[error(
         "the motion is no longer a finite number at t = {t} s; the parameters are beyond what can be computed"

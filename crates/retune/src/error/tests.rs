@@ -99,6 +99,7 @@ fn solvers() -> Vec<SolverError> {
         SolverError::StepTooSmall { t: 1.5, h: 1e-17 },
         SolverError::TooManySteps { t: 1.5, limit: 1000 },
         SolverError::Implausible { t: 4.0, value: 1e87, time: 2.5, most: 320.0 },
+        SolverError::Missed { t: 4.0, depth: 1e-6 },
         SolverError::NonFinite { t: 1.5 },
     ]
 }
@@ -181,7 +182,7 @@ fn regress_the_words_of_every_error() {
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),
         each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Touches),
-        each!(solvers(), SolverError: StepTooSmall TooManySteps Implausible NonFinite),
+        each!(solvers(), SolverError: StepTooSmall TooManySteps Implausible Missed NonFinite),
         each!(lines(), LineError: Count Number Unusable),
     ]
     .concat();

@@ -1,7 +1,7 @@
 //! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
 
 use crate::error::Error;
-use crate::results::json_text;
+use crate::results::resolved::Resolved;
 use crate::screen::Screen;
 use crate::study::{PaperStudy, Study, StudyError, read_paper, read_table2};
 use retune_model::Scene;
@@ -54,9 +54,6 @@ pub struct Plan {
     pub screen: Screen,
 }
 
-/// The file that [`Plan::resolved`] is written to.
-pub const RESOLVED: &str = "resolved.json";
-
 /// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
 const MOST_STEPS: u64 = 1_000_000;
 
@@ -101,17 +98,10 @@ impl Plan {
         Ok(Self { file, ssvi: ssvi.study, tmd: tmd.study, screen })
     }
 
-    /// The plan with the resolved studies of both dampers, as JSON: all that the results follow from.
-    ///
-    /// # Errors
-    /// None that is known.
-    pub fn resolved(&self) -> Result<String, Error> {
-        let resolved = serde_json::json!({
-            "plan": self.file,
-            "ssvi": self.ssvi.resolved(),
-            "tmd": self.tmd.resolved(),
-        });
-        json_text(&resolved, RESOLVED)
+    /// All that the results follow from.
+    pub fn resolved(&self) -> Resolved {
+        let dampers = [("SSVI NES", &self.ssvi), ("TMD", &self.tmd)];
+        Resolved::new(serde_json::json!(self.file), dampers.into_iter())
     }
 
     /// The scenes without damper, with SSVI NES and with TMD at a stiffness.

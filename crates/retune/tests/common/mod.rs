@@ -95,6 +95,15 @@ pub fn tiny() -> Value {
     study
 }
 
+/// A text whose first number with six decimals or more has another third decimal.
+pub fn altered(text: &str) -> String {
+    let decimals = |rest: &str| rest.bytes().take_while(u8::is_ascii_digit).count();
+    let mut points = text.match_indices('.').map(|(at, _)| at + 1);
+    let at = 2 + points.find(|&at| decimals(&text[at..]) >= 6).expect("a number with decimals");
+    let other = if &text[at..=at] == "7" { "3" } else { "7" };
+    [&text[..at], other, &text[at + 1..]].concat()
+}
+
 /// The studies of the repository.
 pub fn studies() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies")

@@ -164,6 +164,7 @@ impl Anything {
             SolverError::StepTooSmall { t, .. }
             | SolverError::NonFinite { t }
             | SolverError::Implausible { t, .. } => t,
+            SolverError::Missed { .. } => panic!("{error}: {self:?}"),
             SolverError::TooManySteps { t, limit } => {
                 assert_eq!(limit, self.settings.max_steps);
                 t

@@ -1,8 +1,8 @@
 //! `manifest.json`: what made the results that stand beside it, and what they were when they were made.
 
+use super::Directory;
+use super::identity::{Identity, hexadecimal};
 use crate::error::Error;
-use crate::results::Directory;
-use crate::results::identity::{Identity, hexadecimal};
 use crate::study::Solver;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -18,26 +18,32 @@ pub const NAME: &str = "manifest.json";
 pub struct Manifest {
     /// The version of Retune.
     pub retune: String,
-    /// SHA-256 of the resolved study, `study.json`; of the whole paper, of `resolved.json`.
+    /// SHA-256 of the resolved study, `study.json`; of a result of several studies, of `resolved.json`.
     pub study_sha256: String,
     /// Digits that stand for the machine's sines and powers.
     pub arithmetic: String,
-    /// The integration method and its tolerances.
-    pub solver: Solver,
+    /// The integration method and its tolerances; none where studies differ in it, and then each says its own in `resolved.json`.
+    pub solver: Option<Solver>,
     /// SHA-256 of each file.
     pub files: BTreeMap<String, String>,
 }
 
-/// Writes the manifest of all results that are whole; it must be the last of them.
+/// Writes the manifest of all results that are whole, made by `solvers`; it must be the last of them.
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn write(identity: Identity, solver: Solver, results: &Directory) -> Result<(), Error> {
+pub fn write(
+    identity: Identity,
+    solvers: impl IntoIterator<Item = Solver>,
+    results: &Directory,
+) -> Result<(), Error> {
     let Identity { study: study_sha256, version, arithmetic } = identity;
     let mut files = BTreeMap::new();
     for name in results.whole()? {
         files.insert(name.clone(), file_sha256(&results.whole_path(&name))?);
     }
+    let mut solvers = solvers.into_iter();
+    let solver = solvers.next().filter(|first| solvers.all(|other| other == *first));
     let manifest = Manifest { retune: version, study_sha256, arithmetic, solver, files };
     results.write_json(NAME, &manifest)
 }

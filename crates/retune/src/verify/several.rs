@@ -1,0 +1,82 @@
+//! The results of several studies: tables of designs (`table2`, `retune`, `fronts`) and curves along k1.
+
+use super::search::energy;
+use super::table::{Row, Sample};
+use super::{Check, Report};
+use crate::error::Error;
+use crate::fronts;
+use crate::results::resolved::Resolved;
+use crate::retention;
+use crate::study::{Setting, Study};
+use std::path::Path;
+
+/// Looks at the tables again, at `most` rows of each.
+///
+/// # Errors
+/// They cannot be read.
+pub fn verify(place: &Path, most: usize, report: &mut Report) -> Result<(), Error> {
+    let resolved = Resolved::read(place)?;
+    let studies = resolved.studies()?;
+    let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
+    let mut looked = false;
+    for name in ["table2.csv", "retune.csv", "k2.csv", "stroke.csv", "front.csv"] {
+        if place.join(name).exists() {
+            let sample = Sample::read(&place.join(name), most)?;
+            let checks: Vec<Check> = sample.rows().filter_map(|row| design(&studies, samples, row)).collect();
+            report.look(name, &sample.of(), &checks)?;
+            looked = true;
+        }
+    }
+    let name = "retention.csv";
+    if place.join(name).exists() {
+        let sample = Sample::read(&place.join(name), most)?;
+        let designs = Sample::read(&place.join("retune.csv"), usize::MAX)?;
+        report.look(name, &sample.of(), &curves(&studies, &designs, &sample))?;
+    } else if !looked {
+        report.screen.line("  no row of these results can be run again by itself")?;
+    }
+    Ok(())
+}
+
+/// The check of a row with a design; none where the row has none.
+fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> Option<Check<'a>> {
+    let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
+    let at = row.design();
+    let said = row.number("E1max");
+    if said.is_nan() {
+        return None;
+    }
+    let k1 = row.number("k1");
+    let study = if k1.is_nan() { study.clone() } else { study.with(&[Setting::new("k1", k1)]).ok()? };
+    let again = move || match samples {
+        Some(samples) => fronts::energy(&study, samples, at).unwrap_or(f64::INFINITY),
+        None => energy(&study, &at),
+    };
+    Some(Check { said, again: Box::new(again) })
+}
+
+/// The checks of the curves along k1: without damper, and with each damper as it was tuned for its own k1.
+fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample) -> Vec<Check<'a>> {
+    let mut columns = Vec::new();
+    if let Some((_, first)) = studies.first() {
+        let bare = retune_model::Scene { damper: None, ..first.scene };
+        columns.push(("none".to_owned(), first, bare));
+    }
+    for (name, study) in studies {
+        let home = study.scene.primary.stiffness.get();
+        let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == home);
+        let scene = own.and_then(|row| study.scene_with(&Setting::design(row.design())).ok());
+        if let Some(scene) = scene {
+            columns.push((retention::kept(name, home), study, scene));
+        }
+    }
+    let mut checks = Vec::new();
+    for row in sample.rows() {
+        let k1 = row.number("k1");
+        for &(ref column, study, scene) in &columns {
+            let again = move || retention::energy(study, scene, k1).unwrap_or(f64::INFINITY);
+            checks.push(Check { said: row.number(column), again: Box::new(again) });
+        }
+    }
+    checks
+}
