@@ -87,18 +87,29 @@ test-kills KILLS="240":
     RETUNE_KILLS={{KILLS}} cargo test --package retune --test kills -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
     mv results/robustness/kills.md.tmp results/robustness/kills.md && cat results/robustness/kills.md
 
-# Try the HyperQueue script for real, with two workers on this machine (needs python3): results/robustness/cluster.txt
-test-cluster:
+# Try the HyperQueue script for real, with two workers on this machine (needs python3; with `hq` on the path, too, one worker is killed): results/robustness/hyperqueue.txt
+test-hyperqueue:
     cargo build --release --package retune
-    mkdir -p results/robustness && python3 -m venv target/hyperqueue && target/hyperqueue/bin/pip install --quiet hyperqueue==0.27.0
-    target/hyperqueue/bin/python deploy/test_cluster.py target/release/retune > results/robustness/cluster.txt.tmp
-    mv results/robustness/cluster.txt.tmp results/robustness/cluster.txt && cat results/robustness/cluster.txt
+    mkdir -p results/robustness && python3 -m venv target/hyperqueue && target/hyperqueue/bin/pip install --quiet hyperqueue==0.26.2
+    target/hyperqueue/bin/python deploy/test_hyperqueue.py target/release/retune > results/robustness/hyperqueue.txt.tmp
+    mv results/robustness/hyperqueue.txt.tmp results/robustness/hyperqueue.txt && cat results/robustness/hyperqueue.txt
 
-# Measure what docs/scale.md plans with: results/robustness/scale.txt (after `just test-cluster`, which installs HyperQueue)
+# Try the Slurm script for real, with a Slurm of its own on this machine (needs root, slurmctld, slurmd, slurm-client, python3): results/robustness/slurm.txt
+test-slurm:
+    cargo build --release --package retune
+    mkdir -p results/robustness
+    python3 deploy/test_slurm.py target/release/retune > results/robustness/slurm.txt.tmp
+    mv results/robustness/slurm.txt.tmp results/robustness/slurm.txt && cat results/robustness/slurm.txt
+
+# Measure what docs/scale.md plans with: results/robustness/scale.txt (after `just test-hyperqueue`, which installs HyperQueue)
 bench-scale:
     cargo build --release --package retune
     target/hyperqueue/bin/python deploy/measure_scale.py target/release/retune > results/robustness/scale.txt.tmp
     mv results/robustness/scale.txt.tmp results/robustness/scale.txt && cat results/robustness/scale.txt
+
+# Compare the exact method with DOP853 on SCENES scenes over fifteen orders of magnitude
+test-scenes SCENES="30000":
+    RETUNE_SCENES={{SCENES}} cargo test --package retune-solver --test any_scene reference_any_scene -- --nocapture
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":
