@@ -186,7 +186,8 @@ impl Plan {
 
 /// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
 ///
-/// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact.
+/// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a long press, to
+/// those of late.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
