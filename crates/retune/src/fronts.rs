@@ -4,8 +4,11 @@
 //! Every search makes a design. Afterwards all designs of a damper are looked at again on more samples of the band, and the best
 //! that keeps a bound stands for it, whichever search it came from: so a looser bound is never worse.
 
+mod design;
 mod draw;
 mod page;
+
+pub use design::energy;
 
 use crate::certify::{Certificate, certify};
 use crate::cli;
@@ -14,34 +17,16 @@ use crate::optimize::{Found, optimize, where_results_are, with_threads};
 use crate::results::resolved::{self, Resolved};
 use crate::results::{Begin, Directory, Identity, manifest};
 use crate::screen::Screen;
-use crate::study::{self, FrontsPlan, PerVariable, Setting, Study, Sweep};
-use retune_optim::{Evaluation, Goal, Limit, PerLimit, Variable, When};
+use crate::study::{self, FrontsPlan, PerVariable, Study, Sweep};
+use design::{Design, SAME, by_excess, finer, look};
+use retune_optim::{Limit, Variable, When};
 use serde_json::json;
-use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
 /// A search keeps this much below a limit of stroke, for between its samples a stroke may be a little larger.
 const ROOM: f64 = 0.99;
-/// E1max that differs by less than this share is the same.
-const SAME: f64 = 0.01;
 /// The verdict of a damper that no search found.
 const GIVEN: &str = "of the study";
-
-/// A design, looked at on the samples of the study of fronts.
-#[derive(Clone, Debug, PartialEq)]
-struct Design {
-    /// The number of its damper.
-    damper: usize,
-    /// k2, c2, D, C.
-    at: [f64; 4],
-    /// The worst E1max over the band, J.
-    e1_max: f64,
-    /// The largest stroke, m, and contact force, N, in any run.
-    stroke: f64,
-    force: f64,
-    /// What its certificate says, in a word.
-    verdict: &'static str,
-}
 
 /// The best design of a damper under a bound; none where no design that was found keeps it.
 struct Row<'a> {
@@ -118,28 +103,6 @@ fn is_ours(name: &str) -> bool {
         manifest::NAME,
     ];
     NAMES.contains(&name) || (name.starts_with("certificate-") && name.ends_with(".json"))
-}
-
-/// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
-pub fn energy(study: &Study, samples: usize, at: [f64; 4]) -> Option<f64> {
-    Some(look(&finer(study, samples, at)?)?.energy)
-}
-
-/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
-fn finer(study: &Study, samples: usize, at: [f64; 4]) -> Option<Study> {
-    let mut study = study.clone();
-    study.scene = study.scene_with(&Setting::design(at)).ok()?;
-    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
-        band.samples = samples;
-    }
-    Some(study)
-}
-
-/// The worst of the scene of a study over its band; none where it cannot be run.
-fn look(study: &Study) -> Option<Evaluation> {
-    // Limits that no run reaches: they have stroke and force measured.
-    let goal = Goal { limits: PerLimit([Some(f64::MAX), Some(f64::MAX), None]), ..study.goal() };
-    goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }
 
 impl Fronts {
@@ -297,35 +260,4 @@ impl Fronts {
         });
         format!("damper,E1max,k2,c2,D,C,stroke,force,verdict\n{}", rows.collect::<String>())
     }
-}
-
-impl Design {
-    /// By how much it is beyond a bound, as a share of it.
-    fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
-        let reached = if sweep == Sweep::K2 { self.at[0] } else { self.stroke };
-        (reached / bound - 1.0).max(0.0)
-    }
-
-    /// Whether it is of the same damper and worth the same.
-    fn is_like(&self, other: &Self) -> bool {
-        self.damper == other.damper && (self.e1_max / other.e1_max - 1.0).abs() < SAME
-    }
-
-    /// Whether it is as good in everything and better in something.
-    fn beats(&self, other: &Self) -> bool {
-        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at[0]];
-        let pairs = || all(self).into_iter().zip(all(other));
-        pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
-    }
-
-    fn fields(&self) -> String {
-        let Self { at: [k2, c2, d, c], e1_max, stroke, force, verdict, .. } = self;
-        format!("{e1_max},{k2},{c2},{d},{c},{stroke},{force},{verdict}")
-    }
-}
-
-/// The design that keeps a bound first, then that which is beyond it by less.
-fn by_excess(a: &Design, b: &Design, sweep: Sweep, bound: f64) -> Ordering {
-    let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
-    own.total_cmp(&other).then(a.e1_max.total_cmp(&b.e1_max))
 }

@@ -57,6 +57,7 @@ fn nothing_to_resume(
 ) -> Result<bool, Error> {
     let finished = running.resume && manifest::is_finished(out, &Identity::of_study(study)?);
     if finished {
+        Directory::tidy(out);
         screen.line(format!("finished already: nothing to go on with\n{}", where_results_are(out)?))?;
     }
     Ok(finished)

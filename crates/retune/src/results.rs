@@ -91,6 +91,11 @@ impl Directory {
         path.join(UNFINISHED).exists()
     }
 
+    /// Removes the lock's file that a run which was killed as it ended has left beside its results.
+    pub fn tidy(path: &Path) {
+        drop(Lock::take(path)); // without the right to, it stays, and does no harm
+    }
+
     /// The path of the directory.
     pub fn path(&self) -> &Path {
         &self.path

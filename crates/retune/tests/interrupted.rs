@@ -78,8 +78,10 @@ fn exact_to_go_on_with_what_is_finished_costs_nothing() {
     let desk = desk();
     let before =
         std::fs::metadata(desk.path("whole/surf.csv")).and_then(|file| file.modified()).expect("a time");
+    desk.write("whole/.lock", "4711 what a run that was killed as it ended left\n");
     let said = desk.good(&["optimize", "study.json", "--out", "whole", "--resume"]);
     assert!(said.starts_with("finished already: nothing to go on with\nresults in whole: "), "{said}");
+    assert!(!desk.path("whole/.lock").exists());
     let after =
         std::fs::metadata(desk.path("whole/surf.csv")).and_then(|file| file.modified()).expect("a time");
     assert_eq!(before, after);

@@ -4,6 +4,8 @@
 //! flight step must only be short enough to *see* a contact: a certified bound on the gap over the step decides at once in
 //! nearly all cases, an exact polynomial search (`gap`) in the rest.
 
+mod pressing;
+
 use crate::collision::Collisions;
 use crate::contact;
 use crate::flow::{BLOCKS, Expansion, Flow, LANES};
@@ -145,25 +147,6 @@ impl<'a> Hybrid<'a> {
         Knot { t, drive: self.system.drive(t), y, clock: [1.0, 0.0] }
     }
 
-    fn contact(
-        &mut self,
-        equations: Compression,
-        from: &Knot<4>,
-        pressed: retune_model::Compressed,
-        to: f64,
-        observer: &mut impl Observer<4>,
-    ) -> Result<contact::End, SolverError> {
-        contact::integrate(
-            equations,
-            from,
-            pressed,
-            to,
-            (self.rtol, self.max_steps),
-            &mut self.work,
-            observer,
-        )
-    }
-
     /// Flies until a touch-down, until `to`, or until the observer is satisfied.
     #[inline(always)]
     fn flight(
@@ -288,46 +271,6 @@ impl<'a> Hybrid<'a> {
         let gap = press(motion, -side.sign());
         let now = gap.coefficient(0) + side.sign() * self.system.wall(side);
         gap.with_constant(if leaving == Some(side) { 0.0 } else { now.max(0.0) })
-    }
-
-    /// Starts a contact at a touch-down. One that begins (almost) at rest has no time scale of its own at `q = 0`: it is flown
-    /// on for the moment in which the contact force cannot be felt, less than one part in 1e14 of the motion, at most to time `to`.
-    fn press_in(
-        &mut self,
-        mut equations: Compression,
-        touch: Knot<4>,
-        to: f64,
-        observer: &mut impl Observer<4>,
-    ) -> Result<(Knot<4>, retune_model::Compressed), SolverError> {
-        let mut pressed = equations.compress(&touch.y);
-        pressed[0] = 0.0;
-        equations.set_drive(0.0, touch.drive);
-        let (speed, pull) = (pressed[1], equations.acceleration(&pressed));
-        // After `s` seconds at this speed the force has moved the damper by `κ √z s²` of `z = w s`.
-        let slow = |s: f64| speed <= pull * s;
-        if speed > 0.0 && !slow((1e-28 / (equations.hertz_rate().powi(2) * speed)).powf(0.2)) {
-            return Ok((touch, pressed)); // fast enough to start at q = 0
-        }
-        let unfelt = |s: f64, z: f64| z > 0.0 && equations.hertz_rate() * z.sqrt() * s * s <= 1e-14;
-        let sign = equations.side().sign();
-        let motion = self.flow.expand(touch.drive, &touch.y);
-        let depth = press(&motion, sign);
-        let (mean_rate, rate) = (depth.over_s(), depth.derivative());
-        let mut s = self.flow.step().min(to - touch.t);
-        for _ in 0..400 {
-            let z = s * mean_rate.at(s);
-            if unfelt(s, z) {
-                let mut step = Step::part(&self.flow, touch, &motion, s);
-                step.end().y[2] = step.end().y[0] + self.system.wall(equations.side()) + sign * z;
-                observer.segment(&step);
-                let end = *step.ends()[1];
-                let mut pressed = equations.compress(&end.y);
-                (pressed[0], pressed[1]) = (z.sqrt(), rate.at(s));
-                return Ok((end, pressed));
-            }
-            s *= 0.5;
-        }
-        Err(SolverError::StepTooSmall { t: touch.t, h: s })
     }
 }
 

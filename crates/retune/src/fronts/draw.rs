@@ -22,8 +22,9 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
         layers.push(Layer::Line { points: line(damper), colour, width: 4.0, dash: "" });
         layers.push(Layer::Dots { points: line(damper), colour, size: size(damper) });
     }
-    layers.extend(given(fronts, |design| if sweep == Sweep::K2 { design.at[0] } else { design.stroke }));
-    let highest = rows.last().map_or(1.0, |row| row.bound);
+    let reached = |design: &Design| if sweep == Sweep::K2 { design.at[0] } else { design.stroke };
+    layers.extend(given(fronts, reached));
+    let right = 1.03 * rows.last().map_or(1.0, |row| row.bound);
     let energies = rows.iter().filter_map(|row| row.design).chain(&fronts.given).map(|design| design.e1_max);
     let label = match sweep {
         Sweep::K2 => "k₂ at most, N/m",
@@ -32,11 +33,11 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
     let chart = Chart {
         title: title(fronts),
         labels: [label.to_owned(), "worst E₁max, J".to_owned()],
-        ranges: [(0.0, 1.03 * highest), (0.0, 1.06 * energies.fold(0.0, f64::max))],
+        ranges: [(0.0, right), (0.0, 1.06 * energies.fold(0.0, f64::max))],
         log: false,
         layers,
     };
-    let words = legend(fronts, true);
+    let words = legend(fronts, true, |design| reached(design) <= right);
     sheet(&[chart], 1, 700.0, &keys(&words)).wide
 }
 
@@ -66,7 +67,7 @@ pub(super) fn front(fronts: &Fronts) -> String {
         }
     };
     let charts: Vec<Chart> = (0..3).map(chart).collect();
-    let mut words = legend(fronts, false);
+    let mut words = legend(fronts, false, |_| true);
     words.push((Key::Dot(GREY), "found, but beaten in all".to_owned()));
     sheet(&charts, 1, 520.0, &keys(&words)).wide
 }
@@ -94,13 +95,14 @@ fn title(fronts: &Fronts) -> String {
     format!("{}Retune {}", over.unwrap_or_default(), env!("CARGO_PKG_VERSION"))
 }
 
-fn legend(fronts: &Fronts, lines: bool) -> Vec<(Key, String)> {
+/// What each colour means; of the dampers in the studies, those that are `shown`.
+fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Design) -> bool) -> Vec<(Key, String)> {
     let dampers = fronts.plan.dampers.iter().enumerate();
     let tuned = dampers.map(|(i, (name, _))| {
         let [colour, _] = COLOURS[i % COLOURS.len()];
         (if lines { Key::Line(colour, "") } else { Key::Dot(colour) }, format!("{name}, tuned"))
     });
-    let given = fronts.given.iter().map(|design| {
+    let given = fronts.given.iter().filter(|design| shown(design)).map(|design| {
         let [_, colour] = COLOURS[design.damper % COLOURS.len()];
         (Key::Dot(colour), format!("{} of the study", fronts.name(design.damper)))
     });
