@@ -133,7 +133,8 @@ pub fn integrate(
         equations.set_drive(y[TIME], start.drive);
         let reach = Compression::TURN / (equations.frequency() * plan.q);
         // A step aimed at the wall if it is near enough; the aim need not be good (see `reach_wall`).
-        let planned = plan.step(&y).min(reach);
+        let unhindered = plan.step(&y);
+        let planned = unhindered.min(reach);
         let left = if y[W] < 0.0 { equations.theta_to_wall(&y) } else { f64::INFINITY };
         let h = if left < (1.2 * planned).min(reach) { left } else { planned };
         let slope = equations.derivative(&y);
@@ -141,14 +142,18 @@ pub fn integrate(
         work.evaluations += EVALUATIONS + 1;
         let error = plan.error(h, &tried, rtol);
         let t = touch_down + y[TIME];
+        let shortened = (h / unhindered).min(1.0);
         let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
         let wall = if lifting { reach_wall(&equations, &tried.y, &plan, rtol, work) } else { None };
+        // Where the step would end that goes on to the wall: it stands for the last piece, and may hardly be longer than the one tried.
+        let to_wall = |wall: &Compressed| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
+        let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
         // Past the wall there is no contact: a step must end where the wall can be reached from. Nor may it outrun the force.
         let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
         let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * Compression::TURN;
         if error.is_nan() || error > 1.0 || lost {
             work.rejected += 1;
-            plan.refuse(if lost { f64::INFINITY } else { error }, (h / planned).min(1.0), &y);
+            plan.refuse(if lost { f64::INFINITY } else { error }, shortened, &y);
             if !y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t });
             }
@@ -167,8 +172,7 @@ pub fn integrate(
         }
         let (mut next, mut length) = (tried.y, h);
         if let Some(wall) = wall {
-            next = wall;
-            length -= 4.0 * tried.y[Q] / (tried.y[W] + next[W]); // dq/dθ = w/2
+            (next, length) = (wall, to_wall(&wall));
         }
         let over = touch_down + next[TIME] >= to;
         if over {
@@ -195,7 +199,8 @@ pub fn integrate(
         if wall.is_some() {
             return Ok(End::LiftOff(end));
         }
-        plan.adapt(&equations, error, &next, rtol);
+        let seconds = next[TIME] - y[TIME];
+        plan.adapt(&equations, error, (shortened, seconds), &next, rtol);
         y = next;
         start = end;
     }
@@ -217,7 +222,9 @@ fn reach_wall(
     };
     let (k1, h) = (by_q(y), -y[Q]);
     let (z, speed) = (h * h, y[W].abs());
-    let change = z * (equations.acceleration(y).abs() / speed + equations.frequency());
+    // What each force by itself changes the speed by: their sum may be small by chance.
+    let pull = equations.mass_ratio() * equations.size_of_terms(y);
+    let change = z * (pull / speed + equations.frequency());
     let mut end = if change < 1e-3 * speed {
         work.evaluations += 4;
         let along = |k: &Compressed, h: f64| std::array::from_fn::<f64, 5, _>(|i| y[i] + h * k[i]);

@@ -82,7 +82,7 @@ fn apart(a: f64, b: f64) -> f64 {
 }
 
 /// Contacts that springs, dashpots and the force rule, not Hertz's law: their motion was lost at the end of the contact, by a
-/// factor of two to 1e7, and only energy out of nothing was noticed.
+/// factor of two to 4e4, and only energy out of nothing was noticed.
 #[test]
 fn reference_contacts_that_other_forces_rule_agree_with_dop853() {
     let base = Numbers { p: 1.0, ..SSVI };
@@ -166,7 +166,12 @@ fn reference_any_scene_that_touches_a_wall_agrees_with_dop853() {
             let mut draws = draws(width).new_tree(&mut runner).expect("draws").current();
             draws[26] = 0.9; // with a damper
             let scene = Anything::new(&draws).scene;
-            let [Ok(own), Ok(other)] = both(&scene, 1.0, 1e-9, 3_000) else { continue };
+            let [own, other] = both(&scene, 1.0, 1e-9, 3_000);
+            let Ok(other) = other else { continue };
+            let own = match own {
+                Err(SolverError::TooManySteps { .. }) => continue,
+                own => own.unwrap_or_else(|error| panic!("{error}, where DOP853 has {other:?}, {scene:?}")),
+            };
             if other.scene == SceneKind::Contact && other.impacts[0] + other.impacts[1] <= 4 {
                 let [energy, force] = [
                     apart(own.e1_max.value, other.e1_max.value),

@@ -63,14 +63,22 @@ impl Plan {
     }
 
     /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate. In a long press
-    /// time goes by as the present `q` says, however deep it was before.
-    pub fn adapt(&mut self, equations: &Compression, error: f64, y: &Compressed, rtol: f64) {
+    /// time goes by as the present `q` says, however deep it was before. The step was `shortened` to this share of the planned one,
+    /// and took so many seconds.
+    pub fn adapt(
+        &mut self,
+        equations: &Compression,
+        error: f64,
+        (shortened, seconds): (f64, f64),
+        y: &Compressed,
+        rtol: f64,
+    ) {
         self.taken += 1;
         if self.taken > Self::COLLISION {
-            self.h *= (0.9 * error.powf(-1.0 / 8.0)).clamp(0.7, 1.5);
+            self.h *= shortened * (0.9 * error.powf(-1.0 / 8.0)).clamp(0.7, 1.5);
             self.q *= Self::FORGET;
             self.w = (self.w * Self::FORGET).max(equations.speed_at_depth(y[Q]));
-            self.round(equations, y, self.h * self.q, rtol);
+            self.round(equations, y, seconds, rtol);
         }
         self.q = self.q.max(y[Q].abs());
         self.w = self.w.max(y[W].abs());
@@ -81,6 +89,8 @@ impl Plan {
     pub fn refuse(&mut self, error: f64, shortened: f64, y: &Compressed) {
         let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
         self.h *= factor * shortened;
+        let expected = self.q;
         self.q = self.q.min(y[Q].abs() + 0.5 * y[W].abs() * self.h * f64::from(Self::COLLISION));
+        self.rounding *= (self.q / expected).powi(2); // a contact lasts about `3 q² / w`
     }
 }

@@ -39,6 +39,10 @@ impl Hybrid<'_> {
     ) -> Result<(Knot<4>, Compressed), SolverError> {
         let mut pressed = equations.compress(&touch.y);
         pressed[0] = 0.0;
+        let remaining = to - touch.t;
+        if remaining <= 0.0 {
+            return Ok((touch, pressed));
+        }
         equations.set_drive(0.0, touch.drive);
         let (speed, pull) = (pressed[1], equations.acceleration(&pressed));
         // After `s` seconds at this speed the force has moved the damper by `κ √z s²` of `z = w s`.
@@ -51,7 +55,7 @@ impl Hybrid<'_> {
         let motion = self.flow.expand(touch.drive, &touch.y);
         let depth = press(&motion, sign);
         let (mean_rate, rate) = (depth.over_s(), depth.derivative());
-        let mut s = self.flow.step().min(to - touch.t);
+        let mut s = self.flow.step().min(remaining);
         for _ in 0..400 {
             let z = s * mean_rate.at(s);
             if unfelt(s, z) {
@@ -65,6 +69,14 @@ impl Hybrid<'_> {
             }
             s *= 0.5;
         }
-        Err(SolverError::StepTooSmall { t: touch.t, h: s })
+        if remaining > self.flow.step() {
+            return Err(SolverError::StepTooSmall { t: touch.t, h: s });
+        }
+        // The run ends before the damper is in the wall by more than rounding.
+        let mut step = Step::part(&self.flow, touch, &motion, remaining);
+        step.end().t = to;
+        observer.segment(&step);
+        let end = *step.ends()[1];
+        Ok((end, equations.compress(&end.y)))
     }
 }

@@ -181,7 +181,8 @@ impl Anything {
         }
     }
 
-    /// No contact was missed: a wall that the damper does not rest on at first is not pressed before it is touched.
+    /// No wall that the damper does not rest on at first is said to be pressed before it is touched. (That none is missed is seen by
+    /// the solver itself, whose [`SolverError::Missed`] is let through nowhere here.)
     fn check_touches(&self, found: &Response) {
         let Some(damper) = self.scene.damper else { return };
         let apart = damper.rest_distance.get() > 0.0 && damper.clearance.get() > 0.0;
