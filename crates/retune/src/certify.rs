@@ -23,10 +23,14 @@ pub const FILE: &str = "certificate.json";
 /// The input is wrong, the design cannot be run, or the certificate cannot be written.
 pub fn command(arguments: &cli::Certify) -> Result<(), Error> {
     let (study, found_in) = read(&arguments.design)?;
-    // Beside the search that found the design, whose study and manifest stay.
-    let beside = found_in.is_some() && arguments.running.out.is_none();
-    let out = arguments.running.out.clone().or(found_in);
+    let out = arguments.running.out.clone().or(found_in.clone());
     let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
+    // Beside the search that found the design, whose study and manifest stay.
+    let beside = found_in.is_some_and(|found_in| is_same(&found_in, &out));
+    if !beside && out.join("optimum.json").exists() {
+        let source = std::io::Error::other("the results of a search stand there; give another --out");
+        return Err(Error::Output { path: out, source });
+    }
     let screen = Screen::new(arguments.running.quiet);
     with_threads(arguments.running.threads, || {
         let certificate = certify(&study)?;
@@ -43,6 +47,12 @@ pub fn command(arguments: &cli::Certify) -> Result<(), Error> {
         screen.line(&certificate)?;
         screen.line(where_results_are(&out)?)
     })
+}
+
+/// Whether both are the same directory.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let [one, other] = [one, other].map(|path| path.canonicalize().ok());
+    one.is_some() && one == other
 }
 
 /// The certificate of the damper in the scene of a study, under the study's objective.

@@ -125,6 +125,12 @@ fn text(place: &Path, name: &str) -> Result<String, Error> {
 }
 
 impl Report {
+    /// Says what does not hold.
+    fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
+        self.problems.push(format!("{name}, {words}"));
+        self.screen.line(format!("  {name:<22} {words}"))
+    }
+
     /// Makes all `checks` of a file, of which they are `what`.
     fn look(&mut self, name: &str, what: &str, checks: &[Check]) -> Result<(), Error> {
         let tally = run(checks);

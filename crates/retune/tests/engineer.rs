@@ -214,6 +214,10 @@ fn exact_what_a_search_found_is_certified_where_it_lies() {
         desk.good(&["certify", path, "--quiet"]);
         assert_eq!(desk.read("results/small/certificate.json"), first, "{path}");
     }
+    desk.good(&["certify", "results/small", "--out", "results/small", "--quiet"]);
+    desk.good(&["verify", "results/small"]);
+    let Answer { code, stderr, .. } = desk.run(&["certify", "small.json", "--out", "results/small"]);
+    assert!(code == Some(2) && stderr.contains("the results of a search stand there"), "{code:?} {stderr}");
     let optimum = desk.read_json("results/small/optimum.json");
     let certificate = desk.read_json("results/small/certificate.json");
     assert_eq!(optimum["certificate"]["verdict"], certificate["verdict"]);

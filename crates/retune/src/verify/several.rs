@@ -23,15 +23,16 @@ pub fn verify(place: &Path, most: usize, report: &mut Report) -> Result<(), Erro
         if place.join(name).exists() {
             let sample = Sample::read(&place.join(name), most)?;
             let checks: Vec<Check> = sample.rows().filter_map(|row| design(&studies, samples, row)).collect();
-            report.look(name, &sample.of(), &checks)?;
+            report.look(name, &sample.of(checks.len()), &checks)?;
             looked = true;
         }
     }
     let name = "retention.csv";
-    if place.join(name).exists() {
+    if place.join(name).exists() && place.join("retune.csv").exists() {
         let sample = Sample::read(&place.join(name), most)?;
         let designs = Sample::read(&place.join("retune.csv"), usize::MAX)?;
-        report.look(name, &sample.of(), &curves(&studies, &designs, &sample))?;
+        let (columns, checks) = curves(&studies, &designs, &sample);
+        report.look(name, &sample.of(checks.len() / columns.max(1)), &checks)?;
     } else if !looked {
         report.screen.line("  no row of these results can be run again by itself")?;
     }
@@ -42,10 +43,10 @@ pub fn verify(place: &Path, most: usize, report: &mut Report) -> Result<(), Erro
 fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> Option<Check<'a>> {
     let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
     let at = row.design();
-    let said = row.number("E1max");
-    if said.is_nan() {
-        return None;
+    if at.iter().any(|value| value.is_nan()) {
+        return None; // no design keeps this bound
     }
+    let said = row.number("E1max");
     let k1 = row.number("k1");
     let study = if k1.is_nan() { study.clone() } else { study.with(&[Setting::new("k1", k1)]).ok()? };
     let again = move || match samples {
@@ -55,8 +56,8 @@ fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> 
     Some(Check { said, again: Box::new(again) })
 }
 
-/// The checks of the curves along k1: without damper, and with each damper as it was tuned for its own k1.
-fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample) -> Vec<Check<'a>> {
+/// How many curves along k1 there are, and their checks: without damper, and with each damper as it was tuned for its own k1.
+fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample) -> (usize, Vec<Check<'a>>) {
     let mut columns = Vec::new();
     if let Some((_, first)) = studies.first() {
         let bare = retune_model::Scene { damper: None, ..first.scene };
@@ -78,5 +79,5 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
             checks.push(Check { said: row.number(column), again: Box::new(again) });
         }
     }
-    checks
+    (columns.len(), checks)
 }

@@ -53,9 +53,9 @@ impl Sample {
         self.rows.iter().map(|fields| Row { names: &self.names, fields })
     }
 
-    /// How many rows there are, and how many were taken.
-    pub fn of(&self) -> String {
-        format!("{} of {} rows", self.rows.len(), self.count)
+    /// How many rows there are, and how many were run again.
+    pub fn of(&self, looked: usize) -> String {
+        format!("{looked} of {} rows", self.count)
     }
 }
 
