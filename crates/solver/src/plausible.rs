@@ -11,9 +11,9 @@ const ROUNDINGS: f64 = 64.0;
 
 /// Passes on a largest energy of the primary structure that can be.
 ///
-/// A run of the exact method that has more than the force can give (see [`Bare::most_energy`]) has lost its digits to parameters too
-/// far apart; the other methods are not held
-/// to it, for what they make of energy at a fixed step or a loose tolerance is their own.
+/// A run of the exact method that has more than the force can give (see [`Bare::most_energy`]) has lost its digits to parameters
+/// too far apart; the other methods are not held to it, for what they make of energy at a fixed step or a loose tolerance is
+/// their own.
 ///
 /// # Errors
 /// [`SolverError::NonFinite`], [`SolverError::Implausible`].
