@@ -121,7 +121,9 @@ deny:
 
 # Pack every crate as it would be published, and build it from its package
 package:
-    cargo package --workspace --exclude retune-peers --allow-dirty
+    # What cargo unpacked and built of an earlier packing of the same version it would take for the new one.
+    rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
+    cargo package --target-dir target/packing --workspace --exclude retune-peers --allow-dirty
 
 # Measure speed
 bench *OPTIONS:
