@@ -152,11 +152,10 @@ fn retention(tuned: &[Tuned]) -> Curves {
     Curves { k1, none, kept }
 }
 
-/// The objective of a study, without its limits, for a scene at another stiffness, J.
+/// E1max by the objective of a study for a scene at another stiffness, N/m, in J; none where it cannot be run.
 pub fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
     scene.primary.stiffness = NonNegative::new(k1).ok()?;
-    let found = study.goal().evaluate(&scene, &study.solver.settings(), f64::INFINITY).ok()?;
-    Some(found.energy)
+    study.energy(&scene)
 }
 
 impl Tuned {

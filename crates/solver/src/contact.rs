@@ -129,7 +129,7 @@ pub fn integrate(
     let shortest = plan.h * 1e-12;
     let mut start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
     loop {
-        // The force is a polynomial about the start of the step; the step must not outrun it.
+        // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
         equations.set_drive(y[TIME], start.drive);
         let reach = Compression::TURN / (equations.frequency() * plan.q);
         // A step aimed at the wall if it is near enough; the aim need not be good (see `reach_wall`).
@@ -145,7 +145,7 @@ pub fn integrate(
         let shortened = (h / unhindered).min(1.0);
         let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
         let wall = if lifting { reach_wall(&equations, &tried.y, &plan, rtol, work) } else { None };
-        // Where the step would end that goes on to the wall: it stands for the last piece, and may hardly be longer than the one tried.
+        // Where a step ends that goes on to the wall: it is the last piece, and may hardly be longer than the one tried.
         let to_wall = |wall: &Compressed| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
         let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
         // Past the wall there is no contact: a step must end where the wall can be reached from. Nor may it outrun the force.

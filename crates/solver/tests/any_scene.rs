@@ -81,8 +81,8 @@ fn apart(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())
 }
 
-/// Contacts that springs, dashpots and the force rule, not Hertz's law: their motion was lost at the end of the contact, by a
-/// factor of two to 4e4, and only energy out of nothing was noticed.
+/// Contacts that springs, dashpots and the force rule, not Hertz's law: their motion was lost at the end of the contact, and only
+/// energy out of nothing was noticed.
 #[test]
 fn reference_contacts_that_other_forces_rule_agree_with_dop853() {
     let base = Numbers { p: 1.0, ..SSVI };

@@ -12,7 +12,7 @@ pub const SAME: f64 = 0.01;
 pub struct Design {
     /// The number of its damper.
     pub damper: usize,
-    /// k2, c2, D, C.
+    /// k2 (N/m), c2 (N·s/m), D (m), C (m).
     pub at: [f64; 4],
     /// The worst E1max over the band, J.
     pub e1_max: f64,

@@ -1,7 +1,7 @@
 //! Which E1max a search makes small: over which frequencies and stiffnesses, when, for which ensemble, in which sum.
 
 use super::{Rule, Study};
-use retune_model::Positive;
+use retune_model::{Positive, Scene};
 use retune_optim::{Frequencies, Goal, Limits, PerLimit, Statistic, Stiffnesses, Term, When};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -334,5 +334,10 @@ impl Study {
     pub fn goal(&self) -> Goal {
         let limits = self.optimize.as_ref().map(|optimize| optimize.limits.limits()).unwrap_or_default();
         Goal { terms: self.objective().terms(self, 1.0), limits }
+    }
+
+    /// E1max of a scene by its objective, whatever the limits, J; none where it cannot be run.
+    pub fn energy(&self, scene: &Scene) -> Option<f64> {
+        Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.energy)
     }
 }

@@ -57,13 +57,10 @@ pub fn certificate(place: &Path, report: &mut Report) -> Result<(), Error> {
     report.look("certificate.json", "its design", &[check])
 }
 
-/// The value of the objective of a study, without its limits, for a design; infinite where it has none.
+/// E1max by the objective of a study for a design (k2, c2, D, C in SI units), J; infinite where it has none.
 pub fn energy(study: &Study, design: &[f64; 4]) -> f64 {
-    let found = study
-        .scene_with(&Setting::design(*design))
-        .ok()
-        .and_then(|scene| study.goal().evaluate(&scene, &study.solver.settings(), f64::INFINITY).ok());
-    found.map_or(f64::INFINITY, |found| found.energy)
+    let scene = study.scene_with(&Setting::design(*design)).ok();
+    scene.and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
 /// The check of the value that a search saw at a design.

@@ -29,6 +29,7 @@ impl Plan {
     /// Steps of a collision; a contact with more is a long press, and its steps follow the error estimate alone.
     const COLLISION: u32 = 40;
 
+    /// The plan of a contact that begins at `y`, each step of it to `rtol` of its sizes.
     pub fn new(equations: &Compression, y: &Compressed, rtol: f64) -> Self {
         // A contact that begins pressed in is as long as the collision that would reach as deep.
         let w = y[W].abs().max(equations.speed_at_depth(y[Q]));
@@ -46,7 +47,7 @@ impl Plan {
         self.rounding = 50.0 * f64::EPSILON * equations.size_of_terms(y) * seconds * self.mass_ratio / rtol;
     }
 
-    /// The step from a state: the nearest singularity of a collision lies above its deepest point, so steps may be longer
+    /// The step from a state, s/√m: the nearest singularity of a collision lies above its deepest point, so steps may be longer
     /// towards the wall, about twice as long at the wall itself.
     pub fn step(&self, y: &Compressed) -> f64 {
         let height = 1.0 - (y[Q] / self.q).min(1.0);
@@ -84,7 +85,7 @@ impl Plan {
         self.w = self.w.max(y[W].abs());
     }
 
-    /// Learns from a step `h` that was refused: a collision that other forces rule does not reach as deep as one that is left
+    /// Learns from a step that was refused, `shortened` as in [`Self::adapt`]: a collision that other forces rule does not reach as deep as one that is left
     /// to itself.
     pub fn refuse(&mut self, error: f64, shortened: f64, y: &Compressed) {
         let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
