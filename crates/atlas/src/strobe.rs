@@ -2,8 +2,8 @@
 
 use crate::parameter::{Error, Parameter};
 use rayon::prelude::*;
-use retune_model::{Coupled, Drive, Scene, Side};
-use retune_solver::observe::{Observer, Path, Peak, Segment, Unobserved};
+use retune_model::{Coupled, Scene, Side};
+use retune_solver::observe::{Observer, Path, Peak, PrimaryEnergy, Segment, Unobserved};
 use retune_solver::steps::Steps;
 use retune_solver::{Hybrid, Motion, Phase, Settings, SolverError};
 use std::f64::consts::TAU;
@@ -91,12 +91,12 @@ impl Observer<4> for Touches {
     }
 }
 
-struct Watch<F> {
-    peak: Peak<F>,
+struct Watch<'a> {
+    peak: Peak<PrimaryEnergy<'a>>,
     touches: Touches,
 }
 
-impl<F: Fn(Drive, &[f64; 4]) -> [f64; 3]> Observer<4> for Watch<F> {
+impl Observer<4> for Watch<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.peak.segment(segment);
     }
@@ -146,11 +146,11 @@ fn orbit(
     for _ in 0..periods.settle {
         motion = strobe.next(motion, &mut Unobserved)?;
     }
-    let rates = |drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y);
     let mut samples = Vec::with_capacity(periods.record);
     let (mut e1_max, mut impacts) = (0.0_f64, [0; 2]);
     for _ in 0..periods.record {
-        let mut watch = Watch { peak: Peak::new(rates, f64::INFINITY), touches: Touches::default() };
+        let mut watch =
+            Watch { peak: Peak::new(PrimaryEnergy::new(system), f64::INFINITY), touches: Touches::default() };
         motion = strobe.next(motion, &mut watch)?;
         samples.push(motion.y);
         e1_max = e1_max.max(watch.peak.record().value);

@@ -69,6 +69,18 @@ impl Bare {
         0.5 * (self.m1 * v1 * v1 + self.k1 * x1 * x1)
     }
 
+    /// `[m1, k1]`: the weights of `v1²` and `x1²` in twice the primary energy.
+    pub fn primary_energy_weights(&self) -> [f64; 2] {
+        [self.m1, self.k1]
+    }
+
+    /// The largest `|row · y|` over all states of `√(2 E1) = 1` (the dual norm); infinite if `row` weighs a position that no
+    /// spring holds.
+    pub fn dual_energy_norm(&self, &[x1, v1]: &[f64; 2]) -> f64 {
+        let part = |weight: f64, scale: f64| if weight == 0.0 { 0.0 } else { weight * weight / scale };
+        (part(x1, self.k1) + part(v1, self.m1)).sqrt()
+    }
+
     /// Largest growth of `√(2E)`, `P / √m1`, √J/s, with `E` the mechanical energy of the structure and of whatever hangs on it: the
     /// power of the force is at most `P |v1| <= P √(2E / m1)`, and all else only takes energy.
     pub fn energy_norm_growth(&self) -> f64 {

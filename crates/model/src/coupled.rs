@@ -230,6 +230,11 @@ impl Coupled {
         [0.5 * (m2 * v2 * v2 + k2 * x * x), v2 * net, a2 * net + v2 * (m2 * jerk + k2 * v2)]
     }
 
+    /// `[m2, k2]`: the weights of `v2²` and `(x2 - D)²` in twice the paper's damper energy.
+    pub fn damper_energy_weights(&self) -> [f64; 2] {
+        [self.m2, self.k2]
+    }
+
     /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².
     #[inline]
     pub fn stroke_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {

@@ -18,7 +18,7 @@ mod value;
 
 pub use band::Worst;
 pub use bare::Bare;
-pub use compression::{Compressed, Compression};
+pub use compression::{Compressed, Compression, Growth, ORDERS};
 pub use coupled::{Coupled, Side};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
 pub use scene::{Contact, Damper, Forcing, Primary, Scene};

@@ -206,6 +206,7 @@ impl Collisions {
             last: &last,
             scale: duration * depth * depth.sqrt(),
             duration,
+            depth,
             roots: depths.map(|z| (z * depth).sqrt()),
             end: [0.0; 4],
         };

@@ -8,10 +8,11 @@
 mod plan;
 
 use crate::dop853::{self, EVALUATIONS, Step};
-use crate::observe::{Knot, Observer, Segment};
+use crate::observe::{Form, Knot, Observer, Segment};
+use crate::peak::QUINTIC;
 use crate::settings::{SolverError, Work};
 use plan::Plan;
-use retune_model::{Compressed, Compression};
+use retune_model::{Compressed, Compression, ORDERS};
 
 /// How a contact ended.
 pub enum End {
@@ -69,6 +70,15 @@ impl Segment<4> for Piece<'_> {
     fn at_time(&self, t: f64) -> Knot<4> {
         let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
         Knot { t, ..knot(self.equations, self.touch_down, &y) }
+    }
+    fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
+        // `q` is on the clock: in the state it has lost digits.
+        let [from, to] = ends.map(|knot| {
+            let [_, w, x1, v1, _] = self.equations.compress(&knot.y);
+            [knot.clock[0], w, x1, v1, 0.0]
+        });
+        let growth = self.equations.growth(h, &from, &to);
+        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(&growth, 6)) // 6! of a Taylor coefficient
     }
 }
 

@@ -3,13 +3,14 @@
 
 use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
-use crate::observe::{Observer, Path, Peak, Quantity, Segment, Unobserved};
+use crate::observe::{
+    BareEnergy, Observer, Path, Peak, PrimaryEnergy, RelativePosition, Segment, Unobserved,
+};
 use crate::plausible;
 use crate::run::e1_max;
 use crate::settings::{Extreme, Method, Settings, SolverError, Window};
 use crate::steps::Steps;
-use crate::system::PrimaryEnergy;
-use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
+use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 use std::f64::consts::TAU;
 
 /// What is asked of a run.
@@ -78,8 +79,7 @@ pub fn extremes(
     let mut seen = match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut peak =
-                Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), ask.cutoff);
+            let mut peak = Peak::new(BareEnergy::new(&system), ask.cutoff);
             follow_bare(&system, start, later, settings, &mut Unobserved, &mut peak)?;
             Extremes { e1_max: peak.record(), stroke: 0.0, force: 0.0, settled: true }
         }
@@ -152,23 +152,20 @@ fn start(scene: &Scene, phase: f64) -> f64 {
 }
 
 /// E1max and, where they are asked for, the ends of the stroke.
-struct Peaks<E, S> {
-    e1: Peak<E>,
-    stroke: Option<[Peak<S>; 2]>,
+struct Peaks<'a> {
+    e1: Peak<PrimaryEnergy<'a>>,
+    stroke: Option<[Peak<RelativePosition<'a>>; 2]>,
 }
 
-fn peaks<'a>(
-    system: &'a Coupled,
-    ask: Ask,
-) -> Peaks<PrimaryEnergy<'a>, impl Fn(Drive, &[f64; 4]) -> [f64; 3] + 'a> {
-    let side = |sign: f64| move |drive: Drive, y: &[f64; 4]| system.stroke_rates(drive, y).map(|v| sign * v);
+fn peaks(system: &Coupled, ask: Ask) -> Peaks<'_> {
+    let side = |sign: f64| Peak::new(RelativePosition::new(system, sign), f64::INFINITY);
     Peaks {
-        e1: Peak::new(PrimaryEnergy(system), ask.cutoff),
-        stroke: ask.walls.then(|| [1.0, -1.0].map(|sign| Peak::new(side(sign), f64::INFINITY))),
+        e1: Peak::new(PrimaryEnergy::new(system), ask.cutoff),
+        stroke: ask.walls.then(|| [1.0, -1.0].map(side)),
     }
 }
 
-impl<E, S> Peaks<E, S> {
+impl Peaks<'_> {
     fn extremes(&self, system: &Coupled) -> Extremes {
         let Some([farthest, nearest]) = &self.stroke else {
             return Extremes { e1_max: self.e1.record(), stroke: 0.0, force: 0.0, settled: true };
@@ -185,11 +182,7 @@ impl<E, S> Peaks<E, S> {
     }
 }
 
-impl<E, S> Observer<4> for Peaks<E, S>
-where
-    E: Quantity<4>,
-    S: Fn(Drive, &[f64; 4]) -> [f64; 3],
-{
+impl Observer<4> for Peaks<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.e1.segment(segment);
         self.stroke.iter_mut().flatten().for_each(|peak| peak.segment(segment));

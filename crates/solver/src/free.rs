@@ -3,7 +3,7 @@
 //! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Dampers only take energy from the transient, so its
 //! energy norm bounds all that it can still do: whether a wall can ever be reached, and whether the record can still fall.
 
-use crate::flow::Flow;
+use crate::flow::{Flow, LANES};
 use crate::observe::{Knot, Observer, Peak, Quantity, Segment};
 use crate::settings::{Extreme, SolverError, Window, Work};
 use crate::steps::{Step, StepClock, Steps};
@@ -50,14 +50,17 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
         let mut clock = StepClock::new(self.now.t, whole);
         while self.now.t < to && !observer.satisfied() {
             let (now, remaining) = (self.now, to - self.now.t);
-            let mut steps = Steps::new(&self.flow, now, clock);
+            let energy =
+                self.system.energy_norm(&now.y) + LANES as f64 * whole * self.system.energy_norm_growth();
+            let mut steps = Steps::new(&self.flow, now, clock, energy);
             steps.keep((remaining / whole) as usize);
             if steps.count() > 0 {
                 observer.steps(&steps);
                 self.now = steps.knot(steps.count());
                 clock.count(steps.count());
             } else {
-                let mut step = Step::part(&self.flow, now, &self.flow.expand(now.drive, &now.y), remaining);
+                let motion = self.flow.expand(now.drive, &now.y);
+                let mut step = Step::part(&self.flow, now, &motion, remaining, energy);
                 step.end().t = to;
                 observer.segment(&step);
                 self.now = *step.ends()[1];

@@ -23,6 +23,7 @@ pub mod onestep;
 mod peak;
 mod plausible;
 mod polynomial;
+mod quantity;
 pub mod rk4;
 mod rule;
 mod run;

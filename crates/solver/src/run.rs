@@ -2,12 +2,14 @@
 
 use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
-use crate::observe::{Knot, Observer, Path, Peak, Segment, Unobserved};
+use crate::observe::{
+    BareEnergy, DamperEnergy, Knot, Observer, Path, Peak, PrimaryEnergy, RelativePosition, Segment,
+    Unobserved,
+};
 use crate::plausible;
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
 use crate::steps::Steps;
-use crate::system::PrimaryEnergy;
-use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
+use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
 ///
@@ -37,8 +39,7 @@ fn largest_energy(
     match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut peak =
-                Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), cutoff);
+            let mut peak = Peak::new(BareEnergy::new(&system), cutoff);
             if hybrid {
                 let steady = system.steady(system.frequency()).e1_max;
                 return Free::new(&system, window.to, settings.max_steps).e1_max(window, peak, steady);
@@ -48,7 +49,7 @@ fn largest_energy(
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut peak = Peak::new(PrimaryEnergy(&system), cutoff);
+            let mut peak = Peak::new(PrimaryEnergy::new(&system), cutoff);
             if hybrid {
                 let mut free = Free::new(&system, window.to, settings.max_steps);
                 if free.clears_walls() {
@@ -78,8 +79,7 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 }
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    let mut peak =
-        Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), f64::INFINITY);
+    let mut peak = Peak::new(BareEnergy::new(system), f64::INFINITY);
     let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
     Ok(Response {
         e1_max: peak.record(),
@@ -94,14 +94,12 @@ fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<R
 }
 
 fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    let stroke =
-        |sign: f64| move |drive: Drive, y: &[f64; 4]| system.stroke_rates(drive, y).map(|v| sign * v);
     let mut before = Touches::default();
     let mut seen = Everything {
-        e1: Peak::new(PrimaryEnergy(system), f64::INFINITY),
-        e2: Peak::new(|drive: Drive, y: &[f64; 4]| system.damper_energy_rates(drive, y), f64::INFINITY),
-        farthest: Peak::new(stroke(1.0), f64::INFINITY),
-        nearest: Peak::new(stroke(-1.0), f64::INFINITY),
+        e1: Peak::new(PrimaryEnergy::new(system), f64::INFINITY),
+        e2: Peak::new(DamperEnergy::new(system), f64::INFINITY),
+        farthest: Peak::new(RelativePosition::new(system, 1.0), f64::INFINITY),
+        nearest: Peak::new(RelativePosition::new(system, -1.0), f64::INFINITY),
         touches: Touches::default(),
     };
     let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
@@ -148,20 +146,15 @@ impl Observer<4> for Touches {
     }
 }
 
-struct Everything<'a, E2, F, G> {
+struct Everything<'a> {
     e1: Peak<PrimaryEnergy<'a>>,
-    e2: Peak<E2>,
-    farthest: Peak<F>,
-    nearest: Peak<G>,
+    e2: Peak<DamperEnergy<'a>>,
+    farthest: Peak<RelativePosition<'a>>,
+    nearest: Peak<RelativePosition<'a>>,
     touches: Touches,
 }
 
-impl<E2, F, G> Observer<4> for Everything<'_, E2, F, G>
-where
-    E2: Fn(Drive, &[f64; 4]) -> [f64; 3],
-    F: Fn(Drive, &[f64; 4]) -> [f64; 3],
-    G: Fn(Drive, &[f64; 4]) -> [f64; 3],
-{
+impl Observer<4> for Everything<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.e1.segment(segment);
         self.e2.segment(segment);

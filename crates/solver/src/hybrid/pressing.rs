@@ -56,10 +56,11 @@ impl Hybrid<'_> {
         let depth = press(&motion, sign);
         let (mean_rate, rate) = (depth.over_s(), depth.derivative());
         let mut s = self.flow.step().min(remaining);
+        let energy = self.system.energy_norm(&touch.y) + self.flow.step() * self.system.energy_norm_growth();
         for _ in 0..400 {
             let z = s * mean_rate.at(s);
             if unfelt(s, z) {
-                let mut step = Step::part(&self.flow, touch, &motion, s);
+                let mut step = Step::part(&self.flow, touch, &motion, s, energy);
                 step.end().y[2] = step.end().y[0] + self.system.wall(equations.side()) + sign * z;
                 observer.segment(&step);
                 let end = *step.ends()[1];
@@ -73,7 +74,7 @@ impl Hybrid<'_> {
             return Err(SolverError::StepTooSmall { t: touch.t, h: s });
         }
         // The run ends before the damper is in the wall by more than rounding.
-        let mut step = Step::part(&self.flow, touch, &motion, remaining);
+        let mut step = Step::part(&self.flow, touch, &motion, remaining, energy);
         step.end().t = to;
         observer.segment(&step);
         let end = *step.ends()[1];
