@@ -42,8 +42,8 @@ pub trait Path<const N: usize> {
     fn pieces(&self) -> usize;
     /// Visits the times (s, since the first) and states at the knots in their order.
     fn states(&self, visit: impl FnMut(f64, &[f64; N]));
-    /// A bound on half the second time derivative of a quantity; infinite where none is known.
-    fn bend(&self, form: &Form<N>) -> f64;
+    /// A bound on the second time derivative of a quantity; infinite where none is known.
+    fn second_derivative(&self, form: &Form<N>) -> f64;
     /// Shows the piece that follows a knot.
     fn show(&self, piece: usize, observer: &mut impl Observer<N>);
 }

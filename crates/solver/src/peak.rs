@@ -300,8 +300,8 @@ where
         self.begin(segment, &from, &to, remainder);
     }
 
-    /// Looks only between knots where the record could be broken: what has a second time derivative of at most `2 bend` rises above
-    /// the larger of its values `t` seconds apart by at most `bend t² / 4`.
+    /// Looks only between knots where the record could be broken: what has a second derivative of at most `m` rises above the
+    /// larger of two values `t` seconds apart by at most `m t² / 8`.
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
         let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
@@ -311,9 +311,9 @@ where
             times[count] = t;
             count += 1;
         });
-        let bend = 0.25 * path.bend(self.quantity.form());
+        let second = path.second_derivative(self.quantity.form());
         for piece in 0..count - 1 {
-            let rise = bend * (times[piece + 1] - times[piece]).powi(2);
+            let rise = 0.125 * second * (times[piece + 1] - times[piece]).powi(2);
             let dropped = values[piece].max(values[piece + 1]) + rise <= self.record.value;
             if !dropped {
                 path.show(piece, self);

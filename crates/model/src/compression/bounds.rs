@@ -74,29 +74,47 @@ impl Compression {
 
     /// Bounds on the first Taylor coefficients in *time* over a whole contact of `duration` seconds that begins at `touch`
     /// (`q = 0`); `None` if forces other than Hertz's may change its speed too much for the argument. `q0` is the [`greatest
-    /// depth`](Self::greatest_depth) of an undisturbed collision at its touch-down speed, √m.
+    /// depth`](Self::greatest_depth) of an undisturbed collision at its touch-down speed, √m, `amplitude` that of the force, N.
     ///
     /// Let `G` bound what accelerates the damper into the wall beside Hertz's force. Then `|w| <= ŵ = w0 + 2 G t`, as
     /// `w² + (4/5) κ q⁵ = w0² + 2 ∫ g w dt <= w0² + 2 G t ŵ <= ŵ²`; so `q` stays below the greatest depth at
     /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and `q |w|` below `max u √(1 - u⁵) = 0.658` times both. What contact and forces
     /// may add to `v1` follows from the impulse. All of it is proven from a guess of the speeds that then turns out to hold.
-    pub fn growth_over_contact(&self, touch: &Compressed, q0: f64, duration: f64) -> Option<Growth<3>> {
+    pub fn growth_over_contact(
+        &self,
+        touch: &Compressed,
+        q0: f64,
+        duration: f64,
+        amplitude: f64,
+    ) -> Option<Growth<3>> {
         let [w0, x1, v1] = [touch[1], touch[2], touch[3]].map(f64::abs);
-        let (share, drive) =
-            (self.hertz[0] / self.hertz[1], self.primary[0] * self.cos[0].hypot(self.sin[0]));
-        let guess = (2.0 * w0, v1 + 4.0 * w0);
-        let outside = |speed: f64, v1_most: f64, z: f64| {
-            let resisting = drive + self.primary[1] * v1_most + self.primary[2] * (x1 + duration * v1_most);
-            [0, 1].map(|i| resisting + self.dashpot[i] * speed + self.spring[i] * (z + self.stretch.abs()))
+        let (share, drive) = (self.hertz[0] / self.hertz[1], self.primary[0] * amplitude);
+        let outside = |w: f64, v: f64, z: f64| {
+            let resisting = drive + self.primary[1] * v + self.primary[2] * (x1 + duration * v);
+            [0, 1].map(|i| resisting + self.dashpot[i] * w + self.spring[i] * (z + self.stretch.abs()))
         };
-        let [on_primary, apart] = outside(guess.0, guess.1, 1.75 * q0 * q0); // 2^0.8 = 1.741
-        let w = w0 + 2.0 * apart * duration;
-        let v = v1 + share * (w0 + w + apart * duration) + on_primary * duration;
+        let depth = |w: f64| q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
+        let follows = |[w, v]: [f64; 2]| {
+            let [on_primary, apart] = outside(w, v, depth(w).powi(2));
+            let reached = w0 + 2.0 * apart * duration;
+            let impulse = share * (w0 + reached + apart * duration);
+            [reached, v1 + impulse + on_primary * duration]
+        };
+        let mut guess = [1.5 * w0, v1 + 3.0 * w0];
+        let mut most = follows(guess);
+        for _ in 0..3 {
+            if most[0] <= guess[0] && most[1] <= guess[1] {
+                break;
+            }
+            guess = most.map(|bound| 1.5 * bound);
+            most = follows(guess);
+        }
+        let [w, v] = most;
         // NaN is no proof.
-        if !(w <= guess.0 && v <= guess.1) {
+        if !(w <= guess[0] && v <= guess[1]) {
             return None;
         }
-        let q = q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
+        let q = depth(w);
         let (z, x) = (q * q, x1 + duration * v);
         let [on_primary, apart] = outside(w, v, z);
         let (cube, cube_rate) = (z * q, 1.5 * 0.658 * q * w);

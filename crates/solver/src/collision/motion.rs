@@ -134,12 +134,15 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     }
 
     #[inline(always)]
-    fn bend(&self, form: &Form<4>) -> f64 {
-        let mut equations = self.of.equations;
-        equations.set_drive(0.0, self.touch.drive);
-        let touch = equations.compress(&self.touch.y);
-        let growth = equations.growth_over_contact(&touch, self.depth.sqrt(), self.duration);
-        growth.map_or(f64::INFINITY, |growth| form.in_contact::<3>(&growth, 2))
+    fn second_derivative(&self, form: &Form<4>) -> f64 {
+        let touch = self.of.equations.compress(&self.touch.y);
+        let growth = self.of.equations.growth_over_contact(
+            &touch,
+            self.depth.sqrt(),
+            self.duration,
+            self.of.amplitude,
+        );
+        growth.map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, 2)) // 2! of a Taylor coefficient
     }
 
     /// A piece between two knots is followed by steps from the first of them.
