@@ -283,7 +283,8 @@ fn press(motion: &Expansion<4>, sign: f64) -> Polynomial<BLOCKS> {
 /// Coefficients of a bound on `|d⁴r/dt⁴|` in flight, from `r⁗ = ρ A⁴ (y - y0) + P-terms`, with ρ the row of `r`:
 /// the dual energy norm of `ρ A⁴`, and `P (|ρA³b| + ω |ρA²b| + ω² |ρAb| + ω³ |ρb|)`.
 fn fourth_derivative_bound(system: &Coupled, linear: &Linear<4>) -> [f64; 2] {
-    let amplitude = system.drive(0.0)[0];
+    let [cos, sin] = system.drive(0.0);
+    let amplitude = cos.hypot(sin);
     let dot = |a: &[f64; 4], b: &[f64; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut row, mut forced) = (STROKE, 0.0);
     for _ in 0..4 {
