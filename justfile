@@ -111,6 +111,10 @@ bench-scale:
 test-scenes SCENES="30000":
     RETUNE_SCENES={{SCENES}} cargo test --package retune-solver --test any_scene reference_any_scene -- --nocapture
 
+# Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
+test-settled SCENES="4000":
+    RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture
+
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":
     cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}

@@ -67,7 +67,7 @@ impl Coupled {
         search.worst
     }
 
-    /// Largest steady stroke `|X2 - X1|`, m, of the damper about its rest position over a band; as [`Self::steady_e1_max`].
+    /// Largest steady stroke (spring deflection) `|X2 - X1|`, m, over a band; as [`Self::steady_e1_max`].
     pub fn steady_stroke_max(&self, band: [f64; 2]) -> Worst {
         let mut search = Search::new(|omega| self.steady(omega).stroke());
         search.over(band, |u| [u * u, self.resonance(u)]); // X2 - X1 = P m2 ω² / (S d - m2 ω² Q)

@@ -1,7 +1,7 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
 use crate::{Drive, Forcing, Primary};
-use nalgebra::SMatrix;
+use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +11,7 @@ pub struct Bare {
     pub(crate) k1: f64,
     pub(crate) p: f64,
     pub(crate) omega: f64,
+    phase: f64,
 }
 
 impl Bare {
@@ -22,7 +23,14 @@ impl Bare {
             k1: primary.stiffness.get(),
             p: forcing.amplitude.get(),
             omega: forcing.frequency.get(),
+            phase: 0.0,
         }
+    }
+
+    /// The same under the force `P cos(ωt + φ)`, φ in rad. Its time begins at 0 as ever.
+    #[must_use]
+    pub fn with_phase(self, phase: f64) -> Self {
+        Self { phase, ..self }
     }
 
     /// Angular frequency ω of the force, rad/s.
@@ -30,10 +38,15 @@ impl Bare {
         self.omega
     }
 
-    /// `[P cos ωt, P sin ωt]` at time `t` (s), N.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
     pub fn drive(&self, t: f64) -> Drive {
-        let (sin, cos) = (self.omega * t).sin_cos();
+        let (sin, cos) = (self.omega * t + self.phase).sin_cos();
         [self.p * cos, self.p * sin]
+    }
+
+    /// The complex amplitude `P e^{iφ}` of the force, N.
+    pub(crate) fn force(&self) -> Complex<f64> {
+        Complex::from_polar(self.p, self.phase)
     }
 
     /// State at rest, `[0, 0]`.

@@ -52,12 +52,18 @@ impl Coupled {
         }
     }
 
+    /// The same under the force `P cos(ωt + φ)`, φ in rad. Its time begins at 0 as ever.
+    #[must_use]
+    pub fn with_phase(self, phase: f64) -> Self {
+        Self { bare: self.bare.with_phase(phase), ..self }
+    }
+
     /// The same structure without its damper.
     pub fn bare(&self) -> &Bare {
         &self.bare
     }
 
-    /// `[P cos ωt, P sin ωt]` at time `t` (s), N.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
     pub fn drive(&self, t: f64) -> Drive {
         self.bare.drive(t)
     }

@@ -118,7 +118,13 @@ fn goal(study: &Study) -> Vec<String> {
         .filter_map(|limit| Some(format!("{limit} at most {} {}", short(limits.get(limit)?), limit.unit())))
         .collect();
     if !words.is_empty() {
-        lines.push(format!("under limits: {}", words.join(", ")));
+        let when = match limits.walls_from() {
+            None => String::new(),
+            Some(_) if steady => ", of the steady motion".to_owned(),
+            Some(0.0) => ", over the whole run".to_owned(),
+            Some(from) => format!(", from {} s on", short(from)),
+        };
+        lines.push(format!("under limits: {}{when}", words.join(", ")));
     }
     lines
 }

@@ -28,11 +28,13 @@ pub mod rk4;
 mod rule;
 mod run;
 mod settings;
+mod settle;
 pub mod steps;
 mod system;
 
-pub use extremes::{Ask, Extremes, Settle, extremes, settled};
+pub use extremes::{Ask, Extremes, extremes};
 pub use hybrid::{Hybrid, Motion, Phase};
 pub use run::{Sample, e1_max, simulate, touch_downs, trajectory};
 pub use settings::{Contacts, Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
+pub use settle::{Settle, settled};
 pub use system::{Linear, LinearSystem, System};

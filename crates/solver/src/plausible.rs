@@ -6,7 +6,7 @@ use retune_model::{Bare, Scene};
 /// Rounding that the bound on the energy is given.
 const SLACK: f64 = 1e-6;
 
-/// Roundings of a position between the search for touch-downs and that for the largest stroke, which do not compute it alike.
+/// Roundings of a position between the search for touch-downs and that for the largest relative displacement, which do not compute it alike.
 const ROUNDINGS: f64 = 64.0;
 
 /// Passes on a largest energy of the primary structure that can be.
@@ -61,7 +61,7 @@ pub fn response(
     if value.is_finite() && !(window.from..=window.to).contains(&time) {
         return Err(SolverError::Implausible { t: window.to, value, time, most: most(scene, window) });
     }
-    let numbers = [found.e2_max.value, found.stroke_max];
+    let numbers = [found.e2_max.value, found.relative_displacement_max, found.spring_deflection_max];
     let all = numbers.iter().chain(&found.force_max).chain(&found.final_state);
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }

@@ -86,7 +86,8 @@ fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<R
         e2_max: Extreme { value: 0.0, time: window.from },
         impacts: [0; 2],
         force_max: [0.0; 2],
-        stroke_max: 0.0,
+        relative_displacement_max: 0.0,
+        spring_deflection_max: 0.0,
         final_state: [state[0], state[1], 0.0, 0.0],
         scene: SceneKind::Bare,
         work,
@@ -105,7 +106,9 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
     let (nearest, farthest) = (-seen.nearest.record().value, seen.farthest.record().value);
     let e1_max = seen.e1.record();
-    let stroke_max = farthest.abs().max(nearest.abs());
+    let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
+    let relative_displacement_max = farthest_from(0.0);
+    let spring_deflection_max = farthest_from(system.rest_distance());
     let mut depths = [-nearest, farthest - system.wall(Side::Obstacle)];
     if settings.method == Method::Hybrid {
         for side in Side::BOTH {
@@ -113,7 +116,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
             let rests = system.wall(side) == system.rest_distance();
             if !rests && before.0[i] + seen.touches.0[i] == 0 {
                 let reach = system.bare().reach(e1_max.value, final_state[0], window.to - window.from);
-                let position = 2.0 * reach + system.rest_distance() + stroke_max;
+                let position = 2.0 * reach + system.rest_distance() + relative_displacement_max;
                 depths[i] = plausible::untouched(depths[i], position, window.to)?;
             }
         }
@@ -126,7 +129,8 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
         e2_max: seen.e2.record(),
         impacts: seen.touches.0,
         force_max,
-        stroke_max,
+        relative_displacement_max,
+        spring_deflection_max,
         final_state,
         scene: if touched { SceneKind::Contact } else { SceneKind::Linear },
         work,

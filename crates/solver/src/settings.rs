@@ -162,8 +162,10 @@ pub struct Response {
     pub impacts: [u64; 2],
     /// Largest contact forces on the primary structure and on the obstacle, N.
     pub force_max: [f64; 2],
-    /// Largest `|x2 - x1|`, m.
-    pub stroke_max: f64,
+    /// Largest relative displacement `|x2 - x1|` of the damper, m: its place in the cavity.
+    pub relative_displacement_max: f64,
+    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
+    pub spring_deflection_max: f64,
     /// State at the end of the window: `[x1, v1, x2, v2]`, or `[x1, v1, 0, 0]` without a damper.
     pub final_state: [f64; 4],
     /// The smallest model that was exact for the whole run.

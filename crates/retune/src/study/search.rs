@@ -66,6 +66,7 @@ impl Study {
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         let variables = varied(&optimize.vary)?;
         optimize.objective.check("optimize.objective", self.scene.forcing.frequency.get())?;
+        optimize.limits.check(self.window.end.get())?;
         let tuned = |field, variable: &Variable| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),
