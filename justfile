@@ -115,6 +115,10 @@ test-scenes SCENES="30000":
 test-settled SCENES="4000":
     RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture
 
+# Compare the worst over a band with a search in twice the precision, on DAMPERS dampers with damping down to 1e-9 N s/m and none
+test-bands DAMPERS="1000000":
+    RETUNE_BANDS={{DAMPERS}} cargo test --package retune-model --test band_hunt reference_no_damper -- --nocapture
+
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":
     cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}

@@ -236,10 +236,11 @@ pub struct Simulate {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Also write the motion in the window to a CSV file
+    /// Also write the motion in the window to a CSV file. Its last column, moment, says why a row is there: "grid" (one each
+    /// --interval), or a moment between: "touch-down", "force-max", "lift-off" of each contact, "E1-max" of each maximum of E1
     #[arg(long, value_name = "FILE.csv")]
     pub trajectory: Option<PathBuf>,
-    /// Time between two rows of the trajectory, s
+    /// Time between two rows of the trajectory's grid, s
     #[arg(long, value_name = "S", default_value_t = 0.005, requires = "trajectory")]
     pub interval: f64,
 }

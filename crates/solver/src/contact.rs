@@ -7,6 +7,7 @@
 
 mod plan;
 
+use crate::budget::Budget;
 use crate::dop853::{self, EVALUATIONS, Step};
 use crate::observe::{Form, Knot, Observer, Segment};
 use crate::peak::QUINTIC;
@@ -129,7 +130,7 @@ pub fn integrate(
     from: &Knot<4>,
     mut y: Compressed,
     to: f64,
-    (rtol, max_steps): (f64, u64),
+    (rtol, budget): (f64, Budget),
     work: &mut Work,
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
@@ -168,18 +169,14 @@ pub fn integrate(
                 return Err(SolverError::NonFinite { t });
             }
             // Steps that are tried are work as well.
-            if work.steps + work.rejected > max_steps {
-                return Err(SolverError::TooManySteps { t, limit: max_steps });
-            }
+            budget.check(work.steps + work.rejected, t)?;
             if plan.h < shortest {
-                return Err(SolverError::StepTooSmall { t, h: plan.h * y[Q] });
+                return Err(SolverError::Contact { t });
             }
             continue;
         }
         work.steps += 1;
-        if work.steps > max_steps {
-            return Err(SolverError::TooManySteps { t, limit: max_steps });
-        }
+        budget.check(work.steps, t)?;
         let (mut next, mut length) = (tried.y, h);
         if let Some(wall) = wall {
             (next, length) = (wall, to_wall(&wall));

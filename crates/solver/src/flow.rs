@@ -113,12 +113,12 @@ impl<const N: usize> Flow<N> {
     /// Refuses a run to time `to` (s) in which a whole step would be lost to rounding.
     ///
     /// # Errors
-    /// [`SolverError::StepTooSmall`].
+    /// [`SolverError::TooFast`].
     pub fn check_step(&self, t: f64, to: f64) -> Result<(), SolverError> {
         if to <= t || to + self.step > to {
             Ok(())
         } else {
-            Err(SolverError::StepTooSmall { t, h: self.step })
+            Err(SolverError::TooFast { t: to, h: self.step })
         }
     }
 

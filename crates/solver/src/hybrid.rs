@@ -6,6 +6,7 @@
 
 mod pressing;
 
+use crate::budget::Budget;
 use crate::collision::Collisions;
 use crate::contact;
 use crate::flow::{BLOCKS, Expansion, Flow, LANES};
@@ -13,7 +14,7 @@ use crate::gap::{CUBIC, ceiling, cubic, first_contact, floor, opening_floor};
 use crate::observe::{Knot, Observer, Segment};
 use crate::polynomial::Polynomial;
 use crate::quantity::derivative_bounds;
-use crate::settings::{SolverError, Work};
+use crate::settings::{Method, SolverError, Work};
 use crate::steps::{Step, StepClock, Steps, shifted};
 use crate::system::LinearSystem;
 use retune_model::{Compression, Coupled, Side};
@@ -28,6 +29,15 @@ pub enum Phase {
     Leaving(Side),
     /// Pressed into a wall.
     Pressed(Side),
+}
+
+impl Phase {
+    /// What the damper does in a state that was not reached by moving there: pressed into a wall where it overlaps one.
+    pub fn of(system: &Coupled, y: &[f64; 4]) -> Self {
+        let overlaps = system.rapprochement(y);
+        let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
+        pressed.map_or(Self::Flight, Self::Pressed)
+    }
 }
 
 /// A moment from which the motion can be continued.
@@ -51,6 +61,7 @@ pub struct Hybrid<'a> {
     fourth: [f64; 2],
     rtol: f64,
     max_steps: u64,
+    budget: Budget,
     /// Work done so far.
     pub work: Work,
 }
@@ -77,6 +88,7 @@ impl<'a> Hybrid<'a> {
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
             rtol,
             max_steps,
+            budget: Budget::new(Method::Hybrid, max_steps, 0, [0.0; 2]),
             work: Work::default(),
         }
     }
@@ -93,6 +105,7 @@ impl<'a> Hybrid<'a> {
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
+        self.budget = Budget::new(Method::Hybrid, self.max_steps, self.work.steps, [from.t, to]);
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
@@ -177,9 +190,7 @@ impl<'a> Hybrid<'a> {
             let careful = seen < LANES;
             steps.keep(seen);
             self.work.steps += seen as u64 + u64::from(careful);
-            if self.work.steps > self.max_steps {
-                return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
-            }
+            self.budget.check(self.work.steps, now.t)?;
             if seen > 0 {
                 observer.steps(&steps);
                 now = steps.knot(seen);

@@ -3,8 +3,7 @@
 use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
 use crate::observe::{
-    BareEnergy, DamperEnergy, Knot, Observer, Path, Peak, PrimaryEnergy, RelativePosition, Segment,
-    Unobserved,
+    BareEnergy, DamperEnergy, Observer, Path, Peak, PrimaryEnergy, RelativePosition, Segment, Unobserved,
 };
 use crate::plausible;
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
@@ -208,92 +207,5 @@ impl Observer<4> for Times {
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}
     fn touch_down(&mut self, t: f64, side: Side) {
         self.0.push((t, side));
-    }
-}
-
-/// A moment of a recorded trajectory.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// Time, s.
-    pub t: f64,
-    /// `[x1, v1, x2, v2]` (m, m/s); `[x1, v1, 0, 0]` without a damper.
-    pub state: [f64; 4],
-    /// Energy of the primary structure, J.
-    pub e1: f64,
-    /// Energy of the damper, the paper's E2, J.
-    pub e2: f64,
-    /// Contact forces on the primary structure and on the obstacle, N.
-    pub forces: [f64; 2],
-}
-
-/// Visits the motion at `window.from + k interval` (s) for `k = 0, 1, …` up to the end of the window.
-///
-/// # Errors
-/// [`SolverError`] with the time reached; samples before that have been visited.
-pub fn trajectory(
-    scene: &Scene,
-    window: Window,
-    settings: &Settings,
-    interval: f64,
-    visit: &mut dyn FnMut(&Sample),
-) -> Result<(), SolverError> {
-    match &scene.damper {
-        None => {
-            let system = Bare::new(&scene.primary, &scene.forcing);
-            let sample = |knot: &Knot<2>| {
-                let [x1, v1] = knot.y;
-                visit(&Sample {
-                    t: knot.t,
-                    state: [x1, v1, 0.0, 0.0],
-                    e1: system.primary_energy(x1, v1),
-                    e2: 0.0,
-                    forces: [0.0; 2],
-                });
-            };
-            let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
-            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
-        }
-        Some(damper) => {
-            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let sample = |knot: &Knot<4>| {
-                visit(&Sample {
-                    t: knot.t,
-                    state: knot.y,
-                    e1: system.bare().primary_energy(knot.y[0], knot.y[1]),
-                    e2: system.damper_energy_rates(knot.drive, &knot.y)[0],
-                    forces: system.contact_forces(&knot.y),
-                });
-            };
-            let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
-            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
-        }
-    }
-    Ok(())
-}
-
-struct Recorder<F> {
-    start: f64,
-    interval: f64,
-    next: f64,
-    visit: F,
-}
-
-impl<const N: usize, F: FnMut(&Knot<N>)> Observer<N> for Recorder<F> {
-    fn segment(&mut self, segment: &impl Segment<N>) {
-        let [from, to] = segment.ends();
-        loop {
-            let t = self.start + self.next * self.interval;
-            if t > to.t {
-                return;
-            }
-            (self.visit)(&if t <= from.t {
-                *from
-            } else if t == to.t {
-                *to
-            } else {
-                segment.at_time(t)
-            });
-            self.next += 1.0;
-        }
     }
 }

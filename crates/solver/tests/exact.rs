@@ -6,7 +6,9 @@ use problems::linear::golden;
 use problems::scenes::{Numbers, ROW3, SSVI, Spread, TMD, TWO_SIDED};
 use problems::{assert_close, assert_states};
 use retune_model::{Coupled, Scene};
-use retune_solver::{Method, Response, Sample, SceneKind, Settings, Window, e1_max, simulate, trajectory};
+use retune_solver::{
+    Method, Response, Rows, Sample, SceneKind, Settings, Window, e1_max, simulate, trajectory,
+};
 use std::f64::consts::TAU;
 
 const INFINITY: f64 = f64::INFINITY;
@@ -17,8 +19,10 @@ fn run(scene: &Scene, from: f64, to: f64) -> Response {
 
 fn samples(scene: &Scene, from: f64, to: f64, interval: f64) -> Vec<Sample> {
     let mut all = Vec::new();
-    trajectory(scene, Window { from, to }, &Settings::default(), interval, &mut |s| all.push(*s))
-        .expect("a run");
+    trajectory(scene, Window { from, to }, &Settings::default(), Rows::every(interval), &mut |s| {
+        all.push(*s)
+    })
+    .expect("a run");
     all
 }
 

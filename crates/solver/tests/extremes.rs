@@ -5,7 +5,7 @@ mod scenes;
 
 use retune_model::{Bare, Coupled, Scene};
 use retune_solver::{
-    Ask, Extremes, Method, Settings, Settle, Window, extremes, settled, simulate, trajectory,
+    Ask, Extremes, Method, Rows, Settings, Settle, Window, extremes, settled, simulate, trajectory,
 };
 use scenes::{Numbers, SSVI, TMD};
 use std::f64::consts::PI;
@@ -25,7 +25,7 @@ fn exact_stroke_and_force_are_those_of_the_motion() {
         let run = simulate(&scene, SHORT, &Settings::default()).expect("a run");
         let rest = scene.damper.expect("a damper").rest_distance.get();
         let mut largest = 0.0_f64;
-        trajectory(&scene, SHORT, &Settings::default(), 1e-4, &mut |sample| {
+        trajectory(&scene, SHORT, &Settings::default(), Rows::every(1e-4), &mut |sample| {
             largest = largest.max((sample.state[2] - sample.state[0] - rest).abs());
         })
         .expect("a run");

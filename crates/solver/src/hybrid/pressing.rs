@@ -17,15 +17,7 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<contact::End, SolverError> {
-        contact::integrate(
-            equations,
-            from,
-            pressed,
-            to,
-            (self.rtol, self.max_steps),
-            &mut self.work,
-            observer,
-        )
+        contact::integrate(equations, from, pressed, to, (self.rtol, self.budget), &mut self.work, observer)
     }
 
     /// Starts a contact at a touch-down. One that begins (almost) at rest has no time scale of its own at `q = 0`: it is flown
@@ -71,7 +63,7 @@ impl Hybrid<'_> {
             s *= 0.5;
         }
         if remaining > self.flow.step() {
-            return Err(SolverError::StepTooSmall { t: touch.t, h: s });
+            return Err(SolverError::Contact { t: touch.t });
         }
         // The run ends before the damper is in the wall by more than rounding.
         let mut step = Step::part(&self.flow, touch, &motion, remaining, energy);

@@ -162,10 +162,13 @@ impl Anything {
     fn check_error(&self, error: &SolverError) {
         let t = match *error {
             SolverError::StepTooSmall { t, .. }
+            | SolverError::TooFast { t, .. }
+            | SolverError::Contact { t }
+            | SolverError::Unstable { t }
             | SolverError::NonFinite { t }
             | SolverError::Implausible { t, .. } => t,
             SolverError::Missed { .. } => panic!("{error}: {self:?}"),
-            SolverError::TooManySteps { t, limit } => {
+            SolverError::TooManySteps { t, limit, .. } | SolverError::TooSlow { t, limit, .. } => {
                 assert_eq!(limit, self.settings.max_steps);
                 t
             }
