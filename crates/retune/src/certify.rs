@@ -72,6 +72,21 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study)
 }
 
+/// Refuses the results of a search in `out` whose design breaks the limits of its study.
+///
+/// # Errors
+/// [`Error::Infeasible`].
+pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
+    let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
+    let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match (said.get("verdict"), said["words"].as_str()) {
+        (Some(serde_json::Value::Null), Some(words)) => {
+            Err(Error::Infeasible { name: study.to_owned(), words: words.to_owned() })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The study whose scene has the design of a study, an `optimum.json` or a directory of results, and where its certificate goes if that is beside what was read.
 ///
 /// # Errors

@@ -60,7 +60,7 @@ fn nothing_to_resume(
     if finished {
         Directory::tidy(out);
         screen.line(format!("finished already: nothing to go on with\n{}", where_results_are(out)?))?;
-        optimum::check_limits_in(out, study.name())?;
+        certify::check_limits_in(out, study.name())?;
     }
     Ok(finished)
 }

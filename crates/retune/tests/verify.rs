@@ -178,6 +178,28 @@ fn exact_results_that_break_their_limits_hold_too() {
     assert!(value.parse::<f64>().is_ok_and(|value| value > 1e100), "{value}");
 }
 
+/// A table has the energy of a start that breaks the limits, and its command says that they are not kept.
+#[test]
+fn exact_a_table_of_designs_that_break_their_limits_holds_too() {
+    let desk = Desk::new();
+    let mut study = tiny();
+    study["optimize"]["limits"] = json!({ "stroke": 1e-6 });
+    desk.write_json("none.json", &study);
+    let paper = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
+    desk.write_json(
+        "table2.json",
+        &json!({ "rows": [{ "damper": "NES", "study": "none.json", "paper": paper }] }),
+    );
+    let Answer { code, stderr, .. } = desk.run(&["table2", "table2.json", "--quiet", "--out", "out"]);
+    assert_eq!(code, Some(3));
+    assert!(stderr.starts_with("error: study none: the limits are not kept: "), "{stderr}");
+    let said = desk.good(&["verify", "out"]);
+    assert!(
+        said.contains("  table2.csv             2 of 2 rows run again: the same to the last bit"),
+        "{said}"
+    );
+}
+
 /// `certify`, `fronts` and `retune` say of their own results, too, what made them, and have their rows run again.
 #[test]
 fn exact_results_of_several_studies_and_certificates_hold_and_a_changed_digit_is_found() {

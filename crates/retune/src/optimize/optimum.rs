@@ -6,14 +6,13 @@ use super::global::{Basins, Explored};
 use super::log::{counted, short};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
-use crate::certify::{self, Short};
+use crate::certify::Short;
 use crate::error::Error;
 use crate::study::{PerVariable, Search, Study};
 use crate::summary::{Design, MadeBy, Summary};
 use notes::{Goal, LimitNote, Met};
-use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Variable, energy};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Unusable, Variable, energy};
 use serde::Serialize;
-use std::path::Path;
 
 /// The best design and how it was found. SI units.
 #[derive(Clone, Debug, Serialize)]
@@ -212,21 +211,6 @@ impl Optimum {
     }
 }
 
-/// As [`Optimum::check_limits`], for the results that stand in a directory.
-///
-/// # Errors
-/// [`Error::Infeasible`].
-pub(super) fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
-    let text = std::fs::read_to_string(out.join(certify::FILE)).unwrap_or_default();
-    let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    match (said.get("verdict"), said["words"].as_str()) {
-        (Some(serde_json::Value::Null), Some(words)) => {
-            Err(Error::Infeasible { name: study.to_owned(), words: words.to_owned() })
-        }
-        _ => Ok(()),
-    }
-}
-
 /// The header of the paper's Table 2.
 pub fn table2_header() -> String {
     format!(
@@ -243,12 +227,20 @@ pub fn table2_row(name: &str, row: [f64; 5]) -> String {
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 
-/// Where the best run started.
+/// Where the best run started, with its energy whether it keeps the limits or not.
 fn start(search: &Search, refined: &Refined) -> Found {
     let first = refined.best().rows.first();
     let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
     let Design { m2, k2, c2, d, c } = Design::new(&damper);
-    Found { design: [m2, k2, c2, d, c], e1_max: first.map_or(f64::NAN, |row| energy(row.value)) }
+    let again = |x: &[f64]| {
+        let scene = refined.objective.scene(x)?;
+        Ok::<f64, Unusable>(refined.objective.evaluate(&scene, f64::INFINITY)?.energy)
+    };
+    let e1_max = first.map_or(f64::NAN, |row| match energy(row.value) {
+        none if none.is_nan() => again(&row.best).unwrap_or(f64::NAN),
+        known => known,
+    });
+    Found { design: [m2, k2, c2, d, c], e1_max }
 }
 
 impl RunNote {
