@@ -11,6 +11,7 @@ use std::path::PathBuf;
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
 #[derive(Debug, Parser)]
 #[command(version, about, max_term_width = 110, subcommand_required = true, arg_required_else_help = true)]
+#[command(after_help = crate::exit::HELP)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -24,13 +25,14 @@ pub enum Command {
     Optimize(Optimize),
     /// Put the parts of a grid together that `optimize --shard` made, and go on with the search
     Merge(Merge),
-    /// Run a sample of the rows of results again, and say whether they hold
+    /// Run a sample of the rows of results again, and say whether they hold (exit code 0), do not (1), or cannot be checked (4)
     Verify(Verify),
     /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
     Certify(Certify),
     /// Run one scene and say what happened
     Simulate(Simulate),
     /// Read designs from standard input, one a line, and answer each with the value that `optimize` makes small
+    #[command(after_help = crate::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
@@ -250,7 +252,10 @@ pub struct Simulate {
 pub struct Evaluate {
     /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C
     pub study: PathBuf,
-    /// Threads of the runs of a value; the values are the same for any number [default: all cores]
+    /// Answer with JSON objects, which say by how much limits are broken
+    #[arg(long)]
+    pub json: bool,
+    /// Lines that are evaluated side by side, and threads of the runs of a value; the values are the same for any number [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }

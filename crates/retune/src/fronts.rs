@@ -8,7 +8,7 @@ mod design;
 mod draw;
 mod page;
 
-pub use design::energy;
+pub use design::{energy, finer};
 
 use crate::certify::{Certificate, certify};
 use crate::cli;
@@ -18,7 +18,7 @@ use crate::results::resolved::{self, Resolved};
 use crate::results::{Begin, Directory, Identity, manifest};
 use crate::screen::Screen;
 use crate::study::{self, FrontsPlan, PerVariable, Study, Sweep};
-use design::{Design, SAME, by_excess, finer, look};
+use design::{Design, SAME, by_excess, look};
 use retune_optim::{Limit, Variable, When};
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -44,7 +44,8 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
         let (optimum, results) = optimize(&study, &out, arguments.running.begin(), screen)?;
         results.finish()?;
         screen.line(optimum.report())?;
-        screen.line(where_results_are(&out)?)
+        screen.line(where_results_are(&out)?)?;
+        optimum.check_limits(study.name())
     })
 }
 
@@ -59,6 +60,7 @@ fn nothing_to_resume(
     if finished {
         Directory::tidy(out);
         screen.line(format!("finished already: nothing to go on with\n{}", where_results_are(out)?))?;
+        certify::check_limits_in(out, study.name())?;
     }
     Ok(finished)
 }
@@ -105,7 +107,7 @@ fn optimize_from(
     prepare(&mut results)?;
     match results.journal().known() {
         0 => {}
-        known => screen.log(format!("goes on: {known} values are known"))?,
+        known => screen.log(format!("goes on: {} known", log::are(known, "value")))?,
     }
     match tuned(study, &search, &results, screen).and_then(|optimum| results.publish().map(|()| optimum)) {
         Ok(optimum) => Ok((optimum, results)),
@@ -157,14 +159,18 @@ fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) ->
     Ok(optimum)
 }
 
-/// An objective as searches call it: what the journal knows of it is not computed again.
+/// An objective as searches call it: what the journal knows of it is not computed again; then `on_known` is called.
 fn kept<'a>(
     objective: &'a PeakEnergy,
     journal: &'a Journal,
     stage: &'static str,
+    on_known: impl Fn() + Sync + 'a,
 ) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
     move |design, cutoff| {
-        let known = |value| objective.recall(value);
+        let known = |value| {
+            on_known();
+            objective.recall(value);
+        };
         journal.value(stage, design, cutoff, || objective.value(design, cutoff), known)
     }
 }

@@ -99,7 +99,7 @@ fn tune(
         ))?;
         let place = out.join(format!("k1-{k1}")).join(study.name());
         let (optimum, results) = optimize(&study, &place, begin, screen)?;
-        table.keep(results);
+        table.keep(&study, &optimum, results);
         screen.log(optimum.report())?;
         designs[i] = Some(optimum.found());
     }

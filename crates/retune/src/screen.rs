@@ -1,7 +1,7 @@
 //! What appears on the screen: results and the log on standard output, errors and progress on standard error.
 
 use crate::error::Error;
-use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use crate::progress::Progress;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
@@ -39,37 +39,13 @@ impl Screen {
         if self.quiet { Ok(()) } else { self.line(text) }
     }
 
-    /// A progress bar over `count` evaluations, with rate and time left; none where standard error is no terminal.
-    pub fn progress(&self, what: &'static str, count: u64) -> ProgressBar {
-        if self.quiet {
-            return ProgressBar::hidden();
-        }
-        let template = "{prefix} [{bar:30}] {human_pos}/{human_len}  {rate}  {eta} left";
-        let style = ProgressStyle::with_template(template)
-            .unwrap_or_else(|_| ProgressStyle::default_bar())
-            .with_key("rate", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-                let _ = out.write_str(&rate(state.per_sec()));
-            });
-        ProgressBar::new(count).with_style(style.progress_chars("=> ")).with_prefix(what)
+    /// The progress over `count` evaluations, with rate and time left.
+    pub fn progress(&self, what: &'static str, count: u64) -> Progress {
+        Progress::new(what, count, self.quiet)
     }
-}
-
-/// A rate to two or three digits: `3.4/s`, `1250/s`.
-fn rate(per_second: f64) -> String {
-    if per_second < 10.0 { format!("{per_second:.1}/s") } else { format!("{per_second:.0}/s") }
 }
 
 /// Shows why a command failed. Where even that cannot be written, the exit code must do.
 pub fn show_error(error: &Error) {
     let _ = writeln!(std::io::stderr(), "error: {error}");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::rate;
-
-    #[test]
-    fn exact_rates_have_few_digits() {
-        assert_eq!([0.0, 3.4219, 1249.8].map(rate), ["0.0/s", "3.4/s", "1250/s"]);
-    }
 }

@@ -25,6 +25,7 @@ pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
+pub use words::counted;
 
 use retune_model::{NonNegative, Positive, Scene};
 use retune_optim::{Options, Scale, Variable};

@@ -1,5 +1,6 @@
 //! What a run gave: one type, from which JSON and text are made.
 
+use crate::optimize::log::counted;
 use crate::study::{Objective, Solver, Span, Study};
 use retune_model::{Damper, Scene, energy_ratios};
 use retune_optim::Variable;
@@ -185,8 +186,10 @@ impl std::fmt::Display for Summary {
         writeln!(f, "model       {model}")?;
         write!(
             f,
-            "work        {} steps, {} rejected, {} evaluations",
-            self.steps, self.rejected, self.evaluations
+            "work        {}, {} rejected, {}",
+            counted(self.steps, "step"),
+            self.rejected,
+            counted(self.evaluations, "evaluation")
         )
     }
 }

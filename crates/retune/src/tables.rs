@@ -3,11 +3,11 @@
 use crate::cli;
 use crate::error::Error;
 use crate::optimize::log::{joined, short};
-use crate::optimize::{Found, optimize, table2_header, table2_row, where_results_are, with_threads};
+use crate::optimize::{Found, Optimum, optimize, table2_header, table2_row, where_results_are, with_threads};
 use crate::results::resolved::{self, Resolved};
 use crate::results::{Begin, Directory, Identity, manifest};
 use crate::screen::Screen;
-use crate::study::{self, PaperStudy, Solver};
+use crate::study::{self, PaperStudy, Solver, Study};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
             let (optimum, results) = optimize(&study, &out.join(study.name()), running.begin(), screen)?;
             table.push("paper", &damper, optimum.start());
             table.push("re-optimised", &damper, optimum.found());
-            table.keep(results);
+            table.keep(&study, &optimum, results);
         }
         table.finish(screen)
     })
@@ -46,6 +46,8 @@ pub struct Table {
     solvers: Vec<Solver>,
     /// The results of its searches, which are finished with it: until then a run that goes on reads their journals.
     parts: Vec<Directory>,
+    /// The first of its searches that found no design within its limits.
+    infeasible: Option<Error>,
     csv: Vec<String>,
     text: Vec<String>,
 }
@@ -77,7 +79,7 @@ impl Table {
         let directory = Directory::open(out, begin, &identity, is_ours)?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
-        Ok(Self { name, directory, resolved, solvers, parts: Vec::new(), csv, text })
+        Ok(Self { name, directory, resolved, solvers, parts: Vec::new(), infeasible: None, csv, text })
     }
 
     /// Appends a row.
@@ -86,9 +88,10 @@ impl Table {
         self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, design), short(e1_max)));
     }
 
-    /// Takes the results of a search, to be finished with the table.
-    pub fn keep(&mut self, results: Directory) {
+    /// Takes the results of a search of a study, to be finished with the table.
+    pub fn keep(&mut self, study: &Study, optimum: &Optimum, results: Directory) {
         self.parts.push(results);
+        self.infeasible = self.infeasible.take().or(optimum.check_limits(study.name()).err());
     }
 
     /// Where the table goes.
@@ -99,9 +102,9 @@ impl Table {
     /// Writes the table and shows it.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// It cannot be written, or a design in it breaks the limits of its study; it is written then all the same.
     pub fn finish(self, screen: Screen) -> Result<(), Error> {
-        let Self { name, directory, resolved, solvers, parts, csv, text } = self;
+        let Self { name, directory, resolved, solvers, parts, infeasible, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
         directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
         directory.write(resolved::NAME, &resolved)?;
@@ -111,7 +114,8 @@ impl Table {
         parts.into_iter().try_for_each(Directory::finish)?;
         directory.finish()?;
         screen.line(format!("\n{}", text.join("\n")))?;
-        screen.line(where_results_are(&out)?)
+        screen.line(where_results_are(&out)?)?;
+        infeasible.map_or(Ok(()), Err)
     }
 }
 

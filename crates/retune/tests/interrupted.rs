@@ -37,7 +37,11 @@ fn assert_same(desk: &Desk, one: &str, other: &str) {
 
 /// Starts a run and waits until its journal has `lines` lines.
 fn begun(desk: &Desk, arguments: &[&str], out: &str, lines: usize) -> Child {
-    let mut command = desk.command(arguments);
+    started(desk.command(arguments), desk, out, lines)
+}
+
+/// The same of any command.
+fn started(mut command: Command, desk: &Desk, out: &str, lines: usize) -> Child {
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program");
     let journal = desk.path(out).join("unfinished/journal");
     let patience = Instant::now();
@@ -190,6 +194,24 @@ fn exact_ctrl_c_stops_within_a_second_and_says_how_to_go_on() {
         assert!(again.expect("the command it names").status.success());
         assert_same(&desk, "whole", "out");
     }
+}
+
+/// A run that just has started goes on with just, whose recipes are named like the commands.
+#[cfg(unix)]
+#[test]
+fn contract_a_run_through_just_goes_on_through_just() {
+    let desk = Desk::new();
+    desk.write_json("study.json", &longer());
+    let mut command = desk.command(&RUN);
+    command.env("RETUNE_RUN_AS", "just");
+    let mut child = started(command, &desk, "out", 100);
+    let kill = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status();
+    assert!(kill.expect("kill").success());
+    assert_eq!(child.wait().expect("the run").code(), Some(130));
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().expect("stderr"), &mut said).expect("text");
+    let command = said.lines().last().expect("a line");
+    assert_eq!(command, "  just optimize study.json --quiet --out out --resume");
 }
 
 /// A file size limit stands for a full disk: both make a write fail half-way through a line.

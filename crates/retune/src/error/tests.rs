@@ -134,6 +134,7 @@ fn lines() -> Vec<LineError> {
     vec![
         LineError::Count { found: 1, wanted: vec![Variable::K2, Variable::C2] },
         LineError::Number { variable: Variable::K2, text: "soft".into() },
+        LineError::Long,
         LineError::Unusable(Unusable::Run(SolverError::NonFinite { t: 1.5 })),
     ]
 }
@@ -159,9 +160,15 @@ fn errors() -> Vec<Error> {
             place: path.join("parts"),
         },
         Error::NotHeld { path: path.clone(), problem: "does not hold: surf.csv is missing".into() },
+        Error::NotChecked { path: path.clone(), problem: "there is no manifest.json".into() },
+        Error::Infeasible {
+            name: "ssvi".into(),
+            words: "no verdict, for the design breaks the limit of stroke: 0.3 of 0.2 m, 50 % over".into(),
+        },
+        Error::Lines { failed: 1, lines: 24 },
         Error::Busy { path: path.clone(), holder: Some(4711) },
         Error::Busy { path: path.clone(), holder: None },
-        Error::Unfinished { path: path.clone(), lines: 321, difference: None },
+        Error::Unfinished { path: path.clone(), lines: 1, difference: None },
         Error::Unfinished { path, lines: 321, difference: Some("of Retune 0.0.9, this is 0.1.0".into()) },
         Error::Threads(threads.expect_err("no threads")),
         Error::Run(SolverError::NonFinite { t: 1.5 }),
@@ -181,8 +188,8 @@ fn errors() -> Vec<Error> {
 #[test]
 fn regress_the_words_of_every_error() {
     let words = [
-        each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld Busy Unfinished
-            Threads Run Atlas Unusable NoStart Global Search Figure),
+        each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld NotChecked
+            Infeasible Lines Busy Unfinished Threads Run Atlas Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
@@ -191,7 +198,7 @@ fn regress_the_words_of_every_error() {
         each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
             NonFinite),
-        each!(lines(), LineError: Count Number Unusable),
+        each!(lines(), LineError: Count Number Long Unusable),
     ]
     .concat();
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/error/words.txt");
@@ -205,7 +212,8 @@ fn regress_the_words_of_every_error() {
     assert_eq!(words.lines().count(), expected.lines().count());
 }
 
-/// What the user can mend has exit code 2, what failed in the computation 1.
+/// What the user can mend has exit code 2, what failed in the computation 1; limits that are not kept, and what cannot be checked,
+/// have their own.
 #[test]
 fn exact_exit_codes_say_whose_fault_it_is() {
     let code = |error: &Error| format!("{:?}", error.exit_code());
@@ -223,7 +231,13 @@ fn exact_exit_codes_say_whose_fault_it_is() {
                 | Error::Busy { .. }
                 | Error::Unfinished { .. }
         );
-        let expected = format!("{:?}", ExitCode::from(if mendable { 2 } else { 1 }));
+        let expected = match error {
+            Error::Infeasible { .. } => 3,
+            Error::NotChecked { .. } => 4,
+            _ if mendable => 2,
+            _ => 1,
+        };
+        let expected = format!("{:?}", ExitCode::from(expected));
         assert_eq!(code(&error), expected, "{error}");
     }
 }

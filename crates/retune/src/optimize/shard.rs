@@ -113,8 +113,9 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
     let objective = objective(study, &search, &variables);
     let bar = screen.progress("shard", points.len() as u64);
     let journal = work.journal();
-    let value =
-        |i: usize, design: &[f64]| journal.grid_value(i, || objective.value(design, f64::INFINITY), |_| {});
+    let value = |i: usize, design: &[f64]| {
+        journal.grid_value(i, || objective.value(design, f64::INFINITY), |_| bar.known())
+    };
     let values = retune_optim::surf_part(&grid, points.clone(), value, |_| bar.inc(1));
     bar.finish_and_clear();
     journal.check()?;
