@@ -17,7 +17,7 @@ pub fn say_how_to_go_on() {
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {
-                let words = go_on(std::env::args());
+                let words = crate::screen::visible(&go_on(std::env::args())).into_owned();
                 let _ =
                     writeln!(std::io::stderr(), "\nstopped; what was computed is kept. To go on:\n  {words}");
                 std::process::exit(STOPPED);

@@ -20,7 +20,7 @@ pub use global::GlobalSearch;
 pub use objective::{LimitsGiven, Objective, Part, Response};
 pub use read::{StudyError, read, read_paper};
 pub use rule::Rule;
-pub use search::{MOST_GRID_POINTS, Search};
+pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
 

@@ -42,8 +42,9 @@ pub fn command(arguments: &cli::Merge) -> Result<(), Error> {
     check(&mut heads, grid.len(), &arguments.study, &out)?;
 
     screen.log(format!("{} parts, {} points: complete, disjoint, of this study", heads.len(), grid.len()))?;
+    let order = running.order("optimize", &arguments.study);
     with_threads(running.threads, || {
-        let (optimum, results) = optimize_from(&study, &out, running.begin(), screen, |results| {
+        let (optimum, results) = optimize_from(&study, &out, &order, screen, |results| {
             heads.iter().try_for_each(|head| {
                 shard::read(&head.path, |point, value| results.know(point, value)).map(drop)
             })
