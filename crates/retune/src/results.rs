@@ -228,7 +228,15 @@ impl Directory {
             };
             write().map_err(std::io::Error::other)?;
         }
-        for name in standing.iter().filter(|name| self.replaces(name) && !new.contains(name)) {
+        standing.retain(|name| self.replaces(name));
+        if self.order.replace {
+            let is_ours = |name: &String| {
+                (self.is_ours)(name) && plain::is_there(&self.path.join(name)).unwrap_or(false)
+            };
+            standing.extend(names(&self.path)?.into_iter().filter(is_ours));
+        }
+        let gone: BTreeSet<String> = standing.into_iter().filter(|name| !new.contains(name)).collect();
+        for name in gone {
             std::fs::remove_file(self.path.join(name))?;
         }
         if let Some(old) = old.filter(|_| self.extent == Extent::Whole) {

@@ -40,7 +40,7 @@ impl Unfinished {
             Found::Nothing => return Ok(Self::Anew(BTreeSet::new())),
             Found::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
             Found::Unclear(problem) => return Err(Error::Journal { path, problem }),
-            Found::Work(of, known, damage) => (of, known, damage),
+            Found::Work(of, known, damage) => (of, *known, damage),
         };
         let kept = known.lines + known.parts.iter().map(|part| kept(&place.join(part), &of)).sum::<u64>();
         if begin == Begin::Restart {

@@ -51,7 +51,7 @@ pub enum Found {
     /// Something of which cannot be told whose work it is; why.
     Unclear(&'static str),
     /// The journal of a work: what made it, what it knows and what is wrong with it.
-    Work(Identity, Known, Damage),
+    Work(Identity, Box<Known>, Damage),
 }
 
 /// Reads a journal. Where its first line is damaged, its records tell whether it is of the work `ours`.
@@ -93,7 +93,7 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
             "its first line, which says whose work it is, is damaged or of another version, and no record in it is of this study",
         ));
     }
-    Ok(Found::Work(of, known, damage))
+    Ok(Found::Work(of, Box::new(known), damage))
 }
 
 /// Writes a damaged journal anew: a first line, and every record that is whole. The old one stays until the new one is.

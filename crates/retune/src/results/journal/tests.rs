@@ -18,7 +18,7 @@ impl Desk {
         let journal = match read(&self.path(), &identity).expect("a journal") {
             Found::Work(of, known, damage) => {
                 assert_eq!(of, identity);
-                (Journal::go_on(&self.path(), &identity, known, damage), damage)
+                (Journal::go_on(&self.path(), &identity, *known, damage), damage)
             }
             Found::Nothing => {
                 let _ = std::fs::remove_file(self.path()); // an empty one
