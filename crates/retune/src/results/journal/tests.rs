@@ -196,7 +196,7 @@ fn contract_the_work_of_another_study_is_never_believed() {
     desk.put([&records[..], &whole].concat());
     let found = read(&desk.path(), &Identity::of("study")).expect("a journal");
     assert!(matches!(found, Found::Unclear(_)), "{found:?}");
-    desk.put([&[b'#'], &records[1..]].concat());
+    desk.put([&b"#"[..], &records[1..]].concat());
     assert!(desk.try_open().is_none(), "a damaged first line");
     desk.put([&whole[..], &records[head..]].concat());
     let (journal, damage) = desk.try_open().expect("a journal");
