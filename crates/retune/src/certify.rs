@@ -9,7 +9,7 @@ use crate::cli;
 use crate::error::Error;
 use crate::optimize::{where_results_are, with_threads};
 use crate::results::identity::study_text;
-use crate::results::{Directory, Identity, manifest};
+use crate::results::{Directory, Extent, Identity, manifest};
 use crate::screen::Screen;
 use crate::study::{self, Rule, Study};
 use std::path::{Path, PathBuf};
@@ -37,11 +37,15 @@ pub fn command(arguments: &cli::Certify) -> Result<(), Error> {
         let identity = Identity::of_study(&study)?;
         let is_ours =
             move |name: &str| name == FILE || !beside && ["study.json", manifest::NAME].contains(&name);
-        let results = Directory::open(&out, arguments.running.begin(), &identity, is_ours)?;
+        let order = arguments.running.order("certify", &arguments.design);
+        let extent = if beside { Extent::Guest } else { Extent::Whole };
+        let results = Directory::open(&out, &order, &identity, extent, is_ours)?;
         results.write_json(FILE, &certificate)?;
         if !beside {
             results.write("study.json", &study_text(&study)?)?;
             manifest::write(identity, [study.solver], &results)?;
+        } else {
+            manifest::amend(&results)?;
         }
         results.finish()?;
         screen.line(&certificate)?;

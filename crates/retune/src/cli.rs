@@ -1,12 +1,12 @@
 //! What may be typed: commands, arguments and their help.
 
 use crate::optimize::shard::Shard;
-use crate::results::Begin;
+use crate::results::{Begin, Order};
 use crate::study::{Setting, SettingError};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_solver::{Contacts, Method};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
 #[derive(Debug, Parser)]
@@ -109,16 +109,20 @@ pub struct Running {
     /// Throw unfinished work away and begin anew
     #[arg(long)]
     pub restart: bool,
+    /// Replace results of another study in the directory, and files of the results' names that Retune did not make
+    #[arg(long)]
+    pub replace: bool,
 }
 
 impl Running {
-    /// What becomes of unfinished work.
-    pub fn begin(&self) -> Begin {
-        match (self.resume, self.restart) {
+    /// What is asked of `command` with a study file.
+    pub fn order(&self, command: &'static str, study: &Path) -> Order {
+        let begin = match (self.resume, self.restart) {
             (true, _) => Begin::Resume,
             (false, true) => Begin::Restart,
             (false, false) => Begin::New,
-        }
+        };
+        Order { command, study: study.to_owned(), begin, replace: self.replace }
     }
 }
 
@@ -177,7 +181,7 @@ pub struct Reproduce {
     /// The study of the whole paper
     #[arg(long, value_name = "FILE", default_value = "studies/paper.json")]
     pub study: PathBuf,
-    /// How it is run; results go to results/paper unless --out says otherwise.
+    /// How it is run; results go to results/<study> unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
 }

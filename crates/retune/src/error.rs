@@ -113,6 +113,36 @@ pub enum Error {
         /// How many there were.
         lines: u64,
     },
+    /// Something stands where results are to go, and nobody said that it may be replaced.
+    #[error(
+        "{}: {problem}: choose another directory with --out, or give --replace to have it replaced",
+        path.display()
+    )]
+    Standing {
+        /// The directory.
+        path: PathBuf,
+        /// What stands there.
+        problem: String,
+    },
+    /// Something stands where a file is to go that is never replaced.
+    #[error("{}: not replaced: {problem}: move it away, or choose another place", path.display())]
+    Protected {
+        /// What stands there.
+        path: PathBuf,
+        /// What it is.
+        problem: String,
+    },
+    /// Nobody can tell whose work a journal holds.
+    #[error(
+        "{}: {problem}: move it away to look at it, or throw the unfinished work away with --restart",
+        path.display()
+    )]
+    Journal {
+        /// The journal.
+        path: PathBuf,
+        /// Why not.
+        problem: &'static str,
+    },
     /// Another run is at work in the directory.
     #[error(
         "{}: another run{} is at work here: wait for it, stop it, or choose another directory with --out",
@@ -126,12 +156,14 @@ pub enum Error {
         holder: Option<u32>,
     },
     /// A run was interrupted here, and nobody said what becomes of it.
-    #[error("{}: {}", path.display(), unfinished(*lines, difference.as_deref()))]
+    #[error("{}: {}", path.display(), unfinished(*lines, *damaged, difference.as_deref()))]
     Unfinished {
         /// The directory.
         path: PathBuf,
         /// How much of it is kept.
         lines: u64,
+        /// Lines that are damaged.
+        damaged: u64,
         /// Why this run cannot go on with it, if it cannot.
         difference: Option<String>,
     },
@@ -183,8 +215,13 @@ fn example(failures: &Failures) -> String {
     }
 }
 
-fn unfinished(lines: u64, difference: Option<&str>) -> String {
-    let kept = format!("{} kept", are(lines, "result"));
+fn unfinished(lines: u64, damaged: u64, difference: Option<&str>) -> String {
+    let damaged = match damaged {
+        0 => String::new(),
+        1 => ", 1 line is damaged".to_owned(),
+        many => format!(", {many} lines are damaged"),
+    };
+    let kept = format!("{} kept{damaged}", are(lines, "result"));
     match difference {
         None => format!(
             "unfinished work was found here ({kept}): --resume goes on with it, --restart begins anew"
@@ -208,6 +245,9 @@ impl Error {
             | Self::Input { .. }
             | Self::Part { .. }
             | Self::MissingParts { .. }
+            | Self::Standing { .. }
+            | Self::Protected { .. }
+            | Self::Journal { .. }
             | Self::Busy { .. }
             | Self::Unfinished { .. } => exit::WRONG,
             Self::Infeasible { .. } => exit::INFEASIBLE,

@@ -16,7 +16,7 @@ use crate::certify::{self, certify};
 use crate::cli;
 use crate::error::Error;
 use crate::results::identity::{Identity, study_text};
-use crate::results::{Begin, Directory, Journal, manifest};
+use crate::results::{Directory, Extent, Journal, Order, manifest};
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
@@ -37,11 +37,12 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
     if arguments.shard.is_none() && nothing_to_resume(&study, &out, &arguments.running, screen)? {
         return Ok(());
     }
+    let order = arguments.running.order("optimize", &arguments.study);
     with_threads(arguments.running.threads, || {
         if let Some(shard) = arguments.shard {
-            return shard::shard(&study, shard, &out, arguments.running.begin(), screen);
+            return shard::shard(&study, shard, &out, &order, screen);
         }
-        let (optimum, results) = optimize(&study, &out, arguments.running.begin(), screen)?;
+        let (optimum, results) = optimize(&study, &out, &order, screen)?;
         results.finish()?;
         screen.line(optimum.report())?;
         screen.line(where_results_are(&out)?)?;
@@ -85,10 +86,10 @@ pub fn with_threads<T: Send>(
 pub fn optimize(
     study: &Study,
     out: &Path,
-    begin: Begin,
+    order: &Order,
     screen: Screen,
 ) -> Result<(Optimum, Directory), Error> {
-    optimize_from(study, out, begin, screen, |_| Ok(()))
+    optimize_from(study, out, order, screen, |_| Ok(()))
 }
 
 /// As [`optimize`], with what `prepare` teaches the directory beforehand.
@@ -98,12 +99,12 @@ pub fn optimize(
 fn optimize_from(
     study: &Study,
     out: &Path,
-    begin: Begin,
+    order: &Order,
     screen: Screen,
     prepare: impl FnOnce(&mut Directory) -> Result<(), Error>,
 ) -> Result<(Optimum, Directory), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let mut results = Directory::open(out, begin, &Identity::of_study(study)?, is_ours)?;
+    let mut results = Directory::open(out, order, &Identity::of_study(study)?, Extent::Whole, is_ours)?;
     prepare(&mut results)?;
     match results.journal().known() {
         0 => {}
@@ -113,7 +114,7 @@ fn optimize_from(
         Ok(optimum) => Ok((optimum, results)),
         Err(error) => {
             // What cannot be written may go on once it can; what cannot be computed never will.
-            if !matches!(error, Error::Output { .. }) {
+            if !matches!(error, Error::Output { .. } | Error::Standing { .. } | Error::Protected { .. }) {
                 results.discard();
             }
             Err(error)

@@ -2,7 +2,7 @@
 
 use crate::cli;
 use crate::error::Error;
-use crate::results::Pending;
+use crate::results::{Pending, order::may_write};
 use crate::screen::Screen;
 use crate::study::{self, Study};
 use crate::summary::Summary;
@@ -11,6 +11,9 @@ use std::path::Path;
 
 /// Most rows of a trajectory.
 const MOST_ROWS: u32 = 100_000_000;
+
+/// What every trajectory begins with, of this and of earlier versions: by it a file is known as one.
+const HEAD: &str = "t,x1,v1,x2,v2,";
 
 /// Runs the scene of a study, changed as the arguments say, and shows what happened.
 ///
@@ -23,6 +26,9 @@ pub fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
     study.solver.rtol = arguments.rtol.unwrap_or(study.solver.rtol);
     let study = study.with(&arguments.settings)?;
 
+    if let Some(file) = &arguments.trajectory {
+        may_write(file, &[&arguments.study], HEAD)?;
+    }
     let response = retune_solver::simulate(&study.scene, study.window.window(), &study.solver.settings())?;
     if let Some(file) = &arguments.trajectory {
         write_trajectory(&study, file, arguments.interval)?;

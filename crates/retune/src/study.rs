@@ -22,7 +22,7 @@ pub use limits::LimitsGiven;
 pub use objective::{Objective, Part, Response};
 pub use read::{StudyError, read, read_paper};
 pub use rule::Rule;
-pub use search::{MOST_GRID_POINTS, Search};
+pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
 pub use words::counted;

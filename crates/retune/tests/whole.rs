@@ -262,12 +262,12 @@ fn exact_retune_tunes_both_dampers_for_each_stiffness() {
     let desk = Desk::new();
     short_table2(&desk);
     desk.good(&["retune", "30000", "5e4", "--study", "table2.json", "--quiet"]);
-    let csv = desk.read("results/retune/retune.csv");
+    let csv = desk.read("results/table2/retune.csv");
     let rows: Vec<String> = columns(&csv)[1..].iter().map(|row| row[..3].join(",")).collect();
     let expected =
         ["30000", "39500", "50000"].map(|k1| [format!("{k1},SSVI NES,60"), format!("{k1},TMD,60")]);
     assert_eq!(rows, expected.concat());
-    let resolved = desk.read_json("results/retune/k1-50000/tmd/study.json");
+    let resolved = desk.read_json("results/table2/k1-50000/tmd/study.json");
     assert_eq!(resolved["scene"]["primary"]["k1"], 5e4);
     let Answer { code, stderr, .. } = desk.run(&["retune", "30000", "-1", "--study", "table2.json"]);
     let message = "error: command line: k1: -1 is not allowed here: give a finite number not below 0\n";

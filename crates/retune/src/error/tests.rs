@@ -168,8 +168,20 @@ fn errors() -> Vec<Error> {
         Error::Lines { failed: 1, lines: 24 },
         Error::Busy { path: path.clone(), holder: Some(4711) },
         Error::Busy { path: path.clone(), holder: None },
-        Error::Unfinished { path: path.clone(), lines: 1, difference: None },
-        Error::Unfinished { path, lines: 321, difference: Some("of Retune 0.0.9, this is 0.1.0".into()) },
+        Error::Standing {
+            path: path.clone(),
+            problem: "surf.csv stands here, which Retune did not make".into(),
+        },
+        Error::Protected { path: path.join("motion.csv"), problem: "it is an input of this command".into() },
+        Error::Journal { path: path.join("unfinished/journal"), problem: "its first line is damaged" },
+        Error::Unfinished { path: path.clone(), lines: 321, damaged: 0, difference: None },
+        Error::Unfinished { path: path.clone(), lines: 1, damaged: 1, difference: None },
+        Error::Unfinished {
+            path,
+            lines: 321,
+            damaged: 2,
+            difference: Some("of Retune 0.0.9, this is 0.1.0".into()),
+        },
         Error::Threads(threads.expect_err("no threads")),
         Error::Run(SolverError::NonFinite { t: 1.5 }),
         Error::Atlas(retune_atlas::Error::NoPeriod),
@@ -189,7 +201,7 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld NotChecked
-            Infeasible Lines Busy Unfinished Threads Run Atlas Unusable NoStart Global Search Figure),
+            Infeasible Lines Standing Protected Journal Busy Unfinished Threads Run Atlas Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
@@ -228,6 +240,9 @@ fn exact_exit_codes_say_whose_fault_it_is() {
                 | Error::Input { .. }
                 | Error::Part { .. }
                 | Error::MissingParts { .. }
+                | Error::Standing { .. }
+                | Error::Protected { .. }
+                | Error::Journal { .. }
                 | Error::Busy { .. }
                 | Error::Unfinished { .. }
         );

@@ -47,8 +47,9 @@ pub fn command(arguments: &cli::Merge) -> Result<(), Error> {
         counted(heads.len() as u64, "part"),
         counted(grid.len() as u64, "point")
     ))?;
+    let order = running.order("optimize", &arguments.study);
     with_threads(running.threads, || {
-        let (optimum, results) = optimize_from(&study, &out, running.begin(), screen, |results| {
+        let (optimum, results) = optimize_from(&study, &out, &order, screen, |results| {
             heads.iter().try_for_each(|head| {
                 shard::read(&head.path, |point, value| results.know(point, value)).map(drop)
             })
