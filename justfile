@@ -131,6 +131,10 @@ test-bands DAMPERS="1000000":
 fuzz TARGET="numbers" SECONDS="1800":
     cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}
 
+# Whether the tests see a mistake: mutants drawn at random, each against the tests of its own crate, into results/robustness/mutants.md (needs python3 and `cargo install cargo-mutants`); for instance `just mutants --list`
+mutants *OPTIONS:
+    CARGO_BUILD_JOBS=1 nice python3 tests/mutants.py {{OPTIONS}}
+
 # Licences, sources, duplicates and advisories of what is built in
 deny:
     .ci/deny

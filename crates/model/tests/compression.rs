@@ -152,3 +152,76 @@ fn exact_force_during_a_contact() {
         assert!((cos - c).abs() < 1e-15 * SSVI.p * 8.0 && (sin - s).abs() < 1e-15 * SSVI.p * 8.0, "{share}");
     }
 }
+
+/// Where all terms push one way the structure is accelerated by their size; elsewhere by less.
+#[test]
+fn exact_size_of_terms_is_the_acceleration_when_nothing_cancels() {
+    let mut spread = Spread::new(11);
+    for numbers in [SSVI, ROW1, TWO_SIDED] {
+        let system = numbers.coupled();
+        for side in Side::BOTH {
+            let s = side.sign();
+            let mut equations = system.compression(side);
+            for z in [0.0, 1e-4, 3e-3] {
+                let q = f64::sqrt(z);
+                let [w, x1, v1] = [1.5, 0.1, 0.6].map(|size| size * spread.unit());
+                // Pressed, closing, and the structure driven away from where its spring and its dashpot hold it.
+                equations.set_drive(0.0, [s * numbers.p, 0.0]);
+                let size = equations.size_of_terms(&[q, w, -s * x1, -s * v1, 0.0]);
+                let along = equations.size_of_terms(&[q, w, s * x1, v1, 0.0]);
+                let contact = system.hertz(side) * z.powf(1.5);
+                let spring = numbers.k2 * (z + s * (system.wall(side) - numbers.d));
+                let terms = [numbers.p, numbers.c1 * v1, numbers.k1 * x1, contact, numbers.c2 * w, spring];
+                let expected = terms.iter().sum::<f64>() / numbers.m1;
+                assert!((size / expected - 1.0).abs() < 1e-13, "{side:?} {z}: {size} {expected}");
+                assert_eq!(size, along, "signs do not matter");
+                if q > 0.0 {
+                    let accelerated = equations.derivative(&[q, w, -s * x1, -s * v1, 0.0])[3] / q;
+                    assert!((accelerated / (s * size) - 1.0).abs() < 1e-12, "{side:?} {accelerated} {size}");
+                }
+                // The size of the force does not depend on its phase.
+                equations.set_drive(0.0, [0.6 * numbers.p, -0.8 * numbers.p]);
+                let turned = equations.size_of_terms(&[q, w, -s * x1, -s * v1, 0.0]);
+                assert!((turned / size - 1.0).abs() < 1e-14);
+            }
+        }
+    }
+}
+
+/// The series for the lift-off, term by term: what it leaves out is of third order in the steady acceleration's share `y`, of fifth in
+/// the contact's share `x` alone, and of third in both together.
+#[test]
+fn exact_series_of_the_lift_off_against_quadrature() {
+    for side in Side::BOTH {
+        for (x, y) in [(0.2, 0.0), (0.0, 0.02), (0.0, -0.02), (0.04, 0.02), (0.04, -0.02), (0.08, -0.01)] {
+            // Only the force accelerates beside the contact; the shares say how deep and how strongly.
+            let speed = 0.5;
+            let system = COLLISION.coupled();
+            let (m1, kappa) = (COLLISION.m1, system.hertz(side) * (1.0 / COLLISION.m1 + 1.0 / COLLISION.m2));
+            let q = (x * speed * speed / (0.8 * kappa)).powf(0.2).max(1e-2);
+            let x = 0.8 * kappa * q.powi(5) / (speed * speed);
+            let steady = y * speed * speed / (2.0 * q * q);
+            let mut equations = system.compression(side);
+            equations.set_drive(0.0, [-side.sign() * m1 * steady, 0.0]);
+            let w = -(speed * speed * (1.0 - x + y)).sqrt();
+            let state = [q, w, 0.0, 0.0, 0.0];
+            let beside = equations.acceleration(&state) + equations.hertz_rate() * q.powi(3);
+            assert!((beside - steady).abs() <= 1e-9 * (1.0 + steady.abs()), "{beside} {steady}");
+            // Simpson's rule for ∫ 2 dq / |w|.
+            let n = 2000;
+            let rate = |i: u32| {
+                let p = q * f64::from(i) / f64::from(n);
+                2.0 / (speed * speed - 0.8 * kappa * p.powi(5) + 2.0 * steady * p * p).sqrt()
+            };
+            let weight = |i: u32| if i == 0 || i == n { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+            let expected = (0..=n).map(|i| weight(i) * rate(i)).sum::<f64>() * q / f64::from(3 * n);
+            let found = equations.theta_to_wall(&state);
+            let allowed =
+                1e-12 + 0.05 * y.abs().powi(3) + 0.02 * x.powi(5) + 0.2 * (x * y).abs() * (x + y.abs());
+            assert!(
+                (found / expected - 1.0).abs() < allowed,
+                "{side:?} {x} {y}: {found} {expected} {allowed}"
+            );
+        }
+    }
+}

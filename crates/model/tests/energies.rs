@@ -106,6 +106,26 @@ fn exact_rate_bounds_the_linear_part() {
     assert!(tightest < 1.01, "a bound that is never nearly reached wastes steps: {tightest}");
 }
 
+/// One spring or one dashpot alone, all else next to nothing: the rate is the norm, so no term of it is larger than it must be.
+#[test]
+fn exact_rate_of_a_single_cause() {
+    let light = Numbers { c1: 1e-12, k1: 1e-12, k2: 1e-12, c2: 1e-12, omega: 1e-6, ..SSVI };
+    for numbers in [
+        Numbers { k1: SSVI.k1, ..light },
+        Numbers { c1: SSVI.c1, ..light },
+        Numbers { k2: SSVI.k2, ..light },
+        Numbers { c2: SSVI.c2, ..light },
+    ] {
+        let system = numbers.coupled();
+        let to = energy_coordinates(&numbers);
+        let (a, _) = system.linear_part();
+        let norm = (to * a * to.try_inverse().expect("regular")).singular_values().max();
+        assert!((system.rate() / norm - 1.0).abs() < 1e-3, "{} {norm} {numbers:?}", system.rate());
+    }
+    let fast = Numbers { omega: 1e3, ..light };
+    assert_eq!((fast.coupled().rate(), fast.bare().rate()), (1e3, 1e3));
+}
+
 #[test]
 fn exact_momentum_and_ratios() {
     let system = TMD.coupled();

@@ -103,3 +103,21 @@ fn paper_steady_energies() {
     // Its walls are out of reach, as Table 2 says.
     assert!(tmd.stroke() < TMD.d.min(TMD.c), "{}", tmd.stroke());
 }
+
+/// The natural frequency of section 2 of the paper, and the width of a sharp resonance: half the energy on either side of it.
+#[test]
+fn exact_natural_frequency_and_width_of_the_resonance() {
+    for (m1, k1) in [(SSVI.m1, SSVI.k1), (2.7, 5.3e4), (300.0, 40.0)] {
+        let natural = f64::sqrt(k1 / m1);
+        let numbers = scenes::Numbers { m1, k1, c1: 2e-4 * natural * m1, ..SSVI };
+        let (primary, bare) = (numbers.primary(), numbers.bare());
+        assert!((primary.natural_frequency() / natural - 1.0).abs() < 1e-15);
+        let width = primary.half_power_half_width();
+        let top = bare.steady(natural).e1_max;
+        for omega in [natural - width, natural + width] {
+            let share = bare.steady(omega).e1_max / top;
+            assert!((share - 0.5).abs() < 1e-3, "{share} of the energy at {omega}");
+        }
+    }
+    assert!((SSVI.primary().natural_frequency() / 6.28 - 1.0).abs() < 1e-3, "the paper drives at resonance");
+}

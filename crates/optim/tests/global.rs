@@ -89,6 +89,18 @@ fn exact_coordinates_are_the_inverse_of_values() {
     assert!((space.distance(&[10.0, 0.0], &[100.0, 0.3]) - 10_f64.ln() / 500_f64.ln()).abs() < 1e-14);
 }
 
+/// Ratios where a side spans a decade above zero, wherever that decade lies.
+#[test]
+fn exact_a_side_is_logarithmic_from_a_decade_on() {
+    for from in [1e-3, 0.1, 1.0, 250.0] {
+        assert_eq!(Side::natural(from, 10.0 * from).scale, Scale::Log, "{from}");
+        assert_eq!(Side::natural(from, 9.99 * from).scale, Scale::Linear, "{from}");
+    }
+    for (from, to) in [(0.0, 1e6), (-1.0, 1e6), (-100.0, -1.0)] {
+        assert_eq!(Side::natural(from, to).scale, Scale::Linear, "{from}");
+    }
+}
+
 #[test]
 fn exact_designs_without_a_value_start_no_search() {
     let nothing = explore(|_, _| f64::NAN, &unit(2), &Global { samples: 8, ..Global::default() }, || {});

@@ -1,0 +1,140 @@
+"""Whether the tests see a mistake: mutants drawn at random, each against the tests of its own crate. `just mutants`.
+
+cargo-mutants makes the mutants; which of them are drawn follows from the seed and from what they change, not from the lines that they
+stand on, so that a draw stays nearly the same when code moves. They are built in a copy of the project inside `target/mutants`, where
+a mutant that was caught is remembered until its file changes. A survivor whose name stands in `tests/mutants.json` changes nothing,
+for the reason given there.
+"""
+
+import argparse, collections, fnmatch, hashlib, json, os, pathlib, re, shutil, subprocess, sys
+
+DRAWN = 330
+# Files of each crate, and its tests: quick and decisive ones first, what they miss to all.
+CRATES = {
+    "retune-model": (["crates/model/src/*"], ["--tests"]),
+    "retune-solver": (["crates/solver/src/*"], ["--lib --test order --test extremes --test paper --test reference --test invariant --test exact", "--tests"]),
+    "retune-optim": (["crates/optim/src/*"], ["--tests"]),
+    "retune": (["crates/retune/src/results*"], ["--bins", "--tests"]),
+}
+HOME = pathlib.Path("target/mutants")
+TREE = HOME / "tree"
+KNOWN = HOME / "outcomes.json"
+REASONS = pathlib.Path("tests/mutants.json")
+TABLE = pathlib.Path("results/robustness/mutants.md")
+
+
+def listed(package):
+    """The mutants of a crate, each with the name that it keeps when lines move."""
+    said = subprocess.run(["cargo", "mutants", "--no-config", "--list", "--json", "--package", package], capture_output=True, check=True, text=True)
+    files, counted = CRATES[package][0], collections.Counter()
+    for mutant in json.loads(said.stdout):
+        file, _, _, change = mutant["name"].split(":", 3)
+        if any(fnmatch.fnmatch(file, pattern) for pattern in files):
+            name = f"{file}:{change}"
+            counted[name] += 1
+            yield f"{name} #{counted[name]}", mutant["name"], file
+
+
+def drawn(seed, count):
+    """`count` mutants, shared among the crates by their lines."""
+    lists = {package: list(listed(package)) for package in CRATES}
+    lines = {package: sum(len(pathlib.Path(file).read_text().splitlines()) for file in {m[2] for m in mutants}) for package, mutants in lists.items()}
+    rank = lambda mutant: hashlib.sha256(f"{seed} {mutant[0]}".encode()).digest()
+    share = lambda package: round(count * lines[package] / sum(lines.values()))
+    return {package: sorted(mutants, key=rank)[: share(package)] for package, mutants in lists.items()}
+
+
+def copy():
+    """Brings the copy of the project up to date; only what differs is written, so that cargo builds no more than that."""
+    said = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], capture_output=True, check=True, text=True)
+    files = {file for file in said.stdout.split("\0") if file and os.path.isfile(file)}
+    for file in files:
+        target = TREE / file
+        if not target.is_file() or target.read_bytes() != pathlib.Path(file).read_bytes():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, target)
+            shutil.copymode(file, target)
+    for target in [path for path in TREE.rglob("*") if path.is_file() and str(path.relative_to(TREE)) not in files]:
+        target.unlink()
+
+
+def tried(package, names, tests, timeout):
+    """What becomes of these mutants of a crate with these of its tests."""
+    out = HOME / "out"
+    shutil.rmtree(out, ignore_errors=True)
+    only = ["--re=^" + re.sub(r"([][\\.*+?^$|(){}])", r"\\\1", name) + "$" for name in names]
+    command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(TREE), "--output", str(out), "--package", package,
+               "--profile", "mutants", "--timeout", str(timeout), "--build-timeout", str(timeout), "--no-times", "--jobserver=false", *only, "--", *tests.split()]
+    environment = {**os.environ, "CARGO_TARGET_DIR": str((HOME / "build").absolute())}
+    status = subprocess.run(command, env=environment).returncode
+    if status not in (0, 2, 3):
+        sys.exit(f"cargo mutants ended with {status}: do the tests pass without a mutant?")
+    outcomes = json.loads((out / "mutants.out/outcomes.json").read_text())["outcomes"]
+    return {o["scenario"]["Mutant"]["name"]: o["summary"].removesuffix("Mutant").lower() for o in outcomes if o["scenario"] != "Baseline"}
+
+
+def table(seed, draw, outcomes, reasons):
+    lines = [
+        "# Whether the tests see a mistake", "",
+        f"`just mutants`: mutants of cargo-mutants, drawn at random (seed {seed}), shared among the crates by their lines, each against the tests",
+        "of its own crate. Caught: a test fails, or none ends in time. Unviable: does not compile. Without effect: listed below with the reason.", "",
+        "| crate | mutants | caught | of these out of time | unviable | without effect | missed | caught of those with effect |",
+        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
+    ]
+    total, survivors = collections.Counter(), []
+    for package, mutants in [*draw.items(), ("all", None)]:
+        count = collections.Counter()
+        for name, *_ in mutants or []:
+            outcome = outcomes.get(name, "not tried")
+            if outcome == "missed":
+                outcome = "without effect" if name in reasons else "missed"
+                survivors.append((name, reasons.get(name, "**missed**")))
+            count[outcome] += 1
+        total += count
+        count = count if mutants else total
+        caught = count["caught"] + count["timeout"]
+        share = 100 * caught / max(1, caught + count["missed"])
+        lines.append(f"| {package} | {count.total() - count['not tried']} | {caught} | {count['timeout']} | {count['unviable']} | {count['without effect']} | {count['missed']} | {share:.1f} % |")
+    lines += ["", "| survivor | what becomes of it |", "| --- | --- |"]
+    lines += [f"| `{name.replace('|', '&#124;')}` | {reason} |" for name, reason in sorted(survivors)]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--seed", type=int, default=13)
+    asked.add_argument("--mutants", type=int, default=DRAWN, help="how many are drawn")
+    asked.add_argument("--package", choices=CRATES, action="append", help="only those of this crate")
+    asked.add_argument("--file", action="append", help="only those of files that match, for instance crates/solver/src/rule*")
+    asked.add_argument("--timeout", type=int, default=300, help="seconds that a build or the tests may take")
+    asked.add_argument("--list", action="store_true", help="only say what is drawn and what is known of it")
+    asked = asked.parse_args()
+    draw = drawn(asked.seed, asked.mutants)
+    HOME.mkdir(parents=True, exist_ok=True)
+    known = json.loads(KNOWN.read_text()) if KNOWN.exists() else {}
+    digest = lambda file: hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest()
+    reasons = json.loads(REASONS.read_text())
+    # What was found of a file as it is now.
+    outcomes = {m[0]: known[m[0]][1] for mutants in draw.values() for m in mutants if m[0] in known and known[m[0]][0] == digest(m[2])}
+    print(f"seed {asked.seed}: " + ", ".join(f"{len(mutants)} mutants of {package}" for package, mutants in draw.items()), flush=True)
+    for package, mutants in draw.items():
+        chosen = [m for m in mutants if not asked.package or package in asked.package]
+        chosen = [m for m in chosen if not asked.file or any(fnmatch.fnmatch(m[2], pattern) for pattern in asked.file)]
+        left = {m[1]: m for m in chosen if outcomes.get(m[0], "missed") == "missed" and m[0] not in reasons}
+        if asked.list:
+            print("\n".join(f"{outcomes.get(m[0], '-'):9} {m[1]} #{m[0].rsplit('#')[1]}" for m in chosen))
+            continue
+        copy()
+        for tests in CRATES[package][1]:
+            found = tried(package, list(left), tests, asked.timeout) if left else {}
+            for name, outcome in found.items():
+                outcomes[left[name][0]] = outcome
+                known[left[name][0]] = (digest(left[name][2]), outcome)
+            KNOWN.write_text(json.dumps(known, indent=0))
+            left = {name: m for name, m in left.items() if found.get(name) == "missed"}
+    if not asked.list:
+        TABLE.write_text(table(asked.seed, draw, outcomes, reasons))
+        print(TABLE.read_text())
+
+
+main()
