@@ -11,7 +11,7 @@ use retune_solver::observe::{
     DamperEnergy, Knot, Observer, Path, Peak, PrimaryEnergy, Quantity, RelativePosition, Segment, Unobserved,
 };
 use retune_solver::steps::Steps;
-use retune_solver::{Hybrid, Motion, Phase, SolverError};
+use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
 
 /// A scene of an engineer's: every number within its range, some of them at its ends.
 fn anywhere(draw: &mut Spread) -> Numbers {
@@ -194,6 +194,51 @@ fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 4], u64), So
     Ok((missed, contacts.pieces))
 }
 
+/// A difference relative to a size; infinite for what is no number.
+fn apart(a: f64, b: f64, size: f64) -> f64 {
+    let difference = ((a - b) / size).abs();
+    if a == b {
+        0.0
+    } else if difference.is_nan() {
+        f64::INFINITY
+    } else {
+        difference
+    }
+}
+
+/// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where their final states part, so that the
+/// motion cannot be predicted so far, or where DOP853 gives up.
+fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
+    let window = Window { from, to: 20.0 };
+    let [a, b] = [(Method::Hybrid, 1e-12), (Method::Dop853, 1e-12)].map(|(method, rtol)| {
+        let settings =
+            Settings { method, rtol, atol: 1e-3 * rtol, max_steps: 2_000_000, ..Settings::default() };
+        simulate(&numbers.scene(), window, &settings)
+    });
+    let a = a.unwrap_or_else(|error| panic!("{error}: {numbers:?}"));
+    let b = b.ok()?;
+    let speeds = [1, 3].map(|i| apart(a.final_state[i], b.final_state[i], 1.0));
+    let positions = [0, 2].map(|i| apart(a.final_state[i], b.final_state[i], 1.0));
+    if speeds.into_iter().chain(positions).any(|difference| difference > 1e-10) {
+        return None;
+    }
+    let force = b.force_max[0].max(b.force_max[1]).max(1.0);
+    let stroke = b.spring_deflection_max;
+    let late = apart(a.e1_max.time, b.e1_max.time, 1.0);
+    // Where two maxima are equally high, or one is flat, its time says nothing.
+    let told_by_height = apart(a.e1_max.value, b.e1_max.value, b.e1_max.value) < 1e-13 || late < 1e-4;
+    let differences = [
+        apart(a.e1_max.value, b.e1_max.value, b.e1_max.value),
+        apart(a.e2_max.value, b.e2_max.value, b.e2_max.value),
+        apart(a.relative_displacement_max, b.relative_displacement_max, stroke),
+        apart(a.spring_deflection_max, b.spring_deflection_max, stroke),
+        apart(a.force_max[0], b.force_max[0], force).max(apart(a.force_max[1], b.force_max[1], force)),
+        f64::from(u8::from(a.impacts != b.impacts)),
+        if told_by_height { 0.0 } else { late },
+    ];
+    Some((differences, a))
+}
+
 /// The number of scenes to draw.
 fn scenes(few: u64) -> u64 {
     std::env::var("RETUNE_HUNT").ok().and_then(|n| n.parse().ok()).unwrap_or(few)
@@ -244,4 +289,31 @@ fn invariant_no_search_misses_what_a_look_at_everything_finds() {
 #[test]
 fn invariant_nor_where_two_maxima_in_a_step_are_common() {
     hunt("dense", dense, scenes(5000));
+}
+
+#[test]
+fn reference_the_hybrid_sees_what_dop853_sees() {
+    let count = scenes(150);
+    let compared: Vec<_> = (0..count)
+        .into_par_iter()
+        .filter_map(|number| {
+            // Two in three are anywhere, one where two maxima in a step are common.
+            let (numbers, from, _) = drawn(number, if number % 3 == 0 { dense } else { anywhere });
+            let (differences, run) = compare(&numbers, from)?;
+            Some((number, differences, run.impacts[0] + run.impacts[1]))
+        })
+        .collect();
+    let contact_scenes = compared.iter().filter(|(_, _, impacts)| *impacts > 0).count();
+    let impacts: u64 = compared.iter().map(|(_, _, impacts)| impacts).sum();
+    let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > 1e-8)).collect();
+    println!(
+        "hybrid and DOP853: {count} scenes, {} predictable, {contact_scenes} of them with contacts, {impacts} impacts, {} faults",
+        compared.len(),
+        faults.len()
+    );
+    for (number, differences, _) in faults.iter().take(12) {
+        println!("{number} {differences:?}");
+    }
+    assert!(faults.is_empty(), "{} of {count}", faults.len());
+    assert!(contact_scenes as u64 > count / 5, "{contact_scenes}");
 }
