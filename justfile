@@ -119,6 +119,12 @@ bench-scale:
 test-scenes SCENES="30000":
     RETUNE_SCENES={{SCENES}} cargo test --package retune-solver --test any_scene reference_any_scene -- --nocapture
 
+# Hunt for a largest value that is missed, SCENES scenes three times over (half an hour for 150000 on two cores): results/robustness/hunt.md
+hunt SCENES="150000":
+    mkdir -p results/robustness
+    RETUNE_HUNT={{SCENES}} cargo test --package retune-solver --test hunt -- --nocapture --test-threads 1 | grep -E '^\|' > results/robustness/hunt.rows
+    cat tests/hunt.md results/robustness/hunt.rows > results/robustness/hunt.md && rm results/robustness/hunt.rows && cat results/robustness/hunt.md
+
 # Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
 test-settled SCENES="4000":
     RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture
@@ -151,7 +157,8 @@ bench *OPTIONS:
 
 # Count the instructions of a run (needs valgrind): the same on a busy machine as on a quiet one
 bench-instructions *OPTIONS:
-    cargo bench --quiet --package retune-solver --bench instructions "$@"
+    # For a processor that valgrind knows: one with AVX2, without AVX-512.
+    RUSTFLAGS="-C target-cpu=x86-64-v3" cargo bench --target-dir target/instructions --quiet --package retune-solver --bench instructions "$@"
 
 # Measure time and memory of a surf of a million runs, and what a second core is worth
 bench-surf *OPTIONS:

@@ -82,6 +82,9 @@ fn count(scene: usize, rtol: usize, runs: u64) -> Result<u64, String> {
         .output()
         .map_err(|error| error.to_string())?;
     let said = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        return Err(format!("the program did not end well under it: {said}"));
+    }
     let counted = said.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok());
     counted.ok_or_else(|| said.into_owned())
 }

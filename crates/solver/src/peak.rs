@@ -1,15 +1,16 @@
 //! The largest value of a quantity over a motion.
 //!
-//! A search by branch and bound that drops a stretch of the motion only where a bound says that no larger value is in it.
-//! On a stretch of length `h` let `M` bound the sixth derivative. Then the quintic that meets value, slope and curvature at
-//! both ends leaves the quantity by at most `R = M h⁶ / 46080`, the quintic's slope the slope by at most `√5/30000 M h⁵`, and
-//! its curvature the curvature by at most `M h⁴ / 1920` (G. Birkhoff & A. Priver, J. Math. and Phys. 46, 1967); the quintic and
-//! its derivatives stay between the least and the largest of their Bernstein coefficients. `M` is known of every motion that
-//! the hybrid shows (see `quantity` and `docs/bounds.md`).
+//! A search by branch and bound that drops a stretch of the motion only where a bound says that no larger value is in it: see
+//! `quintic`, `quantity` and `docs/bounds.md`.
+
+mod quintic;
+
+pub use quintic::QUINTIC;
 
 use crate::observe::{Knot, MOST_KNOTS, Observer, Path, Quantity, Segment};
 use crate::settings::Extreme;
 use crate::steps::{Steps, shifted};
+use quintic::{Shape, highest, quintic, shape, slope_root};
 use wide::f64x4;
 
 /// The largest value of a quantity, located where its rate of change is zero, to rounding.
@@ -24,9 +25,6 @@ pub struct Peak<Q> {
     sharp: bool,
     doubt: f64,
 }
-
-/// `R` over `M h⁶`.
-pub const QUINTIC: f64 = 1.0 / 46080.0;
 
 /// Of a motion whose derivatives have no known bound (the interpolants of general methods): `R` over what the quantity varies by at
 /// both ends, `h |slope| + h² |curvature|`. So it is for a quantity that varies no faster than `2.5/h`.
@@ -77,66 +75,6 @@ fn note(record: &mut Extreme, value: f64, time: f64) {
 #[inline(always)]
 fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2]) -> [f64; 3] {
     [value, slope * rate, curvature * rate * rate + slope * rate_slope]
-}
-
-/// Bernstein coefficients of the quintic that meets value, slope and curvature at both ends of a stretch of length `h`.
-#[inline(always)]
-fn quintic(h: f64, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
-    let (fifth, twentieth) = (h / 5.0, h * h / 20.0);
-    let (inner_a, inner_b) = (a[0] + a[1] * fifth, b[0] - b[1] * fifth);
-    let deep_a = inner_a + a[1] * fifth + a[2] * twentieth;
-    let deep_b = inner_b - b[1] * fifth + b[2] * twentieth;
-    [a[0], inner_a, deep_a, deep_b, inner_b, b[0]]
-}
-
-/// A bound on what leaves the quintic by at most `remainder`: the error has three zeros at each end, so it is at most
-/// `64 remainder τ³ (1 - τ)³`, and `τ³ (1 - τ)³` is a twentieth of the middle Bernstein polynomial of degree six. The other
-/// coefficients of that degree are means of these six.
-#[inline(always)]
-fn highest(c: [f64x4; 6], remainder: f64x4) -> f64x4 {
-    let middle = (c[2] + c[3]) * 0.5 + remainder * (64.0 / 20.0);
-    c.into_iter().fold(middle, f64x4::fast_max)
-}
-
-/// What a quantity can do on a stretch.
-enum Shape {
-    /// Its largest value is at an end.
-    EndsAreLargest,
-    /// It is concave, and largest inside.
-    OneMaximum,
-    /// The bounds do not tell.
-    Unknown,
-}
-
-/// The shape of what leaves the quintic with these coefficients by at most `remainder`: its slope leaves the quintic's by at most
-/// `46080 √5/30000 remainder / h`, its curvature by at most `24 remainder / h²`; the coefficients of slope and curvature
-/// are 5 and 20 times the first and second differences of these.
-fn shape(c: [f64; 6], remainder: f64) -> Shape {
-    let rises: [f64; 5] = std::array::from_fn(|i| c[i + 1] - c[i]);
-    let bends: [f64; 4] = std::array::from_fn(|i| rises[i + 1] - rises[i]);
-    let (rise, bend) = (0.687 * remainder, 1.2 * remainder);
-    let monotone = rises.iter().all(|r| *r >= rise) || rises.iter().all(|r| *r <= -rise);
-    if monotone || bends.iter().all(|b| *b >= bend) {
-        return Shape::EndsAreLargest;
-    }
-    if bends.iter().all(|b| *b < -bend) {
-        // The end slopes are exact.
-        return if rises[0] > 0.0 && rises[4] < 0.0 { Shape::OneMaximum } else { Shape::EndsAreLargest };
-    }
-    Shape::Unknown
-}
-
-/// Where the slope is zero on a stretch of length `h` at whose ends it is positive, then negative: a root of the cubic that
-/// meets slope and curvature at both ends.
-fn slope_root(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
-    let (c0, c1) = (a[1], h * a[2]);
-    let (c2, c3) = (3.0 * (b[1] - a[1]) - h * (2.0 * a[2] + b[2]), 2.0 * (a[1] - b[1]) + h * (a[2] + b[2]));
-    let mut s = a[1] / (a[1] - b[1]);
-    for _ in 0..3 {
-        let (value, slope) = (c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2.0 * c2 + s * 3.0 * c3));
-        s = (s - value / slope).clamp(0.0, 1.0);
-    }
-    if s.is_nan() { 0.5 * h } else { s * h }
 }
 
 /// A place in a segment: `θ`, the moment, and `[value, slope, curvature]` there.

@@ -283,12 +283,12 @@ fn hunt(what: &str, scene: fn(&mut Spread) -> Numbers, count: u64) {
 
 #[test]
 fn invariant_no_search_misses_what_a_look_at_everything_finds() {
-    hunt("anywhere", anywhere, scenes(400));
+    hunt("search beside a look everywhere, any scene", anywhere, scenes(400));
 }
 
 #[test]
 fn invariant_nor_where_two_maxima_in_a_step_are_common() {
-    hunt("dense", dense, scenes(5000));
+    hunt("the same where two maxima in a step are common", dense, scenes(5000));
 }
 
 #[test]
@@ -307,7 +307,7 @@ fn reference_the_hybrid_sees_what_dop853_sees() {
     let impacts: u64 = compared.iter().map(|(_, _, impacts)| impacts).sum();
     let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > 1e-8)).collect();
     println!(
-        "hybrid and DOP853: {count} scenes, {} predictable, {contact_scenes} of them with contacts, {impacts} impacts, {} faults",
+        "| hybrid beside DOP853, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
         compared.len(),
         faults.len()
     );

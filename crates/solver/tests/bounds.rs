@@ -1,0 +1,137 @@
+//! The bounds on which the search for a largest value rests (`docs/bounds.md`), held against the motion itself.
+
+mod problems;
+
+use problems::scenes::{Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED};
+use retune_solver::observe::{
+    DamperEnergy, Knot, Observer, Path, PrimaryEnergy, Quantity, RelativePosition, Segment,
+};
+use retune_solver::{Hybrid, Motion, Phase};
+
+/// Value, slope and curvature with respect to `θ`.
+fn rates<Q: Quantity<4>>(quantity: &Q, knot: &Knot<4>) -> [f64; 3] {
+    let ([value, slope, curvature], [rate, rate_slope]) = (quantity.rates(knot.drive, &knot.y), knot.clock);
+    [value, slope * rate, curvature * rate * rate + slope * rate_slope]
+}
+
+/// The quintic through value, slope and curvature at both ends of `[0, h]`, at `s h`.
+fn quintic(h: f64, a: [f64; 3], b: [f64; 3], s: f64) -> f64 {
+    let r = 1.0 - s;
+    let from = |[value, slope, curvature]: [f64; 3], s: f64, r: f64| {
+        r.powi(3)
+            * (value * (1.0 + 3.0 * s + 6.0 * s * s) + slope * s * (1.0 + 3.0 * s) + 0.5 * curvature * s * s)
+    };
+    from([a[0], h * a[1], h * h * a[2]], s, r) + from([b[0], -h * b[1], h * h * b[2]], r, s)
+}
+
+/// Holds every piece of a motion against its bounds.
+struct Held<Q> {
+    quantity: Q,
+    /// Pieces looked at, in flight and in contact; those whose bound is finite; contacts with a finite bound of all, and all.
+    pieces: [u64; 2],
+    bounded: [u64; 2],
+    contacts: [u64; 2],
+    /// The largest share of a bound that a piece used.
+    used: [f64; 2],
+    /// The second derivative that a contact's pieces may have.
+    second: f64,
+}
+
+impl<Q: Quantity<4>> Held<Q> {
+    fn new(quantity: Q) -> Self {
+        let (pieces, bounded, contacts) = ([0; 2], [0; 2], [0; 2]);
+        Self { quantity, pieces, bounded, contacts, used: [0.0; 2], second: f64::INFINITY }
+    }
+}
+
+impl<Q: Quantity<4>> Observer<4> for Held<Q> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let (h, [first, _]) = (segment.length(), segment.ends());
+        let kind = usize::from(first.clock != [1.0, 0.0]);
+        // The last digits of a contact's ends are another computation's: the piece is taken between moments of its own.
+        let (from, to) = (0.001 * h, 0.999 * h);
+        let [begin, end] = [from, to].map(|theta| segment.at(theta));
+        let [a, b] = [&begin, &end].map(|knot| rates(&self.quantity, knot));
+        let form = self.quantity.form();
+        let size = form.size(&begin.y).max(form.size(&end.y));
+        let bounds = [false, true]
+            .map(|sharp| segment.quintic_error(form, [&begin, &end], to - from, sharp).expect("a bound"));
+        self.pieces[kind] += 1;
+        self.bounded[kind] += u64::from(bounds[0].is_finite());
+        for step in 1..8 {
+            let s = f64::from(step) / 8.0;
+            let knot = segment.at(from + s * (to - from));
+            let value = self.quantity.rates(knot.drive, &knot.y)[0];
+            let error = (value - quintic(to - from, a, b, s)).abs();
+            // A contact's interior is as exact as its steps.
+            let rounding = if kind == 1 { 1e-10 } else { 1e-12 } * size + 1e-20;
+            for bound in bounds {
+                assert!(error <= bound + rounding, "{kind}: {error:e} {bound:e} {size:e}");
+                if bound > 100.0 * rounding {
+                    self.used[kind] = self.used[kind].max(error / bound);
+                }
+            }
+            let [_, _, curvature] = self.quantity.rates(knot.drive, &knot.y);
+            assert!(curvature.abs() <= self.second * (1.0 + 1e-9), "{curvature:e} {:e}", self.second);
+        }
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        self.second = path.second_derivative(self.quantity.form());
+        self.contacts[1] += 1;
+        self.contacts[0] += u64::from(self.second.is_finite());
+        (0..path.pieces()).for_each(|piece| path.show(piece, self));
+        self.second = f64::INFINITY;
+    }
+}
+
+fn held<Q: Quantity<4>>(numbers: &Numbers, quantity: Q, totals: &mut Held<()>) {
+    let system = numbers.coupled();
+    let mut held = Held::new(quantity);
+    let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+    for rtol in [1e-6, 1e-10] {
+        Hybrid::new(&system, rtol, 10.0, 1_000_000).propagate(rest, 10.0, &mut held).expect("a run");
+    }
+    for kind in [0, 1] {
+        totals.pieces[kind] += held.pieces[kind];
+        totals.bounded[kind] += held.bounded[kind];
+        totals.contacts[kind] += held.contacts[kind];
+        totals.used[kind] = totals.used[kind].max(held.used[kind]);
+    }
+}
+
+#[test]
+fn invariant_no_motion_leaves_its_bounds() {
+    let mut totals =
+        Held { quantity: (), pieces: [0; 2], bounded: [0; 2], contacts: [0; 2], used: [0.0; 2], second: 0.0 };
+    let mut draw = Spread::new(5);
+    let mut scenes = vec![SSVI, ROW1, TMD, TWO_SIDED, Numbers { d: 0.0, ..TWO_SIDED }];
+    for _ in 0..40 {
+        scenes.push(Numbers {
+            m2: draw.logarithmic(1.0, 3000.0),
+            k1: draw.logarithmic(1e4, 1e5),
+            k2: 3500.0 * draw.unit(),
+            c2: 400.0 * draw.unit(),
+            d: 0.2 * draw.unit(),
+            c: 0.3 * draw.unit(),
+            r: draw.logarithmic(0.2, 5.0),
+            omega: 3.0 + 7.0 * draw.unit(),
+            ..SSVI
+        });
+    }
+    for numbers in &scenes {
+        let system = numbers.coupled();
+        held(numbers, PrimaryEnergy::new(&system), &mut totals);
+        held(numbers, DamperEnergy::new(&system), &mut totals);
+        held(numbers, RelativePosition::new(&system, 1.0), &mut totals);
+    }
+    println!(
+        "pieces {:?}, bounded {:?}; contacts bounded and all {:?}; largest share of a bound used {:.3?}",
+        totals.pieces, totals.bounded, totals.contacts, totals.used
+    );
+    // The bounds are of use: finite where they are asked for, and not far above what they bound.
+    assert!(totals.pieces[0] > 10_000 && totals.pieces[1] > 10_000, "{:?}", totals.pieces);
+    assert_eq!(totals.bounded[0], totals.pieces[0]);
+    assert!(totals.bounded[1] as f64 > 0.95 * totals.pieces[1] as f64, "{:?}", totals.bounded);
+    assert!(totals.contacts[0] as f64 > 0.95 * totals.contacts[1] as f64, "{:?}", totals.contacts);
+    assert!(totals.used.iter().all(|used| *used > 0.05), "{:?}", totals.used);
+}
