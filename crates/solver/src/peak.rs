@@ -59,7 +59,8 @@ impl<Q> Peak<Q> {
         self.record
     }
 
-    /// By how much a value may exceed the record because a search ended before its bounds could tell; 0 where the record is proven.
+    /// By how much a value may exceed the record because a search ended before its bounds could tell, relative to the terms whose sum
+    /// it is; 0 where the record is proven. What is left of such a search is climbed where its slopes say that there is a maximum.
     pub fn doubt(&self) -> f64 {
         self.doubt
     }
@@ -132,7 +133,8 @@ impl<Q> Peak<Q> {
                 return;
             }
             if self.halvings == 0 {
-                self.doubt = self.doubt.max(highest - self.record.value);
+                let size = rounding / (ROUNDING * f64::EPSILON);
+                self.doubt = self.doubt.max((highest - self.record.value) / size);
                 if a.2[1] > 0.0 && b.2[1] < 0.0 {
                     self.climb(segment, a, b);
                 }

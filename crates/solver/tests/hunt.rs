@@ -101,7 +101,7 @@ impl<A: Quantity<4>, B: Quantity<4>> Pair<A, B> {
     fn missed(&self, size: f64) -> f64 {
         let found = self.0.record().value;
         let missed = self.1.largest - found;
-        if self.0.doubt() > 1e-10 * size {
+        if self.0.doubt() > 1e-12 {
             f64::INFINITY
         } else if missed <= 0.0 {
             0.0
