@@ -23,7 +23,8 @@ pub struct Peak<Q> {
     halvings: u32,
     /// Whether its sharp bound is in use.
     sharp: bool,
-    doubt: f64,
+    /// What the largest value may be where a search ended before its bounds could tell.
+    undecided: f64,
 }
 
 /// Of a motion whose derivatives have no known bound (the interpolants of general methods): `R` over what the quantity varies by at
@@ -50,7 +51,7 @@ impl<Q> Peak<Q> {
             last: None,
             halvings: 0,
             sharp: false,
-            doubt: 0.0,
+            undecided: f64::NEG_INFINITY,
         }
     }
 
@@ -59,10 +60,10 @@ impl<Q> Peak<Q> {
         self.record
     }
 
-    /// By how much a value may exceed the record because a search ended before its bounds could tell, relative to the terms whose sum
-    /// it is; 0 where the record is proven. What is left of such a search is climbed where its slopes say that there is a maximum.
+    /// By how much a value may exceed the record because a search ended before its bounds could tell; 0 where the record is proven.
+    /// What is left of such a search is climbed where its slopes say that there is a maximum.
     pub fn doubt(&self) -> f64 {
-        self.doubt
+        (self.undecided - self.record.value).max(0.0)
     }
 }
 
@@ -133,8 +134,7 @@ impl<Q> Peak<Q> {
                 return;
             }
             if self.halvings == 0 {
-                let size = rounding / (ROUNDING * f64::EPSILON);
-                self.doubt = self.doubt.max((highest - self.record.value) / size);
+                self.undecided = self.undecided.max(highest);
                 if a.2[1] > 0.0 && b.2[1] < 0.0 {
                     self.climb(segment, a, b);
                 }

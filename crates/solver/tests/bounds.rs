@@ -124,7 +124,7 @@ fn invariant_no_motion_leaves_its_bounds() {
         held(numbers, DamperEnergy::new(&system), &mut totals);
         held(numbers, RelativePosition::new(&system, 1.0), &mut totals);
     }
-    println!(
+    eprintln!(
         "pieces {:?}, bounded {:?}; contacts bounded and all {:?}; largest share of a bound used {:.3?}",
         totals.pieces, totals.bounded, totals.contacts, totals.used
     );
