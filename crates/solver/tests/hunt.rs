@@ -204,9 +204,10 @@ fn drawn(number: u64, scene: fn(&mut Spread) -> Numbers) -> (Numbers, f64, f64) 
     let mut draw = Spread::new(number + 1);
     let numbers = scene(&mut draw);
     let from = if draw.unit() < 0.5 { 0.0 } else { 15.0 * draw.unit() };
-    (numbers, from, if number % 2 == 0 { 1e-6 } else { 1e-10 })
+    (numbers, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
 }
 
+#[allow(clippy::print_stdout, reason = "`just hunt` reads it")]
 fn hunt(what: &str, scene: fn(&mut Spread) -> Numbers, count: u64) {
     let looked: Vec<_> = (0..count)
         .into_par_iter()
