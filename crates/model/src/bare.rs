@@ -76,6 +76,11 @@ impl Bare {
         self.omega.max((self.k1 / self.m1).sqrt() + self.c1 / self.m1)
     }
 
+    /// What makes the most of [`Self::rate`], by the names of a study.
+    pub fn fastest(&self) -> &'static str {
+        largest([(self.omega, "omega"), ((self.k1 / self.m1).sqrt(), "k1/m1"), (self.c1 / self.m1, "c1/m1")])
+    }
+
     /// Energy of the primary structure, `E1 = (m1 v1² + k1 x1²) / 2`, J.
     #[inline]
     pub fn primary_energy(&self, x1: f64, v1: f64) -> f64 {
@@ -122,4 +127,8 @@ impl Bare {
         let g_rate = -self.omega * sin - self.c1 * a1;
         [self.primary_energy(x1, v1), v1 * g, a1 * g + v1 * g_rate]
     }
+}
+/// The name of the largest number.
+pub(crate) fn largest<const N: usize>(terms: [(f64, &'static str); N]) -> &'static str {
+    terms.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or("", |(_, name)| name)
 }

@@ -1,5 +1,6 @@
 //! Equation (1): the primary structure and the damper in its cavity, with Hertz contact on both walls.
 
+use crate::bare::largest;
 use crate::{Bare, Damper, Drive, Forcing, Primary, hertz_energy, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
 use wide::f64x4;
@@ -136,6 +137,21 @@ impl Coupled {
         let Bare { m1, c1, k1, omega, .. } = self.bare;
         let inverse_m = self.inverse_effective_mass();
         omega.max((k1 / m1 + self.k2 * inverse_m).sqrt() + c1 / m1 + self.c2 * inverse_m)
+    }
+
+    /// What makes the most of [`Self::rate`], by the names of a study.
+    pub fn fastest(&self) -> &'static str {
+        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let (m2, c2, k2) = (self.m2, self.c2, self.k2);
+        largest([
+            (omega, "omega"),
+            ((k1 / m1).sqrt(), "k1/m1"),
+            ((k2 / m1).sqrt(), "k2/m1"),
+            ((k2 / m2).sqrt(), "k2/m2"),
+            (c1 / m1, "c1/m1"),
+            (c2 / m1, "c2/m1"),
+            (c2 / m2, "c2/m2"),
+        ])
     }
 
     /// `√(2E)` of a state, √J, with `E` the mechanical energy of the linear part (no contact). Between contacts dampers only

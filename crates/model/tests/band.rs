@@ -188,3 +188,38 @@ fn reference_energy_of_the_best_tmd_over_the_band() {
     let papers = TMD.coupled().steady_e1_max([5.0, 8.0]);
     assert!((papers.value - 660.41).abs() < 0.5, "{papers:?}");
 }
+
+/// Dampers with hardly any damping, or none, by `tests/reference/tmd_narrow.py` in 50 digits. Each measure is given three times:
+/// with a band a rounding of its ends narrower, as it is, and wider.
+#[test]
+fn reference_narrow_peaks_are_those_of_mpmath() {
+    let text = include_str!("../../../tests/reference/tmd_narrow.json");
+    let data: serde_json::Value = serde_json::from_str(text).expect("JSON");
+    let cases = data["cases"].as_array().expect("cases");
+    let (mut sharp, mut worst) = (0, 0.0_f64);
+    for case in cases {
+        let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+        let [c1, k1, m2, k2, c2] = ["c1", "k1", "m2", "k2", "c2"].map(|name| number(&case[name]));
+        let system = Numbers { c1, k1, m2, k2, c2, ..TMD }.coupled();
+        let band = [0, 1].map(|end| number(&case["band"][end]));
+        for (name, found) in [
+            ("E1max", system.steady_e1_max(band)),
+            ("x1", system.steady_displacement_max(band)),
+            ("stroke", system.steady_stroke_max(band)),
+        ] {
+            let [least, exact, most] = [0, 1, 2].map(|i| number(&case[name][i]));
+            let Worst { value, frequency } = found;
+            assert!(
+                least * (1.0 - 1e-12) <= value && value <= most * (1.0 + 1e-12),
+                "{name} {case}: {found:?}"
+            );
+            assert!(band[0] <= frequency && frequency <= band[1], "{name} {case}: {found:?}");
+            if most - least < 1e-12 * exact {
+                sharp += 1;
+                worst = worst.max((value / exact - 1.0).abs());
+            }
+        }
+    }
+    println!("{} cases, {sharp} measures known to 1e-12: off by {worst:.1e} at most", cases.len());
+    assert!(cases.len() >= 60 && sharp >= 100, "{sharp} of {}", cases.len());
+}

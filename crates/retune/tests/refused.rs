@@ -308,3 +308,35 @@ fn exact_a_run_that_fails_is_no_fault_of_the_input() {
     assert!(stderr.contains(part), "{stderr}");
     assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
 }
+
+/// One cause, and one thing to do, at once: no run of a day for a slip of the keyboard.
+#[test]
+fn contract_values_that_nobody_means_are_told_with_what_helps() {
+    let desk = Desk::new();
+    let study = common::studies().join("ssvi.json");
+    for (setting, cause, remedy) in [
+        ("T=1e300", "lost to rounding at t = 1e300 s", "shorten T"),
+        ("T=1e10", "and max_steps is 20000000", "shorten T"),
+        (
+            "omega=1e300",
+            "the motion changes within 1.2e-300 s",
+            "lower omega, which makes the motion this fast",
+        ),
+        ("R=1e-200", "a contact at t = 2.29", "check what it is made of: R, q, E1 to E4"),
+        ("m2=1e-6", "at this rate it takes 9.3e9 steps", "lower c2/m2, which makes the motion this fast"),
+        ("k1=1e20", "at this rate it takes 1.3e10 steps", "lower k1/m1, which makes the motion this fast"),
+        ("P=1e150", "at this rate it takes 1.3e23 steps", "lower P: nearly all steps are those of contacts"),
+    ] {
+        let begin = std::time::Instant::now();
+        let Answer { code, stdout, stderr } =
+            desk.run(&["simulate", study.to_str().expect("a path"), "--set", setting]);
+        assert!(begin.elapsed().as_secs() < 10, "{setting}: {:?}", begin.elapsed()); // a fraction of a second on an idle machine
+        assert_eq!((code, stdout.as_str()), (Some(1), ""), "{setting}: {stderr}");
+        assert!(
+            stderr.starts_with("error: the run failed: ") && stderr.contains(cause),
+            "{setting}: {stderr}"
+        );
+        assert!(stderr.ends_with(&format!("; {remedy}\n")), "{setting}: {stderr}");
+        assert_eq!(stderr.matches(';').count(), 1, "{setting}: {stderr}");
+    }
+}

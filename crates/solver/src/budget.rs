@@ -1,22 +1,78 @@
 //! How many steps a run may take.
 
-use crate::settings::{Method, SolverError};
+use crate::settings::SolverError;
+use std::fmt;
 
 /// Steps after which a run is asked whether it gets anywhere.
 const LOOK: u64 = 1 << 18;
+
+/// So few steps tell nothing of a run: a limit below is to be raised.
+const FEW: u64 = 1000;
 
 /// A run that would take more than so many times the steps it may take is hopeless. Less could be a burst of contacts after which
 /// the motion calms down.
 const HOPELESS: f64 = 100.0;
 
+/// The one thing that helps a run that cannot end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// It is the length of the run, and no step, that is out of all proportion.
+    ShorterRun,
+    /// Flight steps follow from what is fastest: ω, or a stiffness or a damping over a mass, by the names of a study.
+    Slower(&'static str),
+    /// Contacts take the steps.
+    LessForce,
+    /// Another method takes more steps than the hybrid, which also tells the cause if it cannot finish either.
+    Hybrid,
+}
+
+impl fmt::Display for Remedy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Remedy::ShorterRun => write!(f, "shorten T"),
+            Remedy::Slower(fastest) => write!(f, "lower {fastest}, which makes the motion this fast"),
+            Remedy::LessForce => write!(f, "lower P: nearly all steps are those of contacts"),
+            Remedy::Hybrid => write!(f, "choose the hybrid solver"),
+        }
+    }
+}
+
+/// What sets the steps of a run.
+#[derive(Clone, Copy, Debug)]
+pub enum Pace {
+    /// Exact flights: each step takes so many seconds, because of what is fastest. Steps beyond these are those of contacts.
+    Flight {
+        /// Length of a step, s.
+        step: f64,
+        /// What sets it, by the names of a study.
+        fastest: &'static str,
+    },
+    /// Whatever a general method chooses.
+    Steps,
+}
+
+impl Pace {
+    /// What helps a run to time `to` (s) that takes steps of `mean` seconds.
+    ///
+    /// One of the two is out of proportion: the one that is more orders of magnitude from a second.
+    pub fn remedy(self, to: f64, mean: f64) -> Remedy {
+        match self {
+            _ if to * mean > 1.0 => Remedy::ShorterRun,
+            Pace::Flight { step, fastest } if mean > 0.5 * step => Remedy::Slower(fastest),
+            Pace::Flight { .. } => Remedy::LessForce,
+            Pace::Steps => Remedy::Hybrid,
+        }
+    }
+}
+
 /// The steps that a stretch of a run may take, and how far they must bring it.
 ///
 /// Which runs are too long cannot be told beforehand: the steps of a damper that bounces follow from the motion. So a run is
 /// refused when it has taken all its steps, and after 262,144 already if at its rate it would need a hundred times as many as it
-/// may take. Raising `max_steps` raises both.
+/// may take (or a hundred times 262,144, if it may take fewer). Raising `max_steps` raises both.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
-    method: Method,
+    pace: Pace,
     limit: u64,
     /// Steps before this stretch.
     begun: u64,
@@ -24,10 +80,10 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// The budget of a run of at most `limit` steps by a method, of which `begun` have been taken, on the stretch from `span[0]` to
+    /// The budget of a run of at most `limit` steps, of which `begun` have been taken, on the stretch from `span[0]` to
     /// `span[1]`, s.
-    pub fn new(method: Method, limit: u64, begun: u64, span: [f64; 2]) -> Self {
-        Self { method, limit, begun, span }
+    pub fn new(pace: Pace, limit: u64, begun: u64, span: [f64; 2]) -> Self {
+        Self { pace, limit, begun, span }
     }
 
     /// Looks at a run that has come to `t` (s) in so many steps.
@@ -41,15 +97,14 @@ impl Budget {
 
     #[cold]
     fn look(&self, steps: u64, t: f64) -> Result<(), SolverError> {
-        let Self { method, limit, begun, span: [from, to] } = *self;
-        if steps > limit {
-            return Err(SolverError::TooManySteps { t, limit, method });
+        let Self { pace, limit, begun, span: [from, to] } = *self;
+        let (taken, come) = ((steps - begun) as f64, (t - from).max(0.0));
+        let needed = taken * ((to - from) / come);
+        if steps - begun > FEW && needed > HOPELESS * limit.max(LOOK) as f64 {
+            let remedy = pace.remedy(to, come / taken);
+            return Err(SolverError::TooSlow { t, steps, needed, limit, remedy });
         }
-        let needed = (steps - begun) as f64 * ((to - from) / (t - from).max(0.0));
-        if needed > HOPELESS * limit as f64 {
-            return Err(SolverError::TooSlow { t, steps, needed, limit, method });
-        }
-        Ok(())
+        if steps > limit { Err(SolverError::TooManySteps { t, limit }) } else { Ok(()) }
     }
 }
 
@@ -57,11 +112,13 @@ impl Budget {
 mod tests {
     use super::*;
 
+    const FLIGHT: Pace = Pace::Flight { step: 1e-5, fastest: "k2/m2" };
+
     #[test]
     fn exact_a_run_is_refused_when_its_steps_are_spent_or_cannot_suffice() {
-        let budget = Budget::new(Method::Hybrid, 1_000_000, 0, [10.0, 20.0]);
+        let budget = Budget::new(FLIGHT, 1_000_000, 0, [10.0, 20.0]);
         assert_eq!(budget.check(1_000_000, 10.2), Ok(()));
-        let spent = SolverError::TooManySteps { t: 19.0, limit: 1_000_000, method: Method::Hybrid };
+        let spent = SolverError::TooManySteps { t: 19.0, limit: 1_000_000 };
         assert_eq!(budget.check(1_000_001, 19.0), Err(spent));
         // 300,000 steps for 10 s / 334 are 100.2 million for all of it.
         assert_eq!(budget.check(300_000, 10.0 + 10.0 / 333.0), Ok(()));
@@ -71,5 +128,28 @@ mod tests {
         assert!(matches!(still, Err(SolverError::TooSlow { needed: f64::INFINITY, .. })), "{still:?}");
         // Too early to tell.
         assert_eq!(budget.check(1000, 10.0), Ok(()));
+    }
+
+    #[test]
+    fn exact_the_remedy_is_what_is_out_of_proportion() {
+        for (to, mean, expected) in [
+            (100.0, 1e-5, Remedy::Slower("k2/m2")),
+            (100.0, 1e-9, Remedy::LessForce),
+            (1e9, 1e-5, Remedy::ShorterRun),
+            (1e9, 1e-12, Remedy::LessForce),
+        ] {
+            assert_eq!(FLIGHT.remedy(to, mean), expected);
+        }
+        assert_eq!(Pace::Steps.remedy(100.0, 1e-5), Remedy::Hybrid);
+        assert_eq!(Pace::Steps.remedy(1e9, 1e-5), Remedy::ShorterRun);
+        // A stretch that does not move at all.
+        assert_eq!(FLIGHT.remedy(100.0, 0.0), Remedy::LessForce);
+    }
+
+    /// A limit that is too low for any run is to be raised.
+    #[test]
+    fn exact_few_steps_tell_nothing_of_a_run() {
+        let budget = Budget::new(FLIGHT, 3, 0, [0.0, 100.0]);
+        assert_eq!(budget.check(4, 0.0), Err(SolverError::TooManySteps { t: 0.0, limit: 3 }));
     }
 }

@@ -6,6 +6,7 @@
 //! `ωt`, so resonance is no special case. Four steps are made at once, with the powers of the same matrix, and every operation
 //! is one vector instruction.
 
+use crate::budget::Pace;
 use crate::polynomial::Polynomial;
 use crate::rule::each;
 use crate::settings::SolverError;
@@ -115,11 +116,17 @@ impl<const N: usize> Flow<N> {
     /// # Errors
     /// [`SolverError::TooFast`].
     pub fn check_step(&self, t: f64, to: f64) -> Result<(), SolverError> {
-        if to <= t || to + self.step > to {
-            Ok(())
-        } else {
-            Err(SolverError::TooFast { t: to, h: self.step })
-        }
+        if to <= t || to + self.step > to { Ok(()) } else { Err(self.too_fast(to)) }
+    }
+
+    /// A step is lost to rounding at `t` (s).
+    pub fn too_fast(&self, t: f64) -> SolverError {
+        SolverError::TooFast { t, h: self.step, remedy: self.pace().remedy(t, self.step) }
+    }
+
+    /// How fast it goes on.
+    pub fn pace(&self) -> Pace {
+        Pace::Flight { step: self.step, fastest: self.linear.fastest }
     }
 
     /// The flow's numbers.

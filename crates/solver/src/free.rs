@@ -6,7 +6,7 @@
 use crate::budget::Budget;
 use crate::flow::{Flow, LANES};
 use crate::observe::{Knot, Observer, Peak, Quantity, Segment};
-use crate::settings::{Extreme, Method, SolverError, Window, Work};
+use crate::settings::{Extreme, SolverError, Window, Work};
 use crate::steps::{Step, StepClock, Steps};
 use crate::system::LinearSystem;
 use nalgebra::Complex;
@@ -46,10 +46,18 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
+        let budget = self.budget(to);
+        self.go(to, observer, budget)
+    }
+
+    fn budget(&self, to: f64) -> Budget {
+        Budget::new(self.flow.pace(), self.max_steps, self.work.steps, [self.now.t, to])
+    }
+
+    fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
         let whole = self.flow.step();
         let mut clock = StepClock::new(self.now.t, whole);
-        let budget = Budget::new(Method::Hybrid, self.max_steps, self.work.steps, [self.now.t, to]);
         while self.now.t < to && !observer.satisfied() {
             let (now, remaining) = (self.now, to - self.now.t);
             let energy =
@@ -123,13 +131,14 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
             self.now = start;
         }
         self.jump(window.from)?;
+        let budget = self.budget(window.to);
         while self.now.t < window.to && !Observer::<N>::satisfied(&peak) {
             let to = window.to.min(self.now.t + STRIDE * self.flow.step());
             if to <= self.now.t {
                 // Late in a run a step may be less than the spacing of the numbers there.
-                return Err(SolverError::TooFast { t: self.now.t, h: self.flow.step() });
+                return Err(self.flow.too_fast(self.now.t));
             }
-            self.propagate(to, &mut peak)?;
+            self.go(to, &mut peak, budget)?;
             let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
             if bound <= peak.record().value {
                 break;

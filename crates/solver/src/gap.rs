@@ -34,10 +34,20 @@ pub fn opening_floor([_, b1, b2, b3]: [f64x4; 4]) -> f64x4 {
     (b1 * 3.0).fast_min(b2 * 1.5).fast_min(b3) * (162.0 * CUBIC)
 }
 
+/// Most halvings of a step in the search for a contact. Some tens are common, and a thousand are many.
+const HALVINGS: u32 = 100_000;
+
+/// Rounding or an overflow leaves nothing to find a contact by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lost;
+
 /// The first `s` in `(0, to]` at which the gap becomes negative, or `None`.
 ///
 /// `Some(0.0)` means that the gap is closed at the start and closing. A gap of zero that opens is in flight.
-pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Option<f64> {
+///
+/// # Errors
+/// [`Lost`]: the coefficients are beyond floating-point numbers, or so near zero all the way that no bound can tell.
+pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Result<Option<f64>, Lost> {
     // At s = 0 the damper may just have left the wall (or rest on it): the root there is divided out.
     for _ in 0..4 * B {
         if gap.coefficient(0) != 0.0 {
@@ -47,41 +57,58 @@ pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Option<
     }
     let start = gap.coefficient(0);
     if start <= 0.0 {
-        return (start < 0.0).then_some(0.0);
+        return Ok((start < 0.0).then_some(0.0));
+    }
+    let fourth = gap.fourth_derivative_bound(to);
+    if !(start + fourth).is_finite() {
+        return Err(Lost);
     }
     let derivative = gap.derivative();
     let at = |s: f64| [gap.at(s), derivative.at(s)];
     let ends = ((0.0, [start, gap.coefficient(1)]), (to, at(to)));
-    search(&at, gap.fourth_derivative_bound(to), to * 1e-15, ends.0, ends.1)
+    Search { at, fourth, shortest: to * 1e-15, halvings: HALVINGS }.search(ends.0, ends.1)
 }
 
-/// Left half first, so that what is found is the first; an interval ends the search when it is certified open, when it holds
-/// one simple crossing, or when it is too short to matter.
-fn search(
-    at: &impl Fn(f64) -> [f64; 2],
+struct Search<F> {
+    /// Value and slope.
+    at: F,
+    /// A bound on the fourth derivative.
     fourth: f64,
     shortest: f64,
-    (a, left): (f64, [f64; 2]),
-    (b, right): (f64, [f64; 2]),
-) -> Option<f64> {
-    let h = b - a;
-    let [left_lanes, right_lanes] = [left, right].map(|end| end.map(f64x4::splat));
-    if floor(cubic(h, left_lanes, right_lanes)).to_array()[0] >= CUBIC * h.powi(4) * fourth {
-        return None;
+    /// Halvings left.
+    halvings: u32,
+}
+
+impl<F: Fn(f64) -> [f64; 2]> Search<F> {
+    /// Left half first, so that what is found is the first; an interval ends the search when it is certified open, when it holds
+    /// one simple crossing, or when it is too short to matter.
+    fn search(
+        &mut self,
+        (a, left): (f64, [f64; 2]),
+        (b, right): (f64, [f64; 2]),
+    ) -> Result<Option<f64>, Lost> {
+        let h = b - a;
+        let [left_lanes, right_lanes] = [left, right].map(|end| end.map(f64x4::splat));
+        if floor(cubic(h, left_lanes, right_lanes)).to_array()[0] >= CUBIC * h.powi(4) * self.fourth {
+            return Ok(None);
+        }
+        // |p' - cubic'| <= √3 h³/216 max|p⁗|; the cubic's slope stays below the largest of its Bernstein coefficients.
+        let middle = 3.0 * (right[0] - left[0]) / h - left[1] - right[1];
+        let steepest = left[1].max(middle).max(right[1]) + 0.009 * h.powi(3) * self.fourth;
+        if right[0] < 0.0 && steepest < 0.0 {
+            return Ok(Some(root(&self.at, (a, left), (b, right))));
+        }
+        let mid = 0.5 * (a + b);
+        if h < self.shortest || mid <= a || mid >= b {
+            return Ok((right[0] < 0.0).then_some(b)); // else it touches to rounding, with no force
+        }
+        self.halvings = self.halvings.checked_sub(1).ok_or(Lost)?;
+        let centre = (self.at)(mid);
+        match self.search((a, left), (mid, centre))? {
+            Some(found) => Ok(Some(found)),
+            None => self.search((mid, centre), (b, right)),
+        }
     }
-    // |p' - cubic'| <= √3 h³/216 max|p⁗|; the cubic's slope stays below the largest of its Bernstein coefficients.
-    let middle = 3.0 * (right[0] - left[0]) / h - left[1] - right[1];
-    let steepest = left[1].max(middle).max(right[1]) + 0.009 * h.powi(3) * fourth;
-    if right[0] < 0.0 && steepest < 0.0 {
-        return Some(root(at, (a, left), (b, right)));
-    }
-    let mid = 0.5 * (a + b);
-    if h < shortest || mid <= a || mid >= b {
-        return (right[0] < 0.0).then_some(b); // else it touches to rounding, with no force
-    }
-    let centre = at(mid);
-    search(at, fourth, shortest, (a, left), (mid, centre))
-        .or_else(|| search(at, fourth, shortest, (mid, centre), (b, right)))
 }
 
 /// The root of a function that falls from positive to negative over `[a, b]`: Newton, kept inside by bisection, from the root
@@ -134,12 +161,16 @@ mod tests {
         Polynomial::new(coefficients)
     }
 
+    fn first(gap: Polynomial<1>, to: f64) -> Option<f64> {
+        first_contact(gap, to).expect("enough digits")
+    }
+
     #[test]
     fn exact_first_of_two_crossings_inside_a_step() {
         // (s - 0.3)(s - 0.3 - d): positive at both ends, below zero only for a moment.
         for d in [1e-1, 1e-3, 1e-6] {
             let p = polynomial(&[0.3 * (0.3 + d), -0.6 - d, 1.0]);
-            let s = first_contact(p, 1.0).expect("a crossing");
+            let s = first(p, 1.0).expect("a crossing");
             assert!((s - 0.3).abs() < 1e-15 / d.max(1e-6) * 10.0, "{d} {s}");
         }
     }
@@ -147,22 +178,33 @@ mod tests {
     #[test]
     fn exact_no_contact_when_the_gap_only_nearly_closes() {
         let p = polynomial(&[0.09 + 1e-14, -0.6, 1.0]);
-        assert_eq!(first_contact(p, 1.0), None);
+        assert_eq!(first(p, 1.0), None);
     }
 
     #[test]
     fn exact_leaving_a_wall_is_not_a_contact_but_returning_is() {
-        assert_eq!(first_contact(polynomial(&[0.0, 1.0]), 1.0), None);
-        let back = first_contact(polynomial(&[0.0, 1.0, -4.0]), 1.0).expect("returns");
+        assert_eq!(first(polynomial(&[0.0, 1.0]), 1.0), None);
+        let back = first(polynomial(&[0.0, 1.0, -4.0]), 1.0).expect("returns");
         assert!((back - 0.25).abs() < 1e-15);
-        assert_eq!(first_contact(polynomial(&[0.0, -1.0, 4.0]), 1.0), Some(0.0));
-        assert_eq!(first_contact(polynomial(&[0.0, 0.0, -4.0]), 1.0), Some(0.0));
-        assert_eq!(first_contact(polynomial(&[0.0]), 1.0), None);
+        assert_eq!(first(polynomial(&[0.0, -1.0, 4.0]), 1.0), Some(0.0));
+        assert_eq!(first(polynomial(&[0.0, 0.0, -4.0]), 1.0), Some(0.0));
+        assert_eq!(first(polynomial(&[0.0]), 1.0), None);
     }
 
     #[test]
     fn exact_tiny_bounces_are_found_at_their_own_scale() {
-        let back = first_contact(polynomial(&[0.0, 1e-12, -1.0]), 0.1).expect("returns");
+        let back = first(polynomial(&[0.0, 1e-12, -1.0]), 0.1).expect("returns");
         assert!((back / 1e-12 - 1.0).abs() < 1e-12, "{back}");
+    }
+
+    /// Was searched for ever: a bound that is no number tells nothing of any half, however short.
+    #[test]
+    fn exact_a_gap_beyond_numbers_or_a_search_without_end_is_said_to_be_lost() {
+        for beyond in [f64::INFINITY, f64::NAN, 1e308] {
+            assert_eq!(first_contact(Polynomial::<2>::new(&[1.0, -1.0, 0.0, 0.0, beyond]), 1.0), Err(Lost));
+        }
+        // 0 all the way, with a bound that does not know it.
+        let mut search = Search { at: |_| [0.0, 0.0], fourth: 1.0, shortest: 1e-15, halvings: HALVINGS };
+        assert_eq!(search.search((0.0, [0.0; 2]), (1.0, [0.0; 2])), Err(Lost));
     }
 }

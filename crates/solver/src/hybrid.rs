@@ -14,7 +14,7 @@ use crate::gap::{CUBIC, ceiling, cubic, first_contact, floor, opening_floor};
 use crate::observe::{Knot, Observer, Segment};
 use crate::polynomial::Polynomial;
 use crate::quantity::derivative_bounds;
-use crate::settings::{Method, SolverError, Work};
+use crate::settings::{SolverError, Work};
 use crate::steps::{Step, StepClock, Steps, shifted};
 use crate::system::LinearSystem;
 use retune_model::{Compression, Coupled, Side};
@@ -83,12 +83,12 @@ impl<'a> Hybrid<'a> {
         Self {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
+            budget: Budget::new(flow.pace(), max_steps, 0, [0.0; 2]),
             flow,
             contacts: Side::BOTH.map(|side| system.compression(side)),
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
             rtol,
             max_steps,
-            budget: Budget::new(Method::Hybrid, max_steps, 0, [0.0; 2]),
             work: Work::default(),
         }
     }
@@ -105,7 +105,7 @@ impl<'a> Hybrid<'a> {
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
-        self.budget = Budget::new(Method::Hybrid, self.max_steps, self.work.steps, [from.t, to]);
+        self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work.steps, [from.t, to]);
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
@@ -211,7 +211,7 @@ impl<'a> Hybrid<'a> {
                     walls,
                     leaving,
                     (remaining, steps.energy()),
-                );
+                )?;
                 if step.length() > 0.0 {
                     observer.segment(&step);
                 }
@@ -259,24 +259,25 @@ impl<'a> Hybrid<'a> {
         walls: impl Iterator<Item = Side>,
         leaving: Option<Side>,
         (remaining, energy): (f64, f64),
-    ) -> (Step<'_, 4>, Option<Side>) {
+    ) -> Result<(Step<'_, 4>, Option<Side>), SolverError> {
         let whole = self.flow.step();
         let motion = self.flow.expand(now.drive, &now.y);
         let (mut length, mut touched) = (whole.min(remaining), None);
         for side in walls {
-            if let Some(s) = first_contact(self.gap_polynomial(&motion, side, leaving), length) {
+            let found = first_contact(self.gap_polynomial(&motion, side, leaving), length);
+            if let Some(s) = found.map_err(|_| SolverError::NonFinite { t: now.t })? {
                 (length, touched) = (s, Some(side));
             }
         }
         if length == whole {
-            return (Step::whole(&self.flow, [now, end], energy), touched);
+            return Ok((Step::whole(&self.flow, [now, end], energy), touched));
         }
         let mut step = Step::part(&self.flow, now, &motion, length, energy);
         match touched {
             Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
             None => step.end().t = now.t + remaining,
         }
-        (step, touched)
+        Ok((step, touched))
     }
 
     /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.

@@ -34,7 +34,7 @@ pub mod steps;
 mod system;
 mod trajectory;
 
-pub use budget::Budget;
+pub use budget::{Budget, Pace, Remedy};
 pub use extremes::{Ask, Extremes, extremes};
 pub use follow::Follower;
 pub use hybrid::{Hybrid, Motion, Phase};

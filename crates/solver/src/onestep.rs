@@ -1,6 +1,6 @@
 //! The loop of the general-purpose one-step methods: MATLAB's step control, dense output, contacts located or stepped over.
 
-use crate::budget::Budget;
+use crate::budget::{Budget, Pace};
 use crate::gap::first_contact;
 use crate::observe::{Knot, Observer, Segment};
 use crate::polynomial::Polynomial;
@@ -85,6 +85,9 @@ impl Tolerance {
     }
 }
 
+/// A step that ends no later than at a touch-down or lift-off, its length (s), and at which wall.
+type Located<const N: usize> = Result<(f64, Attempt<N>, Option<Side>), SolverError>;
+
 /// A run of a one-step method that can be continued.
 pub struct Run<'a, S, const N: usize> {
     system: &'a S,
@@ -146,7 +149,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             contact: Side::BOTH.into_iter().find(|&side| z[side as usize] > 0.0),
             leaving: false,
             resting: z.map(|z| z == 0.0),
-            budget: Budget::new(settings.method, settings.max_steps, 0, [t; 2]),
+            budget: Budget::new(Pace::Steps, settings.max_steps, 0, [t; 2]),
             work: Work { evaluations: 1, ..Work::default() },
         }
     }
@@ -166,12 +169,12 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         observer: &mut impl Observer<N>,
     ) -> Result<(), SolverError> {
         let span = [self.now.t, to];
-        self.budget = Budget::new(self.settings.method, self.settings.max_steps, self.work.steps, span);
+        self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.work.steps, span);
         while self.now.t < to && !observer.satisfied() {
             let t = self.now.t;
             let (h, attempt) = self.accepted::<M>(to)?;
             let (h, attempt, event) = match self.settings.contacts {
-                Contacts::Located => self.located::<M>(h, attempt),
+                Contacts::Located => self.located::<M>(h, attempt)?,
                 Contacts::Stepped => (h, attempt, None),
             };
             let end_time = if event.is_none() && h >= to - t { to } else { t + h };
@@ -257,13 +260,16 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
     ///
     /// The dense output says which wall and about when (double crossings inside the step included); the step itself, taken
     /// again, says exactly: a secant iteration on its length.
-    fn located<M: OneStep<N>>(&mut self, h: f64, attempt: Attempt<N>) -> (f64, Attempt<N>, Option<Side>) {
-        let first = Side::BOTH
-            .into_iter()
-            .filter(|&side| self.contact.is_none_or(|touching| touching == side))
-            .filter_map(|side| first_contact(self.open_polynomial(side, h, &attempt), 1.0).map(|s| (s, side)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((s, side)) = first else { return (h, attempt, None) };
+    fn located<M: OneStep<N>>(&mut self, h: f64, attempt: Attempt<N>) -> Located<N> {
+        let mut first: Option<(f64, Side)> = None;
+        for side in Side::BOTH {
+            if self.contact.is_none_or(|touching| touching == side) {
+                let found = first_contact(self.open_polynomial(side, h, &attempt), 1.0);
+                let found = found.map_err(|_| SolverError::NonFinite { t: self.now.t })?;
+                first = found.into_iter().map(|s| (s, side)).chain(first).min_by(|a, b| a.0.total_cmp(&b.0));
+            }
+        }
+        let Some((s, side)) = first else { return Ok((h, attempt, None)) };
         let (system, sign) = (self.system, self.open_sign(side));
         let opening = |y: &[f64; N]| sign * system.rapprochement(y)[side as usize];
         let Knot { t, y, .. } = self.now;
@@ -292,10 +298,10 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             }
             length = next;
         }
-        match best {
+        Ok(match best {
             Some((length, shorter)) => (length, shorter, Some(side)),
             None => (h, attempt, None),
-        }
+        })
     }
 
     /// `+1` where a contact ends when the rapprochement falls through zero, `-1` where one begins when it rises.

@@ -83,13 +83,11 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
     let sound = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
     match error {
         SolverError::StepTooSmall { t, h } => SolverError::StepTooSmall { t: sound(t), h },
-        SolverError::TooFast { t, h } => SolverError::TooFast { t: sound(t), h },
+        SolverError::TooFast { t, h, remedy } => SolverError::TooFast { t: sound(t), h, remedy },
         SolverError::Contact { t } => SolverError::Contact { t: sound(t) },
-        SolverError::TooManySteps { t, limit, method } => {
-            SolverError::TooManySteps { t: sound(t), limit, method }
-        }
-        SolverError::TooSlow { t, steps, needed, limit, method } => {
-            SolverError::TooSlow { t: sound(t), steps, needed, limit, method }
+        SolverError::TooManySteps { t, limit } => SolverError::TooManySteps { t: sound(t), limit },
+        SolverError::TooSlow { t, steps, needed, limit, remedy } => {
+            SolverError::TooSlow { t: sound(t), steps, needed, limit, remedy }
         }
         SolverError::Unstable { t } => SolverError::Unstable { t: sound(t) },
         SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },

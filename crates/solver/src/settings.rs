@@ -1,5 +1,6 @@
 //! What a caller asks of a solver, and what it answers.
 
+use crate::budget::Remedy;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -179,7 +180,7 @@ pub struct Response {
 pub enum SolverError {
     /// A method that chooses its steps by their error had to choose one below the spacing of floating-point numbers. The hybrid
     /// has no such steps.
-    #[error("the step became too small at t = {t} s (h = {h:e} s); loosen rtol, or choose the hybrid solver")]
+    #[error("the step became too small at t = {} s (h = {h:.1e} s); choose the hybrid solver", plain(*.t))]
     StepTooSmall {
         /// Time reached, s.
         t: f64,
@@ -187,39 +188,36 @@ pub enum SolverError {
         h: f64,
     },
     /// The exact flow of the hybrid has a step that is lost to rounding at the end of the run.
-    #[error(
-        "the motion changes within {h:e} s, which is lost to rounding at t = {t} s; shorten T, or lower what is this fast: omega, \
-         or a stiffness or damping for its mass"
-    )]
+    #[error("the motion changes within {h:.1e} s, which is lost to rounding at t = {} s; {remedy}", plain(*.t))]
     TooFast {
         /// A time of the run at which the step is lost, s.
         t: f64,
         /// The step, s.
         h: f64,
+        /// What helps.
+        remedy: Remedy,
     },
     /// The hybrid found no step to follow a contact with: its force is lost to rounding beside others, or they beside it.
     #[error(
-        "a contact at t = {t} s cannot be followed: its force and the other forces are too many orders of magnitude apart; \
-         check R and the masses"
+        "a contact at t = {} s cannot be followed: its stiffness is too many orders of magnitude from that of the springs; \
+         check what it is made of: R, q, E1 to E4", plain(*.t)
     )]
     Contact {
         /// Time reached, s.
         t: f64,
     },
     /// The run needs more steps than it may take.
-    #[error("the run needed more than {limit} steps (t = {t} s); {}", fewer_steps(*.method))]
+    #[error("the run needed more than {limit} steps (t = {} s); raise max_steps", plain(*.t))]
     TooManySteps {
         /// Time reached, s.
         t: f64,
         /// The limit.
         limit: u64,
-        /// The method, on which it depends how a run takes fewer.
-        method: Method,
     },
     /// The run would need many times the steps that it may take (see [`Budget`](crate::Budget)).
     #[error(
-        "after {steps} steps the run has come to t = {t} s: at this rate it takes {needed:e} steps, and max_steps is {limit}; {}",
-        fewer_steps(*.method)
+        "after {steps} steps the run has come to t = {} s: at this rate it takes {needed:.1e} steps, and max_steps is {limit}; \
+         {remedy}", plain(*.t)
     )]
     TooSlow {
         /// Time reached, s.
@@ -230,19 +228,19 @@ pub enum SolverError {
         needed: f64,
         /// The limit.
         limit: u64,
-        /// The method.
-        method: Method,
+        /// What helps.
+        remedy: Remedy,
     },
     /// A method of fixed step has left the finite numbers.
-    #[error("the motion blows up at t = {t} s: a fixed step is too long for it; choose the hybrid solver")]
+    #[error("the motion blows up at t = {} s: a fixed step is too long for it; choose the hybrid solver", plain(*.t))]
     Unstable {
         /// Time reached, s.
         t: f64,
     },
     /// The motion has more energy than the force can have given it, or its largest at a time that is not in the window.
     #[error(
-        "the motion cannot be: an energy of {value:e} J at {time:e} s, in a run to t = {t} s whose force can give {most:e} J; \
-         the parameters are too far apart to be computed"
+        "the motion cannot be: an energy of {} J at {} s, in a run to t = {} s whose force can give {} J; \
+         the parameters are too far apart to be computed", plain(*.value), plain(*.time), plain(*.t), plain(*.most)
     )]
     Implausible {
         /// End of the run, s.
@@ -256,8 +254,8 @@ pub enum SolverError {
     },
     /// The damper was inside a wall that it never touched.
     #[error(
-        "a contact was missed in a run to t = {t} s: the damper is {depth:e} m inside a wall that it never touched; \
-         please report this scene"
+        "a contact was missed in a run to t = {} s: the damper is {depth:e} m inside a wall that it never touched; \
+         please report this scene", plain(*.t)
     )]
     Missed {
         /// End of the run, s.
@@ -267,7 +265,7 @@ pub enum SolverError {
     },
     /// The state overflowed.
     #[error(
-        "the motion is no longer a finite number at t = {t} s; the parameters are beyond what can be computed"
+        "the motion is no longer a finite number at t = {} s; the parameters are beyond what can be computed", plain(*.t)
     )]
     NonFinite {
         /// Time reached, s.
@@ -275,15 +273,7 @@ pub enum SolverError {
     },
 }
 
-/// What makes a run take fewer steps. Those of the hybrid follow from the motion, fixed ones from T alone.
-fn fewer_steps(method: Method) -> &'static str {
-    match method {
-        Method::Hybrid => {
-            "shorten T, raise max_steps, or check for a mass, a stiffness or a force of the wrong size"
-        }
-        Method::Rk4 | Method::Euler => "shorten T, raise max_steps, or choose the hybrid solver",
-        Method::Ode23s | Method::Ode45 | Method::Ode23 | Method::Dop853 => {
-            "shorten T, raise max_steps, loosen rtol, or choose the hybrid solver"
-        }
-    }
+/// A number in the fewest digits that read back to it, with a power of ten where it is very large or small.
+fn plain(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }

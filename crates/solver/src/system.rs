@@ -48,6 +48,8 @@ pub struct Linear<const N: usize> {
     pub frequency: f64,
     /// A bound on the norm of `A` in the energy norm and on ω, 1/s: the flow has no shorter time scale than its inverse.
     pub rate: f64,
+    /// What makes the most of it, by the names of a study.
+    pub fastest: &'static str,
 }
 
 fn columns<const N: usize>(a: &SMatrix<f64, N, N>) -> [[f64; N]; N] {
@@ -96,6 +98,7 @@ impl LinearSystem<2> for Bare {
             origin: self.rest(),
             frequency: self.frequency(),
             rate: self.rate(),
+            fastest: self.fastest(),
         }
     }
     fn steady(&self) -> Option<[Complex<f64>; 2]> {
@@ -122,6 +125,7 @@ impl LinearSystem<4> for Coupled {
             origin: self.rest(),
             frequency: self.bare().frequency(),
             rate: self.rate(),
+            fastest: self.fastest(),
         }
     }
     fn steady(&self) -> Option<[Complex<f64>; 4]> {

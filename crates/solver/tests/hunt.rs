@@ -253,6 +253,7 @@ fn drawn(number: u64, scene: fn(&mut Spread) -> Numbers) -> (Numbers, f64, f64) 
     (numbers, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
 }
 
+#[allow(clippy::print_stdout, reason = "`just hunt` reads it")]
 fn hunt(what: &str, scene: fn(&mut Spread) -> Numbers, count: u64) {
     let looked: Vec<_> = (0..count)
         .into_par_iter()

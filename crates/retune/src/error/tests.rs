@@ -6,7 +6,7 @@ use crate::evaluate::LineError;
 use crate::study::read::StudyError;
 use retune_model::{OutOfRange, Positive};
 use retune_optim::{AxisError, Bounds, GridError, Variable};
-use retune_solver::Method;
+use retune_solver::Remedy;
 use std::io::ErrorKind;
 
 /// Checks that there is a sample of each variant; that all are named is up to the compiler.
@@ -98,12 +98,18 @@ fn settings() -> Vec<SettingError> {
 fn solvers() -> Vec<SolverError> {
     vec![
         SolverError::StepTooSmall { t: 1.5, h: 1e-17 },
-        SolverError::TooFast { t: 100.0, h: 1e-17 },
+        SolverError::TooFast { t: 100.0, h: 1e-17, remedy: Remedy::Slower("c2/m2") },
+        SolverError::TooFast { t: 1e20, h: 0.1, remedy: Remedy::ShorterRun },
         SolverError::Contact { t: 1.5 },
-        SolverError::TooManySteps { t: 1.5, limit: 1000, method: Method::Hybrid },
-        SolverError::TooManySteps { t: 1.5, limit: 1000, method: Method::Ode45 },
-        SolverError::TooManySteps { t: 1.5, limit: 1000, method: Method::Rk4 },
-        SolverError::TooSlow { t: 1e-9, steps: 262_145, needed: 2.6e16, limit: 1000, method: Method::Hybrid },
+        SolverError::TooManySteps { t: 1.5, limit: 1000 },
+        SolverError::TooSlow {
+            t: 1e-9,
+            steps: 262_145,
+            needed: 2.6e16,
+            limit: 1000,
+            remedy: Remedy::LessForce,
+        },
+        SolverError::TooSlow { t: 1e-9, steps: 262_145, needed: 2.6e16, limit: 1000, remedy: Remedy::Hybrid },
         SolverError::Unstable { t: 1.5 },
         SolverError::Implausible { t: 4.0, value: 1e87, time: 2.5, most: 320.0 },
         SolverError::Missed { t: 4.0, depth: 1e-6 },
