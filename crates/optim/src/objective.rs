@@ -142,7 +142,7 @@ pub struct Failures {
     pub count: u64,
     /// One of them with its reason: the lowest in lexicographic order of the parameters, so that the choice does not depend on
     /// which thread failed first.
-    pub example: Option<(Vec<f64>, Unusable)>,
+    pub example: Option<Box<(Vec<f64>, Unusable)>>,
 }
 
 /// How many designs were looked at.
@@ -264,8 +264,8 @@ impl PeakEnergy {
     fn note(&self, design: &[f64], reason: Unusable) {
         let mut failures = self.failures.lock().unwrap_or_else(PoisonError::into_inner);
         failures.count += 1;
-        if failures.example.as_ref().is_none_or(|(lowest, _)| design < lowest.as_slice()) {
-            failures.example = Some((design.to_vec(), reason));
+        if failures.example.as_ref().is_none_or(|lowest| design < lowest.0.as_slice()) {
+            failures.example = Some(Box::new((design.to_vec(), reason)));
         }
     }
 }

@@ -38,7 +38,7 @@ fn exact_failures_are_infinite_counted_and_one_is_kept() {
     }
     let failures = objective.failures();
     assert_eq!(failures.count, 3);
-    let (design, reason) = failures.example.expect("an example");
+    let (design, reason) = *failures.example.expect("an example");
     assert_eq!(design, [-1.0, 0.0]);
     assert_eq!(reason.to_string(), "c2: -1 is not allowed here: give a finite number not below 0");
 }

@@ -209,7 +209,7 @@ pub enum Error {
 }
 
 fn example(failures: &Failures) -> String {
-    match &failures.example {
+    match failures.example.as_deref() {
         Some((design, reason)) => format!(" ({} failed; at {design:?}: {reason})", failures.count),
         None => String::new(),
     }

@@ -121,7 +121,7 @@ fn failures() -> Failures {
     let source = out_of_range();
     Failures {
         count: 24,
-        example: Some((vec![100.0], Unusable::OutOfRange { variable: Variable::K2, source })),
+        example: Some(Box::new((vec![100.0], Unusable::OutOfRange { variable: Variable::K2, source }))),
     }
 }
 

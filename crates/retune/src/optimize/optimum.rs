@@ -267,7 +267,7 @@ impl FailureNote {
     /// Of all stages, in their order.
     fn new(stages: &[Option<&Failures>]) -> Self {
         let count = stages.iter().flatten().map(|failures| failures.count).sum();
-        let first = stages.iter().flatten().find_map(|failures| failures.example.as_ref());
+        let first = stages.iter().flatten().find_map(|failures| failures.example.as_deref());
         Self { count, example: first.map(|(design, reason)| format!("{design:?}: {reason}")) }
     }
 }
