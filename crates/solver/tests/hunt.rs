@@ -91,6 +91,9 @@ impl<Q: Quantity<4>> Observer<4> for Everywhere<Q> {
     }
 }
 
+/// What a search may miss, relative to the largest value: no more than the contacts of a run at rtol 1e-6 are inexact by.
+const ALLOWED: f64 = 1e-9;
+
 /// A fast search and a slow one, side by side.
 struct Pair<A, B>(Peak<A>, Everywhere<B>);
 
@@ -102,7 +105,7 @@ impl<A: Quantity<4>, B: Quantity<4>> Pair<A, B> {
     fn missed(&self, size: f64) -> f64 {
         let found = self.0.record().value;
         let missed = self.1.largest - found;
-        if self.0.doubt() > 1e-12 * size {
+        if self.0.doubt() > ALLOWED * size {
             f64::INFINITY
         } else if missed <= 0.0 {
             0.0
@@ -268,7 +271,7 @@ fn hunt(what: &str, scene: fn(&mut Spread) -> Numbers, count: u64) {
         pieces += seen;
         contact_scenes += u64::from(seen > 0);
         let worst = missed.into_iter().fold(0.0, f64::max);
-        if worst > 1e-9 || missed.iter().any(|m| m.is_nan()) {
+        if worst > ALLOWED || missed.iter().any(|m| m.is_nan()) {
             faults.push((number, missed));
         }
     }
@@ -318,4 +321,15 @@ fn reference_the_hybrid_sees_what_dop853_sees() {
     }
     assert!(faults.is_empty(), "{} of {count}", faults.len());
     assert!(contact_scenes as u64 > count / 5, "{contact_scenes}");
+}
+
+/// Found by the hunt: with neither spring nor dashpot E2 is level at each lift-off, to the error of the contact, and a search that
+/// asks for less than that error ends in doubt.
+#[test]
+fn regress_doubt_where_a_quantity_is_level_is_below_what_is_allowed() {
+    for number in [44686, 146032] {
+        let (numbers, from, rtol) = drawn(number, anywhere);
+        let (missed, _) = search(&numbers, from, rtol).expect("a run");
+        assert!(missed.iter().all(|missed| *missed <= ALLOWED), "{number}: {missed:?}");
+    }
 }
