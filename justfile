@@ -2,73 +2,81 @@
 
 retune := "cargo run --release --quiet --package retune --"
 
+# The recipes pass their arguments on as they were typed, in "$@"; and a run that is stopped says how to go on with `just`.
+set positional-arguments
+export RETUNE_RUN_AS := "just"
+
 # List the recipes
 default:
     @just --list --unsorted
 
 # Tune the SSVI NES of the paper: grid, fminsearch, log and figures into results/ssvi
 optimize-ssvi *OPTIONS:
-    {{retune}} optimize studies/ssvi.json {{OPTIONS}}
+    {{retune}} optimize studies/ssvi.json "$@"
 
 # Tune the linear TMD of the paper into results/tmd
 optimize-tmd *OPTIONS:
-    {{retune}} optimize studies/tmd.json {{OPTIONS}}
+    {{retune}} optimize studies/tmd.json "$@"
 
 # Tune the TMD for the worst over 5 to 8 rad/s, steady, into results/tmd-band
 optimize-tmd-band *OPTIONS:
-    {{retune}} optimize studies/tmd-band.json {{OPTIONS}}
+    {{retune}} optimize studies/tmd-band.json "$@"
 
 # Tune the SSVI NES, no stiffer than the paper's TMD, for the worst over 5 to 8 rad/s: global search, certificate, into results/ssvi-band
-optimize-ssvi-band:
-    {{retune}} optimize studies/ssvi-band.json
+optimize-ssvi-band *OPTIONS:
+    {{retune}} optimize studies/ssvi-band.json "$@"
 
 # Tune any study, for instance `just optimize studies/ssvi-robust.json`
 optimize STUDY *OPTIONS:
-    {{retune}} optimize {{STUDY}} {{OPTIONS}}
+    {{retune}} optimize "$@"
+
+# Put the parts of a grid together that `just optimize STUDY --shard i/N` made, and go on with the search
+merge STUDY *OPTIONS:
+    {{retune}} merge "$@"
 
 # Certify a design: a study, the optimum.json of a search or the directory of its results, for instance `just certify studies/ssvi.json`
 certify DESIGN *OPTIONS:
-    {{retune}} certify {{DESIGN}} {{OPTIONS}}
+    {{retune}} certify "$@"
 
 # Re-optimise both rows of Table 2, beside the paper's
 table2 *OPTIONS:
-    {{retune}} table2 studies/table2.json {{OPTIONS}}
+    {{retune}} table2 "$@"
 
 # Re-tune both dampers for other stiffnesses k1 in N/m, and draw how long a tuning lasts, for instance `just retune 30000 50000`
-retune *K1:
-    {{retune}} retune {{K1}}
+retune +K1:
+    {{retune}} retune "$@"
 
 # What the SSVI NES is good for: the best of each damper under bounds on k2 and on the stroke, into results/fronts
-fronts STUDY="studies/fronts.json" *OPTIONS:
-    {{retune}} fronts {{STUDY}} {{OPTIONS}}
+fronts *OPTIONS:
+    {{retune}} fronts "$@"
 
 # Whether results hold: runs a sample of their rows again, for instance `just verify results/ssvi --sample 100`
 verify RESULTS *OPTIONS:
-    {{retune}} verify {{RESULTS}} {{OPTIONS}}
+    {{retune}} verify "$@"
 
 # Run one scene, for instance `just simulate studies/ssvi.json --set k1=30000 --json`
 simulate STUDY="studies/ssvi.json" *OPTIONS:
-    {{retune}} simulate {{STUDY}} {{OPTIONS}}
+    {{retune}} simulate "$@"
 
 # Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-band.json`
 evaluate STUDY *OPTIONS:
-    {{retune}} evaluate {{STUDY}} {{OPTIONS}}
+    {{retune}} evaluate "$@"
 
 # Make every table and figure of the paper, on one page: results/paper/index.html
 reproduce *OPTIONS:
-    {{retune}} reproduce {{OPTIONS}}
+    {{retune}} reproduce "$@"
 
 # Make one figure of the paper, 2 to 7, into results/paper
 figure N *OPTIONS:
-    {{retune}} figure {{N}} {{OPTIONS}}
+    {{retune}} figure "$@"
 
 # Make one table of the paper, 1 or 2, into results/paper
 table N *OPTIONS:
-    {{retune}} table {{N}} {{OPTIONS}}
+    {{retune}} table "$@"
 
 # Check a study file and say what it asks for
-check STUDY:
-    {{retune}} check {{STUDY}}
+check STUDY *OPTIONS:
+    {{retune}} check "$@"
 
 # Write the JSON Schemas that editors complete study files with
 schema:
@@ -79,7 +87,7 @@ schema:
 
 # Run all tests
 test *OPTIONS:
-    cargo test {{OPTIONS}}
+    cargo test "$@"
 
 # Kill runs at random moments, KILLS times, and say in which stage each fell: results/robustness/kills.md
 test-kills KILLS="240":
@@ -111,6 +119,14 @@ bench-scale:
 test-scenes SCENES="30000":
     RETUNE_SCENES={{SCENES}} cargo test --package retune-solver --test any_scene reference_any_scene -- --nocapture
 
+# Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
+test-settled SCENES="4000":
+    RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture
+
+# Compare the worst over a band with a search in twice the precision, on DAMPERS dampers with damping down to 1e-9 N s/m and none
+test-bands DAMPERS="1000000":
+    RETUNE_BANDS={{DAMPERS}} cargo test --package retune-model --test band_hunt reference_no_damper -- --nocapture
+
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":
     cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}
@@ -131,19 +147,19 @@ package:
 
 # Measure speed
 bench *OPTIONS:
-    cargo bench --bench runs {{OPTIONS}}
+    cargo bench --bench runs "$@"
 
 # Count the instructions of a run (needs valgrind): the same on a busy machine as on a quiet one
-bench-instructions:
-    cargo bench --quiet --package retune-solver --bench instructions
+bench-instructions *OPTIONS:
+    cargo bench --quiet --package retune-solver --bench instructions "$@"
 
 # Measure time and memory of a surf of a million runs, and what a second core is worth
-bench-surf:
-    cargo bench --quiet --package retune-optim --bench surf
+bench-surf *OPTIONS:
+    cargo bench --quiet --package retune-optim --bench surf "$@"
 
 # Format the code
-fmt:
-    cargo fmt --all
+fmt *OPTIONS:
+    cargo fmt --all "$@"
 
 # Check format and lints, warnings as errors
 lint:
@@ -151,8 +167,8 @@ lint:
     cargo clippy --all-targets -- -D warnings
 
 # Speed against accuracy of every method and peer, on six scenes, into results/accuracy
-accuracy:
-    cargo run --release -p retune-peers --features integrators --bin accuracy
+accuracy *OPTIONS:
+    cargo run --release -p retune-peers --features integrators --bin accuracy "$@"
 
 # GNU Octave, SciPy and SUNDIALS on the same scenes (needs octave, and numpy, scipy, scikit-sundae for python3), and the charts again
 accuracy-external:
@@ -161,15 +177,15 @@ accuracy-external:
     cargo run --release -p retune-peers --features integrators --bin accuracy draw
 
 # Where methods fail, and how, into results/stability
-stability:
-    cargo run --release -p retune-peers --bin stability
+stability *OPTIONS:
+    cargo run --release -p retune-peers --bin stability "$@"
 
 # SciPy's optimisers beside Retune's own searches on the same objectives (needs numpy and scipy for python3), into results/rivals
 rivals *PROBLEMS:
     cargo build --release --package retune
-    python3 tests/reference/rivals.py target/release/retune {{PROBLEMS}}
+    python3 tests/reference/rivals.py target/release/retune "$@"
 
 # Test the comparison itself, every cell of the atlas among it; `just test-peers --features integrators` with the peers
 test-peers *OPTIONS:
-    cargo clippy -p retune-peers --all-targets {{OPTIONS}} -- -D warnings
-    cargo test -p retune-peers {{OPTIONS}}
+    cargo clippy -p retune-peers --all-targets "$@" -- -D warnings
+    cargo test -p retune-peers "$@"

@@ -320,12 +320,12 @@ def force_on(side):
     return force
 
 
-def stroke(s, phase, t, y):
+def displacement(s, phase, t, y):
     return abs(y[2] - y[0])
 
 
-def stroke_rates(s, phase, t, y):
-    """The stroke and the contact forces have their maxima where x2 - x1 turns."""
+def displacement_rates(s, phase, t, y):
+    """The relative displacement and the contact forces have their maxima where x2 - x1 turns."""
     return (y[3] - y[1],)
 
 
@@ -377,9 +377,9 @@ def run(s, method, nudge=0.0):
     maxima = {"E1": Maximum(primary_energy, primary_energy_rates)}
     if s.m2 is not None:
         maxima["E2"] = Maximum(damper_energy, damper_energy_rates)
-        maxima["primary"] = Maximum(force_on("primary"), stroke_rates)
-        maxima["obstacle"] = Maximum(force_on("obstacle"), stroke_rates)
-        maxima["stroke"] = Maximum(stroke, stroke_rates)
+        maxima["primary"] = Maximum(force_on("primary"), displacement_rates)
+        maxima["obstacle"] = Maximum(force_on("obstacle"), displacement_rates)
+        maxima["displacement"] = Maximum(displacement, displacement_rates)
     impacts = {"primary": 0, "obstacle": 0}
     longest_contact, touch_down = 0.0, 0.0
 
@@ -422,14 +422,14 @@ def run(s, method, nudge=0.0):
         "E1max_runner_up": maxima["E1"].runner_up(t_e1),
     }
     if s.m2 is None:
-        nothing = ("E2max", "force_max_primary", "force_max_obstacle", "stroke_max")
+        nothing = ("E2max", "force_max_primary", "force_max_obstacle", "relative_displacement_max")
         measured |= {name: None for name in nothing + ("impacts_primary", "impacts_obstacle", "longest_contact")}
         return measured | {"state_T": y[:2] + [None, None]}
     return measured | {
         "E2max": maxima["E2"].result()[0],
         "force_max_primary": maxima["primary"].result()[0],
         "force_max_obstacle": maxima["obstacle"].result()[0],
-        "stroke_max": maxima["stroke"].result()[0],
+        "relative_displacement_max": maxima["displacement"].result()[0],
         "impacts_primary": impacts["primary"],
         "impacts_obstacle": impacts["obstacle"],
         "longest_contact": longest_contact,
@@ -455,7 +455,7 @@ def reference(s):
     def disagreement(measure):
         return max(abs(other[measure] - values[measure]) for other in others) / (abs(values[measure]) or 1.0)
 
-    measures = [m for m in ("E2max", "force_max_primary", "force_max_obstacle", "stroke_max") if values[m] is not None]
+    measures = [m for m in ("E2max", "force_max_primary", "force_max_obstacle", "relative_displacement_max") if values[m] is not None]
     counts = ("impacts_primary", "impacts_obstacle")
     counts_agree = all(run_[count] == values[count] for run_ in (*others, nudged) for count in counts)
     trust = {

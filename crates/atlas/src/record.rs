@@ -2,10 +2,10 @@
 
 use crate::lyapunov::{Exponent, Neighbours, Pair};
 use crate::parameter::Error;
-use crate::strobe::{Strobe, Touches, at_rest, coupled, phase_of};
+use crate::strobe::{Strobe, Touches, at_rest, coupled};
 use retune_model::{Coupled, Scene};
 use retune_solver::observe::Unobserved;
-use retune_solver::{Motion, Settings, SolverError};
+use retune_solver::{Motion, Phase, Settings, SolverError};
 
 /// How long a motion is followed, in periods of the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub struct Record {
 
 /// First distance of the neighbour, as a share of the size of the motion.
 const APART: f64 = 1e-7;
-/// Largest tolerance of a contact: a thousandth of the distance of the neighbours or less.
+/// Largest tolerance of a step: a thousandth of the distance of the neighbours or less.
 const TOLERANCE: f64 = 1e-11;
 
 /// The state in one unit, √J: `[ω√m1 x1, √m1 v1, ω√m2 (x2 - x1 - D), √m2 v2]`. Its square is twice the kinetic energy plus that
@@ -75,7 +75,7 @@ impl Neighbours for Twins<'_> {
     }
     fn between(&self, a: Motion, b: Motion, share: f64) -> Motion {
         let y = std::array::from_fn(|i| a.y[i] + share * (b.y[i] - a.y[i]));
-        Motion { t: a.t, y, phase: phase_of(self.system, &y) }
+        Motion { t: a.t, y, phase: Phase::of(self.system, &y) }
     }
 }
 
@@ -126,7 +126,7 @@ fn beside(scene: &Scene, system: &Coupled, motion: Motion, distance: f64) -> Mot
     let [a, b, c, d] = unit.map(|scale| share / scale);
     let [x1, v1, x2, v2] = motion.y;
     let y = [x1 + a, v1 - b, x2 + a + c, v2 + d];
-    Motion { t: motion.t, y, phase: phase_of(system, &y) }
+    Motion { t: motion.t, y, phase: Phase::of(system, &y) }
 }
 
 impl Record {

@@ -2,10 +2,10 @@
 
 use crate::parameter::{Error, Parameter};
 use rayon::prelude::*;
-use retune_model::{Coupled, Drive, Scene, Side};
-use retune_solver::observe::{Observer, Path, Peak, Segment, Unobserved};
+use retune_model::{Coupled, Scene, Side};
+use retune_solver::observe::{Observer, Path, Peak, PrimaryEnergy, Segment, Unobserved};
 use retune_solver::steps::Steps;
-use retune_solver::{Hybrid, Motion, Phase, Settings, SolverError};
+use retune_solver::{Follower, Motion, Phase, Settings, SolverError};
 use std::f64::consts::TAU;
 
 /// The equations of a scene that has a damper.
@@ -24,20 +24,15 @@ pub fn coupled(scene: &Scene) -> Result<Coupled, Error> {
 ///
 /// Time starts anew with each period, so the map is the same at every step.
 pub struct Strobe<'a> {
-    hybrid: Hybrid<'a>,
+    follower: Follower<'a>,
     period: f64,
-    max_steps: u64,
 }
 
 impl<'a> Strobe<'a> {
-    /// Prepares the map. A period may take [`Settings::max_steps`] steps.
+    /// Prepares the map, by the method that is asked for. A period may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings) -> Self {
         let period = TAU / system.bare().frequency();
-        Self {
-            hybrid: Hybrid::new(system, settings.rtol, period, settings.max_steps),
-            period,
-            max_steps: settings.max_steps,
-        }
+        Self { follower: Follower::new(system, settings, period), period }
     }
 
     /// Period of the force, s.
@@ -50,10 +45,7 @@ impl<'a> Strobe<'a> {
     /// # Errors
     /// [`SolverError`] with the time reached in the period.
     pub fn next(&mut self, from: Motion, observer: &mut impl Observer<4>) -> Result<Motion, SolverError> {
-        if self.hybrid.work.steps > self.max_steps / 2 {
-            self.hybrid.work = Default::default(); // the limit is meant for a period, not for a sweep
-        }
-        let end = self.hybrid.propagate(Motion { t: 0.0, ..from }, self.period, observer)?;
+        let end = self.follower.propagate(Motion { t: 0.0, ..from }, self.period, observer)?;
         Ok(Motion { t: 0.0, ..end })
     }
 }
@@ -68,14 +60,7 @@ pub fn at_rest(system: &Coupled) -> Motion {
 /// # Errors
 /// As [`coupled`].
 pub fn resumed(scene: &Scene, y: [f64; 4]) -> Result<Motion, Error> {
-    Ok(Motion { t: 0.0, y, phase: phase_of(&coupled(scene)?, &y) })
-}
-
-/// What the damper does in a state that was not reached by moving there: pressed into a wall where it overlaps one.
-pub(crate) fn phase_of(system: &Coupled, y: &[f64; 4]) -> Phase {
-    let overlaps = system.rapprochement(y);
-    let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
-    pressed.map_or(Phase::Flight, Phase::Pressed)
+    Ok(Motion { t: 0.0, y, phase: Phase::of(&coupled(scene)?, &y) })
 }
 
 /// Counts impacts.
@@ -91,12 +76,12 @@ impl Observer<4> for Touches {
     }
 }
 
-struct Watch<F> {
-    peak: Peak<F>,
+struct Watch<'a> {
+    peak: Peak<PrimaryEnergy<'a>>,
     touches: Touches,
 }
 
-impl<F: Fn(Drive, &[f64; 4]) -> [f64; 3]> Observer<4> for Watch<F> {
+impl Observer<4> for Watch<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.peak.segment(segment);
     }
@@ -146,11 +131,11 @@ fn orbit(
     for _ in 0..periods.settle {
         motion = strobe.next(motion, &mut Unobserved)?;
     }
-    let rates = |drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y);
     let mut samples = Vec::with_capacity(periods.record);
     let (mut e1_max, mut impacts) = (0.0_f64, [0; 2]);
     for _ in 0..periods.record {
-        let mut watch = Watch { peak: Peak::new(rates, f64::INFINITY), touches: Touches::default() };
+        let mut watch =
+            Watch { peak: Peak::new(PrimaryEnergy::new(system), f64::INFINITY), touches: Touches::default() };
         motion = strobe.next(motion, &mut watch)?;
         samples.push(motion.y);
         e1_max = e1_max.max(watch.peak.record().value);

@@ -43,8 +43,8 @@ pub struct Point {
     pub e2_max: f64,
     /// Impacts in the window, on the structure and on the obstacle.
     pub impacts: [u64; 2],
-    /// Largest `|x2 - x1|` in the window, m.
-    pub stroke_max: f64,
+    /// Largest relative displacement `|x2 - x1|` in the window, m.
+    pub relative_displacement_max: f64,
 }
 
 impl Point {
@@ -80,7 +80,7 @@ pub fn fresh(
             e1_max: response.e1_max.value,
             e2_max: response.e2_max.value,
             impacts: response.impacts,
-            stroke_max: response.stroke_max,
+            relative_displacement_max: response.relative_displacement_max,
         })
     };
     let runs: Vec<Result<Point, Error>> = values.par_iter().map(run).collect();

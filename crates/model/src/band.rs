@@ -1,249 +1,179 @@
 //! The largest steady response over a band of frequencies, in closed form: no narrow peak can hide between samples, for there
 //! are none.
 //!
-//! With `u = ω²` the square of an amplitude is `N / M`, two polynomials in `u`, so it is largest at an end of the band or where
-//! the sign of its slope, that of `W = N' M - N M'` (of degree 6 at most), falls through zero. The roots of `W` are isolated by
-//! halving: on an interval its Bernstein coefficients change sign at least as often as it has roots, and if once, exactly once
-//! (Descartes' rule of signs; R. T. Farouki, The Bernstein polynomial basis, Comput. Aided Geom. Des. 29, 2012).
-//! A root of `W` is simple however narrow the peak, so its place is found to rounding, and the value there is that of
-//! [`Steady`](crate::Steady).
+//! With `u = ω²` the square of an amplitude is `V / M`, two polynomials in `u`, so it is largest at an end of the band or where
+//! the sign of `W = V' M - V M'` (of degree 6 at most) falls through zero. The band is cut wherever a factor of `V` or `M` is zero
+//! (`band/factors.rs`), so on a piece all factors keep their signs. Then `V`, `M` and the terms of their slopes, in the Bernstein basis,
+//! are made of sums and products without a difference: each is known to some 20 roundings of its own size, however small.
+//! The computed `W` is off by at most `γ (|V'| M + V |M'|)`, slopes taken term by term, `γ` about 1e-14, and its roots are isolated
+//! with certainty (`band/roots.rs`). A place that is missed by a wrong sign of `W` is higher by a factor of `exp(γ ∫ |V'|/V + |M'|/M)`
+//! at most, and the integral is a few times the logarithm of how much `V` and `M` vary: 1e-11 is never reached. So the value is found
+//! to rounding with as little damping as there may be: a peak whose width is 1e-14 of its frequency has its full height, though no
+//! floating-point number is a frequency that near to it.
+
+mod factors;
+mod roots;
 
 use crate::{Bare, Coupled};
-use std::ops::{Add, Mul, Sub};
+use factors::{Factors, Numerator, Piece, Point};
 
 /// A largest value over a band, and where it is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
     /// The value, in the unit of the quantity.
     pub value: f64,
-    /// The angular frequency, rad/s.
+    /// The angular frequency, rad/s, rounded and within the band.
     pub frequency: f64,
 }
 
-impl Bare {
-    /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`. Infinite, or
-    /// as large as rounding allows, at the resonance of an undamped structure.
-    pub fn steady_e1_max(&self, band: [f64; 2]) -> Worst {
-        let mut search = Search::new(|omega| self.steady(omega).e1_max);
-        for (piece, weight) in pieces(self, band) {
-            search.over(piece, |u| {
-                let [real, imaginary] = self.impedance(u);
-                [weight(u), real * real + u * imaginary * imaginary]
-            });
-        }
-        search.worst
-    }
+impl Worst {
+    const NONE: Self = Self { value: f64::NEG_INFINITY, frequency: f64::NAN };
 
-    /// `k1 - m1 ω² + iω c1` as real part and imaginary part over `ω`.
-    fn impedance(&self, u: Polynomial) -> [Polynomial; 2] {
-        [constant(self.k1) - u * constant(self.m1), constant(self.c1)]
+    fn note(&mut self, frequency: f64, value: f64) {
+        let value = if value.is_nan() { f64::INFINITY } else { value }; // 0/0 where nothing resists the force
+        if value > self.value {
+            *self = Self { value, frequency };
+        }
+    }
+}
+
+/// Roundings within which an end of a band lies on a natural frequency.
+const ON_IT: f64 = 8.0 * f64::EPSILON;
+
+impl Bare {
+    /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`. Infinite at the
+    /// resonance of an undamped structure, also where the band ends on it to 8 roundings.
+    pub fn steady_e1_max(&self, [from, to]: [f64; 2]) -> Worst {
+        let mut worst = Worst::NONE;
+        for end in [from, to] {
+            worst.note(end, self.steady(end).e1_max);
+        }
+        // Up to u0 = k1/m1 E1max is the spring's, from there on the mass's: `(P/m1)² / ((u - u0)² + u (c1/m1)²)` by k1/2 and by m1 u/2.
+        // The first is largest at `u0 - (c1/m1)²/2`, the second at u0.
+        let (natural, rate) = (self.k1 / self.m1, self.c1 / self.m1);
+        let below = 0.5 * rate * rate;
+        for (u, below) in [(natural, 0.0), (natural - below, below)] {
+            let omega = u.max(0.0).sqrt();
+            if from * (1.0 - ON_IT) <= omega && omega <= to * (1.0 + ON_IT) {
+                let amplitude = self.p / (self.m1 * below.hypot(omega * rate));
+                worst.note(omega.clamp(from, to.max(from)), 0.5 * amplitude * amplitude * self.k1);
+            }
+        }
+        worst
     }
 }
 
 impl Coupled {
     /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`, as long as the
-    /// damper touches neither wall (compare [`Self::steady_stroke_max`] with `D` and `C`). Infinite, or as large as
-    /// rounding allows, at the resonance of an undamped system.
+    /// damper touches neither wall (compare [`Self::steady_stroke_max`] with `D` and `C`). Infinite at a resonance of an undamped
+    /// system, also where the band ends on it to 8 roundings.
     pub fn steady_e1_max(&self, band: [f64; 2]) -> Worst {
-        let (m2, k2, c2) = self.damper();
-        let mut search = Search::new(|omega| self.steady(omega).e1_max);
-        for (piece, weight) in pieces(self.bare(), band) {
-            search.over(piece, |u| {
-                let dynamic = constant(k2) - u * constant(m2);
-                [(dynamic * dynamic + u * constant(c2 * c2)) * weight(u), self.resonance(u)]
-            });
-        }
-        search.worst
+        self.worst(band, Quantity::Energy)
     }
 
     /// Largest amplitude `|X1|`, m, of the primary structure over a band; as [`Self::steady_e1_max`].
     pub fn steady_displacement_max(&self, band: [f64; 2]) -> Worst {
-        let (m2, k2, c2) = self.damper();
-        let mut search = Search::new(|omega| self.steady(omega).x1.norm());
-        search.over(band, |u| {
-            let dynamic = constant(k2) - u * constant(m2);
-            [dynamic * dynamic + u * constant(c2 * c2), self.resonance(u)]
-        });
-        search.worst
+        self.worst(band, Quantity::Displacement)
     }
 
-    /// Largest steady stroke `|X2 - X1|`, m, of the damper about its rest position over a band; as [`Self::steady_e1_max`].
+    /// Largest steady stroke (spring deflection) `|X2 - X1|`, m, over a band; as [`Self::steady_e1_max`].
     pub fn steady_stroke_max(&self, band: [f64; 2]) -> Worst {
-        let mut search = Search::new(|omega| self.steady(omega).stroke());
-        search.over(band, |u| [u * u, self.resonance(u)]); // X2 - X1 = P m2 ω² / (S d - m2 ω² Q)
-        search.worst
+        self.worst(band, Quantity::Stroke)
     }
 
-    /// `|S d - m2 ω² Q|²` of [`Self::steady`].
-    fn resonance(&self, u: Polynomial) -> Polynomial {
-        let (m2, k2, c2) = self.damper();
-        let [primary, c1] = self.bare().impedance(u);
-        let (inertia, c2) = (u * constant(m2), constant(c2));
-        let dynamic = constant(k2) - inertia;
-        let real = primary * dynamic - u * c1 * c2 - inertia * constant(k2);
-        let imaginary = primary * c2 + dynamic * c1 - inertia * c2;
-        real * real + u * imaginary * imaginary
-    }
-}
-
-/// What E1max is as a multiple of `|X1|²`, but for a factor.
-type Weight = fn(Polynomial) -> Polynomial;
-
-/// The band below the natural frequency of the structure, where E1max is that of its spring, and above, where it is that of
-/// its mass.
-fn pieces(bare: &Bare, [from, to]: [f64; 2]) -> [([f64; 2], Weight); 2] {
-    let natural = (bare.k1 / bare.m1).sqrt().clamp(from, to.max(from));
-    [([from, natural], |_| constant(1.0)), ([natural, to], |u| u)]
-}
-
-/// The largest of a function of ω among the places looked at so far.
-struct Search<F> {
-    value: F,
-    worst: Worst,
-}
-
-impl<F: Fn(f64) -> f64> Search<F> {
-    fn new(value: F) -> Self {
-        Self { value, worst: Worst { value: f64::NEG_INFINITY, frequency: f64::NAN } }
-    }
-
-    fn note(&mut self, frequency: f64) {
-        let value = (self.value)(frequency);
-        let value = if value.is_nan() { f64::INFINITY } else { value }; // 0/0 where nothing resists the force
-        if value > self.worst.value {
-            self.worst = Worst { value, frequency };
-        }
-    }
-
-    /// Looks at both ends of a band and at every maximum between, where `squared(u) = [N, M]`.
-    fn over(&mut self, [from, to]: [f64; 2], squared: impl Fn(Polynomial) -> [Polynomial; 2]) {
-        self.note(from);
-        if to <= from {
-            return;
-        }
-        let (low, width) = (from * from, (to - from) * (to + from));
-        let [n, m] = squared(linear(low, width));
-        let w = (n.slope() * m - n * m.slope()).bernstein();
-        let mut halvings = HALVINGS;
-        falls(w, [0.0, 1.0], &mut halvings, &mut |s| self.note((low + width * s).sqrt()));
-        self.note(to);
-    }
-}
-
-/// Most halvings of a band. Six roots need a few dozen; only roots that rounding cannot tell apart would need more.
-const HALVINGS: u32 = 200;
-
-/// Visits every place where a polynomial, by its Bernstein coefficients on `[a, b]`, falls through zero.
-fn falls(w: [f64; 7], [a, b]: [f64; 2], halvings: &mut u32, visit: &mut impl FnMut(f64)) {
-    let mut signs = w.into_iter().filter(|c| *c != 0.0).map(|c| c > 0.0);
-    let Some(first) = signs.next() else { return };
-    let (_, changes) =
-        signs.fold((first, 0), |(last, changes), sign| (sign, changes + u32::from(sign != last)));
-    let middle = 0.5 * (a + b);
-    if changes == 1 && first {
-        visit(a + (b - a) * root(&w));
-    } else if changes > 1 && *halvings == 0 {
-        visit(middle);
-    } else if changes > 1 {
-        *halvings -= 1;
-        let (mut left, mut right) = (w, w);
-        for level in 1..7 {
-            for i in (level..7).rev() {
-                left[i] = 0.5 * (left[i - 1] + left[i]);
-            }
-            right[6 - level] = left[6]; // the last of this level of de Casteljau's triangle
-        }
-        if left[6] == 0.0 {
-            visit(middle);
-        }
-        falls(left, [a, middle], halvings, visit);
-        falls(right, [middle, b], halvings, visit);
-    }
-}
-
-/// The only root, on [0, 1], of a polynomial that is positive before it and negative after: Newton steps, bisection where they
-/// leave the bracket.
-fn root(w: &[f64; 7]) -> f64 {
-    let (mut lower, mut upper, mut t) = (0.0, 1.0, 0.5);
-    for _ in 0..64 {
-        let mut triangle = *w;
-        for level in 1..6 {
-            for i in 0..7 - level {
-                triangle[i] += t * (triangle[i + 1] - triangle[i]);
-            }
-        }
-        let slope = triangle[1] - triangle[0]; // a sixth of it
-        let value = triangle[0] + t * slope;
-        if value > 0.0 {
-            lower = t;
+    fn worst(&self, [from, to]: [f64; 2], quantity: Quantity) -> Worst {
+        let mut worst = Worst::NONE;
+        if from < to {
+            let factors = Factors::new(self, to * to);
+            Search { system: self, factors, quantity, band: [from, to], worst: &mut worst }.run();
         } else {
-            upper = t;
+            let steady = self.steady(from);
+            worst.note(
+                from,
+                match quantity {
+                    Quantity::Energy => steady.e1_max,
+                    Quantity::Displacement => steady.x1.norm(),
+                    Quantity::Stroke => steady.stroke(),
+                },
+            );
         }
-        let newton = t - value / (6.0 * slope);
-        let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
-        if (next - t).abs() <= f64::EPSILON {
-            return next;
-        }
-        t = next;
+        worst
     }
-    t
 }
 
-/// Coefficients of a polynomial of degree 6 at most, of the lowest power first.
+/// What is looked for, as a multiple of the square root of `V / M`, or of `V / M` itself.
 #[derive(Clone, Copy)]
-struct Polynomial([f64; 7]);
-
-fn constant(value: f64) -> Polynomial {
-    linear(value, 0.0)
+enum Quantity {
+    Energy,
+    Displacement,
+    Stroke,
 }
 
-fn linear(value: f64, slope: f64) -> Polynomial {
-    Polynomial([value, slope, 0.0, 0.0, 0.0, 0.0, 0.0])
+struct Search<'a> {
+    system: &'a Coupled,
+    factors: Factors,
+    quantity: Quantity,
+    band: [f64; 2],
+    worst: &'a mut Worst,
 }
 
-impl Polynomial {
-    fn slope(self) -> Self {
-        let Self(a) = self;
-        Self([a[1], 2.0 * a[2], 3.0 * a[3], 4.0 * a[4], 5.0 * a[5], 6.0 * a[6], 0.0])
-    }
-
-    /// The coefficients `Σ_j C(i, j) / C(6, j) a_j` in the Bernstein basis on [0, 1], by repeated sums.
-    fn bernstein(self) -> [f64; 7] {
-        const BINOMIAL: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
-        let mut b: [f64; 7] = std::array::from_fn(|j| self.0[j] / BINOMIAL[j]);
-        for level in 1..7 {
-            for i in (level..7).rev() {
-                b[i] += b[i - 1];
+impl Search<'_> {
+    /// Looks at every cut of the band, then at every maximum between two cuts that can be higher.
+    fn run(&mut self) {
+        let [from, to] = self.band.map(|end| self.factors.end(end));
+        let inside =
+            self.factors.cuts().into_iter().filter(|cut| cut.past(&from) > 0.0 && to.past(cut) > 0.0);
+        let mut points = [from; 8];
+        let mut last = 0;
+        for cut in inside {
+            last += 1;
+            points[last] = cut;
+        }
+        last += 1;
+        points[last] = to;
+        for point in &points[..=last] {
+            let piece = self.factors.piece(point, point);
+            self.note(&piece, self.numerator(point), 0.0);
+        }
+        for ends in points[..=last].windows(2) {
+            let (a, b) = (&ends[0], &ends[1]);
+            let numerator = self.numerator(a);
+            // From the end that is nearer to a natural frequency, where small differences count.
+            let piece = if a.off_resonance() <= b.off_resonance() {
+                self.factors.piece(a, b)
+            } else {
+                self.factors.piece(b, a)
+            };
+            let [v, m] = piece.bounds(numerator);
+            if self.value(numerator, v / m) > self.worst.value {
+                roots::falls(piece.slope(numerator), &mut |s| self.note(&piece, numerator, s));
             }
         }
-        b
     }
-}
 
-impl Add for Polynomial {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    fn note(&mut self, piece: &Piece, numerator: Numerator, s: f64) {
+        let [from, to] = self.band;
+        let frequency = (piece.u(s) * self.factors.unit).sqrt().clamp(from, to);
+        self.worst.note(frequency, self.value(numerator, piece.ratio(numerator, s)));
     }
-}
 
-impl Sub for Polynomial {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
-    }
-}
-
-impl Mul for Polynomial {
-    type Output = Self;
-    /// The product as far as degree 6; no product here has a higher one.
-    fn mul(self, other: Self) -> Self {
-        let mut product = [0.0; 7];
-        for i in 0..7 {
-            for j in 0..7 - i {
-                product[i + j] += self.0[i] * other.0[j];
-            }
+    /// `V` from a cut on to the next.
+    fn numerator(&self, from: &Point) -> Numerator {
+        match self.quantity {
+            Quantity::Energy if from.past(&self.factors.primary) < 0.0 => Numerator::Damper,
+            Quantity::Energy => Numerator::DamperBySquare,
+            Quantity::Displacement => Numerator::Damper,
+            Quantity::Stroke => Numerator::Square,
         }
-        Self(product)
+    }
+
+    fn value(&self, numerator: Numerator, ratio: f64) -> f64 {
+        let Bare { m1, k1, p, .. } = *self.system.bare();
+        let amplitude = p / (m1 * self.factors.unit);
+        match (self.quantity, numerator) {
+            (Quantity::Energy, Numerator::Damper) => 0.5 * k1 * amplitude * amplitude * ratio,
+            (Quantity::Energy, _) => 0.5 * m1 * self.factors.unit * amplitude * amplitude * ratio,
+            _ => amplitude * ratio.sqrt(),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
 use crate::{Drive, Forcing, Primary};
-use nalgebra::SMatrix;
+use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +11,7 @@ pub struct Bare {
     pub(crate) k1: f64,
     pub(crate) p: f64,
     pub(crate) omega: f64,
+    phase: f64,
 }
 
 impl Bare {
@@ -22,7 +23,14 @@ impl Bare {
             k1: primary.stiffness.get(),
             p: forcing.amplitude.get(),
             omega: forcing.frequency.get(),
+            phase: 0.0,
         }
+    }
+
+    /// The same under the force `P cos(ωt + φ)`, φ in rad. Its time begins at 0 as ever.
+    #[must_use]
+    pub fn with_phase(self, phase: f64) -> Self {
+        Self { phase, ..self }
     }
 
     /// Angular frequency ω of the force, rad/s.
@@ -30,10 +38,15 @@ impl Bare {
         self.omega
     }
 
-    /// `[P cos ωt, P sin ωt]` at time `t` (s), N.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
     pub fn drive(&self, t: f64) -> Drive {
-        let (sin, cos) = (self.omega * t).sin_cos();
+        let (sin, cos) = (self.omega * t + self.phase).sin_cos();
         [self.p * cos, self.p * sin]
+    }
+
+    /// The complex amplitude `P e^{iφ}` of the force, N.
+    pub(crate) fn force(&self) -> Complex<f64> {
+        Complex::from_polar(self.p, self.phase)
     }
 
     /// State at rest, `[0, 0]`.
@@ -67,6 +80,18 @@ impl Bare {
     #[inline]
     pub fn primary_energy(&self, x1: f64, v1: f64) -> f64 {
         0.5 * (self.m1 * v1 * v1 + self.k1 * x1 * x1)
+    }
+
+    /// `[m1, k1]`: the weights of `v1²` and `x1²` in twice the primary energy.
+    pub fn primary_energy_weights(&self) -> [f64; 2] {
+        [self.m1, self.k1]
+    }
+
+    /// The largest `|row · y|` over all states of `√(2 E1) = 1` (the dual norm); infinite if `row` weighs a position that no
+    /// spring holds.
+    pub fn dual_energy_norm(&self, &[x1, v1]: &[f64; 2]) -> f64 {
+        let part = |weight: f64, scale: f64| if weight == 0.0 { 0.0 } else { weight * weight / scale };
+        (part(x1, self.k1) + part(v1, self.m1)).sqrt()
     }
 
     /// Largest growth of `√(2E)`, `P / √m1`, √J/s, with `E` the mechanical energy of the structure and of whatever hangs on it: the

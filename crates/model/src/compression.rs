@@ -11,6 +11,10 @@
 //! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
 //! The force is a Taylor polynomial in the time since it was last set ([`Compression::set_drive`]).
 
+mod bounds;
+
+pub use bounds::{Growth, ORDERS};
+
 use crate::{Coupled, Drive, Side};
 
 /// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.

@@ -52,12 +52,18 @@ impl Coupled {
         }
     }
 
+    /// The same under the force `P cos(ωt + φ)`, φ in rad. Its time begins at 0 as ever.
+    #[must_use]
+    pub fn with_phase(self, phase: f64) -> Self {
+        Self { bare: self.bare.with_phase(phase), ..self }
+    }
+
     /// The same structure without its damper.
     pub fn bare(&self) -> &Bare {
         &self.bare
     }
 
-    /// `[P cos ωt, P sin ωt]` at time `t` (s), N.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
     pub fn drive(&self, t: f64) -> Drive {
         self.bare.drive(t)
     }
@@ -228,6 +234,11 @@ impl Coupled {
         let (m2, k2, x) = (self.m2, self.k2, x2 - self.d);
         let net = m2 * a2 + k2 * x;
         [0.5 * (m2 * v2 * v2 + k2 * x * x), v2 * net, a2 * net + v2 * (m2 * jerk + k2 * v2)]
+    }
+
+    /// `[m2, k2]`: the weights of `v2²` and `(x2 - D)²` in twice the paper's damper energy.
+    pub fn damper_energy_weights(&self) -> [f64; 2] {
+        [self.m2, self.k2]
     }
 
     /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².

@@ -18,7 +18,7 @@ mod value;
 
 pub use band::Worst;
 pub use bare::Bare;
-pub use compression::{Compressed, Compression};
+pub use compression::{Compressed, Compression, Growth, ORDERS};
 pub use coupled::{Coupled, Side};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
 pub use scene::{Contact, Damper, Forcing, Primary, Scene};
@@ -33,7 +33,7 @@ pub fn energy_ratios(e1_max: f64, e2_max: f64) -> [f64; 2] {
     [e1_max / total, e2_max / total]
 }
 
-/// The harmonic force and its quarter-turn: `[P cos ωt, P sin ωt]`, N.
+/// The harmonic force and its quarter-turn: `[P cos(ωt + φ), P sin(ωt + φ)]`, N.
 ///
 /// Every formula below takes this pair instead of `t`, so that a caller who steps in time may turn it by a rotation instead
 /// of calling `cos` at every step.

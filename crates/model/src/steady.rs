@@ -17,7 +17,7 @@ pub struct Steady {
 }
 
 impl Steady {
-    /// The largest distance of the damper from its rest position in the structure, `|X2 - X1|`, m.
+    /// The stroke: the largest deflection of the damper's spring, `|x2 - x1 - D| = |X2 - X1|`, m.
     pub fn stroke(&self) -> f64 {
         (self.x2 - self.x1).norm()
     }
@@ -30,10 +30,10 @@ fn largest_energy(amplitude: Complex<f64>, k: f64, m_omega2: f64) -> f64 {
 
 impl Bare {
     /// Steady response at the angular frequency `omega` (rad/s) under the force amplitude of this structure:
-    /// `X1 = P / (k1 - m1 ω² + iω c1)`. Infinite at the resonance of an undamped structure.
+    /// `X1 = P e^{iφ} / (k1 - m1 ω² + iω c1)`. Infinite at the resonance of an undamped structure.
     pub fn steady(&self, omega: f64) -> Steady {
         let m_omega2 = self.m1 * omega * omega;
-        let x1 = Complex::from(self.p) / Complex::new(self.k1 - m_omega2, omega * self.c1);
+        let x1 = self.force() / Complex::new(self.k1 - m_omega2, omega * self.c1);
         Steady { x1, x2: Complex::ZERO, e1_max: largest_energy(x1, self.k1, m_omega2), e2_max: 0.0 }
     }
 }
@@ -43,16 +43,16 @@ impl Coupled {
     /// (compare [`Steady::stroke`] with `D` and `C`).
     ///
     /// Equation (1) without contact, with `S = k1 - m1 ω² + iω c1`, `Q = k2 + iω c2`, `d = Q - m2 ω²`:
-    /// `X1 = P d / (S d - m2 ω² Q)`, `X2 = P Q / (S d - m2 ω² Q)`.
+    /// `X1 = P e^{iφ} d / (S d - m2 ω² Q)`, `X2 = P e^{iφ} Q / (S d - m2 ω² Q)`.
     /// Infinite or NaN at the resonance of an undamped system.
     pub fn steady(&self, omega: f64) -> Steady {
-        let Bare { m1, c1, k1, p, .. } = *self.bare();
+        let Bare { m1, c1, k1, .. } = *self.bare();
         let (m2, k2, c2) = self.damper();
         let omega2 = omega * omega;
         let spring = Complex::new(k2, omega * c2);
         let dynamic = Complex::new(k2 - m2 * omega2, omega * c2);
         let primary = Complex::new(k1 - m1 * omega2, omega * c1);
-        let scale = Complex::from(p) / (primary * dynamic - spring * (m2 * omega2));
+        let scale = self.bare().force() / (primary * dynamic - spring * (m2 * omega2));
         let (x1, x2) = (dynamic * scale, spring * scale);
         Steady {
             x1,

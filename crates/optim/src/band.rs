@@ -26,6 +26,13 @@ impl Band {
 /// Most evaluations that one maximum of the samples is refined by. A smooth peak needs about eight.
 const REFINEMENTS: usize = 12;
 
+/// Some quantities at a frequency; the first is the one that cutoffs are for.
+#[derive(Clone, Copy)]
+struct Look<const N: usize> {
+    frequency: f64,
+    values: [f64; N],
+}
+
 /// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is
 /// not below them. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any
 /// number of them. It is a lower bound: a peak that shows at no sample is missed. Samples are taken in groups, each spread over the
@@ -38,44 +45,76 @@ pub fn worst_over<E: Send + Sync>(
     value: impl Fn(f64) -> Result<f64, E> + Sync,
     cutoff: f64,
 ) -> Result<Worst, E> {
+    let [worst] = all_worst_over(band, |omega| value(omega).map(|value| [value]), cutoff, [None])?;
+    Ok(worst)
+}
+
+/// The largest of each of some quantities over a band, as [`worst_over`] finds that of one; `cutoff` is for the first.
+///
+/// Each quantity has peaks of its own. Where `limits` has none for it, all of them are searched; else those that could be above
+/// the limit and above all samples: four times as far above the sample as a parabola through it and its neighbours would rise.
+///
+/// # Errors
+/// As [`worst_over`].
+pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
+    band: &Band,
+    values: impl Fn(f64) -> Result<[f64; N], E> + Sync,
+    cutoff: f64,
+    limits: [Option<f64>; N],
+) -> Result<[Worst; N], E> {
+    let look = |frequency: f64| values(frequency).map(|values| Look { frequency, values });
     let count = band.samples.max(2);
     let groups = count.div_ceil(TOGETHER);
     // Group g has the samples g, g + groups, g + 2 groups, …
     let order: Vec<usize> = (0..groups).flat_map(|g| (g..count).step_by(groups)).collect();
-    let sample = |&i: &usize| (i, value(band.at(i)).map(|value| Worst { frequency: band.at(i), value }));
-    let above = |(_, sample): &(usize, Result<Worst, E>)| !sample.as_ref().is_ok_and(|s| s.value <= cutoff);
-    let ends = |taken: &[(usize, Result<Worst, E>)]| taken.iter().any(above);
+    let sample = |&i: &usize| (i, look(band.at(i)));
+    let above =
+        |(_, sample): &(usize, Result<Look<N>, E>)| !sample.as_ref().is_ok_and(|s| s.values[0] <= cutoff);
+    let ends = |taken: &[(usize, Result<Look<N>, E>)]| taken.iter().any(above);
     let together = if cutoff.is_finite() { TOGETHER } else { count };
     let mut samples = in_groups(count, together, |place, _| sample(&order[place]), ends);
     samples.sort_by_key(|(i, _)| *i);
-    let samples = samples.into_iter().map(|(_, sample)| sample).collect::<Result<Vec<Worst>, E>>()?;
-    let largest =
-        |all: &[Worst], first| all.iter().fold(first, |a: Worst, b| if b.value > a.value { *b } else { a });
-    let worst = largest(&samples, samples[0]);
-    if worst.value > cutoff {
+    let samples = samples.into_iter().map(|(_, sample)| sample).collect::<Result<Vec<Look<N>>, E>>()?;
+    let worst = samples[1..].iter().fold(worst_of(&samples[0]), |all, look| larger(all, worst_of(look)));
+    if worst[0].value > cutoff {
         return Ok(worst);
     }
     let last = samples.len() - 1;
-    let is_peak = |&i: &usize| {
-        let value = samples[i].value;
-        (i == 0 || value > samples[i - 1].value) && (i == last || value >= samples[i + 1].value)
+    let around = |i: usize| [samples[i.max(1) - 1], samples[i], samples[last.min(i + 1)]];
+    let worth_a_search = |&(quantity, i): &(usize, usize)| {
+        let [before, value, after] = around(i).map(|look| look.values[quantity]);
+        let is_peak = (i == 0 || value > before) && (i == last || value >= after);
+        let most = value + 0.5 * (2.0 * value - before - after);
+        is_peak && limits[quantity].is_none_or(|limit| most > limit.max(worst[quantity].value))
     };
-    let peaks: Vec<usize> = (0..=last).filter(is_peak).collect();
-    let refine = |&i: &usize| {
-        local_maximum(&value, [samples[i.max(1) - 1], samples[i], samples[last.min(i + 1)]], cutoff)
-    };
-    let refined: Vec<Result<Worst, E>> = peaks.par_iter().map(refine).collect();
-    Ok(largest(&refined.into_iter().collect::<Result<Vec<Worst>, E>>()?, worst))
+    let places = (0..N).flat_map(|quantity| (0..=last).map(move |i| (quantity, i)));
+    let peaks: Vec<(usize, usize)> = places.filter(worth_a_search).collect();
+    let refine = |&(quantity, i): &(usize, usize)| local_maximum(&look, around(i), quantity, cutoff);
+    let refined: Vec<Result<[Worst; N], E>> = peaks.par_iter().map(refine).collect();
+    refined.into_iter().try_fold(worst, |all, more| Ok(larger(all, more?)))
 }
 
-/// A local maximum between two places, from one between them that is not below either: parabolas, and golden sections where
-/// they do not serve (R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 5), from three known points.
-fn local_maximum<E>(
-    value: &impl Fn(f64) -> Result<f64, E>,
-    [left, best, right]: [Worst; 3],
+fn worst_of<const N: usize>(&Look { frequency, values }: &Look<N>) -> [Worst; N] {
+    values.map(|value| Worst { frequency, value })
+}
+
+/// The larger of each quantity; of equals the first.
+fn larger<const N: usize>(a: [Worst; N], b: [Worst; N]) -> [Worst; N] {
+    std::array::from_fn(|q| if b[q].value > a[q].value { b[q] } else { a[q] })
+}
+
+/// A local maximum of a quantity between two places, from one between them that is not below either, and the largest of the
+/// others on the way: parabolas, and golden sections where they do not serve (R. P. Brent, Algorithms for Minimization without
+/// Derivatives, 1973, chapter 5), from three known points.
+fn local_maximum<E, const N: usize>(
+    look: &impl Fn(f64) -> Result<Look<N>, E>,
+    around: [Look<N>; 3],
+    quantity: usize,
     cutoff: f64,
-) -> Result<Worst, E> {
+) -> Result<[Worst; N], E> {
     const GOLDEN: f64 = 0.381_966_011_250_105_1;
+    let [left, best, right] = around.map(|look| worst_of(&look)[quantity]);
+    let mut seen = worst_of(&around[1]);
     let (mut a, mut b) = (left.frequency, right.frequency);
     // `x` the best, `w` the second, `v` the third; `step` and `earlier` are the last two steps.
     let (mut x, (mut w, mut v)) =
@@ -98,9 +137,11 @@ fn local_maximum<E>(
         }
         let step_taken = if step.abs() < tolerance { tolerance.copysign(step) } else { step };
         let frequency = (x.frequency + step_taken).clamp(a, b);
-        let tried = Worst { frequency, value: value(frequency)? };
-        if tried.value > cutoff {
-            return Ok(tried);
+        let all = worst_of(&look(frequency)?);
+        let tried = all[quantity];
+        seen = larger(seen, all);
+        if all[0].value > cutoff {
+            return Ok(seen);
         }
         if tried.value >= x.value {
             if frequency < x.frequency {
@@ -122,5 +163,6 @@ fn local_maximum<E>(
             }
         }
     }
-    Ok(x)
+    seen[quantity] = x;
+    Ok(seen)
 }

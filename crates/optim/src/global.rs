@@ -73,7 +73,7 @@ pub struct Descent {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum GlobalError {
     /// No point of the first look has a value.
-    #[error("none of {samples} designs spread over the whole box could be computed")]
+    #[error("no design could be computed of the {samples} that were spread over the whole box")]
     NoStart {
         /// How many were looked at.
         samples: u32,

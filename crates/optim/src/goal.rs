@@ -4,7 +4,7 @@
 //! function of a cutoff, above which it may stop; every rule for stopping is exact: a value at most at the cutoff is computed in
 //! full.
 
-use crate::band::{Band, worst_over};
+use crate::band::{Band, all_worst_over};
 use crate::chunks::in_groups;
 use crate::ensemble::{Ensemble, SLACK};
 use crate::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
@@ -116,7 +116,7 @@ pub struct Evaluation {
     pub energy: f64,
     /// By how much limits are broken; see [`Limits::violation`].
     pub violation: f64,
-    /// The largest stroke, force and cavity; stroke and force are 0 where no limit asks for them.
+    /// The largest stroke and force from [`Limits::from`] on, and the cavity; stroke and force are 0 where no limit asks for them.
     pub reached: PerLimit<f64>,
     /// The worst run.
     pub worst: Place,
@@ -154,7 +154,7 @@ impl Goal {
         let mut reached = PerLimit::default();
         reached.set(Limit::Cavity, cavity);
         let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
-        let watch = Watch { settings, walls: self.limits.needs_walls(), seen: Mutex::new(seen) };
+        let watch = Watch { settings, limits: &self.limits, seen: Mutex::new(seen) };
         // Too large a cavity needs no run to be worse than anything feasible.
         let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
             f64::INFINITY
@@ -203,47 +203,57 @@ struct Seen {
 /// How runs of a goal are made, and what is kept of them.
 struct Watch<'a> {
     settings: &'a Settings,
-    walls: bool,
+    limits: &'a Limits,
     seen: Mutex<Seen>,
 }
 
 /// A term with its number.
 type Numbered<'a> = (usize, &'a Term);
 
+/// The largest E1max (J), stroke (m) and contact force (N) of some runs; all but the first 0 where no limit asks for them.
+type Largest = [f64; 3];
+
 impl Watch<'_> {
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
-        let Some(ensemble) = &term.1.ensemble else { return self.over_k1(scene, 0.0, term, cutoff) };
+        let Some(ensemble) = &term.1.ensemble else { return Ok(self.over_k1(scene, 0.0, term, cutoff)?[0]) };
         let member = |i: u32, cutoff: f64| {
             let (scene, phase) = ensemble.member(scene, i).map_err(Unusable::Member)?;
-            self.over_k1(&scene, phase, term, cutoff)
+            Ok(self.over_k1(&scene, phase, term, cutoff)?[0])
         };
         ensemble.over(member, cutoff)
     }
 
-    fn over_k1(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+    fn over_k1(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<Largest, Unusable> {
         let own = scene.primary.stiffness.get();
-        let at = |k1: f64| -> Result<f64, Unusable> {
+        let at = |k1: f64| -> Result<Largest, Unusable> {
             let mut scene = *scene;
             scene.primary.stiffness = NonNegative::new(k1).map_err(Unusable::Stiffness)?;
             self.over_omega(&scene, phase, term, cutoff)
         };
         match &term.1.k1 {
             None => self.over_omega(scene, phase, term, cutoff),
-            Some(Stiffnesses::Range(range)) => Ok(worst_over(range, at, cutoff)?.value),
+            Some(Stiffnesses::Range(range)) => self.worst_over(range, at, cutoff),
             Some(Stiffnesses::Set(set)) => {
-                let above = |results: &[Result<f64, Unusable>]| match results.last() {
-                    Some(Ok(value)) => *value > cutoff,
+                let above = |results: &[Result<Largest, Unusable>]| match results.last() {
+                    Some(Ok([e1_max, ..])) => *e1_max > cutoff,
                     Some(Err(_)) => true,
                     None => false,
                 };
                 let k1 = |i: usize| set.get(i).copied().unwrap_or(own);
                 let results = in_groups(set.len(), 1, |i, _| at(k1(i)), above);
-                results.into_iter().try_fold(0.0, |worst: f64, value| Ok(worst.max(value?)))
+                let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
+                results.into_iter().try_fold([0.0; 3], |worst, more| Ok(larger(worst, more?)))
             }
         }
     }
 
-    fn over_omega(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+    fn over_omega(
+        &self,
+        scene: &Scene,
+        phase: f64,
+        term: Numbered,
+        cutoff: f64,
+    ) -> Result<Largest, Unusable> {
         let own = scene.forcing.frequency.get();
         let band = term.1.omega.map(|frequencies| frequencies.of(&scene.primary));
         if term.1.when == When::Steady {
@@ -251,9 +261,21 @@ impl Watch<'_> {
         }
         let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
         match band {
-            Some(band) => Ok(worst_over(&band, at, cutoff)?.value),
+            Some(band) => self.worst_over(&band, at, cutoff),
             None => at(own),
         }
+    }
+
+    /// The largest of each over a band. Peaks of stroke and force are searched where they could break a limit.
+    fn worst_over(
+        &self,
+        band: &Band,
+        at: impl Fn(f64) -> Result<Largest, Unusable> + Sync,
+        cutoff: f64,
+    ) -> Result<Largest, Unusable> {
+        let beyond = |limit| Some(self.limits.get(limit).unwrap_or(f64::INFINITY));
+        let limits = [None, beyond(Limit::Stroke), beyond(Limit::Force)];
+        Ok(all_worst_over(band, at, cutoff, limits)?.map(|worst| worst.value))
     }
 
     fn run(
@@ -263,10 +285,10 @@ impl Watch<'_> {
         phase: f64,
         (number, term): Numbered,
         cutoff: f64,
-    ) -> Result<f64, Unusable> {
+    ) -> Result<Largest, Unusable> {
         let mut scene = *scene;
         scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
-        let ask = Ask { phase, walls: self.walls, cutoff };
+        let ask = Ask { phase, walls: self.limits.walls_from(), cutoff };
         let found = match term.when {
             When::Settled(window, settle) => settled(&scene, window, settle, self.settings, ask)?,
             When::Window(window) => extremes(&scene, window, self.settings, ask)?,
@@ -274,10 +296,10 @@ impl Watch<'_> {
         };
         let place = Place { e1_max: found.e1_max.value, scene, phase, term: number };
         self.see(place, found.stroke, found.force, found.settled);
-        Ok(found.e1_max.value)
+        Ok([found.e1_max.value, found.stroke, found.force])
     }
 
-    fn steady(&self, scene: &Scene, band: [f64; 2], number: usize) -> Result<f64, Unusable> {
+    fn steady(&self, scene: &Scene, band: [f64; 2], number: usize) -> Result<Largest, Unusable> {
         let Scene { primary, forcing, damper } = scene;
         let (worst, stroke) = match damper {
             None => (Bare::new(primary, forcing).steady_e1_max(band), 0.0),
@@ -295,7 +317,7 @@ impl Watch<'_> {
         scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
         let place = Place { e1_max: worst.value, scene, phase: 0.0, term: number };
         self.see(place, stroke, 0.0, true);
-        Ok(worst.value)
+        Ok([worst.value, stroke, 0.0])
     }
 
     fn see(&self, place: Place, stroke: f64, force: f64, settled: bool) {

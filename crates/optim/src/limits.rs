@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Limit {
-    /// Largest `|x2 - x1 - D|`, m.
+    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
     Stroke,
     /// Largest contact force on either wall, N.
     Force,
@@ -64,8 +64,21 @@ impl<T: Copy> PerLimit<T> {
     }
 }
 
-/// The largest values allowed, each above 0; `None` where there is no limit.
-pub type Limits = PerLimit<Option<f64>>;
+/// The limits that a design must keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// The largest values allowed, each above 0; `None` where there is no limit.
+    pub most: PerLimit<Option<f64>>,
+    /// From when on stroke and force must keep them, s; 0 for the whole run. A steady response has no beginning.
+    pub from: f64,
+}
+
+impl From<PerLimit<Option<f64>>> for Limits {
+    /// Limits for the whole run.
+    fn from(most: PerLimit<Option<f64>>) -> Self {
+        Self { most, from: 0.0 }
+    }
+}
 
 /// Values of [`ranked`] from here on are of designs that break a limit. No E1max comes near.
 pub const INFEASIBLE: f64 = 1e100;
@@ -74,14 +87,19 @@ pub const INFEASIBLE: f64 = 1e100;
 pub const ACTIVE: f64 = 0.01;
 
 impl Limits {
-    /// Whether no limit is set.
-    pub fn is_empty(&self) -> bool {
-        self.0.iter().all(Option::is_none)
+    /// The largest value allowed of a quantity.
+    pub fn get(&self, limit: Limit) -> Option<f64> {
+        self.most.get(limit)
     }
 
-    /// Whether a run must be watched for its stroke and its forces.
-    pub fn needs_walls(&self) -> bool {
-        self.get(Limit::Stroke).is_some() || self.get(Limit::Force).is_some()
+    /// Whether no limit is set.
+    pub fn is_empty(&self) -> bool {
+        self.most.0.iter().all(Option::is_none)
+    }
+
+    /// From when on a run must be watched for its stroke and its forces, s; `None` where no limit asks for them.
+    pub fn walls_from(&self) -> Option<f64> {
+        (self.get(Limit::Stroke).is_some() || self.get(Limit::Force).is_some()).then_some(self.from)
     }
 
     /// By how much the limits are broken: the sum of `reached / limit - 1` over those that are; 0 for a feasible design.

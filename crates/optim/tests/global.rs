@@ -104,7 +104,7 @@ fn exact_a_side_is_logarithmic_from_a_decade_on() {
 #[test]
 fn exact_designs_without_a_value_start_no_search() {
     let nothing = explore(|_, _| f64::NAN, &unit(2), &Global { samples: 8, ..Global::default() }, || {});
-    assert!(nothing.expect_err("no start").to_string().contains("none of 8 designs"));
+    assert!(nothing.expect_err("no start").to_string().contains("of the 8 that were spread"));
     let half = |x: &[f64], _: f64| if x[0] < 0.0 { f64::INFINITY } else { x[0] + x[1].abs() };
     let found = explore(half, &unit(2), &Global { samples: 64, ..Global::default() }, || {}).expect("values");
     assert!(found.iter().all(|search| search.found.x[0] >= 0.0) && found[0].found.value < 0.1);

@@ -5,8 +5,8 @@ mod scenes;
 
 use retune_model::Scene;
 use retune_optim::{
-    Bounds, Goal, INFEASIBLE, Limit, Options, PeakEnergy, PerLimit, Term, Variable, When, energy, minimize,
-    ranked,
+    Bounds, Goal, INFEASIBLE, Limit, Limits, Options, PeakEnergy, PerLimit, Term, Variable, When, energy,
+    minimize, ranked,
 };
 use retune_solver::{Settings, Window, simulate};
 use scenes::{Numbers, SSVI, TMD};
@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 const WINDOW: Window = Window { from: 2.0, to: 8.0 };
 
 fn goal(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Goal {
-    Goal { terms: vec![Term::new(WINDOW)], limits: PerLimit([stroke, force, cavity]) }
+    Goal { terms: vec![Term::new(WINDOW)], limits: PerLimit([stroke, force, cavity]).into() }
 }
 
 fn evaluate(goal: &Goal, scene: &Scene, cutoff: f64) -> retune_optim::Evaluation {
@@ -45,7 +45,7 @@ fn exact_violations_are_shares_of_the_limits() {
         evaluate(&goal(Some(stroke / 2.0), Some(force / 1.5), Some(0.42 / 1.25)), &scene, f64::INFINITY);
     assert!((broken.violation - 1.75).abs() < 1e-12, "{}", broken.violation);
     assert_eq!(broken.value, INFEASIBLE * (1.0 + broken.violation));
-    let limits = PerLimit([Some(stroke * 1.005), Some(force * 1.5), None]);
+    let limits = Limits::from(PerLimit([Some(stroke * 1.005), Some(force * 1.5), None]));
     assert_eq!(limits.active(&free.reached), [Limit::Stroke]);
     // Nothing is watched that no limit asks for.
     assert_eq!(evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached.0, [0.0, 0.0, 0.42]);
@@ -57,7 +57,7 @@ fn exact_a_steady_stroke_is_limited_in_closed_form() {
     let term = Term { omega: Some(band.into()), ..Term::new(When::Steady) };
     let stroke = TMD.coupled().steady_stroke_max([5.0, 8.0]).value;
     for (allowed, violation) in [(1.01 * stroke, 0.0), (0.5 * stroke, 1.0)] {
-        let limits = PerLimit([Some(allowed), Some(1.0), None]);
+        let limits = PerLimit([Some(allowed), Some(1.0), None]).into();
         let found = evaluate(&Goal { terms: vec![term.clone()], limits }, &TMD.scene(), f64::INFINITY);
         assert!((found.violation - violation).abs() < 1e-12 && found.reached.get(Limit::Force) == 0.0);
     }
@@ -100,7 +100,7 @@ fn exact_a_search_ends_on_an_active_limit() {
     }
     let goal = Goal {
         terms: vec![Term { omega: Some(band.into()), ..Term::new(When::Steady) }],
-        limits: PerLimit([Some(limit), None, None]),
+        limits: PerLimit([Some(limit), None, None]).into(),
     };
     let numbers = of(150.0);
     let objective =
@@ -117,4 +117,74 @@ fn exact_a_search_ends_on_an_active_limit() {
     assert!(
         objective.counts().infeasible > 0 && objective.counts().evaluations > objective.counts().infeasible
     );
+}
+
+/// Limits hold from the start unless they say otherwise: a design may keep them in the window and break them before it.
+#[test]
+fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
+    let scene = Numbers { c2: 100.0, ..SSVI }.scene();
+    let window = Window { from: 4.0, to: 8.0 };
+    let run = |from| simulate(&scene, Window { from, ..window }, &Settings::default()).expect("a run");
+    let reached = |from| {
+        let limits = Limits { most: PerLimit([Some(1.0), Some(1e9), None]), from };
+        let goal = Goal { terms: vec![Term::new(window)], limits };
+        let found = evaluate(&goal, &scene, f64::INFINITY);
+        assert_eq!(found.value, run(4.0).e1_max.value);
+        [found.reached.get(Limit::Stroke), found.reached.get(Limit::Force)]
+    };
+    for from in [0.0, 2.0, 4.0, 6.0] {
+        let run = run(from);
+        let expected = [run.spring_deflection_max, run.force_max[0].max(run.force_max[1])];
+        for (found, expected) in reached(from).into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-7, "{from}: {found} {expected}");
+        }
+    }
+    assert_eq!(Limits::from(PerLimit([None; 3])).from, 0.0);
+    let [whole, late] = [0.0, 6.0].map(reached);
+    assert!(whole[0] > late[0] || whole[1] > late[1], "{whole:?} {late:?}");
+}
+
+/// Between its samples a band hides peaks of stroke and force that E1max does not share. Each of these designs keeps a limit on all
+/// 31 samples and breaks it between them, as 601 show.
+#[test]
+fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limit() {
+    let band = |samples| retune_optim::Band { from: 5.0, to: 8.0, samples };
+    let designs = [
+        (
+            Limit::Stroke,
+            Numbers {
+                k2: 874.395_581_926_651_5,
+                c2: 65.136_152_543_454_94,
+                d: 0.086_510_911_250_101_19,
+                c: 0.651_346_567_938_503_7,
+                ..SSVI
+            },
+        ),
+        (
+            Limit::Force,
+            Numbers {
+                k2: 2_127.631_338_208_155_3,
+                c2: 241.080_355_226_635_87,
+                d: 0.037_706_540_553_365_58,
+                c: 0.157_243_520_995_425_68,
+                ..SSVI
+            },
+        ),
+    ];
+    for (limit, numbers) in designs {
+        let found = |samples, allowed: f64| {
+            let term =
+                Term { omega: Some(band(samples).into()), ..Term::new(Window { from: 50.0, to: 100.0 }) };
+            let mut limits = Limits { from: 50.0, ..Limits::default() };
+            limits.most.set(limit, Some(allowed));
+            evaluate(&Goal { terms: vec![term], limits }, &numbers.scene(), f64::INFINITY)
+        };
+        // No peak can break so loose a limit, so none is searched.
+        let [coarse, fine] = [31, 601].map(|samples| found(samples, 1e9).reached.get(limit));
+        assert!(fine > 1.005 * coarse, "{limit}: {fine} {coarse}");
+        let kept_on_samples = found(31, 0.5 * (coarse + fine));
+        assert!(kept_on_samples.violation > 0.0, "{limit}: {kept_on_samples:?} {fine}");
+        assert!(kept_on_samples.reached.get(limit) > 0.9999 * fine, "{limit}: {kept_on_samples:?} {fine}");
+        assert!(kept_on_samples.runs < 31 + 12 * 8, "{kept_on_samples:?}");
+    }
 }

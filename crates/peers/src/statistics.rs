@@ -3,7 +3,7 @@
 use crate::own;
 use crate::scenes::{Numbers, SSVI, scene};
 use retune_model::Scene;
-use retune_solver::{Contacts, Method, Settings, Window, simulate, trajectory};
+use retune_solver::{Contacts, Method, Rows, Settings, Window, simulate, trajectory};
 use std::error::Error;
 
 /// Table 1's row 1, whose largest Lyapunov exponent is about +0.9 1/s.
@@ -42,7 +42,7 @@ pub struct Statistics {
 pub fn of(settings: Settings) -> Result<Statistics, Box<dyn Error>> {
     let scene = chaotic()?;
     let mut samples = Vec::new();
-    trajectory(&scene, WINDOW, &settings, INTERVAL, &mut |sample| samples.push(sample.e1))?;
+    trajectory(&scene, WINDOW, &settings, Rows::every(INTERVAL), &mut |sample| samples.push(sample.e1))?;
     let average = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     let mean = average(&samples);
     let blocks: Vec<f64> = samples.chunks_exact(samples.len() / BLOCKS).map(average).collect();

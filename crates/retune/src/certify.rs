@@ -9,7 +9,7 @@ use crate::cli;
 use crate::error::Error;
 use crate::optimize::{where_results_are, with_threads};
 use crate::results::identity::study_text;
-use crate::results::{Directory, Identity, manifest};
+use crate::results::{Directory, Extent, Identity, manifest};
 use crate::screen::Screen;
 use crate::study::{self, Rule, Study};
 use std::path::{Path, PathBuf};
@@ -37,15 +37,20 @@ pub fn command(arguments: &cli::Certify) -> Result<(), Error> {
         let identity = Identity::of_study(&study)?;
         let is_ours =
             move |name: &str| name == FILE || !beside && ["study.json", manifest::NAME].contains(&name);
-        let results = Directory::open(&out, arguments.running.begin(), &identity, is_ours)?;
+        let order = arguments.running.order("certify", &arguments.design);
+        let extent = if beside { Extent::Guest } else { Extent::Whole };
+        let results = Directory::open(&out, &order, &identity, extent, is_ours)?;
         results.write_json(FILE, &certificate)?;
         if !beside {
             results.write("study.json", &study_text(&study)?)?;
             manifest::write(identity, [study.solver], &results)?;
+        } else {
+            manifest::amend(&results)?;
         }
         results.finish()?;
         screen.line(&certificate)?;
-        screen.line(where_results_are(&out)?)
+        screen.line(where_results_are(&out)?)?;
+        certificate.short().check_limits(study.name())
     })
 }
 
@@ -71,8 +76,26 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study)
 }
 
-/// The study whose scene has the design, and where its certificate goes if that is beside what was read.
-fn read(path: &Path) -> Result<(Study, Option<PathBuf>), Error> {
+/// Refuses the results of a search in `out` whose design breaks the limits of its study.
+///
+/// # Errors
+/// [`Error::Infeasible`].
+pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
+    let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
+    let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match (said.get("verdict"), said["words"].as_str()) {
+        (Some(serde_json::Value::Null), Some(words)) => {
+            Err(Error::Infeasible { name: study.to_owned(), words: words.to_owned() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The study whose scene has the design of a study, an `optimum.json` or a directory of results, and where its certificate goes if that is beside what was read.
+///
+/// # Errors
+/// They cannot be read, or are wrong.
+pub fn read(path: &Path) -> Result<(Study, Option<PathBuf>), Error> {
     let optimum = if path.is_dir() { path.join("optimum.json") } else { path.to_owned() };
     if !path.is_dir() && !study::is_optimum(path)? {
         return Ok((study::read(path)?, None));

@@ -1,7 +1,7 @@
 //! `check`: whether a study file is right, and what it asks for.
 
 use crate::error::Error;
-use crate::optimize::log::{joined, short};
+use crate::optimize::log::{counted, joined, short};
 use crate::paper::Plan;
 use crate::screen::Screen;
 use crate::study::{self, Part, Response, Search, Study, Sweep};
@@ -65,16 +65,21 @@ fn describe(study: &Study) -> String {
 fn starts(search: &Search) -> String {
     let mut from = Vec::new();
     if let Some((variables, grid)) = &search.surf {
-        from.push(format!("a grid of {} points over {}", grid.len(), joined(variables, ", ")));
+        from.push(format!(
+            "a grid of {} over {}",
+            counted(grid.len() as u64, "point"),
+            joined(variables, ", ")
+        ));
     }
     if let Some((global, ..)) = &search.global {
         from.push(format!(
-            "a global search ({} designs, {} CMA-ES searches)",
-            global.samples, global.searches
+            "a global search ({}, {})",
+            counted(global.samples.into(), "design"),
+            counted(global.searches as u64, "CMA-ES search")
         ));
     }
     if !search.given.is_empty() {
-        from.push(format!("{} given designs", search.given.len()));
+        from.push(counted(search.given.len() as u64, "given design"));
     }
     if from.is_empty() { "the damper of the scene".to_owned() } else { from.join(" and ") }
 }
@@ -87,10 +92,10 @@ fn goal(study: &Study) -> Vec<String> {
     let steady = objective.response == Response::Steady;
     let how = match (objective.response, objective.omega) {
         (Response::Window, Some(band)) => {
-            format!("in the window, on {} samples and refined at their peaks", band.samples)
+            format!("in the window, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
         }
         (Response::Settled, Some(band)) => {
-            format!("settled, on {} samples and refined at their peaks", band.samples)
+            format!("settled, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
         }
         (Response::Window, None) => "in the window".to_owned(),
         (Response::Settled, None) => "settled".to_owned(),
@@ -118,7 +123,13 @@ fn goal(study: &Study) -> Vec<String> {
         .filter_map(|limit| Some(format!("{limit} at most {} {}", short(limits.get(limit)?), limit.unit())))
         .collect();
     if !words.is_empty() {
-        lines.push(format!("under limits: {}", words.join(", ")));
+        let when = match limits.walls_from() {
+            None => String::new(),
+            Some(_) if steady => ", of the steady motion".to_owned(),
+            Some(0.0) => ", over the whole run".to_owned(),
+            Some(from) => format!(", from {} s on", short(from)),
+        };
+        lines.push(format!("under limits: {}{when}", words.join(", ")));
     }
     lines
 }

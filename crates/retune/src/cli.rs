@@ -1,16 +1,17 @@
 //! What may be typed: commands, arguments and their help.
 
 use crate::optimize::shard::Shard;
-use crate::results::Begin;
+use crate::results::{Begin, Order};
 use crate::study::{Setting, SettingError};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_solver::{Contacts, Method};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
 #[derive(Debug, Parser)]
 #[command(version, about, max_term_width = 110, subcommand_required = true, arg_required_else_help = true)]
+#[command(after_help = crate::exit::HELP)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -24,13 +25,14 @@ pub enum Command {
     Optimize(Optimize),
     /// Put the parts of a grid together that `optimize --shard` made, and go on with the search
     Merge(Merge),
-    /// Run a sample of the rows of results again, and say whether they hold
+    /// Run a sample of the rows of results again, and say whether they hold (exit code 0), do not (1), or cannot be checked (4)
     Verify(Verify),
     /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
     Certify(Certify),
     /// Run one scene and say what happened
     Simulate(Simulate),
     /// Read designs from standard input, one a line, and answer each with the value that `optimize` makes small
+    #[command(after_help = crate::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
@@ -107,16 +109,20 @@ pub struct Running {
     /// Throw unfinished work away and begin anew
     #[arg(long)]
     pub restart: bool,
+    /// Replace results of another study in the directory, and files of the results' names that Retune did not make
+    #[arg(long)]
+    pub replace: bool,
 }
 
 impl Running {
-    /// What becomes of unfinished work.
-    pub fn begin(&self) -> Begin {
-        match (self.resume, self.restart) {
+    /// What is asked of `command` with a study file.
+    pub fn order(&self, command: &'static str, study: &Path) -> Order {
+        let begin = match (self.resume, self.restart) {
             (true, _) => Begin::Resume,
             (false, true) => Begin::Restart,
             (false, false) => Begin::New,
-        }
+        };
+        Order { command, study: study.to_owned(), begin, replace: self.replace }
     }
 }
 
@@ -175,7 +181,7 @@ pub struct Reproduce {
     /// The study of the whole paper
     #[arg(long, value_name = "FILE", default_value = "studies/paper.json")]
     pub study: PathBuf,
-    /// How it is run; results go to results/paper unless --out says otherwise.
+    /// How it is run; results go to results/<study> unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
 }
@@ -236,10 +242,11 @@ pub struct Simulate {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Also write the motion in the window to a CSV file
+    /// Also write the motion in the window to a CSV file. Its last column, moment, says why a row is there: "grid" (one each
+    /// --interval), or a moment between: "touch-down", "force-max", "lift-off" of each contact, "E1-max" of each maximum of E1
     #[arg(long, value_name = "FILE.csv")]
     pub trajectory: Option<PathBuf>,
-    /// Time between two rows of the trajectory, s
+    /// Time between two rows of the trajectory's grid, s
     #[arg(long, value_name = "S", default_value_t = 0.005, requires = "trajectory")]
     pub interval: f64,
 }
@@ -249,7 +256,10 @@ pub struct Simulate {
 pub struct Evaluate {
     /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C
     pub study: PathBuf,
-    /// Threads of the runs of a value; the values are the same for any number [default: all cores]
+    /// Answer with JSON objects, which say by how much limits are broken
+    #[arg(long)]
+    pub json: bool,
+    /// Lines that are evaluated side by side, and threads of the runs of a value; the values are the same for any number [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }

@@ -1,5 +1,7 @@
 //! Everything that can go wrong, and whose fault it is.
 
+use crate::exit;
+use crate::optimize::log::{are, counted};
 use crate::study::{Rule, SettingError, StudyError};
 use retune_optim::{Failures, Unusable};
 use retune_solver::SolverError;
@@ -85,6 +87,62 @@ pub enum Error {
         /// What does not hold.
         problem: String,
     },
+    /// Results of which something cannot be checked; all that can be holds.
+    #[error("{}: cannot be checked: {problem}", path.display())]
+    NotChecked {
+        /// The directory of the results.
+        path: PathBuf,
+        /// What cannot be checked.
+        problem: String,
+    },
+    /// No design that keeps the limits: the results are of the nearest.
+    #[error(
+        "study {name}: the limits are not kept: {words}; loosen a limit, widen a bound, or look at more designs"
+    )]
+    Infeasible {
+        /// The study.
+        name: String,
+        /// Which limits are broken, and by how much.
+        words: String,
+    },
+    /// Lines that `evaluate` could not answer with a value.
+    #[error("standard input: {failed} of {} had no value", counted(*lines, "line"))]
+    Lines {
+        /// How many.
+        failed: u64,
+        /// How many there were.
+        lines: u64,
+    },
+    /// Something stands where results are to go, and nobody said that it may be replaced.
+    #[error(
+        "{}: {problem}: choose another directory with --out, or give --replace to have it replaced",
+        path.display()
+    )]
+    Standing {
+        /// The directory.
+        path: PathBuf,
+        /// What stands there.
+        problem: String,
+    },
+    /// Something stands where a file is to go that is never replaced.
+    #[error("{}: not replaced: {problem}: move it away, or choose another place", path.display())]
+    Protected {
+        /// What stands there.
+        path: PathBuf,
+        /// What it is.
+        problem: String,
+    },
+    /// Nobody can tell whose work a journal holds.
+    #[error(
+        "{}: {problem}: move it away to look at it, or throw the unfinished work away with --restart",
+        path.display()
+    )]
+    Journal {
+        /// The journal.
+        path: PathBuf,
+        /// Why not.
+        problem: &'static str,
+    },
     /// Another run is at work in the directory.
     #[error(
         "{}: another run{} is at work here: wait for it, stop it, or choose another directory with --out",
@@ -98,12 +156,14 @@ pub enum Error {
         holder: Option<u32>,
     },
     /// A run was interrupted here, and nobody said what becomes of it.
-    #[error("{}: {}", path.display(), unfinished(*lines, difference.as_deref()))]
+    #[error("{}: {}", path.display(), unfinished(*lines, *damaged, difference.as_deref()))]
     Unfinished {
         /// The directory.
         path: PathBuf,
         /// How much of it is kept.
         lines: u64,
+        /// Lines that are damaged.
+        damaged: u64,
         /// Why this run cannot go on with it, if it cannot.
         difference: Option<String>,
     },
@@ -155,20 +215,26 @@ fn example(failures: &Failures) -> String {
     }
 }
 
-fn unfinished(lines: u64, difference: Option<&str>) -> String {
+fn unfinished(lines: u64, damaged: u64, difference: Option<&str>) -> String {
+    let damaged = match damaged {
+        0 => String::new(),
+        1 => ", 1 line is damaged".to_owned(),
+        many => format!(", {many} lines are damaged"),
+    };
+    let kept = format!("{} kept{damaged}", are(lines, "result"));
     match difference {
         None => format!(
-            "unfinished work was found here ({lines} results are kept): --resume goes on with it, --restart begins anew"
+            "unfinished work was found here ({kept}): --resume goes on with it, --restart begins anew"
         ),
         Some(difference) => format!(
-            "unfinished work was found here ({lines} results are kept), but it is {difference}: finish it as it was begun, \
+            "unfinished work was found here ({kept}), but it is {difference}: finish it as it was begun, \
              choose another directory with --out, or throw it away with --restart"
         ),
     }
 }
 
 impl Error {
-    /// 2 where the user can mend it (an input, a place to write to), 1 where the computation failed.
+    /// One of [`exit`].
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Study(_)
@@ -179,8 +245,13 @@ impl Error {
             | Self::Input { .. }
             | Self::Part { .. }
             | Self::MissingParts { .. }
+            | Self::Standing { .. }
+            | Self::Protected { .. }
+            | Self::Journal { .. }
             | Self::Busy { .. }
-            | Self::Unfinished { .. } => 2,
+            | Self::Unfinished { .. } => exit::WRONG,
+            Self::Infeasible { .. } => exit::INFEASIBLE,
+            Self::NotChecked { .. } => exit::UNCHECKED,
             Self::Threads(_)
             | Self::Run(_)
             | Self::Atlas(_)
@@ -189,7 +260,8 @@ impl Error {
             | Self::Global { .. }
             | Self::Search { .. }
             | Self::Figure { .. }
-            | Self::NotHeld { .. } => 1,
+            | Self::Lines { .. }
+            | Self::NotHeld { .. } => exit::FAILED,
         }
         .into()
     }

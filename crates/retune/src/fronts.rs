@@ -8,20 +8,20 @@ mod design;
 mod draw;
 mod page;
 
-pub use design::energy;
+pub use design::{energy, finer};
 
 use crate::certify::{Certificate, certify};
 use crate::cli;
 use crate::error::Error;
 use crate::optimize::{Found, optimize, where_results_are, with_threads};
 use crate::results::resolved::{self, Resolved};
-use crate::results::{Begin, Directory, Identity, manifest};
+use crate::results::{Directory, Extent, Identity, Order, manifest};
 use crate::screen::Screen;
 use crate::study::{self, FrontsPlan, PerVariable, Study, Sweep};
-use design::{Design, SAME, by_excess, finer, look};
+use crate::tables::out_of;
+use design::{Design, SAME, by_excess, look};
 use retune_optim::{Limit, Variable, When};
 use serde_json::json;
-use std::path::{Path, PathBuf};
 
 /// A search keeps this much below a limit of stroke, for between its samples a stroke may be a little larger.
 const ROOM: f64 = 0.99;
@@ -60,15 +60,16 @@ struct Certified<'a> {
 pub fn fronts(arguments: &cli::Fronts) -> Result<(), Error> {
     let plan = study::read_fronts(&arguments.study)?;
     let running = &arguments.running;
-    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/fronts"));
+    let out = out_of(running, &arguments.study)?;
+    let order = running.order("fronts", &arguments.study);
     let screen = Screen::new(running.quiet);
     let dampers = plan.dampers.iter().map(|(name, study)| (name.as_str(), study));
     let resolved = Resolved::new(json!(plan.said), dampers).text()?;
     let solvers: Vec<_> = plan.dampers.iter().map(|(_, study)| study.solver).collect();
     let identity = Identity::of(&resolved);
-    let directory = Directory::open(&out, running.begin(), &identity, is_ours)?;
+    let directory = Directory::open(&out, &order, &identity, Extent::Whole, is_ours)?;
     with_threads(running.threads, || {
-        let (fronts, parts) = Fronts::search(plan, &out, running.begin(), screen)?;
+        let (fronts, parts) = Fronts::search(plan, &directory, &order, screen)?;
         for sweep in Sweep::ALL {
             directory.write(&format!("{}.csv", sweep.name()), &fronts.csv(sweep))?;
             directory.write(&format!("{}.svg", sweep.name()), &draw::sweep(&fronts, sweep))?;
@@ -109,8 +110,8 @@ impl Fronts {
     /// Makes all searches, the tighter bounds first.
     fn search(
         plan: FrontsPlan,
-        out: &Path,
-        begin: Begin,
+        directory: &Directory,
+        order: &Order,
         screen: Screen,
     ) -> Result<(Self, Vec<Directory>), Error> {
         let mut fronts = Self { plan, designs: Vec::new(), given: Vec::new() };
@@ -129,8 +130,8 @@ impl Fronts {
                     let study = study::bounded(&study, sweep, room * bound, starts).map_err(refuse)?;
                     let (what, unit) = (sweep.name(), sweep.unit());
                     screen.log(format!("\n{name}, {what} at most {bound} {unit}"))?;
-                    let place = out.join(format!("{what}-{bound}")).join(study.name());
-                    let (optimum, results) = optimize(&study, &place, begin, screen)?;
+                    let place = directory.part(&format!("{what}-{bound}/{}", study.name()));
+                    let (optimum, results) = optimize(&study, &place, order, screen)?;
                     parts.push(results);
                     screen.log(optimum.report())?;
                     let Found { design: [_, at @ ..], .. } = optimum.found();

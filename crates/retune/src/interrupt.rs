@@ -1,9 +1,9 @@
 //! Ctrl-C and SIGTERM. All that was computed is in the journal at any moment, so there is nothing to save: the process says how
 //! to go on, and ends. (Where there are no signals, Ctrl-C ends it without a word, and nothing is lost either.)
 
-/// The exit code of a run that was stopped.
+/// Set by the justfile to the words that stand before a command there, `just`: its recipes are named like the commands.
 #[cfg(unix)]
-const STOPPED: i32 = 130;
+const RUN_AS: &str = "RETUNE_RUN_AS";
 
 /// From now on, Ctrl-C ends the process with the command that goes on.
 #[cfg(unix)]
@@ -17,10 +17,11 @@ pub fn say_how_to_go_on() {
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {
-                let words = go_on(std::env::args());
+                let words = go_on(std::env::var(RUN_AS).ok(), std::env::args_os());
+                let words = crate::screen::visible(&words).into_owned();
                 let _ =
                     writeln!(std::io::stderr(), "\nstopped; what was computed is kept. To go on:\n  {words}");
-                std::process::exit(STOPPED);
+                std::process::exit(crate::exit::STOPPED.into());
             }
         };
         let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(wait);
@@ -31,38 +32,73 @@ pub fn say_how_to_go_on() {
 #[cfg(not(unix))]
 pub fn say_how_to_go_on() {}
 
-/// The command line that goes on with the work of this one.
-#[cfg_attr(not(unix), allow(dead_code))]
-fn go_on(arguments: impl Iterator<Item = String>) -> String {
-    let mut words: Vec<String> =
-        arguments.filter(|word| word != "--resume" && word != "--restart").map(quoted).collect();
+/// The command line that goes on with the work of this one. `run_as` stands in the place of the program, if it is given.
+#[cfg(unix)]
+fn go_on(run_as: Option<String>, mut arguments: impl Iterator<Item = std::ffi::OsString>) -> String {
+    let program = arguments.next().unwrap_or_else(|| "retune".into());
+    let mut words = vec![run_as.unwrap_or_else(|| quoted(&program))];
+    words
+        .extend(arguments.filter(|word| word != "--resume" && word != "--restart").map(|word| quoted(&word)));
     words.push("--resume".to_owned());
     words.join(" ")
 }
 
-/// A word as a shell takes it.
-#[cfg_attr(not(unix), allow(dead_code))]
-fn quoted(word: String) -> String {
+/// A word as a shell takes it, and as a terminal may show it: control characters and what is no UTF-8 as `$'\x1b'`.
+#[cfg(unix)]
+fn quoted(word: &std::ffi::OsStr) -> String {
+    use std::os::unix::ffi::OsStrExt;
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
+    match word.to_str() {
+        Some(text) if !text.is_empty() && text.chars().all(plain) => text.to_owned(),
+        Some(text) if !text.contains(char::is_control) => format!("'{}'", text.replace('\'', "'\\''")),
+        _ => {
+            let byte = |byte: &u8| match byte {
+                b' '..=b'~' if !b"'\\".contains(byte) => char::from(*byte).to_string(),
+                _ => format!("\\x{byte:02x}"),
+            };
+            format!("$'{}'", word.as_bytes().iter().map(byte).collect::<String>())
+        }
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::go_on;
+    use std::ffi::{OsStr, OsString};
+    use std::os::unix::ffi::OsStrExt;
+
+    fn said(run_as: Option<&str>, words: &[&[u8]]) -> String {
+        go_on(run_as.map(str::to_owned), words.iter().map(|word| OsString::from(OsStr::from_bytes(word))))
+    }
 
     #[test]
     fn exact_the_command_that_goes_on_is_one_that_a_shell_takes() {
-        let said = |words: &[&str]| go_on(words.iter().map(|word| (*word).to_owned()));
-        assert_eq!(said(&["retune", "optimize", "a.json"]), "retune optimize a.json --resume");
+        assert_eq!(said(None, &[b"retune", b"optimize", b"a.json"]), "retune optimize a.json --resume");
         assert_eq!(
-            said(&["retune", "optimize", "my study.json", "--restart", "--out", "it's"]),
-            "retune optimize 'my study.json' --out 'it'\\''s' --resume"
+            said(
+                None,
+                &[b"/opt/my tools/retune", b"optimize", b"my study.json", b"--restart", b"--out", b"it's"]
+            ),
+            "'/opt/my tools/retune' optimize 'my study.json' --out 'it'\\''s' --resume"
         );
-        assert_eq!(said(&["retune", "retune", "3e4", "--resume"]), "retune retune 3e4 --resume");
+        assert_eq!(said(None, &[b"retune", b"retune", b"3e4", b"--resume"]), "retune retune 3e4 --resume");
+        assert_eq!(
+            said(
+                Some("just"),
+                &[b"target/release/retune", b"optimize", b"studies/ssvi.json", b"--threads", b"1"]
+            ),
+            "just optimize studies/ssvi.json --threads 1 --resume"
+        );
+    }
+
+    /// The words go back through a shell to what they were.
+    #[test]
+    fn contract_any_argument_survives_a_shell() {
+        let words: [&[u8]; 6] = [b"printf", b"%s|", b"it's", b"\x1b[31m", b"\xff\xfe\\'", b"tab\tand\nline"];
+        let line = said(None, &words);
+        assert!(!line.contains(char::is_control), "{line}");
+        let output = std::process::Command::new("bash").args(["-c", &line]).output().expect("bash");
+        let expected = [&words[2..].join(&b'|'), b"|--resume|".as_slice()].concat();
+        assert_eq!(output.stdout, expected, "{line}");
     }
 }

@@ -5,11 +5,13 @@ mod check;
 mod cli;
 mod error;
 mod evaluate;
+mod exit;
 mod figure;
 mod fronts;
 mod interrupt;
 mod optimize;
 mod paper;
+mod progress;
 mod results;
 mod retention;
 mod screen;
@@ -26,7 +28,11 @@ use screen::Screen;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match run(Cli::parse().command) {
+    let arguments = match Cli::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return screen::show_usage(&error),
+    };
+    match run(arguments.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             screen::show_error(&error);

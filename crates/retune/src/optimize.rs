@@ -16,7 +16,7 @@ use crate::certify::{self, certify};
 use crate::cli;
 use crate::error::Error;
 use crate::results::identity::{Identity, study_text};
-use crate::results::{Begin, Directory, Journal, manifest};
+use crate::results::{Directory, Extent, Journal, Order, manifest};
 use crate::screen::Screen;
 use crate::study::{self, Search, Study};
 use crate::summary::Summary;
@@ -37,14 +37,16 @@ pub fn command(arguments: &cli::Optimize) -> Result<(), Error> {
     if arguments.shard.is_none() && nothing_to_resume(&study, &out, &arguments.running, screen)? {
         return Ok(());
     }
+    let order = arguments.running.order("optimize", &arguments.study);
     with_threads(arguments.running.threads, || {
         if let Some(shard) = arguments.shard {
-            return shard::shard(&study, shard, &out, arguments.running.begin(), screen);
+            return shard::shard(&study, shard, &out, &order, screen);
         }
-        let (optimum, results) = optimize(&study, &out, arguments.running.begin(), screen)?;
+        let (optimum, results) = optimize(&study, &out, &order, screen)?;
         results.finish()?;
         screen.line(optimum.report())?;
-        screen.line(where_results_are(&out)?)
+        screen.line(where_results_are(&out)?)?;
+        optimum.check_limits(study.name())
     })
 }
 
@@ -59,6 +61,7 @@ fn nothing_to_resume(
     if finished {
         Directory::tidy(out);
         screen.line(format!("finished already: nothing to go on with\n{}", where_results_are(out)?))?;
+        certify::check_limits_in(out, study.name())?;
     }
     Ok(finished)
 }
@@ -83,10 +86,10 @@ pub fn with_threads<T: Send>(
 pub fn optimize(
     study: &Study,
     out: &Path,
-    begin: Begin,
+    order: &Order,
     screen: Screen,
 ) -> Result<(Optimum, Directory), Error> {
-    optimize_from(study, out, begin, screen, |_| Ok(()))
+    optimize_from(study, out, order, screen, |_| Ok(()))
 }
 
 /// As [`optimize`], with what `prepare` teaches the directory beforehand.
@@ -96,22 +99,22 @@ pub fn optimize(
 fn optimize_from(
     study: &Study,
     out: &Path,
-    begin: Begin,
+    order: &Order,
     screen: Screen,
     prepare: impl FnOnce(&mut Directory) -> Result<(), Error>,
 ) -> Result<(Optimum, Directory), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let mut results = Directory::open(out, begin, &Identity::of_study(study)?, is_ours)?;
+    let mut results = Directory::open(out, order, &Identity::of_study(study)?, Extent::Whole, is_ours)?;
     prepare(&mut results)?;
     match results.journal().known() {
         0 => {}
-        known => screen.log(format!("goes on: {known} values are known"))?,
+        known => screen.log(format!("goes on: {} known", log::are(known, "value")))?,
     }
     match tuned(study, &search, &results, screen).and_then(|optimum| results.publish().map(|()| optimum)) {
         Ok(optimum) => Ok((optimum, results)),
         Err(error) => {
             // What cannot be written may go on once it can; what cannot be computed never will.
-            if !matches!(error, Error::Output { .. }) {
+            if !matches!(error, Error::Output { .. } | Error::Standing { .. } | Error::Protected { .. }) {
                 results.discard();
             }
             Err(error)
@@ -157,14 +160,18 @@ fn tuned(study: &Study, search: &Search, results: &Directory, screen: Screen) ->
     Ok(optimum)
 }
 
-/// An objective as searches call it: what the journal knows of it is not computed again.
+/// An objective as searches call it: what the journal knows of it is not computed again; then `on_known` is called.
 fn kept<'a>(
     objective: &'a PeakEnergy,
     journal: &'a Journal,
     stage: &'static str,
+    on_known: impl Fn() + Sync + 'a,
 ) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
     move |design, cutoff| {
-        let known = |value| objective.recall(value);
+        let known = |value| {
+            on_known();
+            objective.recall(value);
+        };
         journal.value(stage, design, cutoff, || objective.value(design, cutoff), known)
     }
 }

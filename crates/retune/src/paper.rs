@@ -22,10 +22,10 @@ pub use plan::{PaperPlan, Plan};
 use crate::cli::Reproduce;
 use crate::error::Error;
 use crate::optimize::{where_results_are, with_threads};
-use crate::results::{Directory, Identity, manifest, resolved};
+use crate::results::{Directory, Extent, Identity, manifest, resolved};
 use crate::screen::Screen;
+use crate::tables::out_of;
 use item::Item;
-use std::path::PathBuf;
 
 /// What makes an item.
 type Maker = fn(&Plan) -> Result<Item, Error>;
@@ -63,17 +63,20 @@ fn run(arguments: &Reproduce, only: Option<String>) -> Result<(), Error> {
     let running = &arguments.running;
     let screen = Screen::new(running.quiet);
     let plan = Plan::read(&arguments.study, screen)?;
-    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/paper"));
+    let out = out_of(running, &arguments.study)?;
+    let order = running.order("reproduce", &arguments.study);
     let is_page = only.is_none();
     let wanted = move |name: &str| only.as_deref().is_none_or(|only| only == name);
     let items: Vec<_> = ITEMS.into_iter().filter(|(name, _)| wanted(name)).collect();
-    // A manifest is of the whole page: an item that is made anew leaves none.
     let is_ours = move |file: &str| {
-        file == manifest::NAME || ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name))
+        [manifest::NAME, resolved::NAME, "study.json"].contains(&file)
+            || file == "index.html" && is_page
+            || ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name))
     };
+    let extent = if is_page { Extent::Whole } else { Extent::Share };
     let resolved = plan.resolved().text()?;
     let identity = Identity::of(&resolved);
-    let results = Directory::open(&out, running.begin(), &identity, is_ours)?;
+    let results = Directory::open(&out, &order, &identity, extent, is_ours)?;
     with_threads(running.threads, || {
         results.write_json("study.json", &plan.file)?;
         let mut made = Vec::new();
@@ -85,9 +88,9 @@ fn run(arguments: &Reproduce, only: Option<String>) -> Result<(), Error> {
         }
         if is_page {
             results.write("index.html", &page::page(&made))?;
-            results.write(resolved::NAME, &resolved)?;
-            manifest::write(identity, [plan.ssvi.solver, plan.tmd.solver], &results)?;
         }
+        results.write(resolved::NAME, &resolved)?;
+        manifest::write(identity, [plan.ssvi.solver, plan.tmd.solver], &results)?;
         results.finish()?;
         screen.line(where_results_are(&out)?)
     })

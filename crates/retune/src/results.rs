@@ -6,84 +6,105 @@ pub mod identity;
 pub mod journal;
 mod lock;
 pub mod manifest;
+pub mod order;
 mod pending;
+mod plain;
 pub mod resolved;
+pub mod seal;
+mod unfinished;
 
 pub use identity::{Identity, json_text};
 pub use journal::Journal;
+pub use order::{Begin, Extent, Order};
 pub use pending::Pending;
 
 use crate::error::Error;
 use crate::interrupt;
-use journal::Known;
 use lock::Lock;
+use manifest::{MadeBy, Manifest};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
-/// Where new results come about.
-pub const UNFINISHED: &str = "unfinished";
-
-/// The journal, in [`UNFINISHED`].
-const JOURNAL: &str = "journal";
-
-/// What becomes of unfinished work that is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Begin {
-    /// Nothing: it is announced, and the run refused.
-    #[default]
-    New,
-    /// The run goes on with it.
-    Resume,
-    /// It is thrown away.
-    Restart,
-}
+pub use unfinished::UNFINISHED;
+use unfinished::{JOURNAL, Unfinished};
 
 /// A directory of results while they are made. One process at a time has it.
 pub struct Directory {
     path: PathBuf,
     unfinished: PathBuf,
     journal: Journal,
+    order: Order,
+    extent: Extent,
+    identity: Identity,
     is_ours: Box<dyn Fn(&str) -> bool + Send + Sync>,
+    /// The directories below in which searches were begun.
+    parts: Mutex<BTreeSet<String>>,
+    /// Those of unfinished work that is thrown away.
+    thrown_away: BTreeSet<String>,
     _lock: Lock,
 }
 
 impl Directory {
-    /// Opens the directory, made if there is none, for a work of this identity. Of an earlier work, the files that `is_ours`
-    /// names stay until the new ones are whole, and then go: results of two studies must not stand side by side.
+    /// Opens the directory, made if there is none, for a work of this identity. Earlier results stay until the new ones are whole,
+    /// and then go: those of two studies must not stand side by side. `is_ours` names what the work may write, and of a share of
+    /// the results all that it replaces.
     ///
     /// # Errors
-    /// The directory cannot be made or written to; another process has it; or there is unfinished work of another study in it, or
-    /// any if `begin` does not say what becomes of it.
+    /// The directory cannot be made or written to; another process has it; there is something in it that `order` does not allow to
+    /// be replaced; or there is unfinished work of another study in it, or any if `order` does not say what becomes of it.
     pub fn open(
         path: &Path,
-        begin: Begin,
+        order: &Order,
         identity: &Identity,
+        extent: Extent,
         is_ours: impl Fn(&str) -> bool + Send + Sync + 'static,
     ) -> Result<Self, Error> {
         let refuse = |source| Error::Output { path: path.to_owned(), source };
         std::fs::create_dir_all(path).map_err(refuse)?;
         let lock = Lock::take(path)?;
+        let found = Unfinished::find(path, order.begin, identity)?;
+        order.may_replace(path, extent, identity, &is_ours)?;
         let unfinished = path.join(UNFINISHED);
-        let found = journal::read(&unfinished.join(JOURNAL)).map_err(refuse)?;
-        let (known, length) = match found {
-            Some((of, known, length)) if begin != Begin::Restart && known.lines > 0 => {
-                let difference = identity.difference(&of);
-                if begin == Begin::New || difference.is_some() {
-                    let lines = known.lines;
-                    return Err(Error::Unfinished { path: path.to_owned(), lines, difference });
-                }
-                (known, length)
-            }
-            _ => (Known::default(), 0),
-        };
-        let keep = |name: &str| length > 0 && (name == JOURNAL || name.ends_with(".item"));
-        clear(&unfinished, keep).map_err(refuse)?;
-        std::fs::create_dir_all(&unfinished).map_err(refuse)?;
-        let journal = Journal::open(&unfinished.join(JOURNAL), identity, known, length)?;
+        let (journal, thrown_away) = found.take_up(&unfinished, identity)?;
         // The names of the journal and its directory must outlive a power cut as well.
         sync_directory(&unfinished).and_then(|()| sync_directory(path)).map_err(refuse)?;
         interrupt::say_how_to_go_on();
-        Ok(Self { path: path.to_owned(), unfinished, journal, is_ours: Box::new(is_ours), _lock: lock })
+        Ok(Self {
+            path: path.to_owned(),
+            unfinished,
+            journal,
+            order: order.clone(),
+            extent,
+            identity: identity.clone(),
+            is_ours: Box::new(is_ours),
+            parts: Mutex::default(),
+            thrown_away,
+            _lock: lock,
+        })
+    }
+
+    /// The directory `name` below this one, for a search that is part of the work.
+    pub fn part(&self, name: &str) -> PathBuf {
+        self.journal.note_part(name);
+        self.parts.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
+        self.path.join(name)
+    }
+
+    /// The directories below that the work has made results in.
+    pub fn parts(&self) -> BTreeSet<String> {
+        self.parts.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Who makes the results.
+    pub fn made_by(&self) -> MadeBy {
+        self.order.made_by(&self.path)
+    }
+
+    /// Whether an earlier file of this name goes when the new results are whole.
+    pub fn replaces(&self, name: &str) -> bool {
+        self.extent == Extent::Whole || (self.is_ours)(name)
     }
 
     /// Whether there is unfinished work in a directory.
@@ -152,6 +173,19 @@ impl Directory {
         Ok(names)
     }
 
+    /// SHA-256 of each result that is whole, but for the manifest.
+    ///
+    /// # Errors
+    /// A file cannot be read.
+    pub fn new_files(&self) -> Result<BTreeMap<String, String>, Error> {
+        let mut files = BTreeMap::new();
+        for name in self.whole()?.into_iter().filter(|name| name != manifest::NAME) {
+            let sha = manifest::file_sha256(&self.whole_path(&name))?;
+            files.insert(name, sha);
+        }
+        Ok(files)
+    }
+
     /// The path of a result that is whole but not yet in its place.
     pub fn whole_path(&self, name: &str) -> PathBuf {
         self.unfinished.join(name)
@@ -161,28 +195,75 @@ impl Directory {
     /// until [`Self::finish`].
     ///
     /// # Errors
-    /// A file cannot be written, moved or removed.
+    /// Something stands in their place that may not be replaced, or a file cannot be written, moved or removed.
     pub fn publish(&self) -> Result<(), Error> {
         self.journal.check()?;
         let new = self.whole()?;
         if new.is_empty() {
             return Ok(()); // they are in their place already
         }
-        let place = || -> std::io::Result<()> {
-            for name in &new {
-                File::open(self.unfinished.join(name))?.sync_all()?;
+        // Someone may have put a file there since the work began.
+        self.order
+            .may_replace(&self.path, self.extent, &self.identity, |name| new.iter().any(|new| new == name))?;
+        self.place(&new).map_err(|source| self.refused(source))
+    }
+
+    /// The manifest that stands there between says that the files of both are Retune's: the process may end at any moment.
+    fn place(&self, new: &[String]) -> std::io::Result<()> {
+        for name in new {
+            File::open(self.unfinished.join(name))?.sync_all()?;
+        }
+        let old = Manifest::read(&self.path);
+        let mut standing = names(&self.path)?;
+        standing.retain(|name| old.as_ref().is_some_and(|old| old.has_made(&self.path, name)));
+        if let Some(mut between) = Manifest::read(&self.unfinished) {
+            for name in &standing {
+                let sha = manifest::file_sha256(&self.path.join(name)).map_err(std::io::Error::other)?;
+                between.earlier.insert(name.clone(), sha);
             }
-            for name in names(&self.path)? {
-                if (self.is_ours)(&name) && !new.contains(&name) {
-                    std::fs::remove_file(self.path.join(&name))?;
-                }
+            let write = || {
+                let mut file = Pending::create(&self.path.join(manifest::NAME))?;
+                file.push(&json_text(&between, manifest::NAME)?)?;
+                file.finish_on_disk()
+            };
+            write().map_err(std::io::Error::other)?;
+        }
+        standing.retain(|name| self.replaces(name));
+        if self.order.replace {
+            let is_ours = |name: &String| {
+                (self.is_ours)(name) && plain::is_there(&self.path.join(name)).unwrap_or(false)
+            };
+            standing.extend(names(&self.path)?.into_iter().filter(is_ours));
+        }
+        let gone: BTreeSet<String> = standing.into_iter().filter(|name| !new.contains(name)).collect();
+        for name in gone {
+            std::fs::remove_file(self.path.join(name))?;
+        }
+        if let Some(old) = old.filter(|_| self.extent == Extent::Whole) {
+            self.remove_parts(&old.parts, false)?;
+        }
+        self.remove_parts(self.journal.parts(), true)?;
+        self.remove_parts(&self.thrown_away, true)?;
+        let (manifest, files): (Vec<&String>, Vec<&String>) =
+            new.iter().partition(|name| *name == manifest::NAME);
+        for name in files.into_iter().chain(manifest) {
+            std::fs::rename(self.unfinished.join(name), self.path.join(name))?;
+        }
+        sync_directory(&self.path)
+    }
+
+    /// Removes what Retune made in directories below that are no part of the work any more.
+    fn remove_parts(&self, earlier: &BTreeSet<String>, with_unfinished: bool) -> std::io::Result<()> {
+        let now = self.parts();
+        for name in earlier.difference(&now).filter(|name| order::is_below(name)) {
+            unfinished::remove_results(&self.path.join(name), with_unfinished)?;
+            let mut above = Path::new(name).parent();
+            while let Some(name) = above.filter(|name| !name.as_os_str().is_empty()) {
+                let _ = std::fs::remove_dir(self.path.join(name)); // it stays if anything else is in it
+                above = name.parent();
             }
-            for name in &new {
-                std::fs::rename(self.unfinished.join(name), self.path.join(name))?;
-            }
-            sync_directory(&self.path)
-        };
-        place().map_err(|source| self.refused(source))
+        }
+        Ok(())
     }
 
     /// Puts the new results into place and removes what the work left behind.
@@ -191,12 +272,12 @@ impl Directory {
     /// As [`Self::publish`].
     pub fn finish(self) -> Result<(), Error> {
         self.publish()?;
-        std::fs::remove_dir_all(&self.unfinished).map_err(|source| self.refused(source))
+        unfinished::remove(&self.unfinished).map_err(|source| self.refused(source))
     }
 
     /// Throws the unfinished work away: it has come to an end that it would come to again. Earlier results stay.
     pub fn discard(self) {
-        let _ = std::fs::remove_dir_all(&self.unfinished); // what is left of it is cleared by the next run
+        let _ = unfinished::remove(&self.unfinished); // what is left of it is cleared by the next run
     }
 
     fn refused(&self, source: std::io::Error) -> Error {
@@ -207,21 +288,11 @@ impl Directory {
 impl Drop for Directory {
     /// Where nothing was computed there is nothing to go on with.
     fn drop(&mut self) {
-        if self.journal.is_empty() {
-            let _ = std::fs::remove_dir_all(&self.unfinished); // an empty journal does no harm either
+        let began = |part: &String| self.path.join(part).join(UNFINISHED).exists();
+        if self.journal.is_empty() && !self.parts().iter().any(began) {
+            let _ = unfinished::remove(&self.unfinished); // an empty journal does no harm either
         }
     }
-}
-
-/// Removes everything in a directory but what is to be kept.
-fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
-    if !directory.exists() {
-        return Ok(());
-    }
-    for name in names(directory)?.iter().filter(|name| !keep(name)) {
-        std::fs::remove_file(directory.join(name))?;
-    }
-    Ok(())
 }
 
 /// The names in a directory, sorted.

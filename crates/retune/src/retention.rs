@@ -9,14 +9,13 @@ use crate::cli;
 use crate::error::Error;
 use crate::optimize::log::short;
 use crate::optimize::{Found, optimize, with_threads};
-use crate::results::Begin;
+use crate::results::Order;
 use crate::screen::Screen;
 use crate::study::{self, PaperStudy, Setting, Study};
-use crate::tables::{Table, quoted};
+use crate::tables::{Table, out_of, quoted};
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
 use serde_json::json;
-use std::path::{Path, PathBuf};
 
 /// Stiffnesses between the smallest and the largest at which the retention is drawn, and those that were tuned for.
 const ALONG: usize = 61;
@@ -41,16 +40,17 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
         rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
     }
     let running = &arguments.running;
-    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/retune"));
+    let out = out_of(running, &arguments.study)?;
+    let order = running.order("retune", &arguments.study);
     let screen = Screen::new(running.quiet);
     const FILES: [&str; 3] = ["retention.csv", "retention.svg", "path.svg"];
     let k1: Vec<f64> = arguments.k1.iter().map(Setting::value).collect();
     let plan = json!({ "k1": k1 });
-    let mut table = Table::new(["retune", "k1"], &FILES, &out, running.begin(), plan, &rows)?;
+    let mut table = Table::new(["retune", "k1"], &FILES, &out, &order, plan, &rows)?;
     with_threads(running.threads, || {
         let tuned = rows
             .into_iter()
-            .map(|row| tune(row, &arguments.k1, &out, running.begin(), &mut table, screen))
+            .map(|row| tune(row, &arguments.k1, &order, &mut table, screen))
             .collect::<Result<Vec<Tuned>, Error>>()?;
         let mut designs: Vec<(f64, &str, Found)> = tuned
             .iter()
@@ -73,8 +73,7 @@ pub fn retune(arguments: &cli::Retune) -> Result<(), Error> {
 fn tune(
     row: PaperStudy,
     others: &[Setting],
-    out: &Path,
-    begin: Begin,
+    order: &Order,
     table: &mut Table,
     screen: Screen,
 ) -> Result<Tuned, Error> {
@@ -97,9 +96,9 @@ fn tune(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
             study.objective().over(study.scene.forcing.frequency.get())
         ))?;
-        let place = out.join(format!("k1-{k1}")).join(study.name());
-        let (optimum, results) = optimize(&study, &place, begin, screen)?;
-        table.keep(results);
+        let place = table.directory().part(&format!("k1-{k1}/{}", study.name()));
+        let (optimum, results) = optimize(&study, &place, order, screen)?;
+        table.keep(&study, &optimum, results);
         screen.log(optimum.report())?;
         designs[i] = Some(optimum.found());
     }

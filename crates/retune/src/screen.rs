@@ -1,9 +1,11 @@
 //! What appears on the screen: results and the log on standard output, errors and progress on standard error.
 
 use crate::error::Error;
-use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use crate::progress::Progress;
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
 
 /// Where output goes.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +26,7 @@ impl Screen {
     /// its files are written all the same.
     pub fn line(&self, text: impl Display) -> Result<(), Error> {
         let mut out = std::io::stdout().lock();
-        match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        match writeln!(out, "{}", visible(&text.to_string())).and_then(|()| out.flush()) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
             Err(source) => Err(Error::Output { path: "standard output".into(), source }),
             Ok(()) => Ok(()),
@@ -39,37 +41,78 @@ impl Screen {
         if self.quiet { Ok(()) } else { self.line(text) }
     }
 
-    /// A progress bar over `count` evaluations, with rate and time left; none where standard error is no terminal.
-    pub fn progress(&self, what: &'static str, count: u64) -> ProgressBar {
-        if self.quiet {
-            return ProgressBar::hidden();
-        }
-        let template = "{prefix} [{bar:30}] {human_pos}/{human_len}  {rate}  {eta} left";
-        let style = ProgressStyle::with_template(template)
-            .unwrap_or_else(|_| ProgressStyle::default_bar())
-            .with_key("rate", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-                let _ = out.write_str(&rate(state.per_sec()));
-            });
-        ProgressBar::new(count).with_style(style.progress_chars("=> ")).with_prefix(what)
+    /// The progress over `count` evaluations, with rate and time left.
+    pub fn progress(&self, what: &'static str, count: u64) -> Progress {
+        Progress::new(what, count, self.quiet)
     }
-}
-
-/// A rate to two or three digits: `3.4/s`, `1250/s`.
-fn rate(per_second: f64) -> String {
-    if per_second < 10.0 { format!("{per_second:.1}/s") } else { format!("{per_second:.0}/s") }
 }
 
 /// Shows why a command failed. Where even that cannot be written, the exit code must do.
 pub fn show_error(error: &Error) {
-    let _ = writeln!(std::io::stderr(), "error: {error}");
+    say("error", &error.to_string());
+}
+
+/// Shows what a person should know of a command that goes on, however quiet it is asked to be.
+pub fn warn(words: &str) {
+    say("warning", words);
+}
+
+/// Writes to standard error; where that cannot be, nothing can be done about it.
+fn say(what: &str, words: &str) {
+    let _ = writeln!(std::io::stderr(), "{what}: {}", visible(words));
+}
+
+/// Shows what is wrong with the arguments, or the help that they ask for; the exit code.
+pub fn show_usage(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() && error.kind() != clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    {
+        let _ = write!(std::io::stderr(), "{}", visible(&error.render().to_string()));
+    } else {
+        let _ = error.print(); // in colours; nothing that was typed is in it
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// A text whose control characters are seen instead of obeyed: a terminal takes orders from whoever names a file or a study.
+/// Ends of lines stay; so do tabs. The form is that of JSON, so what is in a JSON text stays the same text.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_order) {
+        return text.into();
+    }
+    let mut shown = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if is_order(c) {
+            shown += &format!("\\u{:04x}", u32::from(c));
+        } else {
+            shown.push(c);
+        }
+    }
+    shown.into()
+}
+
+/// Whether a terminal may obey a character: controls, and those that turn the direction of writing.
+fn is_order(c: char) -> bool {
+    const TURNS: [std::ops::RangeInclusive<char>; 3] =
+        ['\u{200e}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2066}'..='\u{2069}'];
+    c.is_control() && !['\n', '\t'].contains(&c) || TURNS.iter().any(|turns| turns.contains(&c))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::rate;
+    use super::visible;
 
     #[test]
-    fn exact_rates_have_few_digits() {
-        assert_eq!([0.0, 3.4219, 1249.8].map(rate), ["0.0/s", "3.4/s", "1250/s"]);
+    fn exact_control_characters_are_seen_not_obeyed() {
+        assert_eq!(visible("a\tb\nÄ √ N·s/m"), "a\tb\nÄ √ N·s/m");
+        assert_eq!(
+            visible("\u{1b}[2Jx\r\u{7}\u{9b}\u{7f}\u{202e}"),
+            "\\u001b[2Jx\\u000d\\u0007\\u009b\\u007f\\u202e"
+        );
+        for c in (0..=0x10_ffff).filter_map(char::from_u32).filter(|c| c.is_control()) {
+            assert_eq!(visible(&c.to_string()) == c.to_string(), c == '\n' || c == '\t', "{c:?}");
+        }
+        let json = serde_json::to_string("a\u{1b}\u{9b}\u{7f}\r\n\u{202e}").expect("JSON");
+        let read: String = serde_json::from_str(&visible(&json)).expect("JSON still");
+        assert_eq!(read, "a\u{1b}\u{9b}\u{7f}\r\n\u{202e}");
     }
 }

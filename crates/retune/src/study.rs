@@ -7,6 +7,7 @@ pub mod any_text;
 mod explain;
 mod fronts;
 mod global;
+mod limits;
 mod objective;
 pub mod read;
 mod rule;
@@ -17,12 +18,14 @@ mod words;
 
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, is_fronts, read_fronts};
 pub use global::GlobalSearch;
-pub use objective::{LimitsGiven, Objective, Part, Response};
+pub use limits::LimitsGiven;
+pub use objective::{Objective, Part, Response};
 pub use read::{StudyError, read, read_paper};
 pub use rule::Rule;
-pub use search::{MOST_GRID_POINTS, Search};
+pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
+pub use words::counted;
 
 use retune_model::{NonNegative, Positive, Scene};
 use retune_optim::{Options, Scale, Variable};
@@ -97,8 +100,8 @@ pub struct Optimize {
     /// Smallest and largest value allowed for a tuned parameter; null for no largest value. Default: `[0, null]`.
     #[serde(default)]
     pub bounds: PerVariable<(f64, Option<f64>)>,
-    /// Largest stroke, contact force and cavity allowed. Default: none.
-    #[serde(default, skip_serializing_if = "LimitsGiven::is_empty")]
+    /// Largest stroke (spring deflection), contact force and cavity allowed, and from when on. Default: none.
+    #[serde(default, skip_serializing_if = "LimitsGiven::is_default")]
     pub limits: LimitsGiven,
     /// The coarse grid (the paper's `surf`), over all tuned parameters or some of them. Without it, without `global` and without
     /// `starts` the refinement starts at the damper of `scene`.

@@ -1,5 +1,6 @@
 //! What a run gave: one type, from which JSON and text are made.
 
+use crate::optimize::log::counted;
 use crate::study::{Objective, Solver, Span, Study};
 use retune_model::{Damper, Scene, energy_ratios};
 use retune_optim::Variable;
@@ -24,7 +25,9 @@ pub struct Summary {
     #[serde(rename = "R2")]
     r2: f64,
     impacts: Walls<u64>,
-    stroke_max: f64,
+    /// Largest |x2 - x1| and |x2 - x1 - D|, m.
+    relative_displacement_max: f64,
+    spring_deflection_max: f64,
     force_max: Walls<f64>,
     final_state: FinalState,
     /// The smallest model that was exact.
@@ -117,8 +120,8 @@ impl std::fmt::Display for MadeBy {
 impl Summary {
     /// Collects the observations of a run of `scene` with the window and solver of `study`.
     pub fn new(study: &Study, scene: Scene, response: &Response) -> Self {
-        let Response { e1_max, e2_max, impacts, force_max, stroke_max, final_state, scene: kind, work } =
-            *response;
+        let Response { e1_max, e2_max, impacts, force_max, final_state, scene: kind, work, .. } = *response;
+        let Response { relative_displacement_max, spring_deflection_max, .. } = *response;
         let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
         let [x1, v1, x2, v2] = final_state;
         Self {
@@ -130,7 +133,8 @@ impl Summary {
             r1,
             r2,
             impacts: Walls { primary: impacts[0], obstacle: impacts[1] },
-            stroke_max,
+            relative_displacement_max,
+            spring_deflection_max,
             force_max: Walls { primary: force_max[0], obstacle: force_max[1] },
             final_state: FinalState { x1, v1, x2, v2 },
             scene: kind,
@@ -169,12 +173,23 @@ impl std::fmt::Display for Summary {
         )?;
         let Walls { primary, obstacle } = self.force_max;
         writeln!(f, "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle")?;
-        writeln!(f, "stroke max  {:.6} m, the largest |x2 - x1|", self.stroke_max)?;
+        writeln!(
+            f,
+            "stroke      {:.6} m, the largest spring deflection |x2 - x1 - D|",
+            self.spring_deflection_max
+        )?;
+        writeln!(
+            f,
+            "rel. displ. {:.6} m, the largest relative displacement |x2 - x1|",
+            self.relative_displacement_max
+        )?;
         writeln!(f, "model       {model}")?;
         write!(
             f,
-            "work        {} steps, {} rejected, {} evaluations",
-            self.steps, self.rejected, self.evaluations
+            "work        {}, {} rejected, {}",
+            counted(self.steps, "step"),
+            self.rejected,
+            counted(self.evaluations, "evaluation")
         )
     }
 }

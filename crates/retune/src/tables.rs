@@ -3,11 +3,11 @@
 use crate::cli;
 use crate::error::Error;
 use crate::optimize::log::{joined, short};
-use crate::optimize::{Found, optimize, table2_header, table2_row, where_results_are, with_threads};
+use crate::optimize::{Found, Optimum, optimize, table2_header, table2_row, where_results_are, with_threads};
 use crate::results::resolved::{self, Resolved};
-use crate::results::{Begin, Directory, Identity, manifest};
+use crate::results::{Directory, Extent, Identity, Order, manifest};
 use crate::screen::Screen;
-use crate::study::{self, PaperStudy, Solver};
+use crate::study::{self, PaperStudy, Solver, Study};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -18,24 +18,39 @@ use std::path::{Path, PathBuf};
 pub fn table2(arguments: &cli::Table2) -> Result<(), Error> {
     let mut rows = study::read_table2(&arguments.study)?;
     let running = &arguments.running;
-    let out = running.out.clone().unwrap_or_else(|| PathBuf::from("results/table2"));
+    let out = out_of(running, &arguments.study)?;
+    let order = running.order("table2", &arguments.study);
     let screen = Screen::new(running.quiet);
     for PaperStudy { study, .. } in &mut rows {
         if let Some(optimize) = &mut study.optimize {
             optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
         }
     }
-    let mut table = Table::new(["table2", "origin"], &[], &out, running.begin(), json!({}), &rows)?;
+    let mut table = Table::new(["table2", "origin"], &[], &out, &order, json!({}), &rows)?;
     with_threads(running.threads, || {
         for PaperStudy { damper, study } in rows {
             screen.log(format!("\n{damper}: re-optimised from the paper's design"))?;
-            let (optimum, results) = optimize(&study, &out.join(study.name()), running.begin(), screen)?;
+            let (optimum, results) = optimize(&study, &table.directory().part(study.name()), &order, screen)?;
             table.push("paper", &damper, optimum.start());
             table.push("re-optimised", &damper, optimum.found());
-            table.keep(results);
+            table.keep(&study, &optimum, results);
         }
         table.finish(screen)
     })
+}
+
+/// Where the results of a study of several dampers go: `results/` and its file's own name, unless told otherwise.
+///
+/// # Errors
+/// The file's name is none for a directory.
+pub fn out_of(running: &cli::Running, study: &Path) -> Result<PathBuf, Error> {
+    if let Some(out) = &running.out {
+        return Ok(out.clone());
+    }
+    let name = study.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let file = study.display().to_string();
+    study::check_name(&name).map_err(|rule| study::StudyError::Rule { file, rule })?;
+    Ok(Path::new("results").join(name))
 }
 
 /// A table of designs in the form of the paper's Table 2, with E1max and one column of its own.
@@ -46,6 +61,8 @@ pub struct Table {
     solvers: Vec<Solver>,
     /// The results of its searches, which are finished with it: until then a run that goes on reads their journals.
     parts: Vec<Directory>,
+    /// The first of its searches that found no design within its limits.
+    infeasible: Option<Error>,
     csv: Vec<String>,
     text: Vec<String>,
 }
@@ -60,7 +77,7 @@ impl Table {
         [name, column]: [&'static str; 2],
         others: &'static [&'static str],
         out: &Path,
-        begin: Begin,
+        order: &Order,
         plan: serde_json::Value,
         rows: &[PaperStudy],
     ) -> Result<Self, Error> {
@@ -74,10 +91,10 @@ impl Table {
                 || [resolved::NAME, manifest::NAME].contains(&file)
                 || others.contains(&file)
         };
-        let directory = Directory::open(out, begin, &identity, is_ours)?;
+        let directory = Directory::open(out, order, &identity, Extent::Whole, is_ours)?;
         let csv = vec![format!("{column},damper,m2,k2,c2,D,C,E1max")];
         let text = vec![format!("{column:<14}{:<84}E1max, J", table2_header())];
-        Ok(Self { name, directory, resolved, solvers, parts: Vec::new(), csv, text })
+        Ok(Self { name, directory, resolved, solvers, parts: Vec::new(), infeasible: None, csv, text })
     }
 
     /// Appends a row.
@@ -86,9 +103,10 @@ impl Table {
         self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, design), short(e1_max)));
     }
 
-    /// Takes the results of a search, to be finished with the table.
-    pub fn keep(&mut self, results: Directory) {
+    /// Takes the results of a search of a study, to be finished with the table.
+    pub fn keep(&mut self, study: &Study, optimum: &Optimum, results: Directory) {
         self.parts.push(results);
+        self.infeasible = self.infeasible.take().or(optimum.check_limits(study.name()).err());
     }
 
     /// Where the table goes.
@@ -99,9 +117,9 @@ impl Table {
     /// Writes the table and shows it.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// It cannot be written, or a design in it breaks the limits of its study; it is written then all the same.
     pub fn finish(self, screen: Screen) -> Result<(), Error> {
-        let Self { name, directory, resolved, solvers, parts, csv, text } = self;
+        let Self { name, directory, resolved, solvers, parts, infeasible, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;
         directory.write(&format!("{name}.txt"), &(text.join("\n") + "\n"))?;
         directory.write(resolved::NAME, &resolved)?;
@@ -111,7 +129,8 @@ impl Table {
         parts.into_iter().try_for_each(Directory::finish)?;
         directory.finish()?;
         screen.line(format!("\n{}", text.join("\n")))?;
-        screen.line(where_results_are(&out)?)
+        screen.line(where_results_are(&out)?)?;
+        infeasible.map_or(Ok(()), Err)
     }
 }
 

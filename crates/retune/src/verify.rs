@@ -1,22 +1,32 @@
-//! `verify`: whether results are those that their study gives. A sample of the rows is run again and compared to the last bit.
+//! `verify`: whether results are those that their study gives. Every file is compared with the manifest, a sample of the rows is run
+//! again and compared to the last bit, certificates are made again. What cannot be checked is no evidence, and is said.
 
+mod files;
 mod search;
 mod several;
 mod table;
+mod values;
 
 use crate::cli;
 use crate::error::Error;
-use crate::results::identity::{VERSION, sha256};
-use crate::results::manifest::{self, Manifest};
-use crate::results::{UNFINISHED, resolved};
+use crate::optimize::shard::PARTS;
+use crate::results::{UNFINISHED, manifest, resolved};
 use crate::screen::Screen;
 use rayon::prelude::*;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A number of a result, and what gives it again.
 struct Check<'a> {
     said: f64,
     again: Box<dyn Fn() -> f64 + Sync + 'a>,
+}
+
+impl Check<'_> {
+    /// That of a row which no command writes.
+    fn never() -> Self {
+        Self { said: f64::NAN, again: Box::new(|| 0.0) }
+    }
 }
 
 /// What became of the numbers of a file.
@@ -27,96 +37,86 @@ struct Tally {
     most: f64,
 }
 
-/// Says what holds, and keeps what does not.
+/// Says what holds, and keeps what does not and what cannot be checked.
 struct Report {
     screen: Screen,
     /// The largest relative difference that counts as held.
     within: f64,
+    /// What stands before a file in a message: the directory, where there are several.
+    place: String,
     problems: Vec<String>,
+    unchecked: Vec<String>,
 }
 
-/// Runs rows of a directory of results, and of those in it, again, and says of each file whether they hold.
+/// Looks at a directory of results, and at those in it, and says of each file whether it holds.
 ///
 /// # Errors
-/// The results cannot be read, or do not hold.
+/// There are no results, they do not hold, or something cannot be checked.
 pub fn command(arguments: &cli::Verify) -> Result<(), Error> {
     let path = &arguments.results;
     let refuse = |source| Error::Input { path: path.clone(), source };
     let mut places = Vec::new();
     collect(path, &mut places).map_err(refuse)?;
-    if places.is_empty() {
+    if !places.iter().any(|place| is_result(place)) {
         let words = "there is no manifest.json and no study.json in it: these are no results";
         return Err(refuse(std::io::Error::other(words)));
     }
-    let mut report = Report { screen: Screen::new(false), within: arguments.within, problems: Vec::new() };
+    let mut report = Report {
+        screen: Screen::new(false),
+        within: arguments.within,
+        place: String::new(),
+        problems: Vec::new(),
+        unchecked: Vec::new(),
+    };
     for place in &places {
         if places.len() > 1 {
             report.screen.line(format!("{}:", place.display()))?;
+            let below = place.strip_prefix(path).unwrap_or(place);
+            report.place =
+                if below.as_os_str().is_empty() { String::new() } else { format!("{}/", below.display()) };
         }
-        files(place, &mut report)?;
-        let has = |name: &str| place.join(name).exists();
-        let sample = arguments.sample as usize;
-        if has("optimum.json") {
-            search::verify(place, sample, &mut report)?;
-        } else if has("certificate.json") {
-            search::certificate(place, &mut report)?;
-        } else if has(resolved::NAME) {
-            several::verify(place, sample, &mut report)?;
-        } else {
-            report.screen.line("  no row of these results can be run again by itself")?;
-        }
+        look(place, arguments.sample as usize, &mut report)?;
     }
-    if report.problems.is_empty() {
-        return report.screen.line("all that was looked at holds");
-    }
-    let problem = format!("does not hold: {}", report.problems.join("; "));
-    Err(Error::NotHeld { path: path.clone(), problem })
+    report.end(path)
 }
 
-/// A directory, if there are results in it, and those below with results, sorted.
-fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    if path.join(manifest::NAME).exists() || path.join("study.json").exists() {
-        places.push(path.to_owned());
+/// Looks at the results in one directory.
+fn look(place: &Path, sample: usize, report: &mut Report) -> Result<(), Error> {
+    files::verify(place, report)?;
+    let has = |name: &str| place.join(name).exists();
+    let done = if has(resolved::NAME) {
+        several::verify(place, sample, report)
+    } else if has("study.json") {
+        search::verify(place, sample, report)
+    } else {
+        report.unchecked("no row of these results can be run again by itself")
+    };
+    match done {
+        // What is damaged is one more thing that does not hold.
+        Err(error @ (Error::Input { .. } | Error::Study(_) | Error::Rule { .. } | Error::Setting(_))) => {
+            report.fail("", &error.to_string())
+        }
+        other => other,
     }
+}
+
+fn is_result(place: &Path) -> bool {
+    [manifest::NAME, "study.json"].iter().any(|name| place.join(name).exists())
+}
+
+/// A directory, if there are files in it, and those below with files, sorted.
+fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
     let mut inner = Vec::new();
     for entry in std::fs::read_dir(path)? {
         inner.push(entry?.path());
     }
-    inner.retain(|path| path.is_dir() && !path.ends_with(UNFINISHED));
+    if inner.iter().any(|path| path.is_file() && !files::is_hidden(path)) {
+        places.push(path.to_owned());
+    }
+    // The shares of a grid are what a merge begins with, and no results.
+    inner.retain(|path| path.is_dir() && !path.ends_with(UNFINISHED) && !path.ends_with(PARTS));
     inner.sort();
     inner.iter().try_for_each(|path| collect(path, places))
-}
-
-/// Compares the files with the manifest.
-fn files(place: &Path, report: &mut Report) -> Result<(), Error> {
-    let path = place.join(manifest::NAME);
-    if !path.exists() {
-        return report.screen.line("  no manifest.json: what made these results is not written down");
-    }
-    let refuse = |error: serde_json::Error| Error::Input { path: path.clone(), source: error.into() };
-    let manifest: Manifest = serde_json::from_str(&text(place, manifest::NAME)?).map_err(refuse)?;
-    let mut problems = Vec::new();
-    for (name, expected) in &manifest.files {
-        match manifest::file_sha256(&place.join(name)) {
-            Ok(found) if found == *expected => {}
-            Ok(_) => problems.push(format!("{name} is not as it was made")),
-            Err(_) => problems.push(format!("{name} is missing")),
-        }
-    }
-    let input = [resolved::NAME, "study.json"].into_iter().find(|name| place.join(name).exists());
-    match input {
-        Some(input) if sha256(text(place, input)?.as_bytes()) != manifest.study_sha256 => {
-            problems.push(format!("{input} is not the study that made these results"));
-        }
-        _ => {}
-    }
-    let words = if problems.is_empty() { "as they were made".to_owned() } else { problems.join("; ") };
-    report.screen.line(format!("  {} files {words}", manifest.files.len()))?;
-    if manifest.retune != VERSION {
-        report.screen.line(format!("  note: made by Retune {}, this is {VERSION}", manifest.retune))?;
-    }
-    report.problems.extend(problems);
-    Ok(())
 }
 
 fn text(place: &Path, name: &str) -> Result<String, Error> {
@@ -124,24 +124,73 @@ fn text(place: &Path, name: &str) -> Result<String, Error> {
     std::fs::read_to_string(&path).map_err(|source| Error::Input { path, source })
 }
 
+fn json(place: &Path, name: &str) -> Result<Value, Error> {
+    let refuse = |error: serde_json::Error| Error::Input { path: place.join(name), source: error.into() };
+    serde_json::from_str(&text(place, name)?).map_err(refuse)
+}
+
 impl Report {
-    /// Says what does not hold.
+    /// Says what does not hold; `name` is the file, or empty.
     fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
-        self.problems.push(format!("{name}, {words}"));
-        self.screen.line(format!("  {name:<22} {words}"))
+        let between = if name.is_empty() { "" } else { ", " };
+        self.problems.push(format!("{}{name}{between}{words}", self.place));
+        self.screen.line(if name.is_empty() { format!("  {words}") } else { format!("  {name:<22} {words}") })
+    }
+
+    /// Says what cannot be checked.
+    fn unchecked(&mut self, words: &str) -> Result<(), Error> {
+        self.unchecked.push(format!("{}{words}", self.place));
+        self.screen.line(format!("  cannot be checked: {words}"))
     }
 
     /// Makes all `checks` of a file, of which they are `what`.
     fn look(&mut self, name: &str, what: &str, checks: &[Check]) -> Result<(), Error> {
-        let tally = run(checks);
+        self.tell(name, &format!("{what} run again"), &run(checks))
+    }
+
+    /// Compares a JSON file, or a part of it, with what is made again.
+    fn compare(&mut self, name: &str, what: &str, said: &Value, again: &Value) -> Result<(), Error> {
+        let tally = values::compare(said, again, self.within);
+        self.tell(name, &format!("{what} made again"), &tally)
+    }
+
+    fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
+        let most = if tally.most.is_finite() {
+            format!(
+                "by at most {:.1e} of {} value",
+                tally.most,
+                if tally.differ == 1 { "its" } else { "their" }
+            )
+        } else {
+            "and not only in digits".to_owned()
+        };
         let words = match tally.differ {
             0 => "the same to the last bit".to_owned(),
-            differ => format!("{differ} differ, by at most {:.1e} of their value", tally.most),
+            1 => format!("1 differs, {most}"),
+            differ => format!("{differ} differ, {most}"),
         };
         if tally.most > self.within {
-            self.problems.push(format!("{name}, {words}"));
+            self.problems.push(format!("{}{name}, {words}", self.place));
         }
-        self.screen.line(format!("  {name:<22} {what} run again: {words}"))
+        self.screen.line(format!("  {name:<22} {what}: {words}"))
+    }
+
+    /// The last word.
+    fn end(self, path: &Path) -> Result<(), Error> {
+        let Self { screen, within, problems, unchecked, .. } = self;
+        let unchecked = unchecked.join("; ");
+        if problems.is_empty() && unchecked.is_empty() {
+            let agrees = if within > 0.0 { format!("agrees within {within:e}") } else { "agrees".to_owned() };
+            return screen.line(format!(
+                "holds: every file is as it was made, and all that was run or made again {agrees}"
+            ));
+        }
+        if problems.is_empty() {
+            return Err(Error::NotChecked { path: path.to_owned(), problem: unchecked });
+        }
+        let and = if unchecked.is_empty() { "" } else { "; cannot be checked: " };
+        let problem = format!("does not hold: {}{and}{unchecked}", problems.join("; "));
+        Err(Error::NotHeld { path: path.to_owned(), problem })
     }
 }
 
@@ -150,12 +199,23 @@ fn run(checks: &[Check]) -> Tally {
     let found: Vec<f64> = checks.par_iter().map(|check| (check.again)()).collect();
     let mut tally = Tally::default();
     for (check, found) in checks.iter().zip(found) {
-        let none = |value: f64| !value.is_finite();
-        if check.said.to_bits() != found.to_bits() && !(none(check.said) && none(found)) {
-            tally.differ += 1;
-            let difference = (check.said - found).abs() / check.said.abs().max(found.abs());
-            tally.most = tally.most.max(if difference.is_finite() { difference } else { f64::INFINITY });
-        }
+        tally.see(check.said, found);
     }
     tally
+}
+
+impl Tally {
+    /// Compares two numbers; two that are not finite are the same: no value.
+    fn see(&mut self, said: f64, found: f64) {
+        let none = |value: f64| !value.is_finite();
+        if said.to_bits() != found.to_bits() && !(none(said) && none(found)) {
+            let difference = (said - found).abs() / said.abs().max(found.abs());
+            self.differs(if difference.is_finite() { difference } else { f64::INFINITY });
+        }
+    }
+
+    fn differs(&mut self, by: f64) {
+        self.differ += 1;
+        self.most = self.most.max(by);
+    }
 }

@@ -88,7 +88,8 @@ fn exact_the_resolved_study_of_a_band_repeats_its_results() {
     desk.write_json("band.json", &ssvi_band());
     desk.good(&["optimize", "band.json", "--quiet", "--out", "first"]);
     desk.good(&["optimize", "first/study.json", "--quiet", "--out", "again"]);
-    for name in desk.names("first") {
+    // The manifest says which file was the study.
+    for name in desk.names("first").into_iter().filter(|name| name != "manifest.json") {
         assert_eq!(desk.read(&format!("first/{name}")), desk.read(&format!("again/{name}")), "{name}");
     }
 }

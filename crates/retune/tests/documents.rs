@@ -65,6 +65,31 @@ fn exact_every_recipe_of_the_documents_exists() {
     assert!(seen >= 12, "{seen}");
 }
 
+/// Whoever runs a command through just can give it options, `--resume` among them; and the command that goes on with a run, which
+/// then begins with `just`, is a recipe.
+#[test]
+fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_with() {
+    let justfile = text("justfile");
+    assert!(justfile.contains("\nset positional-arguments\n"));
+    assert!(justfile.contains("\nexport RETUNE_RUN_AS := \"just\"\n"));
+    let commands: Vec<&str> =
+        justfile.lines().filter_map(|line| line.strip_prefix("    {{retune}} ")).collect();
+    let of = |command: &str| commands.iter().filter(|line| line.starts_with(&format!("{command} "))).count();
+    assert!(of("optimize") >= 5, "{commands:?}");
+    for line in commands.iter().filter(|line| !line.starts_with("schema ")) {
+        assert!(line.ends_with(" \"$@\""), "{line}");
+    }
+    for command in
+        ["optimize", "merge", "certify", "table2", "retune", "fronts", "reproduce", "figure", "table"]
+    {
+        let body = format!("\n    {{{{retune}}}} {command} \"$@\"\n");
+        let recipe =
+            justfile.split(&body).next().and_then(|before| before.lines().last()).unwrap_or_default();
+        assert!(recipe.starts_with(&format!("{command} ")), "{command}: {recipe}");
+        assert!(recipe.contains(" *OPTIONS:") || recipe.contains(" +K1:"), "{recipe}");
+    }
+}
+
 /// The tests' own scene of the paper is that of the studies.
 #[test]
 fn exact_the_scene_of_the_tests_is_that_of_the_studies() {

@@ -61,10 +61,38 @@ fn exact_limits_are_kept_and_told() {
     assert!(number(&kept, "/limits/stroke") <= stroke && kept["limits"]["feasible"] == true);
     assert!(number(&kept, "/limits/infeasible") > 0.0 && said.contains("limits kept: stroke "), "{said}");
     assert!(number(&kept, "/E1max") >= number(&free, "/E1max"));
+    let certificate = desk.read_json("results/kept/certificate.json");
+    assert_ne!(certificate["verdict"], "robust", "1 % more breaks an active limit: {certificate}");
+    let near = &certificate["limits"]["broken_near"][0];
+    assert_eq!((&near["limit"], &certificate["limits"]["broken"]), (&json!("stroke"), &json!([])));
+    let [reached, over] = ["reached", "over_percent"].map(|name| near[name].as_f64().expect("a number"));
+    assert!(reached > stroke && (over - 100.0 * (reached / stroke - 1.0)).abs() < 1e-9, "{near}");
+    let words = certificate["words"].as_str().expect("words");
+    assert!(
+        words.contains("on the edge of a limit: stroke is ") && words.contains(" % over its limit of "),
+        "{words}"
+    );
+    assert!(said.contains(words), "{said}");
     desk.write_json("none.json", &with(json!({}), json!({ "stroke": 1e-6 })));
-    let said = desk.good(&["optimize", "none.json", "--quiet"]);
+    let Answer { code, stdout: said, stderr } = desk.run(&["optimize", "none.json", "--quiet"]);
     assert!(said.contains("NO DESIGN KEEPS THE LIMITS; the nearest: stroke "), "{said}");
+    let words = "no verdict, for the design breaks the limit of stroke: ";
+    assert!(said.contains(&format!("certificate: {words}")), "{said}");
+    assert_eq!(code, Some(3));
+    assert!(stderr.starts_with(&format!("error: study none: the limits are not kept: {words}")), "{stderr}");
+    let again = desk.run(&["optimize", "none.json", "--quiet", "--resume"]);
+    assert_eq!(
+        (again.code, again.stderr),
+        (Some(3), stderr.clone()),
+        "nor has it one when it is finished already"
+    );
+    let certified = desk.run(&["certify", "results/none"]);
+    assert_eq!((certified.code, certified.stderr), (Some(3), stderr));
+    let certificate = desk.read_json("results/none/certificate.json");
+    assert_eq!(certificate["verdict"], Value::Null);
+    assert_eq!(certificate["limits"]["broken"][0]["limit"], "stroke");
     let none = desk.read_json("results/none/optimum.json");
+    assert_eq!(none["certificate"]["verdict"], Value::Null);
     assert!(number(&none, "/limits/violation") > 0.0 && none["limits"]["active"] == json!(["stroke"]));
     assert!(number(&none, "/E1max") < 1e4, "an energy, not a rank");
 }

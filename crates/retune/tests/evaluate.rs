@@ -2,18 +2,30 @@
 
 mod common;
 
-use common::{Desk, studies, tiny};
+use common::{Answer, Desk, studies, tiny};
+use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
-/// What `evaluate` answers to `input`, given as a whole.
-fn answers(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Vec<String> {
+/// What `evaluate` says to `input`, given as a whole.
+fn said(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Answer {
     let mut command = desk.command(&[&["evaluate", study], options].concat());
-    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program");
-    child.stdin.take().expect("a pipe").write_all(input).expect("written");
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program");
+    let mut pipe = child.stdin.take().expect("a pipe");
+    let input = input.to_owned();
+    let writing = std::thread::spawn(move || pipe.write_all(&input).expect("written"));
     let output = child.wait_with_output().expect("an answer");
-    assert!(output.status.success());
-    String::from_utf8(output.stdout).expect("UTF-8").lines().map(str::to_owned).collect()
+    writing.join().expect("written");
+    let [stdout, stderr] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
+    Answer { code: output.status.code(), stdout, stderr }
+}
+
+/// The answers to lines that all have a value.
+fn answers(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Vec<String> {
+    let Answer { code, stdout, stderr } = said(desk, study, options, input);
+    assert_eq!((code, stderr.as_str()), (Some(0), ""));
+    stdout.lines().map(str::to_owned).collect()
 }
 
 #[test]
@@ -27,6 +39,8 @@ fn exact_values_are_those_of_the_logs_at_any_number_of_threads() {
     let designs: String = rows.iter().map(|(design, _)| format!("{design}\n")).collect();
     let expected: Vec<&str> = rows.iter().map(|(_, value)| *value).collect();
     assert_eq!(answers(&desk, "tiny.json", &[], designs.as_bytes()), expected);
+    let many: String = designs.repeat(4);
+    assert_eq!(answers(&desk, "tiny.json", &["--threads", "7"], many.as_bytes()), expected.repeat(4));
     let blanks = designs.replace(',', " \t");
     assert_eq!(answers(&desk, "tiny.json", &["--threads", "1"], blanks.as_bytes()), expected);
 }
@@ -57,8 +71,9 @@ fn exact_a_bad_line_is_answered_in_words_and_the_next_is_served() {
     let study = studies().join("tmd-band.json");
     let study = study.to_str().expect("UTF-8");
     let input = b"600\n\nsoft 1\n-1 1\ninf 1\nNaN 1\n600 1e9 2 3\n\xff\xfe 1\n1800 0\n600 262";
-    let said = answers(&desk, study, &[], input);
-    assert_eq!(said.len(), 10, "{said:?}");
+    let Answer { code, stdout, stderr } = said(&desk, study, &[], input);
+    let said: Vec<&str> = stdout.lines().collect();
+    assert_eq!((code, said.len()), (Some(1), 10), "{said:?}");
     for (line, words) in said.iter().zip([
         "error: give one number for each of k2 c2; found 1",
         "error: give one number for each of k2 c2; found 0",
@@ -73,10 +88,50 @@ fn exact_a_bad_line_is_answered_in_words_and_the_next_is_served() {
     ]) {
         assert!(line.starts_with(words), "{line}, not {words}");
     }
+    // The same, with the number of the line, where a person sees it.
+    let told: Vec<&str> = stderr.lines().collect();
+    assert_eq!(told.len(), 10, "{stderr}");
+    assert_eq!(told[2], "error: line 3: k2: \"soft\" is not a number");
+    assert_eq!(told[9], "error: standard input: 9 of 10 lines had no value");
+}
+
+/// What nobody would write is neither kept nor said back.
+#[test]
+fn contract_a_line_without_end_and_a_word_of_megabytes_cost_nothing() {
+    let desk = Desk::new();
+    desk.write_json("tiny.json", &tiny());
+    let good = b"215 232 0.06 0.34\n";
+    let long = [
+        vec![b'x'; 50_000_000],
+        b"\n".to_vec(),
+        good.to_vec(),
+        b"\x1b[31m".to_vec(),
+        vec![b'y'; 3000],
+        b" 1 2 3".to_vec(),
+    ];
+    let Answer { code, stdout, stderr } = said(&desk, "tiny.json", &["--threads", "2"], &long.concat());
+    let lines: Vec<&str> = stdout.lines().collect();
+    assert_eq!((code, lines.len()), (Some(1), 3), "{stderr}");
+    assert_eq!(lines[0], "error: the line is longer than 4096 bytes");
+    assert_eq!(answers(&desk, "tiny.json", &[], good), lines[1..2]);
+    let shown = format!("error: k2: \"\\u{{1b}}[31m{}...\" is not a number", "y".repeat(35));
+    assert_eq!(lines[2], shown);
+    assert!(stderr.len() < 1000 && !stderr.contains('\x1b'), "{stderr}");
+}
+
+/// Who does not read standard error is not held up by it.
+#[test]
+fn contract_standard_error_names_the_first_hundred_lines() {
+    let desk = Desk::new();
+    desk.write_json("tiny.json", &tiny());
+    let Answer { code, stdout, stderr } = said(&desk, "tiny.json", &["--json"], &b"soft\n".repeat(5000));
+    assert_eq!((code, stdout.lines().count(), stderr.lines().count()), (Some(1), 5000, 102));
+    let error = "{\"error\":\"give one number for each of k2 c2 D C; found 1\"}";
+    assert!(stdout.lines().all(|line| line == error), "{}", &stdout[..100]);
 }
 
 #[test]
-fn exact_a_design_beyond_a_limit_has_a_rank_and_a_study_must_tune() {
+fn exact_a_design_beyond_a_limit_is_infinite_or_told_by_how_much_and_a_study_must_tune() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["limits"] = serde_json::json!({ "cavity": 0.2 });
@@ -84,8 +139,16 @@ fn exact_a_design_beyond_a_limit_has_a_rank_and_a_study_must_tune() {
     let said = answers(&desk, "limited.json", &[], b"215 232 0.06 0.1\n215 232 0.06 0.34\n");
     let values: Vec<f64> = said.iter().map(|text| text.parse().expect("a number")).collect();
     assert!(values[0] < 1e4, "{values:?}");
-    assert!((values[1] / 2e100 - 1.0).abs() < 1e-12, "twice the cavity breaks the limit by 1: {values:?}");
-    study["optimize"] = serde_json::Value::Null;
+    assert_eq!((values.len(), values[1]), (2, f64::INFINITY));
+    let said = answers(&desk, "limited.json", &["--json"], b"215 232 0.06 0.1\n215 232 0.06 0.34\n");
+    let told: Vec<Value> = said.iter().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!(told[0], json!({ "E1max": values[0], "violation": 0.0, "cavity": 0.16 }));
+    assert!(said[0].contains("\"violation\": 0.0,"), "{said:?}");
+    let [energy, violation, cavity] = ["E1max", "violation", "cavity"].map(|name| told[1][name].as_f64());
+    assert!(energy.is_some_and(|energy| energy < 1e4), "an energy, not a rank: {said:?}");
+    assert!(violation.is_some_and(|violation| (violation - 1.0).abs() < 1e-12), "twice the cavity: {said:?}");
+    assert_eq!(cavity, Some(0.4));
+    study["optimize"] = Value::Null;
     desk.write_json("nothing.json", &study);
     let answer = desk.run(&["evaluate", "nothing.json"]);
     assert_eq!((answer.code, answer.stdout.as_str()), (Some(2), ""));

@@ -3,21 +3,10 @@
 
 mod common;
 
-use common::{Answer, Desk, tiny};
+use common::{Answer, Desk, assert_same, begun, count_lines, longer, started};
 use serde_json::json;
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
-
-/// A study whose search takes about a second.
-fn longer() -> serde_json::Value {
-    let mut study = tiny();
-    study["window"] = json!({ "t0": 10, "T": 40 });
-    for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
-        axis["points"] = json!(6);
-    }
-    study
-}
 
 /// A desk with that study and its results in `whole`.
 fn desk() -> Desk {
@@ -25,31 +14,6 @@ fn desk() -> Desk {
     desk.write_json("study.json", &longer());
     desk.good(&["optimize", "study.json", "--quiet", "--out", "whole"]);
     desk
-}
-
-#[track_caller]
-fn assert_same(desk: &Desk, one: &str, other: &str) {
-    assert_eq!(desk.names(one), desk.names(other));
-    for name in desk.names(one) {
-        assert!(desk.read(&format!("{one}/{name}")) == desk.read(&format!("{other}/{name}")), "{name}");
-    }
-}
-
-/// Starts a run and waits until its journal has `lines` lines.
-fn begun(desk: &Desk, arguments: &[&str], out: &str, lines: usize) -> Child {
-    let mut command = desk.command(arguments);
-    let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program");
-    let journal = desk.path(out).join("unfinished/journal");
-    let patience = Instant::now();
-    while count_lines(&journal) < lines {
-        assert!(patience.elapsed() < Duration::from_secs(60), "the run does not begin");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    child
-}
-
-fn count_lines(path: &Path) -> usize {
-    std::fs::read(path).map_or(0, |bytes| bytes.iter().filter(|byte| **byte == b'\n').count())
 }
 
 const RUN: [&str; 5] = ["optimize", "study.json", "--quiet", "--out", "out"];
@@ -192,6 +156,24 @@ fn exact_ctrl_c_stops_within_a_second_and_says_how_to_go_on() {
     }
 }
 
+/// A run that just has started goes on with just, whose recipes are named like the commands.
+#[cfg(unix)]
+#[test]
+fn contract_a_run_through_just_goes_on_through_just() {
+    let desk = Desk::new();
+    desk.write_json("study.json", &longer());
+    let mut command = desk.command(&RUN);
+    command.env("RETUNE_RUN_AS", "just");
+    let mut child = started(command, &desk, "out", 100);
+    let kill = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status();
+    assert!(kill.expect("kill").success());
+    assert_eq!(child.wait().expect("the run").code(), Some(130));
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().expect("stderr"), &mut said).expect("text");
+    let command = said.lines().last().expect("a line");
+    assert_eq!(command, "  just optimize study.json --quiet --out out --resume");
+}
+
 /// A file size limit stands for a full disk: both make a write fail half-way through a line.
 #[cfg(unix)]
 #[test]
@@ -213,7 +195,13 @@ fn exact_a_full_disk_is_named_and_costs_nothing() {
     let kept = desk.read_json("whole/manifest.json");
     assert_ne!(kept["study_sha256"], desk.read_json("other/manifest.json")["study_sha256"]);
     assert!(desk.path("whole/surf.csv").exists(), "earlier results are intact");
-    desk.good(&["optimize", "study.json", "--quiet", "--out", "whole", "--resume"]);
+    let Answer { code, stderr, .. } =
+        desk.run(&["optimize", "study.json", "--quiet", "--out", "whole", "--resume"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(
+        stderr.is_empty() || stderr.contains("1 of its lines is damaged"),
+        "half a line is told: {stderr}"
+    );
     assert_same(&desk, "other", "whole");
 }
 
@@ -233,7 +221,7 @@ fn exact_table2_goes_on_where_it_was_killed() {
     child.kill().and_then(|()| child.wait()).expect("killed");
     let Answer { code, stderr, .. } = desk.run(&run);
     assert_eq!(code, Some(2));
-    assert!(stderr.starts_with("error: out/ssvi: unfinished work was found here ("), "{stderr}");
+    assert!(stderr.starts_with("error: out: unfinished work was found here ("), "{stderr}");
     desk.good(&["table2", "table2.json", "--quiet", "--out", "out", "--resume"]);
     assert_eq!(desk.names("whole"), desk.names("out"));
     for place in ["ssvi", "tmd"] {

@@ -108,16 +108,31 @@ fn exact_one_figure_or_table_makes_its_own_files_only() {
     small_plan(&desk);
     desk.write("out/figure6-old.csv", "of an earlier run");
     desk.write("out/figure5.svg", "of another figure");
-    let screen = desk.good(&["figure", "6", "--study", "paper.json", "--out", "out"]);
+    let run = ["figure", "6", "--study", "paper.json", "--out", "out"];
+    let Answer { code, stderr, .. } = desk.run(&run);
+    assert_eq!(code, Some(2));
+    assert!(stderr.contains("figure6-old.csv stands here, which Retune did not make"), "{stderr}");
+    assert_eq!(desk.read("out/figure6-old.csv"), "of an earlier run");
+    let screen = desk.good(&[&run[..], &["--replace"]].concat());
     assert!(screen.starts_with("Figure 6. "), "{screen}");
-    let names = ["figure5.svg", "figure6-statements.json", "figure6.csv", "figure6.svg", "study.json"];
+    let names = [
+        "figure5.svg",
+        "figure6-statements.json",
+        "figure6.csv",
+        "figure6.svg",
+        "manifest.json",
+        "resolved.json",
+        "study.json",
+    ];
     assert_eq!(desk.names("out"), names);
     let rows = desk.read("out/figure6.csv");
     assert_eq!(rows.lines().next(), Some("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J"));
     assert_eq!(rows.lines().count(), 1 + 201, "10 s every 0.05 s");
 
     desk.good(&["table", "2", "--study", "paper.json", "--out", "tables", "--quiet"]);
-    assert_eq!(desk.names("tables"), ["study.json", "table2-statements.json", "table2-table-1.csv"]);
+    let names =
+        ["manifest.json", "resolved.json", "study.json", "table2-statements.json", "table2-table-1.csv"];
+    assert_eq!(desk.names("tables"), names);
     let table = desk.read("tables/table2-table-1.csv");
     assert!(table.contains("SSVI NES,the paper's,215,232,0.06,0.36,"), "{table}");
     assert!(table.contains("TMD,the paper's,600,262,2.08,4.7,"), "{table}");

@@ -157,7 +157,8 @@ fn exact_simulate_prints_one_object_with_the_promised_keys() {
         "/R2",
         "/impacts/primary",
         "/impacts/obstacle",
-        "/stroke_max",
+        "/relative_displacement_max",
+        "/spring_deflection_max",
         "/force_max/primary",
         "/force_max/obstacle",
         "/evaluations",
@@ -210,8 +211,9 @@ fn exact_the_trajectory_has_a_row_for_each_interval() {
     desk.good(&["simulate", "small.json", "--trajectory", "motion.csv", "--interval", "0.5"]);
     let csv = desk.read("motion.csv");
     let csv = columns(&csv);
-    assert_eq!(csv[0].join(","), "t,x1,v1,x2,v2,E1,E2,FconL,FconR");
-    let times: Vec<&str> = csv[1..].iter().map(|row| row[0]).collect();
+    assert_eq!(csv[0].join(","), "t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment");
+    let grid = csv[1..].iter().filter(|row| row[9] == "grid");
+    let times: Vec<&str> = grid.map(|row| row[0]).collect();
     assert_eq!(times, ["1", "1.5", "2", "2.5", "3", "3.5", "4"]);
     let Answer { code, stderr, .. } =
         desk.run(&["simulate", "small.json", "--trajectory", "other.csv", "--interval", "1e-9"]);
@@ -260,12 +262,12 @@ fn exact_retune_tunes_both_dampers_for_each_stiffness() {
     let desk = Desk::new();
     short_table2(&desk);
     desk.good(&["retune", "30000", "5e4", "--study", "table2.json", "--quiet"]);
-    let csv = desk.read("results/retune/retune.csv");
+    let csv = desk.read("results/table2/retune.csv");
     let rows: Vec<String> = columns(&csv)[1..].iter().map(|row| row[..3].join(",")).collect();
     let expected =
         ["30000", "39500", "50000"].map(|k1| [format!("{k1},SSVI NES,60"), format!("{k1},TMD,60")]);
     assert_eq!(rows, expected.concat());
-    let resolved = desk.read_json("results/retune/k1-50000/tmd/study.json");
+    let resolved = desk.read_json("results/table2/k1-50000/tmd/study.json");
     assert_eq!(resolved["scene"]["primary"]["k1"], 5e4);
     let Answer { code, stderr, .. } = desk.run(&["retune", "30000", "-1", "--study", "table2.json"]);
     let message = "error: command line: k1: -1 is not allowed here: give a finite number not below 0\n";

@@ -40,6 +40,8 @@ pub struct Collisions {
     /// Longest contact (s) for which the terms up to the k-th are exact.
     longest: [f64; MOMENTS],
     rtol: f64,
+    /// P, N.
+    amplitude: f64,
 }
 
 /// Blocks of four terms of the free motion's Taylor series, and the largest `rate t` for which they are exact:
@@ -85,7 +87,9 @@ impl Collisions {
             }
         });
         let equations = system.compression(side);
-        Self { equations, side, wall: system.wall(side), kicks, gains, longest, rtol }
+        let [cos, sin] = system.drive(0.0);
+        let amplitude = cos.hypot(sin);
+        Self { equations, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
     }
 
     /// Computes the contact that begins at `touch` and shows it to the observer, if it is nearly an undisturbed collision
@@ -206,6 +210,7 @@ impl Collisions {
             last: &last,
             scale: duration * depth * depth.sqrt(),
             duration,
+            depth,
             roots: depths.map(|z| (z * depth).sqrt()),
             end: [0.0; 4],
         };

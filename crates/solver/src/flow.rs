@@ -34,7 +34,6 @@ pub struct Stride<const N: usize> {
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
     step: f64,
-    fineness: f64,
     /// Columns of `Φ`, and of its powers: `phi[j][i]` has what component `j` makes of component `i` after each of the steps.
     phi: [[f64x4; N]; N],
     /// The same for the two components of the force.
@@ -73,7 +72,6 @@ impl<const N: usize> Flow<N> {
             turn: [f64x4::ZERO; 2],
             linear,
             step,
-            fineness: (linear.rate * step).powi(5),
             rotation,
             free,
             forced,
@@ -112,21 +110,15 @@ impl<const N: usize> Flow<N> {
         self.step
     }
 
-    /// The remainder of the quintic through a quantity's rates at both ends of a step, relative to that over a step of `1 / rate`
-    /// in which the quantity varies as much: `(rate step)⁵`, for it goes with the sixth power of the step.
-    pub fn fineness(&self) -> f64 {
-        self.fineness
-    }
-
     /// Refuses a run to time `to` (s) in which a whole step would be lost to rounding.
     ///
     /// # Errors
-    /// [`SolverError::StepTooSmall`].
+    /// [`SolverError::TooFast`].
     pub fn check_step(&self, t: f64, to: f64) -> Result<(), SolverError> {
         if to <= t || to + self.step > to {
             Ok(())
         } else {
-            Err(SolverError::StepTooSmall { t, h: self.step })
+            Err(SolverError::TooFast { t: to, h: self.step })
         }
     }
 

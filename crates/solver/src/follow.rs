@@ -3,7 +3,7 @@
 use crate::free::Free;
 use crate::hybrid::{Hybrid, Motion, Phase};
 use crate::observe::Observer;
-use crate::onestep::{OneStep, Run};
+use crate::onestep::Run;
 use crate::settings::{Method, Settings, SolverError, Window, Work};
 use crate::system::System;
 use crate::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
@@ -22,8 +22,11 @@ pub fn follow_bare(
     before: &mut impl Observer<2>,
     observer: &mut impl Observer<2>,
 ) -> Followed<2> {
-    if settings.method != Method::Hybrid {
-        return general(system, start, system.rest(), window, settings, before, observer);
+    if let Some(method) = General::of(settings.method) {
+        let mut run = Run::new(system, settings, start, system.rest(), settings.longest_step(window.to));
+        method.follow(&mut run, window.from, before)?;
+        method.follow(&mut run, window.to, observer)?;
+        return Ok((run.state(), run.work));
     }
     let mut free = Free::new(system, window.to, settings.max_steps).started(start);
     if window.from > start {
@@ -44,8 +47,11 @@ pub fn follow_coupled(
     before: &mut impl Observer<4>,
     observer: &mut impl Observer<4>,
 ) -> Followed<4> {
-    if settings.method != Method::Hybrid {
-        return general(system, start, system.rest(), window, settings, before, observer);
+    if let Some(method) = General::of(settings.method) {
+        let mut run = Run::new(system, settings, start, system.rest(), settings.longest_step(window.to));
+        method.follow(&mut run, window.from, before)?;
+        method.follow(&mut run, window.to, observer)?;
+        return Ok((run.state(), run.work));
     }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
     let rest = Motion { t: start, y: system.rest(), phase: Phase::Flight };
@@ -54,38 +60,95 @@ pub fn follow_coupled(
     Ok((end.y, hybrid.work))
 }
 
-fn general<S: System<N>, const N: usize>(
-    system: &S,
-    start: f64,
-    rest: [f64; N],
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<N>,
-    observer: &mut impl Observer<N>,
-) -> Followed<N>
-where
-    Const<N>: DimMin<Const<N>, Output = Const<N>>,
-{
-    let longest = settings.longest_step(window.to);
-    let mut run = Run::new(system, settings, start, rest, longest);
-    let follow = match settings.method {
-        Method::Hybrid | Method::Dop853 => one_step::<Dop853, _, _, _, N>,
-        Method::Ode23s => one_step::<Ode23s, _, _, _, N>,
-        Method::Ode45 => one_step::<Ode45, _, _, _, N>,
-        Method::Ode23 => one_step::<Ode23, _, _, _, N>,
-        Method::Rk4 => one_step::<Rk4, _, _, _, N>,
-        Method::Euler => one_step::<Euler, _, _, _, N>,
-    };
-    follow(&mut run, window, before, observer)?;
-    Ok((run.state(), run.work))
+/// A structure and its damper, followed from any moment on by the method that is asked for.
+pub struct Follower<'a> {
+    system: &'a Coupled,
+    settings: Settings,
+    way: Way<'a>,
 }
 
-fn one_step<M: OneStep<N>, S: System<N>, B: Observer<N>, O: Observer<N>, const N: usize>(
-    run: &mut Run<'_, S, N>,
-    window: Window,
-    before: &mut B,
-    observer: &mut O,
-) -> Result<(), SolverError> {
-    run.integrate::<M>(window.from, before)?;
-    run.integrate::<M>(window.to, observer)
+enum Way<'a> {
+    Exact(Box<Hybrid<'a>>),
+    Steps(General),
+}
+
+impl<'a> Follower<'a> {
+    /// Prepares it for stretches of `longest` seconds at most, each of which may take [`Settings::max_steps`] steps.
+    pub fn new(system: &'a Coupled, settings: &Settings, longest: f64) -> Self {
+        let way = General::of(settings.method).map_or_else(
+            || Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps))),
+            Way::Steps,
+        );
+        Self { system, settings: *settings, way }
+    }
+
+    /// Follows the motion to time `to` (s) or until the observer is satisfied.
+    ///
+    /// # Errors
+    /// [`SolverError`] with the time reached.
+    pub fn propagate(
+        &mut self,
+        from: Motion,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<Motion, SolverError> {
+        match &mut self.way {
+            Way::Exact(hybrid) => {
+                hybrid.work = Work::default();
+                hybrid.propagate(from, to, observer)
+            }
+            Way::Steps(method) => {
+                let longest = self.settings.longest_step(to - from.t);
+                let mut run = Run::new(self.system, &self.settings, from.t, from.y, longest);
+                method.follow(&mut run, to, observer)?;
+                Ok(Motion { t: to, y: run.state(), phase: Phase::of(self.system, &run.state()) })
+            }
+        }
+    }
+}
+
+/// A method that goes step by step: every one but the hybrid.
+#[derive(Clone, Copy)]
+enum General {
+    Ode23s,
+    Ode45,
+    Ode23,
+    Dop853,
+    Rk4,
+    Euler,
+}
+
+impl General {
+    /// The method by its name; none is the hybrid.
+    fn of(method: Method) -> Option<Self> {
+        match method {
+            Method::Hybrid => None,
+            Method::Ode23s => Some(Self::Ode23s),
+            Method::Ode45 => Some(Self::Ode45),
+            Method::Ode23 => Some(Self::Ode23),
+            Method::Dop853 => Some(Self::Dop853),
+            Method::Rk4 => Some(Self::Rk4),
+            Method::Euler => Some(Self::Euler),
+        }
+    }
+
+    /// Continues a run to time `to` (s).
+    fn follow<S: System<N>, const N: usize>(
+        self,
+        run: &mut Run<'_, S, N>,
+        to: f64,
+        observer: &mut impl Observer<N>,
+    ) -> Result<(), SolverError>
+    where
+        Const<N>: DimMin<Const<N>, Output = Const<N>>,
+    {
+        match self {
+            Self::Ode23s => run.integrate::<Ode23s>(to, observer),
+            Self::Ode45 => run.integrate::<Ode45>(to, observer),
+            Self::Ode23 => run.integrate::<Ode23>(to, observer),
+            Self::Dop853 => run.integrate::<Dop853>(to, observer),
+            Self::Rk4 => run.integrate::<Rk4>(to, observer),
+            Self::Euler => run.integrate::<Euler>(to, observer),
+        }
+    }
 }

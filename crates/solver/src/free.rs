@@ -3,9 +3,10 @@
 //! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Dampers only take energy from the transient, so its
 //! energy norm bounds all that it can still do: whether a wall can ever be reached, and whether the record can still fall.
 
-use crate::flow::Flow;
+use crate::budget::Budget;
+use crate::flow::{Flow, LANES};
 use crate::observe::{Knot, Observer, Peak, Quantity, Segment};
-use crate::settings::{Extreme, SolverError, Window, Work};
+use crate::settings::{Extreme, Method, SolverError, Window, Work};
 use crate::steps::{Step, StepClock, Steps};
 use crate::system::LinearSystem;
 use nalgebra::Complex;
@@ -43,29 +44,31 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
     /// Steps to time `to` (s), or until the observer is satisfied.
     ///
     /// # Errors
-    /// [`SolverError::TooManySteps`], [`SolverError::NonFinite`].
+    /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
         let whole = self.flow.step();
         let mut clock = StepClock::new(self.now.t, whole);
+        let budget = Budget::new(Method::Hybrid, self.max_steps, self.work.steps, [self.now.t, to]);
         while self.now.t < to && !observer.satisfied() {
             let (now, remaining) = (self.now, to - self.now.t);
-            let mut steps = Steps::new(&self.flow, now, clock);
+            let energy =
+                self.system.energy_norm(&now.y) + LANES as f64 * whole * self.system.energy_norm_growth();
+            let mut steps = Steps::new(&self.flow, now, clock, energy);
             steps.keep((remaining / whole) as usize);
             if steps.count() > 0 {
                 observer.steps(&steps);
                 self.now = steps.knot(steps.count());
                 clock.count(steps.count());
             } else {
-                let mut step = Step::part(&self.flow, now, &self.flow.expand(now.drive, &now.y), remaining);
+                let motion = self.flow.expand(now.drive, &now.y);
+                let mut step = Step::part(&self.flow, now, &motion, remaining, energy);
                 step.end().t = to;
                 observer.segment(&step);
                 self.now = *step.ends()[1];
             }
             self.work.steps += steps.count().max(1) as u64;
-            if self.work.steps > self.max_steps {
-                return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
-            }
+            budget.check(self.work.steps, now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }
@@ -124,7 +127,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> Free<'a, S, N> {
             let to = window.to.min(self.now.t + STRIDE * self.flow.step());
             if to <= self.now.t {
                 // Late in a run a step may be less than the spacing of the numbers there.
-                return Err(SolverError::StepTooSmall { t: self.now.t, h: self.flow.step() });
+                return Err(SolverError::TooFast { t: self.now.t, h: self.flow.step() });
             }
             self.propagate(to, &mut peak)?;
             let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);

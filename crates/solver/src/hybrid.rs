@@ -6,15 +6,17 @@
 
 mod pressing;
 
+use crate::budget::Budget;
 use crate::collision::Collisions;
 use crate::contact;
 use crate::flow::{BLOCKS, Expansion, Flow, LANES};
 use crate::gap::{CUBIC, ceiling, cubic, first_contact, floor, opening_floor};
 use crate::observe::{Knot, Observer, Segment};
 use crate::polynomial::Polynomial;
-use crate::settings::{SolverError, Work};
+use crate::quantity::derivative_bounds;
+use crate::settings::{Method, SolverError, Work};
 use crate::steps::{Step, StepClock, Steps, shifted};
-use crate::system::{Linear, LinearSystem};
+use crate::system::LinearSystem;
 use retune_model::{Compression, Coupled, Side};
 use wide::f64x4;
 
@@ -27,6 +29,15 @@ pub enum Phase {
     Leaving(Side),
     /// Pressed into a wall.
     Pressed(Side),
+}
+
+impl Phase {
+    /// What the damper does in a state that was not reached by moving there: pressed into a wall where it overlaps one.
+    pub fn of(system: &Coupled, y: &[f64; 4]) -> Self {
+        let overlaps = system.rapprochement(y);
+        let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
+        pressed.map_or(Self::Flight, Self::Pressed)
+    }
 }
 
 /// A moment from which the motion can be continued.
@@ -46,10 +57,11 @@ pub struct Hybrid<'a> {
     flow: Flow<4>,
     contacts: [Compression; 2],
     collisions: [Collisions; 2],
-    /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴.
+    /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
     fourth: [f64; 2],
     rtol: f64,
     max_steps: u64,
+    budget: Budget,
     /// Work done so far.
     pub work: Work,
 }
@@ -73,9 +85,10 @@ impl<'a> Hybrid<'a> {
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
             flow,
             contacts: Side::BOTH.map(|side| system.compression(side)),
-            fourth: fourth_derivative_bound(system, &linear),
+            fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
             rtol,
             max_steps,
+            budget: Budget::new(Method::Hybrid, max_steps, 0, [0.0; 2]),
             work: Work::default(),
         }
     }
@@ -92,6 +105,7 @@ impl<'a> Hybrid<'a> {
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
+        self.budget = Budget::new(Method::Hybrid, self.max_steps, self.work.steps, [from.t, to]);
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
@@ -165,15 +179,18 @@ impl<'a> Hybrid<'a> {
             if remaining <= 0.0 {
                 return Ok(FlightEnd::Stopped(now));
             }
-            let mut steps = Steps::new(&self.flow, now, clock);
-            let (open, near) = self.open_steps(&steps, leaving)?;
+            let energy = self.system.energy_norm(&now.y);
+            if !energy.is_finite() {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+            let growth = LANES as f64 * whole * self.system.energy_norm_growth();
+            let mut steps = Steps::new(&self.flow, now, clock, energy + growth);
+            let (open, near) = self.open_steps(&steps, leaving);
             let seen = open.min((remaining / whole) as usize);
             let careful = seen < LANES;
             steps.keep(seen);
             self.work.steps += seen as u64 + u64::from(careful);
-            if self.work.steps > self.max_steps {
-                return Err(SolverError::TooManySteps { t: now.t, limit: self.max_steps });
-            }
+            self.budget.check(self.work.steps, now.t)?;
             if seen > 0 {
                 observer.steps(&steps);
                 now = steps.knot(seen);
@@ -189,8 +206,12 @@ impl<'a> Hybrid<'a> {
                     return Ok(FlightEnd::Stopped(now));
                 }
                 let walls = Side::BOTH.into_iter().filter(|&side| seen == open && near[side as usize]);
-                let (step, touched) =
-                    self.careful_step([now, steps.knot(seen + 1)], walls, leaving, remaining);
+                let (step, touched) = self.careful_step(
+                    [now, steps.knot(seen + 1)],
+                    walls,
+                    leaving,
+                    (remaining, steps.energy()),
+                );
                 if step.length() > 0.0 {
                     observer.segment(&step);
                 }
@@ -209,18 +230,9 @@ impl<'a> Hybrid<'a> {
 
     /// How many of some steps are certified to touch no wall, and which walls the next one may touch.
     #[inline(always)]
-    fn open_steps(
-        &self,
-        steps: &Steps<'_, 4>,
-        leaving: Option<Side>,
-    ) -> Result<(usize, [bool; 2]), SolverError> {
+    fn open_steps(&self, steps: &Steps<'_, 4>, leaving: Option<Side>) -> (usize, [bool; 2]) {
         let (from, to, whole) = (steps.from(), steps.ends(), self.flow.step());
-        let energy = self.system.energy_norm(&from.y);
-        if !energy.is_finite() {
-            return Err(SolverError::NonFinite { t: from.t });
-        }
-        let energy = energy + LANES as f64 * whole * self.system.energy_norm_growth();
-        let margin = CUBIC * whole.powi(4) * (self.fourth[0] * energy + self.fourth[1]);
+        let margin = CUBIC * whole.powi(4) * (self.fourth[0] * steps.energy() + self.fourth[1]);
         let [x1, v1, x2, v2] = to.y;
         let ends = [x2 - x1, v2 - v1];
         let starts = [shifted(from.y[2] - from.y[0], ends[0]), shifted(from.y[3] - from.y[1], ends[1])];
@@ -236,16 +248,17 @@ impl<'a> Hybrid<'a> {
         }
         let open = gaps.map(|gap| gap.simd_gt(f64x4::splat(margin)).to_bitmask());
         let count = (open[0] & open[1]).trailing_ones();
-        Ok((count as usize, open.map(|lanes| lanes >> count & 1 == 0)))
+        (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
     }
 
-    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: as far as it goes.
+    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: as far as it
+    /// goes. `energy` bounds the energy norm of the motion, √J.
     fn careful_step(
         &self,
         [now, end]: [Knot<4>; 2],
         walls: impl Iterator<Item = Side>,
         leaving: Option<Side>,
-        remaining: f64,
+        (remaining, energy): (f64, f64),
     ) -> (Step<'_, 4>, Option<Side>) {
         let whole = self.flow.step();
         let motion = self.flow.expand(now.drive, &now.y);
@@ -256,9 +269,9 @@ impl<'a> Hybrid<'a> {
             }
         }
         if length == whole {
-            return (Step::whole(&self.flow, [now, end]), touched);
+            return (Step::whole(&self.flow, [now, end], energy), touched);
         }
-        let mut step = Step::part(&self.flow, now, &motion, length);
+        let mut step = Step::part(&self.flow, now, &motion, length, energy);
         match touched {
             Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
             None => step.end().t = now.t + remaining,
@@ -278,17 +291,4 @@ impl<'a> Hybrid<'a> {
 fn press(motion: &Expansion<4>, sign: f64) -> Polynomial<BLOCKS> {
     let [x1, _, x2, _] = motion.0;
     Polynomial(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * sign))
-}
-
-/// Coefficients of a bound on `|d⁴r/dt⁴|` in flight, from `r⁗ = ρ A⁴ (y - y0) + P-terms`, with ρ the row of `r`:
-/// the dual energy norm of `ρ A⁴`, and `P (|ρA³b| + ω |ρA²b| + ω² |ρAb| + ω³ |ρb|)`.
-fn fourth_derivative_bound(system: &Coupled, linear: &Linear<4>) -> [f64; 2] {
-    let amplitude = system.drive(0.0)[0];
-    let dot = |a: &[f64; 4], b: &[f64; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (mut row, mut forced) = (STROKE, 0.0);
-    for _ in 0..4 {
-        forced = forced * linear.frequency + dot(&row, &linear.input).abs();
-        row = linear.columns.map(|column| dot(&row, &column));
-    }
-    [system.dual_energy_norm(&row), amplitude * forced]
 }

@@ -5,6 +5,7 @@
 //! ([`observe::Segment`]) to whatever was asked for ([`observe::Observer`]); nothing is stored on the way.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod budget;
 mod collision;
 mod contact;
 pub mod dop853;
@@ -23,15 +24,22 @@ pub mod onestep;
 mod peak;
 mod plausible;
 mod polynomial;
+mod quantity;
 pub mod rk4;
 mod rule;
 mod run;
 mod settings;
+mod settle;
 pub mod steps;
 mod system;
+mod trajectory;
 
-pub use extremes::{Ask, Extremes, Settle, extremes, settled};
+pub use budget::Budget;
+pub use extremes::{Ask, Extremes, extremes};
+pub use follow::Follower;
 pub use hybrid::{Hybrid, Motion, Phase};
-pub use run::{Sample, e1_max, simulate, touch_downs, trajectory};
+pub use run::{e1_max, simulate, touch_downs};
 pub use settings::{Contacts, Extreme, Method, Response, SceneKind, Settings, SolverError, Window, Work};
+pub use settle::{Settle, settled};
 pub use system::{Linear, LinearSystem, System};
+pub use trajectory::{Moment, Rows, Sample, trajectory};

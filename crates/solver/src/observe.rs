@@ -1,10 +1,9 @@
 //! What a run is looked at with. Methods hand over their motion piece by piece; observers keep what was asked for.
 
-use crate::flow::LANES;
 pub use crate::peak::Peak;
+pub use crate::quantity::{BareEnergy, DamperEnergy, Form, PrimaryEnergy, Quantity, RelativePosition};
 use crate::steps::Steps;
 use retune_model::{Drive, Side};
-use wide::f64x4;
 
 /// A moment of the motion.
 #[derive(Clone, Copy, Debug)]
@@ -29,14 +28,22 @@ pub trait Segment<const N: usize> {
     fn at(&self, theta: f64) -> Knot<N>;
     /// The moment at time `t` (s) inside the piece.
     fn at_time(&self, t: f64) -> Knot<N>;
+    /// How far a quantity may leave the quintic that meets its value, slope and curvature (with respect to `θ`) at two places `h`
+    /// apart: `h⁶/46080` times a bound on its sixth derivative between them; a `sharp` bound may cost more. Infinite where they are
+    /// too far apart to say; `None` for a motion that is not known well enough to say.
+    fn quintic_error(&self, _form: &Form<N>, _ends: [&Knot<N>; 2], _h: f64, _sharp: bool) -> Option<f64> {
+        None
+    }
 }
 
 /// A stretch of the motion known at its knots; what lies between them is computed for who asks.
 pub trait Path<const N: usize> {
     /// Number of pieces, one less than there are knots, of which there are at most [`MOST_KNOTS`].
     fn pieces(&self) -> usize;
-    /// Visits the states at the knots in their order.
-    fn states(&self, visit: impl FnMut(&[f64; N]));
+    /// Visits the times (s, since the first) and states at the knots in their order.
+    fn states(&self, visit: impl FnMut(f64, &[f64; N]));
+    /// A bound on the second time derivative of a quantity; infinite where none is known.
+    fn second_derivative(&self, form: &Form<N>) -> f64;
     /// Shows the piece that follows a knot.
     fn show(&self, piece: usize, observer: &mut impl Observer<N>);
 }
@@ -81,30 +88,4 @@ impl<const N: usize> Observer<N> for Unobserved {
     fn segment(&mut self, _segment: &impl Segment<N>) {}
     fn path(&mut self, _path: &impl Path<N>) {}
     fn steps(&mut self, _steps: &Steps<'_, N>) {}
-}
-
-/// A quantity that depends on the force and the state.
-pub trait Quantity<const N: usize> {
-    /// Its value with its first two time derivatives. The value itself must depend on the state alone: between the ends of a
-    /// [`Path`] it is asked for without the force.
-    fn rates(&self, drive: Drive, y: &[f64; N]) -> [f64; 3];
-    /// The same at moments of flight, side by side.
-    #[inline(always)]
-    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 3] {
-        let mut rates = [f64x4::ZERO; 3];
-        for lane in 0..LANES {
-            let at = self.rates(drive.map(|c| c.to_array()[lane]), &y.map(|c| c.to_array()[lane]));
-            for (all, one) in rates.iter_mut().zip(at) {
-                all.as_mut_array()[lane] = one;
-            }
-        }
-        rates
-    }
-}
-
-impl<F: Fn(Drive, &[f64; N]) -> [f64; 3], const N: usize> Quantity<N> for F {
-    #[inline(always)]
-    fn rates(&self, drive: Drive, y: &[f64; N]) -> [f64; 3] {
-        self(drive, y)
-    }
 }

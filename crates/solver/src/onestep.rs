@@ -1,5 +1,6 @@
 //! The loop of the general-purpose one-step methods: MATLAB's step control, dense output, contacts located or stepped over.
 
+use crate::budget::Budget;
 use crate::gap::first_contact;
 use crate::observe::{Knot, Observer, Segment};
 use crate::polynomial::Polynomial;
@@ -97,6 +98,7 @@ pub struct Run<'a, S, const N: usize> {
     leaving: bool,
     /// The walls that the damper has lain against since the start: it has not struck them.
     resting: [bool; 2],
+    budget: Budget,
     /// Work done so far.
     pub work: Work,
 }
@@ -144,6 +146,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             contact: Side::BOTH.into_iter().find(|&side| z[side as usize] > 0.0),
             leaving: false,
             resting: z.map(|z| z == 0.0),
+            budget: Budget::new(settings.method, settings.max_steps, 0, [t; 2]),
             work: Work { evaluations: 1, ..Work::default() },
         }
     }
@@ -162,6 +165,8 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         to: f64,
         observer: &mut impl Observer<N>,
     ) -> Result<(), SolverError> {
+        let span = [self.now.t, to];
+        self.budget = Budget::new(self.settings.method, self.settings.max_steps, self.work.steps, span);
         while self.now.t < to && !observer.satisfied() {
             let t = self.now.t;
             let (h, attempt) = self.accepted::<M>(to)?;
@@ -225,16 +230,14 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
                 && error <= self.tolerance.rtol
             {
                 self.work.steps += 1;
-                if self.work.steps > self.settings.max_steps {
-                    return Err(SolverError::TooManySteps { t, limit: self.settings.max_steps });
-                }
+                self.budget.check(self.work.steps, t)?;
                 let growth = 1.0 / (1.25 * (error / self.tolerance.rtol).powf(M::POWER)).max(0.2);
                 self.h = Some(if failed { h } else { h * growth });
                 return Ok((h, attempt));
             }
             self.work.rejected += 1;
             if self.settings.method.has_fixed_step() {
-                return Err(SolverError::NonFinite { t }); // all that such a method can notice
+                return Err(SolverError::Unstable { t }); // all that such a method can notice
             }
             if h <= shortest {
                 let finite = y.iter().all(|v| v.is_finite());

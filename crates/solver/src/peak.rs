@@ -1,4 +1,11 @@
 //! The largest value of a quantity over a motion.
+//!
+//! A search by branch and bound that drops a stretch of the motion only where a bound says that no larger value is in it.
+//! On a stretch of length `h` let `M` bound the sixth derivative. Then the quintic that meets value, slope and curvature at
+//! both ends leaves the quantity by at most `R = M h⁶ / 46080`, the quintic's slope the slope by at most `√5/30000 M h⁵`, and
+//! its curvature the curvature by at most `M h⁴ / 1920` (G. Birkhoff & A. Priver, J. Math. and Phys. 46, 1967); the quintic and
+//! its derivatives stay between the least and the largest of their Bernstein coefficients. `M` is known of every motion that
+//! the hybrid shows (see `quantity` and `docs/bounds.md`).
 
 use crate::observe::{Knot, MOST_KNOTS, Observer, Path, Quantity, Segment};
 use crate::settings::Extreme;
@@ -6,27 +13,34 @@ use crate::steps::{Steps, shifted};
 use wide::f64x4;
 
 /// The largest value of a quantity, located where its rate of change is zero, to rounding.
-///
-/// On each segment the quintic that meets the value and its first two derivatives at both ends is the screen: only where it
-/// could exceed the record (its Bernstein coefficients bound it; [`SCREEN`] allows for the remainder) is the exact motion looked
-/// at.
 pub struct Peak<Q> {
     quantity: Q,
     record: Extreme,
     cutoff: f64,
     last: Option<(f64, [f64; 3])>,
-    /// Halvings left in the segment being searched.
+    /// Halvings left in the segment that is searched.
     halvings: u32,
+    /// Whether its sharp bound is in use.
+    sharp: bool,
+    doubt: f64,
 }
 
-/// Share of what a quantity varies over a segment, `h |slope| + h² |curvature|` at both ends, by which it may leave its
-/// quintic: for one that varies no faster than `2/h` (energies vary at twice the rate of the motion, and steps are about
-/// `1/rate` long, see [`Steps::fineness`]) the remainder is `2⁶ / 46080` of its amplitude.
-const SCREEN: f64 = 2e-3;
+/// `R` over `M h⁶`.
+pub const QUINTIC: f64 = 1.0 / 46080.0;
 
-/// Most halvings in a segment. A motion needs a few; only where a quantity is level to rounding (a stroke that touches its
-/// record of 0 at each lift-off, the energy of a damper that does not move yet) is there no end of them.
+/// Of a motion whose derivatives have no known bound (the interpolants of general methods): `R` over what the quantity varies by at
+/// both ends, `h |slope| + h² |curvature|`. So it is for a quantity that varies no faster than `2.5/h`.
+const ASSUMED: f64 = 2e-3;
+
+/// Rounding errors that a value may have, over `ε` times the sizes of its terms: no search is made for less.
+const ROUNDING: f64 = 8.0;
+
+/// Most halvings in a segment. Two or three are common, and 20 are many; only where parameters are so far apart that slopes are
+/// lost in rounding there is no end of them.
 const HALVINGS: u32 = 64;
+
+/// Halvings from which on a search is a long one.
+const SHARP: u32 = 3;
 
 impl<Q> Peak<Q> {
     /// Watches a quantity; the run may end early once its value exceeds `cutoff`.
@@ -37,12 +51,19 @@ impl<Q> Peak<Q> {
             cutoff,
             last: None,
             halvings: 0,
+            sharp: false,
+            doubt: 0.0,
         }
     }
 
     /// The record so far.
     pub fn record(&self) -> Extreme {
         self.record
+    }
+
+    /// By how much a value may exceed the record because a search ended before its bounds could tell; 0 where the record is proven.
+    pub fn doubt(&self) -> f64 {
+        self.doubt
     }
 }
 
@@ -58,8 +79,7 @@ fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2]) -
     [value, slope * rate, curvature * rate * rate + slope * rate_slope]
 }
 
-/// The quintic that meets value, slope and curvature at both ends of an interval, by its Bernstein coefficients: it stays
-/// between the least and the largest of them, and its slope between those of their differences times `5/h`.
+/// Bernstein coefficients of the quintic that meets value, slope and curvature at both ends of a stretch of length `h`.
 #[inline(always)]
 fn quintic(h: f64, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
     let (fifth, twentieth) = (h / 5.0, h * h / 20.0);
@@ -69,24 +89,44 @@ fn quintic(h: f64, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
     [a[0], inner_a, deep_a, deep_b, inner_b, b[0]]
 }
 
-/// A bound on what has these coefficients but for a remainder `r s³ (h - s)³ / (h/2)⁶`: that is [`MIDDLE`]` r` more in the middle one of
-/// seven, when the degree is raised by one; the others are means of these six.
+/// A bound on what leaves the quintic by at most `remainder`: the error has three zeros at each end, so it is at most
+/// `64 remainder τ³ (1 - τ)³`, and `τ³ (1 - τ)³` is a twentieth of the middle Bernstein polynomial of degree six. The other
+/// coefficients of that degree are means of these six.
 #[inline(always)]
-fn highest(coefficients: [f64x4; 6], remainder: f64x4) -> f64x4 {
-    let middle = (coefficients[2] + coefficients[3]) * 0.5 + remainder * MIDDLE;
-    coefficients.into_iter().fold(middle, f64x4::fast_max)
+fn highest(c: [f64x4; 6], remainder: f64x4) -> f64x4 {
+    let middle = (c[2] + c[3]) * 0.5 + remainder * (64.0 / 20.0);
+    c.into_iter().fold(middle, f64x4::fast_max)
 }
 
-/// `t³ (1 - t)³` is a twentieth of the middle Bernstein polynomial of degree six, and at most 1/64.
-const MIDDLE: f64 = 64.0 / 20.0;
-
-/// What a quantity varies by over a length `h`, from its rates at one end.
-#[inline(always)]
-fn variation(h: f64, [_, slope, curvature]: [f64x4; 3]) -> f64x4 {
-    (slope.abs() + curvature.abs() * h) * h
+/// What a quantity can do on a stretch.
+enum Shape {
+    /// Its largest value is at an end.
+    EndsAreLargest,
+    /// It is concave, and largest inside.
+    OneMaximum,
+    /// The bounds do not tell.
+    Unknown,
 }
 
-/// Where the slope is zero on an interval of length `h` at whose ends it is positive, then negative: a root of the cubic that
+/// The shape of what leaves the quintic with these coefficients by at most `remainder`: its slope leaves the quintic's by at most
+/// `46080 √5/30000 remainder / h`, its curvature by at most `24 remainder / h²`; the coefficients of slope and curvature
+/// are 5 and 20 times the first and second differences of these.
+fn shape(c: [f64; 6], remainder: f64) -> Shape {
+    let rises: [f64; 5] = std::array::from_fn(|i| c[i + 1] - c[i]);
+    let bends: [f64; 4] = std::array::from_fn(|i| rises[i + 1] - rises[i]);
+    let (rise, bend) = (0.687 * remainder, 1.2 * remainder);
+    let monotone = rises.iter().all(|r| *r >= rise) || rises.iter().all(|r| *r <= -rise);
+    if monotone || bends.iter().all(|b| *b >= bend) {
+        return Shape::EndsAreLargest;
+    }
+    if bends.iter().all(|b| *b < -bend) {
+        // The end slopes are exact.
+        return if rises[0] > 0.0 && rises[4] < 0.0 { Shape::OneMaximum } else { Shape::EndsAreLargest };
+    }
+    Shape::Unknown
+}
+
+/// Where the slope is zero on a stretch of length `h` at whose ends it is positive, then negative: a root of the cubic that
 /// meets slope and curvature at both ends.
 fn slope_root(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
     let (c0, c1) = (a[1], h * a[2]);
@@ -99,77 +139,140 @@ fn slope_root(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
     if s.is_nan() { 0.5 * h } else { s * h }
 }
 
-/// A place in a segment with `[value, slope, curvature]` there.
-type Place = (f64, [f64; 3]);
+/// A place in a segment: `θ`, the moment, and `[value, slope, curvature]` there.
+type Place<const N: usize> = (f64, Knot<N>, [f64; 3]);
 
 impl<Q> Peak<Q> {
-    /// Looks for a maximum above the record between two places.
-    ///
-    /// Branch and bound: an interval on which the quantity stays below the record, or is monotone, is dropped; one with a
-    /// simple maximum is solved by Newton steps on the slope; any other is halved. `remainder` bounds how far the quantity
-    /// leaves its quintic; its slope leaves the quintic's by at most 3.5 times that over `h` (a sixth-order remainder).
+    /// Begins the search of a segment.
+    fn begin<const N: usize>(&mut self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>, remainder: f64)
+    where
+        Q: Quantity<N>,
+    {
+        (self.halvings, self.sharp) = (HALVINGS, false);
+        self.search(segment, a, b, remainder);
+    }
+
+    /// Looks for a maximum above the record between two places. `remainder` bounds how far the quantity leaves its quintic there.
     fn search<const N: usize>(
         &mut self,
         segment: &impl Segment<N>,
-        (a, at_a): Place,
-        (b, at_b): Place,
+        a: &Place<N>,
+        b: &Place<N>,
         remainder: f64,
     ) where
         Q: Quantity<N>,
     {
-        let h = b - a;
-        let coefficients = quintic(h, at_a.map(f64x4::splat), at_b.map(f64x4::splat));
-        if highest(coefficients, f64x4::splat(remainder)).to_array()[0] <= self.record.value {
+        let coefficients = quintic(b.0 - a.0, a.2.map(f64x4::splat), b.2.map(f64x4::splat));
+        let highest = highest(coefficients, f64x4::splat(remainder)).to_array()[0];
+        // A bound that is no number drops nothing.
+        if highest <= self.record.value {
             return;
         }
-        let c = coefficients.map(|lanes| lanes.to_array()[0]);
-        let rises = [c[1] - c[0], c[2] - c[1], c[3] - c[2], c[4] - c[3], c[5] - c[4]];
-        let next_to_middle = [rises[1] / 3.0 + rises[2] / 2.0, rises[2] / 2.0 + rises[3] / 3.0];
-        let monotone = |sign: f64| {
-            rises.iter().all(|rise| sign * rise >= 0.0)
-                && next_to_middle.iter().all(|rise| sign * rise >= MIDDLE * remainder)
-        };
-        if monotone(1.0) || monotone(-1.0) {
-            return; // the larger end has been noted
+        match shape(coefficients.map(|lanes| lanes.to_array()[0]), remainder) {
+            Shape::EndsAreLargest => {} // and have been noted
+            Shape::OneMaximum => self.climb(segment, a, b),
+            Shape::Unknown => self.halve(segment, a, b, remainder, highest),
         }
-        let exact = |theta: f64| {
-            let knot = segment.at(theta);
-            (knot, in_theta(self.quantity.rates(knot.drive, &knot.y), knot.clock))
-        };
-        if at_a[1] > 0.0 && at_b[1] < 0.0 && at_a[2] < 0.0 && at_b[2] < 0.0 {
-            // Concave at both ends: one maximum. The quantity is flat there: an error δ of its place costs δ², and that is
-            // put right by the parabola, `slope² / 2|curvature|` more, which leaves an error of order δ³.
-            let (mut lower, mut upper) = (a, b);
-            let mut theta = a + slope_root(h, at_a, at_b);
-            for _ in 0..60 {
-                let (Knot { t, clock: [rate, rate_slope], .. }, [value, slope, curvature]) = exact(theta);
-                note(&mut self.record, value, t);
-                if slope > 0.0 {
-                    lower = theta
-                } else {
-                    upper = theta
-                }
-                let step = -slope / curvature;
-                let gain = 0.5 * slope * step;
-                if curvature < 0.0 && gain <= 1e-10 * value.abs() {
-                    // Where the quantity is all but level, the parabola's top may lie far outside the bracket.
-                    let way = step.max(lower - theta).min(upper - theta);
-                    return note(&mut self.record, value + gain, t + way * (rate + 0.5 * way * rate_slope));
-                }
-                let newton = theta + step;
-                theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+    }
+
+    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder, unless the segment can only
+    /// tell for shorter stretches; a search that goes on asks for a sharper bound.
+    fn halve<const N: usize>(
+        &mut self,
+        segment: &impl Segment<N>,
+        a: &Place<N>,
+        b: &Place<N>,
+        mut remainder: f64,
+        highest: f64,
+    ) where
+        Q: Quantity<N>,
+    {
+        if self.halvings <= HALVINGS - SHARP {
+            let form = self.quantity.form();
+            let rounding = ROUNDING * f64::EPSILON * form.size(&a.1.y).max(form.size(&b.1.y));
+            if highest <= self.record.value + rounding {
+                return;
             }
-            return;
-        }
-        let middle = 0.5 * (a + b);
-        if remainder < 1e-15 * self.record.value.abs() || self.halvings == 0 {
-            return;
+            if self.halvings == 0 {
+                self.doubt = self.doubt.max(highest - self.record.value);
+                if a.2[1] > 0.0 && b.2[1] < 0.0 {
+                    self.climb(segment, a, b);
+                }
+                return;
+            }
+            if !self.sharp || remainder.is_infinite() {
+                self.sharp = true;
+                let sharper = self.quintic_error(segment, a, b, true);
+                if sharper < remainder {
+                    return self.search(segment, a, b, sharper);
+                }
+            }
         }
         self.halvings -= 1;
-        let (knot, at_middle) = exact(middle);
-        note(&mut self.record, at_middle[0], knot.t);
-        self.search(segment, (a, at_a), (middle, at_middle), remainder / 64.0);
-        self.search(segment, (middle, at_middle), (b, at_b), remainder / 64.0);
+        remainder /= 64.0;
+        let middle = self.look(segment, 0.5 * (a.0 + b.0));
+        note(&mut self.record, middle.2[0], middle.1.t);
+        for (from, to) in [(a, &middle), (&middle, b)] {
+            self.search(segment, from, to, remainder);
+        }
+    }
+
+    fn look<const N: usize>(&self, segment: &impl Segment<N>, theta: f64) -> Place<N>
+    where
+        Q: Quantity<N>,
+    {
+        let knot = segment.at(theta);
+        (theta, knot, in_theta(self.quantity.rates(knot.drive, &knot.y), knot.clock))
+    }
+
+    fn quintic_error<const N: usize>(
+        &self,
+        segment: &impl Segment<N>,
+        a: &Place<N>,
+        b: &Place<N>,
+        sharp: bool,
+    ) -> f64
+    where
+        Q: Quantity<N>,
+    {
+        let h = b.0 - a.0;
+        let assumed = || {
+            let variation = |[_, slope, curvature]: [f64; 3]| (slope.abs() + curvature.abs() * h) * h;
+            ASSUMED * (variation(a.2) + variation(b.2))
+        };
+        let error =
+            segment.quintic_error(self.quantity.form(), [&a.1, &b.1], h, sharp).unwrap_or_else(assumed);
+        if error.is_nan() { f64::INFINITY } else { error }
+    }
+
+    /// The only maximum between two places, where the quantity is concave: Newton's method on the slope, kept inside by bisection.
+    /// The quantity is flat there: an error δ of its place costs δ², and that is put right by the parabola,
+    /// `slope² / 2|curvature|` more, which leaves an error of order δ³.
+    fn climb<const N: usize>(&mut self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>)
+    where
+        Q: Quantity<N>,
+    {
+        let (mut lower, mut upper) = (a.0, b.0);
+        let mut theta = a.0 + slope_root(b.0 - a.0, a.2, b.2);
+        for _ in 0..60 {
+            let (_, Knot { t, clock: [rate, rate_slope], .. }, [value, slope, curvature]) =
+                self.look(segment, theta);
+            note(&mut self.record, value, t);
+            if slope > 0.0 {
+                lower = theta
+            } else {
+                upper = theta
+            }
+            let step = -slope / curvature;
+            let gain = 0.5 * slope * step;
+            if curvature < 0.0 && gain <= 1e-10 * value.abs() {
+                // Where the quantity is all but level, the parabola's top may lie far outside the bracket.
+                let way = step.max(lower - theta).min(upper - theta);
+                return note(&mut self.record, value + gain, t + way * (rate + 0.5 * way * rate_slope));
+            }
+            let newton = theta + step;
+            theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+        }
     }
 }
 
@@ -191,38 +294,34 @@ where
         let rates_b = self.quantity.rates(b.drive, &b.y);
         self.last = Some((b.t, rates_b));
         note(&mut self.record, rates_b[0], b.t);
-        let (at_a, at_b) = (in_theta(rates_a, a.clock), in_theta(rates_b, b.clock));
-        let h = segment.length();
-        let remainder = SCREEN
-            * (variation(h, at_a.map(f64x4::splat)) + variation(h, at_b.map(f64x4::splat))).to_array()[0];
-        self.halvings = HALVINGS;
-        self.search(segment, (0.0, at_a), (h, at_b), remainder);
+        let from = (0.0, *a, in_theta(rates_a, a.clock));
+        let to = (segment.length(), *b, in_theta(rates_b, b.clock));
+        let remainder = self.quintic_error(segment, &from, &to, false);
+        self.begin(segment, &from, &to, remainder);
     }
 
-    /// Looks only between knots where the record could be broken: a quantity that the knots resolve rises between two of them by
-    /// less than half the larger of its second differences there (by an eighth, were it a parabola on even knots).
+    /// Looks only between knots where the record could be broken: what has a second derivative of at most `m` rises above the
+    /// larger of two values `t` seconds apart by at most `m t² / 8`.
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
-        let mut values = [f64::NEG_INFINITY; MOST_KNOTS];
+        let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
         let mut count = 0;
-        path.states(|y| {
+        path.states(|t, y| {
             [values[count], ..] = self.quantity.rates([0.0; 2], y);
+            times[count] = t;
             count += 1;
         });
-        let mut bends = [0.0; MOST_KNOTS];
-        for knot in 2..count {
-            bends[knot - 1] = (values[knot] - 2.0 * values[knot - 1] + values[knot - 2]).abs();
-        }
-        (bends[0], bends[count - 1]) = (bends[1], bends[count - 2]);
+        let second = path.second_derivative(self.quantity.form());
         for piece in 0..count - 1 {
-            let rise = 0.5 * bends[piece].max(bends[piece + 1]);
-            if values[piece].max(values[piece + 1]) + rise > self.record.value {
+            let rise = 0.125 * second * (times[piece + 1] - times[piece]).powi(2);
+            let dropped = values[piece].max(values[piece + 1]) + rise <= self.record.value;
+            if !dropped {
                 path.show(piece, self);
             }
         }
     }
 
-    /// The screen of [`Self::segment`] for all steps side by side.
+    /// The bound of [`Self::segment`] for all steps side by side.
     #[inline(always)]
     fn steps(&mut self, steps: &Steps<'_, N>) {
         let (from, to) = (steps.from(), steps.ends());
@@ -233,23 +332,27 @@ where
         let ends = self.quantity.rates_in_flight(&to.drive, &to.y);
         let begins = [0, 1, 2].map(|order| shifted(first[order], ends[order]));
         let h = steps.length();
-        let remainder = (variation(h, begins) + variation(h, ends)) * (SCREEN * steps.fineness());
-        let highest = highest(quintic(h, begins, ends), remainder);
+        let sixth = self.quantity.form().sixth_in_flight(steps.energy());
+        let remainder = QUINTIC * h.powi(6) * sixth;
+        let highest = highest(quintic(h, begins, ends), f64x4::splat(remainder));
         let last = steps.count() - 1;
         self.last = Some((steps.time(last + 1), ends.map(|lanes| lanes.to_array()[last])));
         // The values at both ends are among the coefficients.
-        let above = highest.simd_gt(f64x4::splat(self.record.value)).to_bitmask();
-        if above & ((2 << last) - 1) == 0 {
+        let dropped = highest.simd_le(f64x4::splat(self.record.value)).to_bitmask();
+        let wanted = !dropped & ((2 << last) - 1);
+        if wanted == 0 {
             return;
         }
         for number in 0..=last {
             note(&mut self.record, begins[0].to_array()[number], steps.time(number));
             note(&mut self.record, ends[0].to_array()[number], steps.time(number + 1));
         }
-        for number in (0..=last).filter(|number| above >> number & 1 == 1) {
-            self.halvings = HALVINGS;
-            let [a, b] = [begins, ends].map(|all| all.map(|lanes| lanes.to_array()[number]));
-            self.search(&steps.step(number), (0.0, a), (h, b), remainder.to_array()[number]);
+        for number in (0..=last).filter(|number| wanted >> number & 1 == 1) {
+            let step = steps.step(number);
+            let [begin, end] = step.ends();
+            let rates = |all: [f64x4; 3]| all.map(|lanes| lanes.to_array()[number]);
+            let (from, to) = ((0.0, *begin, rates(begins)), (h, *end, rates(ends)));
+            self.begin(&step, &from, &to, remainder);
         }
     }
 

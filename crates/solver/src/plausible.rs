@@ -6,7 +6,7 @@ use retune_model::{Bare, Scene};
 /// Rounding that the bound on the energy is given.
 const SLACK: f64 = 1e-6;
 
-/// Roundings of a position between the search for touch-downs and that for the largest stroke, which do not compute it alike.
+/// Roundings of a position between the search for touch-downs and that for the largest relative displacement, which do not compute it alike.
 const ROUNDINGS: f64 = 64.0;
 
 /// Passes on a largest energy of the primary structure that can be.
@@ -61,7 +61,7 @@ pub fn response(
     if value.is_finite() && !(window.from..=window.to).contains(&time) {
         return Err(SolverError::Implausible { t: window.to, value, time, most: most(scene, window) });
     }
-    let numbers = [found.e2_max.value, found.stroke_max];
+    let numbers = [found.e2_max.value, found.relative_displacement_max, found.spring_deflection_max];
     let all = numbers.iter().chain(&found.force_max).chain(&found.final_state);
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }
@@ -83,7 +83,15 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
     let sound = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
     match error {
         SolverError::StepTooSmall { t, h } => SolverError::StepTooSmall { t: sound(t), h },
-        SolverError::TooManySteps { t, limit } => SolverError::TooManySteps { t: sound(t), limit },
+        SolverError::TooFast { t, h } => SolverError::TooFast { t: sound(t), h },
+        SolverError::Contact { t } => SolverError::Contact { t: sound(t) },
+        SolverError::TooManySteps { t, limit, method } => {
+            SolverError::TooManySteps { t: sound(t), limit, method }
+        }
+        SolverError::TooSlow { t, steps, needed, limit, method } => {
+            SolverError::TooSlow { t: sound(t), steps, needed, limit, method }
+        }
+        SolverError::Unstable { t } => SolverError::Unstable { t: sound(t) },
         SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
         SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
         SolverError::Implausible { .. } => error,

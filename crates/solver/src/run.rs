@@ -2,12 +2,13 @@
 
 use crate::follow::{follow_bare, follow_coupled};
 use crate::free::Free;
-use crate::observe::{Knot, Observer, Path, Peak, Segment, Unobserved};
+use crate::observe::{
+    BareEnergy, DamperEnergy, Observer, Path, Peak, PrimaryEnergy, RelativePosition, Segment, Unobserved,
+};
 use crate::plausible;
 use crate::settings::{Extreme, Method, Response, SceneKind, Settings, SolverError, Window};
 use crate::steps::Steps;
-use crate::system::PrimaryEnergy;
-use retune_model::{Bare, Coupled, Drive, Scene, Side, hertz_force};
+use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
 ///
@@ -37,8 +38,7 @@ fn largest_energy(
     match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut peak =
-                Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), cutoff);
+            let mut peak = Peak::new(BareEnergy::new(&system), cutoff);
             if hybrid {
                 let steady = system.steady(system.frequency()).e1_max;
                 return Free::new(&system, window.to, settings.max_steps).e1_max(window, peak, steady);
@@ -48,7 +48,7 @@ fn largest_energy(
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut peak = Peak::new(PrimaryEnergy(&system), cutoff);
+            let mut peak = Peak::new(PrimaryEnergy::new(&system), cutoff);
             if hybrid {
                 let mut free = Free::new(&system, window.to, settings.max_steps);
                 if free.clears_walls() {
@@ -78,15 +78,15 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 }
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    let mut peak =
-        Peak::new(|drive: Drive, y: &[f64; 2]| system.primary_energy_rates(drive, y), f64::INFINITY);
+    let mut peak = Peak::new(BareEnergy::new(system), f64::INFINITY);
     let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
     Ok(Response {
         e1_max: peak.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
         impacts: [0; 2],
         force_max: [0.0; 2],
-        stroke_max: 0.0,
+        relative_displacement_max: 0.0,
+        spring_deflection_max: 0.0,
         final_state: [state[0], state[1], 0.0, 0.0],
         scene: SceneKind::Bare,
         work,
@@ -94,20 +94,20 @@ fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<R
 }
 
 fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    let stroke =
-        |sign: f64| move |drive: Drive, y: &[f64; 4]| system.stroke_rates(drive, y).map(|v| sign * v);
     let mut before = Touches::default();
     let mut seen = Everything {
-        e1: Peak::new(PrimaryEnergy(system), f64::INFINITY),
-        e2: Peak::new(|drive: Drive, y: &[f64; 4]| system.damper_energy_rates(drive, y), f64::INFINITY),
-        farthest: Peak::new(stroke(1.0), f64::INFINITY),
-        nearest: Peak::new(stroke(-1.0), f64::INFINITY),
+        e1: Peak::new(PrimaryEnergy::new(system), f64::INFINITY),
+        e2: Peak::new(DamperEnergy::new(system), f64::INFINITY),
+        farthest: Peak::new(RelativePosition::new(system, 1.0), f64::INFINITY),
+        nearest: Peak::new(RelativePosition::new(system, -1.0), f64::INFINITY),
         touches: Touches::default(),
     };
     let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
     let (nearest, farthest) = (-seen.nearest.record().value, seen.farthest.record().value);
     let e1_max = seen.e1.record();
-    let stroke_max = farthest.abs().max(nearest.abs());
+    let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
+    let relative_displacement_max = farthest_from(0.0);
+    let spring_deflection_max = farthest_from(system.rest_distance());
     let mut depths = [-nearest, farthest - system.wall(Side::Obstacle)];
     if settings.method == Method::Hybrid {
         for side in Side::BOTH {
@@ -115,7 +115,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
             let rests = system.wall(side) == system.rest_distance();
             if !rests && before.0[i] + seen.touches.0[i] == 0 {
                 let reach = system.bare().reach(e1_max.value, final_state[0], window.to - window.from);
-                let position = 2.0 * reach + system.rest_distance() + stroke_max;
+                let position = 2.0 * reach + system.rest_distance() + relative_displacement_max;
                 depths[i] = plausible::untouched(depths[i], position, window.to)?;
             }
         }
@@ -128,7 +128,8 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
         e2_max: seen.e2.record(),
         impacts: seen.touches.0,
         force_max,
-        stroke_max,
+        relative_displacement_max,
+        spring_deflection_max,
         final_state,
         scene: if touched { SceneKind::Contact } else { SceneKind::Linear },
         work,
@@ -148,20 +149,15 @@ impl Observer<4> for Touches {
     }
 }
 
-struct Everything<'a, E2, F, G> {
+struct Everything<'a> {
     e1: Peak<PrimaryEnergy<'a>>,
-    e2: Peak<E2>,
-    farthest: Peak<F>,
-    nearest: Peak<G>,
+    e2: Peak<DamperEnergy<'a>>,
+    farthest: Peak<RelativePosition<'a>>,
+    nearest: Peak<RelativePosition<'a>>,
     touches: Touches,
 }
 
-impl<E2, F, G> Observer<4> for Everything<'_, E2, F, G>
-where
-    E2: Fn(Drive, &[f64; 4]) -> [f64; 3],
-    F: Fn(Drive, &[f64; 4]) -> [f64; 3],
-    G: Fn(Drive, &[f64; 4]) -> [f64; 3],
-{
+impl Observer<4> for Everything<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.e1.segment(segment);
         self.e2.segment(segment);
@@ -211,92 +207,5 @@ impl Observer<4> for Times {
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}
     fn touch_down(&mut self, t: f64, side: Side) {
         self.0.push((t, side));
-    }
-}
-
-/// A moment of a recorded trajectory.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// Time, s.
-    pub t: f64,
-    /// `[x1, v1, x2, v2]` (m, m/s); `[x1, v1, 0, 0]` without a damper.
-    pub state: [f64; 4],
-    /// Energy of the primary structure, J.
-    pub e1: f64,
-    /// Energy of the damper, the paper's E2, J.
-    pub e2: f64,
-    /// Contact forces on the primary structure and on the obstacle, N.
-    pub forces: [f64; 2],
-}
-
-/// Visits the motion at `window.from + k interval` (s) for `k = 0, 1, …` up to the end of the window.
-///
-/// # Errors
-/// [`SolverError`] with the time reached; samples before that have been visited.
-pub fn trajectory(
-    scene: &Scene,
-    window: Window,
-    settings: &Settings,
-    interval: f64,
-    visit: &mut dyn FnMut(&Sample),
-) -> Result<(), SolverError> {
-    match &scene.damper {
-        None => {
-            let system = Bare::new(&scene.primary, &scene.forcing);
-            let sample = |knot: &Knot<2>| {
-                let [x1, v1] = knot.y;
-                visit(&Sample {
-                    t: knot.t,
-                    state: [x1, v1, 0.0, 0.0],
-                    e1: system.primary_energy(x1, v1),
-                    e2: 0.0,
-                    forces: [0.0; 2],
-                });
-            };
-            let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
-            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
-        }
-        Some(damper) => {
-            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let sample = |knot: &Knot<4>| {
-                visit(&Sample {
-                    t: knot.t,
-                    state: knot.y,
-                    e1: system.bare().primary_energy(knot.y[0], knot.y[1]),
-                    e2: system.damper_energy_rates(knot.drive, &knot.y)[0],
-                    forces: system.contact_forces(&knot.y),
-                });
-            };
-            let mut recorder = Recorder { start: window.from, interval, next: 0.0, visit: sample };
-            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
-        }
-    }
-    Ok(())
-}
-
-struct Recorder<F> {
-    start: f64,
-    interval: f64,
-    next: f64,
-    visit: F,
-}
-
-impl<const N: usize, F: FnMut(&Knot<N>)> Observer<N> for Recorder<F> {
-    fn segment(&mut self, segment: &impl Segment<N>) {
-        let [from, to] = segment.ends();
-        loop {
-            let t = self.start + self.next * self.interval;
-            if t > to.t {
-                return;
-            }
-            (self.visit)(&if t <= from.t {
-                *from
-            } else if t == to.t {
-                *to
-            } else {
-                segment.at_time(t)
-            });
-            self.next += 1.0;
-        }
     }
 }

@@ -162,8 +162,10 @@ pub struct Response {
     pub impacts: [u64; 2],
     /// Largest contact forces on the primary structure and on the obstacle, N.
     pub force_max: [f64; 2],
-    /// Largest `|x2 - x1|`, m.
-    pub stroke_max: f64,
+    /// Largest relative displacement `|x2 - x1|` of the damper, m: its place in the cavity.
+    pub relative_displacement_max: f64,
+    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
+    pub spring_deflection_max: f64,
     /// State at the end of the window: `[x1, v1, x2, v2]`, or `[x1, v1, 0, 0]` without a damper.
     pub final_state: [f64; 4],
     /// The smallest model that was exact for the whole run.
@@ -175,7 +177,8 @@ pub struct Response {
 /// Why a run could not be finished. Every variant carries the time that was reached.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolverError {
-    /// The step had to become smaller than the spacing of floating-point numbers allows.
+    /// A method that chooses its steps by their error had to choose one below the spacing of floating-point numbers. The hybrid
+    /// has no such steps.
     #[error("the step became too small at t = {t} s (h = {h:e} s); loosen rtol, or choose the hybrid solver")]
     StepTooSmall {
         /// Time reached, s.
@@ -183,13 +186,58 @@ pub enum SolverError {
         /// The step that was refused, s.
         h: f64,
     },
+    /// The exact flow of the hybrid has a step that is lost to rounding at the end of the run.
+    #[error(
+        "the motion changes within {h:e} s, which is lost to rounding at t = {t} s; shorten T, or lower what is this fast: omega, \
+         or a stiffness or damping for its mass"
+    )]
+    TooFast {
+        /// A time of the run at which the step is lost, s.
+        t: f64,
+        /// The step, s.
+        h: f64,
+    },
+    /// The hybrid found no step to follow a contact with: its force is lost to rounding beside others, or they beside it.
+    #[error(
+        "a contact at t = {t} s cannot be followed: its force and the other forces are too many orders of magnitude apart; \
+         check R and the masses"
+    )]
+    Contact {
+        /// Time reached, s.
+        t: f64,
+    },
     /// The run needs more steps than it may take.
-    #[error("the run needed more than {limit} steps (t = {t} s); shorten T, loosen rtol or raise max_steps")]
+    #[error("the run needed more than {limit} steps (t = {t} s); {}", fewer_steps(*.method))]
     TooManySteps {
         /// Time reached, s.
         t: f64,
         /// The limit.
         limit: u64,
+        /// The method, on which it depends how a run takes fewer.
+        method: Method,
+    },
+    /// The run would need many times the steps that it may take (see [`Budget`](crate::Budget)).
+    #[error(
+        "after {steps} steps the run has come to t = {t} s: at this rate it takes {needed:e} steps, and max_steps is {limit}; {}",
+        fewer_steps(*.method)
+    )]
+    TooSlow {
+        /// Time reached, s.
+        t: f64,
+        /// Steps taken.
+        steps: u64,
+        /// Steps that the run would take at this rate; infinite if it does not move at all.
+        needed: f64,
+        /// The limit.
+        limit: u64,
+        /// The method.
+        method: Method,
+    },
+    /// A method of fixed step has left the finite numbers.
+    #[error("the motion blows up at t = {t} s: a fixed step is too long for it; choose the hybrid solver")]
+    Unstable {
+        /// Time reached, s.
+        t: f64,
     },
     /// The motion has more energy than the force can have given it, or its largest at a time that is not in the window.
     #[error(
@@ -225,4 +273,17 @@ pub enum SolverError {
         /// Time reached, s.
         t: f64,
     },
+}
+
+/// What makes a run take fewer steps. Those of the hybrid follow from the motion, fixed ones from T alone.
+fn fewer_steps(method: Method) -> &'static str {
+    match method {
+        Method::Hybrid => {
+            "shorten T, raise max_steps, or check for a mass, a stiffness or a force of the wrong size"
+        }
+        Method::Rk4 | Method::Euler => "shorten T, raise max_steps, or choose the hybrid solver",
+        Method::Ode23s | Method::Ode45 | Method::Ode23 | Method::Dop853 => {
+            "shorten T, raise max_steps, loosen rtol, or choose the hybrid solver"
+        }
+    }
 }

@@ -1,7 +1,8 @@
 //! Whole steps of an exact flow, a few of them side by side, as they are handed to observers.
 
 use crate::flow::{Expansion, Flow, LANES, Stride};
-use crate::observe::{Knot, Segment};
+use crate::observe::{Form, Knot, Segment};
+use crate::peak::QUINTIC;
 use std::cell::OnceCell;
 use wide::f64x4;
 
@@ -10,19 +11,26 @@ pub struct Step<'a, const N: usize> {
     flow: &'a Flow<N>,
     ends: [Knot<N>; 2],
     length: f64,
+    energy: f64,
     expansion: OnceCell<Expansion<N>>,
 }
 
 impl<'a, const N: usize> Step<'a, N> {
-    /// The step between two moments a whole step apart.
-    pub fn whole(flow: &'a Flow<N>, ends: [Knot<N>; 2]) -> Self {
-        Self { flow, ends, length: flow.step(), expansion: OnceCell::new() }
+    /// The step between two moments a whole step apart; `energy` bounds the energy norm (√J) of the motion in it.
+    pub fn whole(flow: &'a Flow<N>, ends: [Knot<N>; 2], energy: f64) -> Self {
+        Self { flow, ends, length: flow.step(), energy, expansion: OnceCell::new() }
     }
 
-    /// The part of a step that takes `length` seconds from `from` on, where the motion is `motion`.
-    pub fn part(flow: &'a Flow<N>, from: Knot<N>, motion: &Expansion<N>, length: f64) -> Self {
+    /// The part of a step that takes `length` seconds from `from` on, where the motion is `motion`; `energy` as in [`Self::whole`].
+    pub fn part(flow: &'a Flow<N>, from: Knot<N>, motion: &Expansion<N>, length: f64, energy: f64) -> Self {
         let end = moment(flow, &from, motion, length);
-        Self { flow, ends: [from, end], length, expansion: OnceCell::new() }
+        Self { flow, ends: [from, end], length, energy, expansion: OnceCell::new() }
+    }
+
+    /// The motion over the step.
+    fn expansion(&self) -> &Expansion<N> {
+        let from = &self.ends[0];
+        self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y))
     }
 
     /// Its last moment, to be put right where more is known of it than arithmetic tells.
@@ -39,12 +47,18 @@ impl<const N: usize> Segment<N> for Step<'_, N> {
         self.length
     }
     fn at(&self, theta: f64) -> Knot<N> {
-        let from = &self.ends[0];
-        let expansion = self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y));
-        moment(self.flow, from, expansion, theta)
+        moment(self.flow, &self.ends[0], self.expansion(), theta)
     }
     fn at_time(&self, t: f64) -> Knot<N> {
         Knot { t, ..self.at(t - self.ends[0].t) }
+    }
+    /// By the energy of the motion; sharply, by its Taylor polynomial over the step.
+    fn quintic_error(&self, form: &Form<N>, _ends: [&Knot<N>; 2], h: f64, sharp: bool) -> Option<f64> {
+        Some(if sharp {
+            form.quintic_error(&self.expansion().0, self.length) * (h / self.length).powi(6)
+        } else {
+            QUINTIC * h.powi(6) * form.sixth_in_flight(self.energy)
+        })
     }
 }
 
@@ -67,6 +81,7 @@ pub struct Steps<'a, const N: usize> {
     from: Knot<N>,
     stride: Stride<N>,
     count: usize,
+    energy: f64,
 }
 
 /// Time in whole steps since a moment: counted, not accumulated.
@@ -96,10 +111,11 @@ impl StepClock {
 }
 
 impl<'a, const N: usize> Steps<'a, N> {
-    /// As many steps as there are lanes, from a moment on, at which `clock` stands.
+    /// As many steps as there are lanes, from a moment on, at which `clock` stands; `energy` bounds the energy norm (√J) of the
+    /// motion in all of them.
     #[inline(always)]
-    pub fn new(flow: &'a Flow<N>, from: Knot<N>, clock: StepClock) -> Self {
-        Self { flow, clock, from, stride: flow.stride(from.drive, &from.y), count: LANES }
+    pub fn new(flow: &'a Flow<N>, from: Knot<N>, clock: StepClock, energy: f64) -> Self {
+        Self { flow, clock, from, stride: flow.stride(from.drive, &from.y), count: LANES, energy }
     }
 
     /// Keeps the first `count` of them.
@@ -117,9 +133,9 @@ impl<'a, const N: usize> Steps<'a, N> {
         self.flow.step()
     }
 
-    /// How little a quantity varies over a step, see [`Flow::fineness`].
-    pub fn fineness(&self) -> f64 {
-        self.flow.fineness()
+    /// A bound on the energy norm of the motion, √J.
+    pub fn energy(&self) -> f64 {
+        self.energy
     }
 
     /// The moment at which the first begins.
@@ -153,6 +169,6 @@ impl<'a, const N: usize> Steps<'a, N> {
 
     /// One of them.
     pub fn step(&self, number: usize) -> Step<'a, N> {
-        Step::whole(self.flow, [self.knot(number), self.knot(number + 1)])
+        Step::whole(self.flow, [self.knot(number), self.knot(number + 1)], self.energy)
     }
 }

@@ -1,9 +1,7 @@
 //! What a solver needs to know of a system. The only file here that meets the model's equations by name.
 
-use crate::observe::Quantity;
 use nalgebra::{Complex, SMatrix};
 use retune_model::{Bare, Coupled, Drive};
-use wide::f64x4;
 
 /// A first-order system `y' = f(t, y)` of `N` equations that general-purpose methods can integrate.
 pub trait System<const N: usize> {
@@ -31,6 +29,10 @@ pub trait LinearSystem<const N: usize>: System<N> {
     fn steady(&self) -> Option<[Complex<f64>; N]>;
     /// A norm of the deviation of a state from the origin that never grows without force, √J: `√(2E)`.
     fn energy_norm(&self, y: &[f64; N]) -> f64;
+    /// Largest growth of that norm under the force, √J/s.
+    fn energy_norm_growth(&self) -> f64;
+    /// The largest `|row · (y - origin)|` over all states of norm 1; infinite if there is none.
+    fn dual_energy_norm(&self, row: &[f64; N]) -> f64;
 }
 
 /// A forced linear system.
@@ -103,6 +105,12 @@ impl LinearSystem<2> for Bare {
     fn energy_norm(&self, &[x1, v1]: &[f64; 2]) -> f64 {
         (2.0 * self.primary_energy(x1, v1)).sqrt()
     }
+    fn energy_norm_growth(&self) -> f64 {
+        Bare::energy_norm_growth(self)
+    }
+    fn dual_energy_norm(&self, row: &[f64; 2]) -> f64 {
+        Bare::dual_energy_norm(self, row)
+    }
 }
 
 impl LinearSystem<4> for Coupled {
@@ -124,6 +132,12 @@ impl LinearSystem<4> for Coupled {
     fn energy_norm(&self, y: &[f64; 4]) -> f64 {
         Coupled::energy_norm(self, y)
     }
+    fn energy_norm_growth(&self) -> f64 {
+        Coupled::energy_norm_growth(self)
+    }
+    fn dual_energy_norm(&self, row: &[f64; 4]) -> f64 {
+        Coupled::dual_energy_norm(self, row)
+    }
 }
 
 /// Amplitudes of positions with those of their velocities, `iω` times as large; `None` unless all are finite.
@@ -133,18 +147,4 @@ fn finite<const M: usize>(positions: [Complex<f64>; M], omega: f64) -> Option<[[
         .iter()
         .all(|x| x.re.is_finite() && x.im.is_finite())
         .then(|| positions.map(|x| [x, velocity * x]))
-}
-
-/// The energy of the primary structure, J.
-pub(crate) struct PrimaryEnergy<'a>(pub &'a Coupled);
-
-impl Quantity<4> for PrimaryEnergy<'_> {
-    #[inline(always)]
-    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        self.0.primary_energy_rates(drive, y)
-    }
-    #[inline(always)]
-    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.0.primary_energy_rates_in_flight(drive, y)
-    }
 }

@@ -6,7 +6,9 @@ use problems::linear::golden;
 use problems::scenes::{Numbers, ROW3, SSVI, Spread, TMD, TWO_SIDED};
 use problems::{assert_close, assert_states};
 use retune_model::{Coupled, Scene};
-use retune_solver::{Method, Response, Sample, SceneKind, Settings, Window, e1_max, simulate, trajectory};
+use retune_solver::{
+    Method, Response, Rows, Sample, SceneKind, Settings, Window, e1_max, simulate, trajectory,
+};
 use std::f64::consts::TAU;
 
 const INFINITY: f64 = f64::INFINITY;
@@ -17,8 +19,10 @@ fn run(scene: &Scene, from: f64, to: f64) -> Response {
 
 fn samples(scene: &Scene, from: f64, to: f64, interval: f64) -> Vec<Sample> {
     let mut all = Vec::new();
-    trajectory(scene, Window { from, to }, &Settings::default(), interval, &mut |s| all.push(*s))
-        .expect("a run");
+    trajectory(scene, Window { from, to }, &Settings::default(), Rows::every(interval), &mut |s| {
+        all.push(*s)
+    })
+    .expect("a run");
     all
 }
 
@@ -145,7 +149,13 @@ fn exact_linear_damper_against_the_matrix_exponential() {
             });
             assert_close(found.e2_max.value, expected, expected, 1e-10, &format!("E2max {numbers:?}"));
             let (expected, _) = exact.largest(rest, [from, to], |y| (y[2] - y[0]).abs());
-            assert_close(found.stroke_max, expected, expected, 1e-10, &format!("stroke {numbers:?}"));
+            assert_close(
+                found.relative_displacement_max,
+                expected,
+                expected,
+                1e-10,
+                &format!("displacement {numbers:?}"),
+            );
             let n = (to / 0.1).round() as usize;
             let expected = exact.grid(0.0, rest, to / n as f64, n)[n];
             assert_states(found.final_state, expected, [0.2, 1.0], 1e-11, &format!("{numbers:?}"));
@@ -176,7 +186,13 @@ fn exact_windows_join() {
             let what = format!("{cut} {numbers:?}");
             assert_close(larger(&|r| r.e1_max.value), whole.e1_max.value, whole.e1_max.value, 1e-8, &what);
             assert_close(larger(&|r| r.e2_max.value), whole.e2_max.value, whole.e2_max.value, 1e-8, &what);
-            assert_close(larger(&|r| r.stroke_max), whole.stroke_max, whole.stroke_max, 1e-8, &what);
+            assert_close(
+                larger(&|r| r.relative_displacement_max),
+                whole.relative_displacement_max,
+                whole.relative_displacement_max,
+                1e-8,
+                &what,
+            );
             for side in [0, 1] {
                 let force = larger(&|r| r.force_max[side]);
                 assert_close(force, whole.force_max[side], whole.force_max[side] + 1.0, 1e-7, &what);
@@ -254,7 +270,12 @@ fn exact_maxima_are_maxima_of_the_motion() {
         for (what, found, sampled, slack) in [
             ("E1", found.e1_max.value, largest(&|s| s.e1), 2e-6),
             ("E2", found.e2_max.value, largest(&|s| s.e2), 2e-4),
-            ("stroke", found.stroke_max, largest(&|s| (s.state[2] - s.state[0]).abs()), 1e-5),
+            (
+                "relative displacement",
+                found.relative_displacement_max,
+                largest(&|s| (s.state[2] - s.state[0]).abs()),
+                1e-5,
+            ),
             ("force on the structure", found.force_max[0], largest(&|s| s.forces[0]), 1e-2),
             ("force on the obstacle", found.force_max[1], largest(&|s| s.forces[1]), 1e-2),
         ] {

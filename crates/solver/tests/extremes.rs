@@ -5,7 +5,7 @@ mod scenes;
 
 use retune_model::{Bare, Coupled, Scene};
 use retune_solver::{
-    Ask, Extremes, Method, Settings, Settle, Window, extremes, settled, simulate, trajectory,
+    Ask, Extremes, Method, Rows, Settings, Settle, Window, extremes, settled, simulate, trajectory,
 };
 use scenes::{Numbers, SSVI, TMD};
 use std::f64::consts::PI;
@@ -14,6 +14,7 @@ const SHORT: Window = Window { from: 2.0, to: 12.0 };
 
 fn seen(scene: &Scene, method: Method, phase: f64, walls: bool) -> Extremes {
     let settings = Settings { method, ..Settings::default() };
+    let walls = walls.then_some(SHORT.from);
     extremes(scene, SHORT, &settings, Ask { phase, walls, ..Ask::default() }).expect("a run")
 }
 
@@ -24,7 +25,7 @@ fn exact_stroke_and_force_are_those_of_the_motion() {
         let run = simulate(&scene, SHORT, &Settings::default()).expect("a run");
         let rest = scene.damper.expect("a damper").rest_distance.get();
         let mut largest = 0.0_f64;
-        trajectory(&scene, SHORT, &Settings::default(), 1e-4, &mut |sample| {
+        trajectory(&scene, SHORT, &Settings::default(), Rows::every(1e-4), &mut |sample| {
             largest = largest.max((sample.state[2] - sample.state[0] - rest).abs());
         })
         .expect("a run");
@@ -68,7 +69,8 @@ const LONG: Window = Window { from: 50.0, to: 400.0 };
 
 fn rest(scene: &Scene, method: Method, settle: Settle) -> Extremes {
     let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
-    settled(scene, LONG, settle, &settings, Ask { walls: true, ..Ask::default() }).expect("a run")
+    settled(scene, LONG, settle, &settings, Ask { walls: Some(f64::INFINITY), ..Ask::default() })
+        .expect("a run")
 }
 
 #[test]
@@ -93,7 +95,7 @@ fn exact_a_motion_with_contacts_settles_at_what_a_late_window_shows() {
     let found = rest(&scene, Method::Hybrid, Settle::default());
     assert!(found.settled && found.force > 0.0, "{found:?}");
     let late = Window { from: 300.0, to: 400.0 };
-    let ask = Ask { walls: true, ..Ask::default() };
+    let ask = Ask { walls: Some(late.from), ..Ask::default() };
     let run = extremes(&scene, late, &Settings::default(), ask).expect("a run");
     assert!((found.e1_max.value / run.e1_max.value - 1.0).abs() < 1e-4, "{found:?} {run:?}");
     assert!((found.stroke / run.stroke - 1.0).abs() < 1e-3, "{found:?} {run:?}");
@@ -109,7 +111,59 @@ fn exact_a_motion_that_has_not_settled_says_so() {
     // The first block that begins after 50 s does so at the eighth of 6 periods.
     let from = 8.0 * 6.0 * 2.0 * PI / numbers.omega;
     let window = Window { from, ..LONG };
-    let ask = Ask { walls: true, ..Ask::default() };
+    let ask = Ask { walls: Some(from), ..Ask::default() };
     let run = extremes(&scene, window, &Settings::default(), ask).expect("a run");
     assert!((never.e1_max.value / run.e1_max.value - 1.0).abs() < 1e-6, "{never:?} {run:?}");
+}
+
+/// The largest energy lies at an end of some of these windows, and its time must not leave them by rounding.
+#[test]
+fn contract_a_phase_is_no_error() {
+    for (omega, window) in
+        [(SSVI.omega, Window { from: 0.0, to: 0.9 }), (3.2, Window { from: 3.0, to: 12.0 })]
+    {
+        for scene in [SSVI, TMD].map(|numbers| Numbers { omega, ..numbers }.scene()) {
+            for phase in (1..100).map(|i| 0.02 * PI * f64::from(i)) {
+                let ask = Ask { phase, ..Ask::default() };
+                let found = extremes(&scene, window, &Settings::default(), ask);
+                assert!(found.is_ok(), "{omega} {phase} {found:?}");
+            }
+        }
+    }
+}
+
+/// Stroke and force are those from any moment on: before the window, in it, inside a step or a contact.
+#[test]
+fn exact_stroke_and_force_are_watched_from_when_it_is_asked() {
+    let scene = SSVI.scene();
+    let mut largest = f64::INFINITY;
+    let mut falls = 0;
+    for from in (0..60).map(|i| 0.199 * f64::from(i)) {
+        let window = Window { from, ..SHORT };
+        let run = simulate(&scene, window, &Settings::default()).expect("a run");
+        let ask = Ask { walls: Some(from), ..Ask::default() };
+        let found = extremes(&scene, SHORT, &Settings::default(), ask).expect("a run");
+        assert_eq!(found.e1_max, simulate(&scene, SHORT, &Settings::default()).expect("a run").e1_max);
+        let force = run.force_max[0].max(run.force_max[1]);
+        assert!((found.stroke / run.spring_deflection_max - 1.0).abs() < 1e-8, "{from} {found:?} {run:?}");
+        assert!((found.force - force).abs() <= 1e-6 * force, "{from} {found:?} {run:?}");
+        falls += u32::from(found.force < largest);
+        largest = found.force;
+    }
+    assert!(falls > 3, "{falls}");
+}
+
+/// A damper that stays off its walls settles in closed form, but its stroke on the way there is that of the run.
+#[test]
+fn exact_the_stroke_before_a_closed_form_counts() {
+    let numbers = Numbers { omega: 5.0, c2: 40.0, k2: 2000.0, ..TMD };
+    let scene = numbers.scene();
+    let stroke = |walls| {
+        let ask = Ask { walls: Some(walls), ..Ask::default() };
+        settled(&scene, LONG, Settle::default(), &Settings::default(), ask).expect("a run").stroke
+    };
+    let run = simulate(&scene, Window { from: 0.0, ..LONG }, &Settings::default()).expect("a run");
+    let steady = numbers.coupled().steady(numbers.omega).stroke();
+    assert!((stroke(0.0) / run.spring_deflection_max - 1.0).abs() < 1e-9 && stroke(0.0) > 1.1 * steady);
+    assert_eq!(stroke(f64::INFINITY), steady);
 }

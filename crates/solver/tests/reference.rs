@@ -38,7 +38,7 @@ struct Reference {
     E2max: Option<f64>,
     force_max_primary: Option<f64>,
     force_max_obstacle: Option<f64>,
-    stroke_max: Option<f64>,
+    relative_displacement_max: Option<f64>,
     impacts_primary: Option<u64>,
     impacts_obstacle: Option<u64>,
     state_T: [Option<f64>; 4],
@@ -105,7 +105,7 @@ fn reference_hybrid_on_every_scene() {
             ("E2max", found.e2_max.value, scene.E2max),
             ("force on the primary structure", on_primary, scene.force_max_primary),
             ("force on the obstacle", on_obstacle, scene.force_max_obstacle),
-            ("stroke", found.stroke_max, scene.stroke_max),
+            ("relative displacement", found.relative_displacement_max, scene.relative_displacement_max),
         ] {
             let expected = expected.unwrap_or(0.0);
             let allowed = 1e-8 * (0.1 * scene.amplification).max(1.0);

@@ -7,8 +7,8 @@ use super::{WAYS, Way};
 use crate::own;
 use crate::panel::{Axis, BLUE, Drawn, GREEN, GREY, INK, Line, Marker, Panel, VERMILION, sheet};
 use crate::scenes::{Case, Numbers, SSVI, scene, system};
-use retune_model::{Coupled, Drive, Scene, Side};
-use retune_solver::observe::{Observer, Peak, Segment};
+use retune_model::{Coupled, Scene, Side};
+use retune_solver::observe::{Observer, Peak, PrimaryEnergy, Segment};
 use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError};
 use std::error::Error;
 use std::fmt::Write;
@@ -26,13 +26,13 @@ pub struct Rigid {
 }
 
 /// Flight up to a touch-down; what follows is not looked at.
-struct Flight<F> {
-    peak: Peak<F>,
+struct Flight<'a> {
+    peak: Peak<PrimaryEnergy<'a>>,
     last: Option<(f64, [f64; 4])>,
     touched: Option<Side>,
 }
 
-impl<F: Fn(Drive, &[f64; 4]) -> [f64; 3]> Observer<4> for Flight<F> {
+impl Observer<4> for Flight<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         if self.touched.is_none() {
             self.peak.segment(segment);
@@ -62,8 +62,8 @@ fn bounce([m1, m2]: [f64; 2], y: &mut [f64; 4]) {
 pub fn rigid(scene: &Scene, to: f64) -> Result<Rigid, Box<dyn Error>> {
     let system: Coupled = system(scene).ok_or("no damper")?;
     let masses = [scene.primary.mass.get(), scene.damper.ok_or("no damper")?.mass.get()];
-    let rates = |drive: Drive, y: &[f64; 4]| system.primary_energy_rates(drive, y);
-    let mut watch = Flight { peak: Peak::new(rates, f64::INFINITY), last: None, touched: None };
+    let peak = Peak::new(PrimaryEnergy::new(&system), f64::INFINITY);
+    let mut watch = Flight { peak, last: None, touched: None };
     let mut hybrid = Hybrid::new(&system, 1e-10, to, 10_000_000);
     let mut now = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     for impacts in 0..10_000 {
@@ -75,7 +75,7 @@ pub fn rigid(scene: &Scene, to: f64) -> Result<Rigid, Box<dyn Error>> {
         bounce(masses, &mut y);
         now = Motion { t, y, phase: Phase::Leaving(side) };
     }
-    Err(Box::new(SolverError::TooManySteps { t: now.t, limit: 10_000 }))
+    Err(Box::new(SolverError::TooManySteps { t: now.t, limit: 10_000, method: Method::Hybrid }))
 }
 
 /// The two-sided SSVI with its contacts 10^n times as stiff, 10 s.

@@ -1,8 +1,13 @@
-//! What a certificate says, and the rule of its verdict.
+//! What a certificate says.
 
+mod limits;
 mod text;
+mod verdict;
 
-use crate::optimize::log::short;
+pub use limits::{Kept, Near};
+pub use verdict::Verdict;
+
+use crate::error::Error;
 use crate::study::Study;
 use crate::summary::{Design, MadeBy};
 use retune_atlas::{Kind, Regime};
@@ -10,12 +15,6 @@ use retune_optim::Evaluation;
 use retune_solver::Method;
 use serde::Serialize;
 
-/// Largest error bar of a predictable E1max, as a share of it.
-const PREDICTABLE: f64 = 1e-3;
-/// Width of the neighbours' E1max, as a share of that of the design, above which it is wide; an error bar as wide counts as much.
-const WIDE: f64 = 0.05;
-/// Growth of E1max within 1 % of any one parameter above which an optimum is sharp.
-const SHARP: f64 = 0.1;
 /// How many times the samples of a band are taken to see what they missed.
 pub(super) const FINER: usize = 4;
 /// The shares of the neighbours between which the width is measured.
@@ -33,11 +32,15 @@ pub struct Certificate {
     /// Largest difference of a rung of the ladder to the worst run, or of `finer` to the value, J.
     error_bar: f64,
     predictable: bool,
-    verdict: Verdict,
+    /// null where the design breaks a limit.
+    verdict: Option<Verdict>,
     /// The verdict in words.
     words: String,
     /// What the verdict means.
     rule: String,
+    /// How the design and those near it keep the limits, where the study has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<Kept>,
     /// The run with the largest E1max that the value is made of.
     worst_run: WorstRun,
     ladder: Vec<Rung>,
@@ -47,18 +50,6 @@ pub struct Certificate {
     motion: Motion,
     sensitivity: Vec<Sensitivity>,
     neighbourhood: Neighbourhood,
-}
-
-/// A verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// Small errors change little.
-    Robust,
-    /// Small errors change much, in a regular way or at an edge.
-    Sharp,
-    /// The motion is irregular, and the value one of many that equal designs have.
-    Draw,
 }
 
 /// The run with the largest E1max.
@@ -119,10 +110,21 @@ pub struct Neighbourhood {
     high: f64,
 }
 
+/// All that was measured of a design; see [`Certificate`].
+pub(super) struct Measured {
+    pub worst_run: WorstRun,
+    pub ladder: Vec<Rung>,
+    pub finer: Option<f64>,
+    pub motion: Motion,
+    pub sensitivity: Vec<Sensitivity>,
+    pub neighbourhood: Neighbourhood,
+    pub limits: Option<Kept>,
+}
+
 /// The short form that `optimum.json` has.
 #[derive(Clone, Debug, Serialize)]
 pub struct Short {
-    verdict: Verdict,
+    verdict: Option<Verdict>,
     words: String,
     error_bar: f64,
     predictable: bool,
@@ -130,21 +132,21 @@ pub struct Short {
     exponent: f64,
 }
 
-impl Verdict {
-    /// Its word.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Robust => "robust",
-            Self::Sharp => "sharp",
-            Self::Draw => "draw",
-        }
-    }
-}
-
 impl Short {
-    /// The verdict.
-    pub fn verdict(&self) -> Verdict {
-        self.verdict
+    /// The verdict in a word.
+    pub fn verdict(&self) -> &'static str {
+        self.verdict.map_or("none", Verdict::name)
+    }
+
+    /// Refuses a design that breaks the limits of its study, for which there is no verdict.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`].
+    pub fn check_limits(&self, study: &str) -> Result<(), Error> {
+        match self.verdict {
+            Some(_) => Ok(()),
+            None => Err(Error::Infeasible { name: study.to_owned(), words: self.words.clone() }),
+        }
     }
 }
 
@@ -199,30 +201,21 @@ impl Neighbourhood {
 }
 
 impl Certificate {
-    #[expect(clippy::too_many_arguments, reason = "each is a measurement of its own")]
-    pub(super) fn new(
-        study: &Study,
-        made_by: MadeBy,
-        own: &Evaluation,
-        worst_run: WorstRun,
-        ladder: Vec<Rung>,
-        finer: Option<f64>,
-        sensitivity: Vec<Sensitivity>,
-        neighbourhood: Neighbourhood,
-        motion: Motion,
-    ) -> Self {
+    pub(super) fn new(study: &Study, own: &Evaluation, measured: Measured) -> Self {
+        let Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits } = measured;
         let off = |rung: &Rung| (rung.e1_max - worst_run.e1_max).abs();
         let missed = finer.map_or(0.0, |finer| (finer - own.energy).abs());
         let error_bar = ladder.iter().map(off).fold(missed, f64::max);
         let mut certificate = Self {
-            made_by,
+            made_by: MadeBy::new(study),
             design: study.scene.damper.as_ref().map(Design::new).unwrap_or_default(),
             e1_max: own.energy,
             error_bar,
-            predictable: error_bar <= PREDICTABLE * worst_run.e1_max,
-            verdict: Verdict::Robust,
+            predictable: verdict::is_predictable(error_bar, worst_run.e1_max),
+            verdict: None,
             words: String::new(),
-            rule: rule(),
+            rule: verdict::rule(limits.is_some()),
+            limits,
             worst_run,
             ladder,
             finer,
@@ -234,55 +227,10 @@ impl Certificate {
         certificate
     }
 
-    fn judge(&self) -> (Verdict, String) {
-        let Self { e1_max, error_bar, neighbourhood, .. } = self;
-        let Neighbourhood { low, high, errors, .. } = neighbourhood;
-        // Not a number is no evidence of anything small.
-        let small = |value: f64| value <= WIDE * e1_max;
-        let narrow = small(neighbourhood.width()) && small(*error_bar);
-        let near =
-            format!("designs within {} % of it have {} to {} J", 100.0 * errors, short(*low), short(*high));
-        if !narrow && (self.motion.irregular || !self.predictable) {
-            let width = short(neighbourhood.width().max(*error_bar));
-            return (Verdict::Draw, format!("a draw from a distribution of width {width} J: {near}"));
-        }
-        if !narrow {
-            return (Verdict::Sharp, format!("sharp: {near}"));
-        }
-        let worst = self.worst_error();
-        let said =
-            worst.map_or(String::new(), |Sensitivity { parameter, worst, worst_at_percent, .. }| {
-                format!("{parameter} off by {worst_at_percent:+} % gives {} J", short(*worst))
-            });
-        match worst {
-            Some(worst) if worst.worst > (1.0 + SHARP) * e1_max => {
-                (Verdict::Sharp, format!("sharp: {said}, {} times as much", short(worst.worst / e1_max)))
-            }
-            _ => (Verdict::Robust, format!("robust: at worst {said}")),
-        }
-    }
-
-    /// The parameter that 1 % of harms most.
-    fn worst_error(&self) -> Option<&Sensitivity> {
-        self.sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst))
-    }
-
     /// The short form.
     pub fn short(&self) -> Short {
         let Self { verdict, words, error_bar, predictable, motion, .. } = self.clone();
         let Motion { regime, exponent, .. } = motion;
         Short { verdict, words, error_bar, predictable, regime, exponent }
     }
-}
-
-fn rule() -> String {
-    format!(
-        "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of E1max; draw: wide, and the \
-         motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sharp: \
-         wide, or 1 % of one parameter raises E1max by more than {} %; robust: none of these. predictable: the error bar is at most \
-         {} % of the worst run's E1max",
-        100.0 * WIDE,
-        100.0 * SHARP,
-        100.0 * PREDICTABLE
-    )
 }

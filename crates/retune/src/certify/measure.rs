@@ -1,13 +1,14 @@
 //! The measurements behind a certificate.
 
-use super::certificate::{Certificate, FINER, Motion, Neighbourhood, Rung, Sensitivity, WorstRun};
+use super::certificate::{
+    Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Rung, Sensitivity, WorstRun,
+};
 use crate::error::Error;
 use crate::study::{Setting, Study};
-use crate::summary::MadeBy;
 use rayon::prelude::*;
 use retune_atlas::{Stretch, classify, follow};
 use retune_model::Scene;
-use retune_optim::{Ensemble, Evaluation, Frequencies, Goal, Place, Statistic, Unusable, When};
+use retune_optim::{Ensemble, Frequencies, Goal, PerLimit, Place, Statistic, When};
 use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
 
 /// Relative errors of a parameter that its sensitivity is read from.
@@ -34,26 +35,27 @@ const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 pub(super) fn measure(study: &Study) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
     let own = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
-    let sensitivities = sensitivities(study, &goal, &settings);
-    let neighbourhood = neighbourhood(&study.scene, &goal, &settings);
+    let mut near = Vec::new();
+    let sensitivity = sensitivities(study, &goal, &settings, &mut near);
+    let neighbourhood = neighbourhood(&study.scene, &goal, &settings, &mut near);
     let ladder = ladder(&own.worst, &goal, &settings)?;
-    let finer = finer(&goal).map(|goal| energy(goal.evaluate(&study.scene, &settings, f64::INFINITY)));
+    let finer = finer(&goal).map(|goal| {
+        let found = look(&study.scene, &goal, &settings);
+        near.push(Near {
+            at: format!("with {FINER} times the samples"),
+            neighbour: false,
+            reached: found.reached,
+        });
+        found.energy
+    });
     let record = follow(&own.worst.scene, None, Stretch::default(), &settings)?;
     let motion = Motion::new(&classify(&record));
+    let limits = Kept::new(&goal.limits, &own.reached, &near);
     let Place { e1_max, scene, phase, .. } = own.worst;
-    let worst =
+    let worst_run =
         WorstRun { e1_max, omega: scene.forcing.frequency.get(), k1: scene.primary.stiffness.get(), phase };
-    Ok(Certificate::new(
-        study,
-        MadeBy::new(study),
-        &own,
-        worst,
-        ladder,
-        finer,
-        sensitivities,
-        neighbourhood,
-        motion,
-    ))
+    let measured = Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits };
+    Ok(Certificate::new(study, &own, measured))
 }
 
 /// The goal with more samples, if any of its bands of frequencies is sampled.
@@ -86,38 +88,60 @@ fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, 
     LADDER.par_iter().map(rung).collect()
 }
 
-/// The objective with each parameter a little off; parameters that are zero have no relative error.
-fn sensitivities(study: &Study, goal: &Goal, settings: &Settings) -> Vec<Sensitivity> {
+/// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to
+/// `near`.
+fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Vec<Sensitivity> {
     let omega = goal.terms.iter().any(|term| term.omega.is_none()).then_some("omega");
     let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(omega);
     let known =
         names.filter_map(|name| Some((name, study.value_of(name)?))).filter(|(_, value)| *value != 0.0);
     let known: Vec<(&'static str, f64)> = known.collect();
-    let values: Vec<f64> = known
-        .par_iter()
-        .flat_map(|&(name, value)| ERRORS.par_iter().map(move |error| (name, value * (1.0 + error))))
-        .map(|(name, value)| {
-            let scene = study.scene_with(&[Setting::new(name, value)]);
-            scene.map_or(f64::INFINITY, |scene| energy(goal.evaluate(&scene, settings, f64::INFINITY)))
-        })
+    let off: Vec<(&'static str, f64, f64)> = known
+        .iter()
+        .flat_map(|&(name, value)| ERRORS.map(|error| (name, error, value * (1.0 + error))))
         .collect();
+    let at = |&(name, _, value): &(&'static str, f64, f64)| {
+        let scene = study.scene_with(&[Setting::new(name, value)]);
+        scene.map_or(Look::NOTHING, |scene| look(&scene, goal, settings))
+    };
+    let found: Vec<Look> = off.par_iter().map(at).collect();
+    near.extend(off.iter().zip(&found).map(|((name, error, _), found)| Near {
+        at: format!("with {name} off by {:+} %", 100.0 * error),
+        neighbour: false,
+        reached: found.reached,
+    }));
+    let energies: Vec<f64> = found.iter().map(|found| found.energy).collect();
     let read = |(&(name, value), energies): (&(&'static str, f64), &[f64])| {
         Sensitivity::new(name, value, &ERRORS, energies)
     };
-    known.iter().zip(values.chunks(ERRORS.len())).map(read).collect()
+    known.iter().zip(energies.chunks(ERRORS.len())).map(read).collect()
 }
 
-/// The objective of the neighbours.
-fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings) -> Neighbourhood {
+/// The objective of the neighbours. What they reach goes to `near`.
+fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Neighbourhood {
     let member = |i: u32| {
-        let (scene, _) = NEIGHBOURS.member(scene, i).map_err(Unusable::Member)?;
-        goal.evaluate(&scene, settings, f64::INFINITY)
+        let scene = NEIGHBOURS.member(scene, i);
+        scene.map_or(Look::NOTHING, |(scene, _)| look(&scene, goal, settings))
     };
-    let energies = (0..NEIGHBOURS.members).into_par_iter().map(|i| energy(member(i))).collect();
-    Neighbourhood::new(NEIGHBOURS.errors, energies)
+    let found: Vec<Look> = (0..NEIGHBOURS.members).into_par_iter().map(member).collect();
+    let at = format!("for a design within {} %", 100.0 * NEIGHBOURS.errors);
+    near.extend(found.iter().map(|found| Near { at: at.clone(), neighbour: true, reached: found.reached }));
+    Neighbourhood::new(NEIGHBOURS.errors, found.iter().map(|found| found.energy).collect())
 }
 
-/// The energy of an evaluation, J, infinite where there is none.
-fn energy(found: Result<Evaluation, Unusable>) -> f64 {
-    found.map_or(f64::INFINITY, |found| found.energy)
+/// What a scene gives.
+struct Look {
+    /// J, infinite where there is none.
+    energy: f64,
+    reached: PerLimit<f64>,
+}
+
+impl Look {
+    /// Of a scene that cannot be run.
+    const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 3]) };
+}
+
+fn look(scene: &Scene, goal: &Goal, settings: &Settings) -> Look {
+    let found = goal.evaluate(scene, settings, f64::INFINITY);
+    found.map_or(Look::NOTHING, |found| Look { energy: found.energy, reached: found.reached })
 }

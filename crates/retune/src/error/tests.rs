@@ -6,6 +6,7 @@ use crate::evaluate::LineError;
 use crate::study::read::StudyError;
 use retune_model::{OutOfRange, Positive};
 use retune_optim::{AxisError, Bounds, GridError, Variable};
+use retune_solver::Method;
 use std::io::ErrorKind;
 
 /// Checks that there is a sample of each variant; that all are named is up to the compiler.
@@ -97,7 +98,13 @@ fn settings() -> Vec<SettingError> {
 fn solvers() -> Vec<SolverError> {
     vec![
         SolverError::StepTooSmall { t: 1.5, h: 1e-17 },
-        SolverError::TooManySteps { t: 1.5, limit: 1000 },
+        SolverError::TooFast { t: 100.0, h: 1e-17 },
+        SolverError::Contact { t: 1.5 },
+        SolverError::TooManySteps { t: 1.5, limit: 1000, method: Method::Hybrid },
+        SolverError::TooManySteps { t: 1.5, limit: 1000, method: Method::Ode45 },
+        SolverError::TooManySteps { t: 1.5, limit: 1000, method: Method::Rk4 },
+        SolverError::TooSlow { t: 1e-9, steps: 262_145, needed: 2.6e16, limit: 1000, method: Method::Hybrid },
+        SolverError::Unstable { t: 1.5 },
         SolverError::Implausible { t: 4.0, value: 1e87, time: 2.5, most: 320.0 },
         SolverError::Missed { t: 4.0, depth: 1e-6 },
         SolverError::NonFinite { t: 1.5 },
@@ -127,6 +134,7 @@ fn lines() -> Vec<LineError> {
     vec![
         LineError::Count { found: 1, wanted: vec![Variable::K2, Variable::C2] },
         LineError::Number { variable: Variable::K2, text: "soft".into() },
+        LineError::Long,
         LineError::Unusable(Unusable::Run(SolverError::NonFinite { t: 1.5 })),
     ]
 }
@@ -152,10 +160,28 @@ fn errors() -> Vec<Error> {
             place: path.join("parts"),
         },
         Error::NotHeld { path: path.clone(), problem: "does not hold: surf.csv is missing".into() },
+        Error::NotChecked { path: path.clone(), problem: "there is no manifest.json".into() },
+        Error::Infeasible {
+            name: "ssvi".into(),
+            words: "no verdict, for the design breaks the limit of stroke: 0.3 of 0.2 m, 50 % over".into(),
+        },
+        Error::Lines { failed: 1, lines: 24 },
         Error::Busy { path: path.clone(), holder: Some(4711) },
         Error::Busy { path: path.clone(), holder: None },
-        Error::Unfinished { path: path.clone(), lines: 321, difference: None },
-        Error::Unfinished { path, lines: 321, difference: Some("of Retune 0.0.9, this is 0.1.0".into()) },
+        Error::Standing {
+            path: path.clone(),
+            problem: "surf.csv stands here, which Retune did not make".into(),
+        },
+        Error::Protected { path: path.join("motion.csv"), problem: "it is an input of this command".into() },
+        Error::Journal { path: path.join("unfinished/journal"), problem: "its first line is damaged" },
+        Error::Unfinished { path: path.clone(), lines: 321, damaged: 0, difference: None },
+        Error::Unfinished { path: path.clone(), lines: 1, damaged: 1, difference: None },
+        Error::Unfinished {
+            path,
+            lines: 321,
+            damaged: 2,
+            difference: Some("of Retune 0.0.9, this is 0.1.0".into()),
+        },
         Error::Threads(threads.expect_err("no threads")),
         Error::Run(SolverError::NonFinite { t: 1.5 }),
         Error::Atlas(retune_atlas::Error::NoPeriod),
@@ -174,16 +200,17 @@ fn errors() -> Vec<Error> {
 #[test]
 fn regress_the_words_of_every_error() {
     let words = [
-        each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld Busy Unfinished
-            Threads Run Atlas Unusable NoStart Global Search Figure),
+        each!(errors(), Error: Study Setting Rule Interval Output Input Part MissingParts NotHeld NotChecked
+            Infeasible Lines Standing Protected Journal Busy Unfinished Threads Run Atlas Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),
         each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Touches),
-        each!(solvers(), SolverError: StepTooSmall TooManySteps Implausible Missed NonFinite),
-        each!(lines(), LineError: Count Number Unusable),
+        each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
+            NonFinite),
+        each!(lines(), LineError: Count Number Long Unusable),
     ]
     .concat();
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/error/words.txt");
@@ -197,7 +224,8 @@ fn regress_the_words_of_every_error() {
     assert_eq!(words.lines().count(), expected.lines().count());
 }
 
-/// What the user can mend has exit code 2, what failed in the computation 1.
+/// What the user can mend has exit code 2, what failed in the computation 1; limits that are not kept, and what cannot be checked,
+/// have their own.
 #[test]
 fn exact_exit_codes_say_whose_fault_it_is() {
     let code = |error: &Error| format!("{:?}", error.exit_code());
@@ -212,10 +240,19 @@ fn exact_exit_codes_say_whose_fault_it_is() {
                 | Error::Input { .. }
                 | Error::Part { .. }
                 | Error::MissingParts { .. }
+                | Error::Standing { .. }
+                | Error::Protected { .. }
+                | Error::Journal { .. }
                 | Error::Busy { .. }
                 | Error::Unfinished { .. }
         );
-        let expected = format!("{:?}", ExitCode::from(if mendable { 2 } else { 1 }));
+        let expected = match error {
+            Error::Infeasible { .. } => 3,
+            Error::NotChecked { .. } => 4,
+            _ if mendable => 2,
+            _ => 1,
+        };
+        let expected = format!("{:?}", ExitCode::from(expected));
         assert_eq!(code(&error), expected, "{error}");
     }
 }

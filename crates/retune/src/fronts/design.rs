@@ -1,7 +1,7 @@
 //! A design of a front: what it reaches on the samples of the study of fronts, and how it compares.
 
 use crate::study::{Setting, Study, Sweep};
-use retune_optim::{Evaluation, Goal, PerLimit};
+use retune_optim::{Evaluation, PerLimit};
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -16,7 +16,7 @@ pub struct Design {
     pub at: [f64; 4],
     /// The worst E1max over the band, J.
     pub e1_max: f64,
-    /// The largest stroke, m, and contact force, N, in any run.
+    /// The largest stroke (spring deflection |x2 - x1 - D|), m, and contact force, N, in any run.
     pub stroke: f64,
     pub force: f64,
     /// What its certificate says, in a word.
@@ -66,8 +66,9 @@ pub fn finer(study: &Study, samples: usize, at: [f64; 4]) -> Option<Study> {
 
 /// The worst of the scene of a study over its band; none where it cannot be run.
 pub fn look(study: &Study) -> Option<Evaluation> {
-    // Limits that no run reaches: they have stroke and force measured.
-    let goal = Goal { limits: PerLimit([Some(f64::MAX), Some(f64::MAX), None]), ..study.goal() };
+    // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
+    let mut goal = study.goal();
+    goal.limits.most = PerLimit([Some(f64::MIN_POSITIVE), Some(f64::MIN_POSITIVE), None]);
     goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }
 

@@ -18,7 +18,7 @@ pub(super) fn page(fronts: &Fronts, certified: &[Certified]) -> String {
         "Made by `retune fronts` ({}); every number is from the tables beside this page. E1max is the worst over the band of the \
          studies. Searches look at the samples of their studies and keep 1 % below a limit of stroke; what they found is looked at \
          again on {} samples, and under each bound stands the best design that keeps it, whichever search found it, or that of \
-         the study: a looser bound is never worse. Strokes and forces are the largest of a run.\n",
+         the study: a looser bound is never worse. Strokes (spring deflections |x2 - x1 - D|) and forces are the largest of whole runs from rest.\n",
         names.join(", "),
         fronts.plan.said.samples
     );

@@ -1,6 +1,6 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
-use super::log::{joined, short};
+use super::log::{counted, joined, short};
 use super::refine::{Refined, Run};
 use super::surf::design;
 use super::{kept, objective};
@@ -41,16 +41,16 @@ pub(super) fn global(
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
     let objective = objective(study, search, &search.variables);
     screen.log(format!(
-        "global: {} designs over the box of {}, then {} CMA-ES searches of at most {} evaluations each",
-        global.samples,
+        "global: {} over the box of {}, then {} of at most {} each",
+        counted(global.samples.into(), "design"),
         joined(&search.variables, " "),
-        global.searches,
-        global.evaluations
+        counted(global.searches as u64, "CMA-ES search"),
+        counted(global.evaluations, "evaluation")
     ))?;
     let begun = Instant::now();
     let most = u64::from(global.samples) + global.searches as u64 * global.evaluations;
     let bar = screen.progress("global", most);
-    let value = kept(&objective, journal, "global");
+    let value = kept(&objective, journal, "global", || bar.known());
     let found = explore(&value, &space, &global, || bar.inc(1));
     bar.finish_and_clear();
     journal.check()?;
@@ -75,10 +75,10 @@ impl Explored {
         let at = search.variables.iter().zip(&best.x);
         let at: Vec<String> = at.map(|(variable, value)| format!("{variable} = {}", short(*value))).collect();
         format!(
-            "global: {seconds:.1} s, {} evaluations; {} searches came to {} places; the best has {} at {}",
-            self.counts.evaluations,
-            self.searches.len(),
-            self.basins.len(),
+            "global: {seconds:.1} s, {}; {} came to {}; the best has {} at {}",
+            counted(self.counts.evaluations, "evaluation"),
+            counted(self.searches.len() as u64, "search"),
+            counted(self.basins.len() as u64, "place"),
             worth(best.value),
             at.join(", ")
         )
@@ -129,7 +129,7 @@ impl Basins {
         skip: usize,
     ) -> Self {
         let runs = &refined.runs;
-        let value = kept(&refined.objective, journal, "basins");
+        let value = kept(&refined.objective, journal, "basins", || ());
         let end = |run: &Run| Point { x: run.minimum.x.clone(), value: run.minimum.value };
         let count = explored.basins.len().min(search.starts);
         let mut points: Vec<Point> = explored.basins.iter().map(|basin| basin.best.clone()).collect();
@@ -185,8 +185,9 @@ impl Basins {
         };
         let lonely = if lonely.is_empty() { String::new() } else { format!(" ({lonely})") };
         format!(
-            "basins: {} found; that of the optimum was reached by {reached_optimum} of {searches} searches{lonely}{next}",
-            basins.len()
+            "basins: {} found; that of the optimum was reached by {reached_optimum} of {}{lonely}{next}",
+            basins.len(),
+            counted(*searches as u64, "search")
         )
     }
 }

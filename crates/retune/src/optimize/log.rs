@@ -1,5 +1,7 @@
 //! The log of a refinement, in the forms it is written in.
 
+pub use crate::study::counted;
+
 use retune_optim::Row;
 use std::fmt::Display;
 
@@ -53,6 +55,11 @@ pub fn short(value: f64) -> String {
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
 }
 
+/// So many of something are: `1 design is`, `2 designs are`.
+pub fn are(count: u64, noun: &str) -> String {
+    format!("{} {}", counted(count, noun), if count == 1 { "is" } else { "are" })
+}
+
 /// The items with `separator` between them.
 pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(separator)
@@ -69,6 +76,14 @@ mod tests {
         assert_eq!(scientific(0.0), "0.000000E+000");
         assert_eq!(scientific(-1.5e-123), "-1.500000E-123");
         assert_eq!(scientific(f64::INFINITY), "inf");
+    }
+
+    #[test]
+    fn exact_one_is_one_and_not_many() {
+        let said = |count| [counted(count, "design"), counted(count, "CMA-ES search"), are(count, "value")];
+        assert_eq!(said(1), ["1 design", "1 CMA-ES search", "1 value is"]);
+        assert_eq!(said(0), ["0 designs", "0 CMA-ES searches", "0 values are"]);
+        assert_eq!(said(2), ["2 designs", "2 CMA-ES searches", "2 values are"]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! `merge`: the parts of a grid that many machines computed, put together, and the rest of the search.
 
+use super::log::counted;
 use super::shard::{self, Head, PARTS};
 use super::{nothing_to_resume, optimize_from, where_results_are, with_threads};
 use crate::cli;
@@ -41,16 +42,22 @@ pub fn command(arguments: &cli::Merge) -> Result<(), Error> {
     }
     check(&mut heads, grid.len(), &arguments.study, &out)?;
 
-    screen.log(format!("{} parts, {} points: complete, disjoint, of this study", heads.len(), grid.len()))?;
+    screen.log(format!(
+        "{}, {}: complete, disjoint, of this study",
+        counted(heads.len() as u64, "part"),
+        counted(grid.len() as u64, "point")
+    ))?;
+    let order = running.order("optimize", &arguments.study);
     with_threads(running.threads, || {
-        let (optimum, results) = optimize_from(&study, &out, running.begin(), screen, |results| {
+        let (optimum, results) = optimize_from(&study, &out, &order, screen, |results| {
             heads.iter().try_for_each(|head| {
                 shard::read(&head.path, |point, value| results.know(point, value)).map(drop)
             })
         })?;
         results.finish()?;
         screen.line(optimum.report())?;
-        screen.line(where_results_are(&out)?)
+        screen.line(where_results_are(&out)?)?;
+        optimum.check_limits(study.name())
     })
 }
 

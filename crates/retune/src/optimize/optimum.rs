@@ -3,14 +3,15 @@
 mod notes;
 
 use super::global::{Basins, Explored};
-use super::log::short;
+use super::log::{counted, short};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::certify::Short;
+use crate::error::Error;
 use crate::study::{PerVariable, Search, Study};
 use crate::summary::{Design, MadeBy, Summary};
-use notes::{Goal, LimitNote};
-use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Variable, energy};
+use notes::{Goal, LimitNote, Met};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Unusable, Variable, energy};
 use serde::Serialize;
 
 /// The best design and how it was found. SI units.
@@ -24,7 +25,7 @@ pub struct Optimum {
     /// What E1max is, where it is not that of a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
     objective: Option<Goal>,
-    on_bound: Vec<Variable>,
+    on_bound: Vec<Met>,
     /// How the limits of the study are kept, where it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<LimitNote>,
@@ -122,7 +123,7 @@ impl Optimum {
             design: Design::new(&damper),
             e1_max: evaluation.energy,
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
-            on_bound: on_bound(search, best),
+            on_bound: notes::on_bound(search, best),
             limits: LimitNote::new(study, &evaluation, surf, explored, refined),
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
@@ -157,7 +158,15 @@ impl Optimum {
 
     /// The verdict of its certificate.
     pub fn verdict(&self) -> &'static str {
-        self.certificate.verdict().name()
+        self.certificate.verdict()
+    }
+
+    /// Refuses a design that breaks the limits of its study.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`].
+    pub fn check_limits(&self, study: &str) -> Result<(), Error> {
+        self.certificate.check_limits(study)
     }
 
     /// The design at which the best refinement started.
@@ -175,26 +184,28 @@ impl Optimum {
             table2_row(self.damper_type, self.found().design),
             format!("E1max = {} J; {}", short(self.e1_max), self.made_by),
             format!(
-                "fminsearch, start {winner} of {}: {} after {iterations} iterations, {func_count} evaluations; \
-                 TolX {tol_x:e} is {tol_x_mode}",
+                "fminsearch, start {winner} of {}: {} after {}, {}; TolX {tol_x:e} is {tol_x_mode}",
                 runs.len(),
                 stop_words(*stop),
+                counted(*iterations, "iteration"),
+                counted(*func_count, "evaluation"),
             ),
         ];
         lines.extend(self.global.as_ref().map(Basins::report));
         lines.extend(self.limits.as_ref().map(LimitNote::report));
         if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
             lines.push(format!(
-                "note: {unsettled} of {runs} runs of this design had not settled at T; their E1max is that of the window"
+                "note: {unsettled} of {} of this design had not settled at T; E1max is then that of the window",
+                counted(*runs, "run")
             ));
         }
         lines.push(self.certificate.to_string());
-        if !self.on_bound.is_empty() {
-            let names = super::log::joined(&self.on_bound, ", ");
-            lines.push(format!("note: {names} ended on a bound of the study; a wider one may give less"));
-        }
+        lines.extend(notes::on_bound_words(&self.on_bound));
         if let FailureNote { count, example: Some(example) } = &self.failures {
-            lines.push(format!("note: {count} designs could not be computed, for instance {example}"));
+            lines.push(format!(
+                "note: {} could not be computed, for instance {example}",
+                counted(*count, "design")
+            ));
         }
         lines.join("\n")
     }
@@ -216,12 +227,20 @@ pub fn table2_row(name: &str, row: [f64; 5]) -> String {
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 
-/// Where the best run started.
+/// Where the best run started, with its energy whether it keeps the limits or not.
 fn start(search: &Search, refined: &Refined) -> Found {
     let first = refined.best().rows.first();
     let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
     let Design { m2, k2, c2, d, c } = Design::new(&damper);
-    Found { design: [m2, k2, c2, d, c], e1_max: first.map_or(f64::NAN, |row| energy(row.value)) }
+    let again = |x: &[f64]| {
+        let scene = refined.objective.scene(x)?;
+        Ok::<f64, Unusable>(refined.objective.evaluate(&scene, f64::INFINITY)?.energy)
+    };
+    let e1_max = first.map_or(f64::NAN, |row| match energy(row.value) {
+        none if none.is_nan() => again(&row.best).unwrap_or(f64::NAN),
+        known => known,
+    });
+    Found { design: [m2, k2, c2, d, c], e1_max }
 }
 
 impl RunNote {
@@ -260,17 +279,6 @@ pub(super) fn per_variable(variables: &[Variable], values: &[f64]) -> PerVariabl
         *all.get_mut(variable) = Some(value);
     }
     all
-}
-
-/// Parameters that ended on a bound, to a thousandth of what they started with.
-fn on_bound(search: &Search, run: &Run) -> Vec<Variable> {
-    let Some(first) = run.rows.first() else { return Vec::new() };
-    let ended = |i: usize| {
-        let (start, value, bounds) = (first.best[i], run.minimum.x[i], search.options.bounds[i]);
-        let near = |bound: f64| (value - bound).abs() <= 1e-3 * value.abs().max(start.abs());
-        [bounds.lower, bounds.upper].into_iter().flatten().any(near)
-    };
-    (0..search.variables.len()).filter(|&i| ended(i)).map(|i| search.variables[i]).collect()
 }
 
 fn tol_x_mode(scaling: Scaling) -> &'static str {

@@ -88,15 +88,18 @@ fn run(
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
     let mut told = Ok(());
-    let found = minimize(kept(objective, journal, "fminsearch"), start, search.options.clone(), |row| {
-        if journal.is_broken() {
-            return ControlFlow::Break(());
-        }
-        rows.push(row.clone());
-        told =
-            objective.damper(&row.best).map_err(Error::from).and_then(|damper| tell(row, &design(&damper)));
-        if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    });
+    let found =
+        minimize(kept(objective, journal, "fminsearch", || ()), start, search.options.clone(), |row| {
+            if journal.is_broken() {
+                return ControlFlow::Break(());
+            }
+            rows.push(row.clone());
+            told = objective
+                .damper(&row.best)
+                .map_err(Error::from)
+                .and_then(|damper| tell(row, &design(&damper)));
+            if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
     told?;
     journal.check()?;
     let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;

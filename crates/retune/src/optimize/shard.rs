@@ -4,19 +4,23 @@
 use super::objective;
 use crate::error::Error;
 use crate::results::identity::{Identity, hexadecimal};
-use crate::results::journal::{grid_line, grid_value, sealed, whole};
-use crate::results::{Begin, Directory};
+use crate::results::journal::{grid_text, grid_value};
+use crate::results::seal::Seal;
+use crate::results::{Begin, Directory, Extent, Order};
 use crate::screen::Screen;
 use crate::study::{Rule, Study};
 use sha2::{Digest, Sha256};
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// The first words of a part.
 const TITLE: &str = "retune-part-1";
+
+/// Longest line of a part, bytes.
+const LONGEST: u64 = 1024;
 
 /// The directory of parts, in that of the results.
 pub const PARTS: &str = "parts";
@@ -81,7 +85,7 @@ pub struct Head {
 ///
 /// # Errors
 /// The study has no grid, or the part cannot be written.
-pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Screen) -> Result<(), Error> {
+pub fn shard(study: &Study, shard: Shard, out: &Path, order: &Order, screen: Screen) -> Result<(), Error> {
     let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
     let search = study.search().map_err(refuse)?;
     let (variables, grid) = search.surf.clone().ok_or_else(|| refuse(Rule::NoGrid))?;
@@ -92,7 +96,10 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
         return match identity.difference(&read(&path, |_, _| {})?.identity) {
             None => {
                 // What made it may have been killed before it had put its work away.
-                if let Some(work) = place.exists().then(|| open(&place, Begin::Restart, &identity)) {
+                if let Some(work) = place
+                    .exists()
+                    .then(|| open(&place, &Order { begin: Begin::Restart, ..order.clone() }, &identity))
+                {
                     put_away(work?, &place);
                 }
                 screen.line(format!("{} is there already", path.display()))
@@ -101,7 +108,7 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
         };
     }
 
-    let work = open(&place, begin, &identity)?;
+    let work = open(&place, order, &identity)?;
     let points = shard.points(grid.len());
     screen.log(format!(
         "shard {shard}: points {} to {} of {}, {} of them known",
@@ -113,17 +120,18 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
     let objective = objective(study, &search, &variables);
     let bar = screen.progress("shard", points.len() as u64);
     let journal = work.journal();
-    let value =
-        |i: usize, design: &[f64]| journal.grid_value(i, || objective.value(design, f64::INFINITY), |_| {});
+    let value = |i: usize, design: &[f64]| {
+        journal.grid_value(i, || objective.value(design, f64::INFINITY), |_| bar.known())
+    };
     let values = retune_optim::surf_part(&grid, points.clone(), value, |_| bar.inc(1));
     bar.finish_and_clear();
     journal.check()?;
 
-    let head =
-        sealed(&format!("{TITLE} {} shard={shard} points={}-{}", identity.words(), points.start, points.end));
+    let head = format!("{TITLE} {} shard={shard} points={}-{}", identity.words(), points.start, points.end);
+    let seal = Seal::plain();
     let lines = || {
-        let rest = points.clone().zip(&values).map(|(i, value)| grid_line(i, *value));
-        std::iter::once(head.clone()).chain(rest)
+        let rest = points.clone().zip(&values).map(|(i, value)| grid_text(i, *value));
+        std::iter::once(head.clone()).chain(rest).map(|text| seal.close(&text))
     };
     let mut hash = Sha256::new();
     lines().for_each(|line| hash.update(line));
@@ -140,8 +148,8 @@ pub fn shard(study: &Study, shard: Shard, out: &Path, begin: Begin, screen: Scre
 }
 
 /// The directory in which a part comes about; it has no results of its own.
-fn open(place: &Path, begin: Begin, identity: &Identity) -> Result<Directory, Error> {
-    Directory::open(place, begin, identity, |_| false)
+fn open(place: &Path, order: &Order, identity: &Identity) -> Result<Directory, Error> {
+    Directory::open(place, order, identity, Extent::Share, |_| false)
 }
 
 /// Removes the directory in which a part came about.
@@ -190,16 +198,16 @@ pub fn read(path: &Path, mut visit: impl FnMut(usize, f64)) -> Result<Head, Erro
     let mut line = Vec::new();
     let mut next = |line: &mut Vec<u8>| -> Result<bool, Error> {
         line.clear();
-        lines.read_until(b'\n', line).map_err(refuse)?;
+        (&mut lines).take(LONGEST).read_until(b'\n', line).map_err(refuse)?;
         hash.update(&*line);
         Ok(!line.is_empty())
     };
     next(&mut line)?;
-    let head = whole(&line).and_then(|text| head(path, text));
+    let head = Seal::plain().open(&line).and_then(|text| head(path, text));
     let head = head.ok_or_else(|| broken("it is no part: its first line is not that of one"))?;
     for expected in head.points.clone() {
         let there = next(&mut line)?;
-        match whole(&line).and_then(grid_value) {
+        match Seal::plain().open(&line).and_then(grid_value) {
             Some((point, value)) if point == expected => visit(point, value),
             _ if there => return Err(broken(&format!("it is damaged at point {expected}: make it again"))),
             _ => return Err(broken(&format!("it ends before point {expected}: make it again"))),

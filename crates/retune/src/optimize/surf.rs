@@ -1,6 +1,6 @@
 //! The coarse stage: E1max on a grid.
 
-use super::log::joined;
+use super::log::{counted, joined};
 use super::objective;
 use crate::error::Error;
 use crate::results::Directory;
@@ -40,9 +40,9 @@ pub(super) fn surf(
     let objective = objective(study, search, &variables);
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
     screen.log(format!(
-        "surf: {} = {} points over {}",
+        "surf: {} = {} over {}",
         axes.join(" x "),
-        grid.len(),
+        counted(grid.len() as u64, "point"),
         joined(&variables, " ")
     ))?;
 
@@ -50,7 +50,10 @@ pub(super) fn surf(
     let bar = screen.progress("surf", grid.len() as u64);
     let journal = results.journal();
     let value = |point: usize, design: &[f64]| {
-        let known = |value| objective.recall(value);
+        let known = |value| {
+            bar.known();
+            objective.recall(value);
+        };
         journal.grid_value(point, || objective.value(design, f64::INFINITY), known)
     };
     let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));

@@ -8,7 +8,7 @@ use crate::figure::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, sheet};
 use rayon::prelude::*;
 use retune_atlas::{Kind, Parameter, Regime, Stretch, Zone, classify, follow};
 use retune_model::{Positive, Scene};
-use retune_solver::{Sample, Window, trajectory};
+use retune_solver::{Rows, Sample, Window, trajectory};
 
 /// A case of the paper.
 struct Case {
@@ -210,7 +210,7 @@ fn state(
 fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), Error> {
     let window = Window { to: plan.window().to + MORE, ..plan.window() };
     let mut samples: Vec<Sample> = Vec::new();
-    trajectory(scene, window, &plan.settings(), INTERVAL, &mut |sample| samples.push(*sample))?;
+    trajectory(scene, window, &plan.settings(), Rows::every(INTERVAL), &mut |sample| samples.push(*sample))?;
     let range = |value: fn(&Sample) -> f64| {
         let (low, high) = samples
             .iter()

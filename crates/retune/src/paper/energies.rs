@@ -5,7 +5,7 @@ use super::plan::Plan;
 use crate::error::Error;
 use crate::figure::sheet::{BLACK, Chart, Key, Layer, ORANGE, VERMILION, sheet};
 use retune_model::Scene;
-use retune_solver::{Sample, Window, trajectory};
+use retune_solver::{Rows, Sample, Window, trajectory};
 
 const INTERVAL: f64 = 0.05;
 
@@ -19,7 +19,9 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
     let omega = scenes[1].forcing.frequency.get();
     let record = |scene: &Scene| -> Result<Vec<Sample>, Error> {
         let mut samples = Vec::new();
-        trajectory(scene, window, &plan.settings(), INTERVAL, &mut |sample| samples.push(*sample))?;
+        trajectory(scene, window, &plan.settings(), Rows::every(INTERVAL), &mut |sample| {
+            samples.push(*sample)
+        })?;
         Ok(samples)
     };
     let [none, ssvi, tmd] = [record(&scenes[0])?, record(&scenes[1])?, record(&scenes[2])?];

@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use crate::error::Error;
-use indicatif::ProgressBar;
+use crate::progress::Progress;
 use retune_atlas::{Parameter, Point, fresh};
 
 /// The responses at one stiffness over all frequencies: without damper, with SSVI NES, with TMD.
@@ -28,7 +28,7 @@ pub struct Peak {
 
 impl Family {
     /// Computes all three curves at `k1`.
-    pub fn compute(plan: &Plan, k1: f64, bar: &ProgressBar) -> Result<Self, Error> {
+    pub fn compute(plan: &Plan, k1: f64, bar: &Progress) -> Result<Self, Error> {
         let scenes = plan.scenes(k1)?;
         let omega = plan.file.omega.values();
         let mut points = [Vec::new(), Vec::new(), Vec::new()];

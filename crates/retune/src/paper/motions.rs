@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use crate::error::Error;
-use indicatif::ProgressBar;
+use crate::progress::Progress;
 use rayon::prelude::*;
 use retune_atlas::record::coordinates;
 use retune_atlas::strobe::Periods;
@@ -43,7 +43,7 @@ pub struct Coexisting {
 
 impl Motions {
     /// Follows all motions of `scene` at the plan's ratios to the frequency `natural`.
-    pub fn compute(plan: &Plan, scene: &Scene, natural: f64, bar: &ProgressBar) -> Result<Self, Error> {
+    pub fn compute(plan: &Plan, scene: &Scene, natural: f64, bar: &Progress) -> Result<Self, Error> {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
         let settings = plan.settings();

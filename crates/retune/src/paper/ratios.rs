@@ -23,7 +23,13 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
             let run = simulate(&scene, plan.window(), &plan.settings())?;
             bar.inc(1);
             let (e1_max, e2_max) = (run.e1_max.value, run.e2_max.value);
-            place.push(Point { value: k1, e1_max, e2_max, impacts: run.impacts, stroke_max: run.stroke_max });
+            place.push(Point {
+                value: k1,
+                e1_max,
+                e2_max,
+                impacts: run.impacts,
+                relative_displacement_max: run.relative_displacement_max,
+            });
         }
     }
     let soft = Family::compute(plan, lowest, &bar)?;

@@ -5,27 +5,33 @@
 //! what it knows: the run comes to where it was in a moment, and its results have the bytes of an unbroken one. No search
 //! knows of it.
 //!
-//! A line is whole or it does not count: it ends with a checksum, and what follows the first that is broken (a crash may leave
-//! half a line, a power cut more) is cut off and computed again. Lines are handed to the system as they come, which a killed
-//! process cannot undo, and to the disk about once a second.
+//! A line is whole or it does not count: it ends with a checksum that holds for this work alone (see [`Seal`]). So every record that
+//! is whole is believed, wherever it stands, and one that is not (a crash may leave half a line, a disk a flipped bit) is counted,
+//! announced and computed again. Lines are handed to the system as they come, which a killed process cannot undo, and to the
+//! disk about once a second.
 //!
 //! Values that are not finite (designs that cannot be computed) are written, but not answered: such a design is run again, so
 //! that the search can say why it failed.
 
+mod read;
+
+pub use read::{Damage, Found, Known, read};
+
 use super::identity::{Identity, hexadecimal};
+use super::plain;
+use super::seal::Seal;
 use crate::error::Error;
-use crate::study::MOST_GRID_POINTS;
 use sha2::{Digest, Sha256};
-use std::collections::{HashMap, HashSet};
+use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// The first words of a journal.
-const TITLE: &str = "retune-journal-1";
+const TITLE: &str = "retune-journal-2";
 
 /// Milliseconds between two times that the disk is waited for.
 const SYNC_EVERY: u64 = 1000;
@@ -33,21 +39,11 @@ const SYNC_EVERY: u64 = 1000;
 /// Half of a SHA-256: the stage, the design and the cutoff.
 type Key = [u8; 16];
 
-/// What a journal knows.
-#[derive(Debug, Default)]
-pub struct Known {
-    values: HashMap<Key, f64>,
-    /// The values of the points of the grid; NaN where one is not known.
-    grid: Vec<f64>,
-    marks: HashSet<String>,
-    /// How many lines there are.
-    pub lines: u64,
-}
-
 /// A journal that is being written.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
+    seal: Seal,
     known: Known,
     file: Mutex<File>,
     /// The same file, to wait for the disk without holding up those who write.
@@ -59,56 +55,15 @@ pub struct Journal {
     trouble: Mutex<Option<std::io::Error>>,
 }
 
-/// Reads a journal: what made it, what it knows, and how many of its bytes are whole. None if it has no first line.
-///
-/// # Errors
-/// It cannot be read.
-pub fn read(path: &Path) -> std::io::Result<Option<(Identity, Known, u64)>> {
-    let mut lines = BufReader::new(match File::open(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        other => other?,
-    });
-    let mut line = Vec::new();
-    lines.read_until(b'\n', &mut line)?;
-    let first = whole(&line).and_then(|text| text.strip_prefix(TITLE)?.strip_prefix(' '));
-    let Some(identity) = first.and_then(Identity::parse) else { return Ok(None) };
-    let mut known = Known::default();
-    let mut length = line.len() as u64;
-    loop {
-        line.clear();
-        lines.read_until(b'\n', &mut line)?;
-        match whole(&line).and_then(|text| known.learn(text)) {
-            Some(()) => length += line.len() as u64,
-            None => return Ok(Some((identity, known, length))),
-        }
-    }
+/// The text of the line of a point of the grid.
+pub fn grid_text(point: usize, value: f64) -> String {
+    format!("g {point} {:016x}", value.to_bits())
 }
 
-/// A line without its checksum; none if it is not whole.
-pub fn whole(line: &[u8]) -> Option<&str> {
-    let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
-    let (text, check) = line.rsplit_once(' ')?;
-    (check == checksum(text)).then_some(text)
-}
-
-/// A line with its checksum.
-pub fn sealed(text: &str) -> String {
-    format!("{text} {}\n", checksum(text))
-}
-
-/// The line of a point of the grid.
-pub fn grid_line(point: usize, value: f64) -> String {
-    sealed(&format!("g {point} {:016x}", value.to_bits()))
-}
-
-/// Reads the text of [`grid_line`].
+/// Reads [`grid_text`].
 pub fn grid_value(text: &str) -> Option<(usize, f64)> {
     let (point, value) = text.strip_prefix("g ")?.split_once(' ')?;
     Some((point.parse().ok()?, bits(value)?))
-}
-
-fn checksum(text: &str) -> String {
-    hexadecimal(&Sha256::digest(text.as_bytes())[..4])
 }
 
 fn bits(text: &str) -> Option<f64> {
@@ -126,54 +81,37 @@ fn key(stage: &str, design: &[f64], cutoff: f64) -> Key {
     key
 }
 
-impl Known {
-    fn learn(&mut self, text: &str) -> Option<()> {
-        let (kind, rest) = text.split_once(' ')?;
-        match kind {
-            "g" => {
-                let (point, value) = grid_value(text)?;
-                self.set_grid(point, value)?;
-            }
-            "e" => {
-                let (name, value) = rest.split_once(' ')?;
-                let number = (name.len() == 32).then(|| u128::from_str_radix(name, 16).ok())??;
-                self.values.insert(number.to_be_bytes(), bits(value)?);
-            }
-            "m" => {
-                self.marks.insert(rest.to_owned());
-            }
-            _ => return None,
-        }
-        self.lines += 1;
-        Some(())
-    }
-
-    fn set_grid(&mut self, point: usize, value: f64) -> Option<()> {
-        if point >= self.grid.len() {
-            (point < MOST_GRID_POINTS).then(|| self.grid.resize(point + 1, f64::NAN))?;
-        }
-        self.grid[point] = value;
-        Some(())
-    }
-}
-
 impl Journal {
-    /// Begins a journal, or goes on with one of which the first `length` bytes are whole.
+    /// Begins a journal, of which nothing must stand there.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn open(path: &Path, identity: &Identity, known: Known, length: u64) -> Result<Self, Error> {
+    pub fn begin(path: &Path, identity: &Identity) -> Result<Self, Error> {
+        let made = OpenOptions::new().append(true).create_new(true).open(path);
         let refuse = |source| Error::Output { path: path.to_owned(), source };
-        let mut options = OpenOptions::new();
-        let mut file =
-            options.create(true).truncate(false).read(true).write(true).open(path).map_err(refuse)?;
-        file.set_len(length).and_then(|()| file.seek(SeekFrom::Start(length)).map(drop)).map_err(refuse)?;
-        if length == 0 {
-            file.write_all(sealed(&format!("{TITLE} {}", identity.words())).as_bytes()).map_err(refuse)?;
+        let mut file = made.map_err(refuse)?;
+        file.write_all(read::first_line(identity).as_bytes()).map_err(refuse)?;
+        Self::write_to(path, file, identity, Known::default())
+    }
+
+    /// Goes on with a journal, of which `known` was read. Where there is damage, what is whole is written anew first.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn go_on(path: &Path, identity: &Identity, known: Known, damage: Damage) -> Result<Self, Error> {
+        if !damage.is_none() {
+            read::mend(path, identity)?;
         }
-        let disk = file.try_clone().map_err(refuse)?;
+        let file = plain::open_with(path, OpenOptions::new().append(true));
+        let file = file.map_err(|source| Error::Output { path: path.to_owned(), source })?;
+        Self::write_to(path, file, identity, known)
+    }
+
+    fn write_to(path: &Path, file: File, identity: &Identity, known: Known) -> Result<Self, Error> {
+        let disk = file.try_clone().map_err(|source| Error::Output { path: path.to_owned(), source })?;
         Ok(Self {
             path: path.to_owned(),
+            seal: Seal::of(identity),
             known,
             file: Mutex::new(file),
             disk,
@@ -195,6 +133,18 @@ impl Journal {
         self.known.lines
     }
 
+    /// The directories below that searches of this work were begun in before.
+    pub fn parts(&self) -> &BTreeSet<String> {
+        &self.known.parts
+    }
+
+    /// Notes that a search is begun in a directory below.
+    pub fn note_part(&self, name: &str) {
+        if !self.known.parts.contains(name) {
+            self.append(&format!("p {name}"));
+        }
+    }
+
     /// The value of an objective at `design`: known from before, which `recall` is told, or computed now and written down. `stage`
     /// names the objective; `cutoff` is what it may stop at.
     pub fn value(
@@ -207,13 +157,13 @@ impl Journal {
     ) -> f64 {
         let key = key(stage, design, cutoff);
         self.answer(self.known.values.get(&key).copied(), compute, recall, |value| {
-            sealed(&format!("e {} {:016x}", hexadecimal(&key), value.to_bits()))
+            format!("e {} {:016x}", hexadecimal(&key), value.to_bits())
         })
     }
 
     /// The same of a point of the grid, which is known by its number.
     pub fn grid_value(&self, point: usize, compute: impl FnOnce() -> f64, recall: impl FnOnce(f64)) -> f64 {
-        self.answer(self.known.grid.get(point).copied(), compute, recall, |value| grid_line(point, value))
+        self.answer(self.known.grid.get(point).copied(), compute, recall, |value| grid_text(point, value))
     }
 
     fn answer(
@@ -221,7 +171,7 @@ impl Journal {
         known: Option<f64>,
         compute: impl FnOnce() -> f64,
         recall: impl FnOnce(f64),
-        line: impl FnOnce(f64) -> String,
+        text: impl FnOnce(f64) -> String,
     ) -> f64 {
         match known {
             Some(value) if value.is_finite() => {
@@ -233,7 +183,7 @@ impl Journal {
             known => {
                 let value = compute();
                 if known.is_none_or(f64::is_nan) {
-                    self.append(&line(value));
+                    self.write(&text(value));
                 }
                 value
             }
@@ -246,7 +196,7 @@ impl Journal {
             && self.known.set_grid(point, value).is_some()
         {
             self.known.lines += 1;
-            self.append(&grid_line(point, value));
+            self.write(&grid_text(point, value));
         }
     }
 
@@ -257,7 +207,7 @@ impl Journal {
 
     /// Notes that a part of the work named `name` is done.
     pub fn mark(&self, name: &str) {
-        self.append(&sealed(&format!("m {name}")));
+        self.write(&format!("m {name}"));
     }
 
     /// Whether all could be written so far. Must be asked before anything that a search found is believed.
@@ -279,8 +229,14 @@ impl Journal {
         self.broken.load(Relaxed)
     }
 
-    fn append(&self, line: &str) {
+    /// Writes down a result.
+    fn write(&self, text: &str) {
         self.written.store(true, Relaxed);
+        self.append(text);
+    }
+
+    fn append(&self, text: &str) {
+        let line = self.seal.close(text);
         let written = {
             let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
             file.write_all(line.as_bytes())

@@ -1,6 +1,7 @@
 //! One run at a time in a directory. The system holds the lock for as long as the process lives, so a crash leaves none
 //! behind; the file that it leaves is harmless.
 
+use super::plain;
 use crate::error::Error;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Seek, Write};
@@ -27,7 +28,8 @@ impl Lock {
         // Between opening and locking, the last holder may have removed the file: then it is not the one that others see.
         for attempt in 0_u32.. {
             let mut options = OpenOptions::new();
-            let mut file = options.create(true).truncate(false).write(true).open(&path).map_err(refuse)?;
+            options.create(true).truncate(false).write(true);
+            let mut file = plain::open_with(&path, &mut options).map_err(refuse)?;
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
@@ -36,6 +38,10 @@ impl Lock {
                     return Err(Error::Busy { path: directory.to_owned(), holder });
                 }
                 Err(TryLockError::Error(source)) => return Err(refuse(source)),
+            }
+            if !is_ours(&std::fs::read(&path).unwrap_or_default()) {
+                let words = "it is not a lock that Retune left behind: move it away";
+                return Err(refuse(std::io::Error::other(words)));
             }
             let token = format!("{} {attempt} {:?}\n", std::process::id(), std::time::SystemTime::now());
             let written = file
@@ -49,6 +55,15 @@ impl Lock {
         }
         Err(refuse(std::io::ErrorKind::TimedOut.into()))
     }
+}
+
+/// Whether a lock's file has this in it: nothing, or the number of a process first.
+fn is_ours(text: &[u8]) -> bool {
+    text.is_empty()
+        || text
+            .split(|byte| *byte == b' ')
+            .next()
+            .is_some_and(|word| !word.is_empty() && word.iter().all(u8::is_ascii_digit))
 }
 
 impl Drop for Lock {
@@ -73,5 +88,24 @@ mod tests {
         drop(first);
         assert!(!directory.path().join(NAME).exists());
         Lock::take(directory.path()).expect("free again");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn contract_what_is_no_lock_of_ours_is_left_alone() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let (treasure, lock) = (directory.path().join("treasure"), directory.path().join(NAME));
+        std::fs::write(&treasure, "mine").expect("a file");
+        std::os::unix::fs::symlink(&treasure, &lock).expect("a link");
+        let error = Lock::take(directory.path()).expect_err("a link").to_string();
+        assert!(error.contains("it is a symbolic link"), "{error}");
+        std::fs::remove_file(&lock).expect("the link");
+        std::fs::write(&lock, "mine").expect("a file");
+        let error = Lock::take(directory.path()).expect_err("no lock").to_string();
+        assert!(error.contains("not a lock that Retune left"), "{error}");
+        assert_eq!(
+            [treasure, lock].map(|path| std::fs::read_to_string(path).ok()),
+            [const { Some("mine") }; 2].map(|x| x.map(str::to_owned))
+        );
     }
 }

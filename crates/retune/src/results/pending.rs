@@ -1,5 +1,6 @@
 //! A file has its name only once it is whole: it is written beside its place and then renamed.
 
+use super::plain;
 use crate::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -27,7 +28,7 @@ impl Pending {
         }
         let temporary =
             path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
-        let file = BufWriter::new(File::create(&temporary).map_err(refuse)?);
+        let file = BufWriter::new(plain::create(&temporary).map_err(refuse)?);
         Ok(Self { path: path.to_owned(), temporary, file, finished: false })
     }
 
@@ -57,6 +58,16 @@ impl Pending {
         named.map_err(|source| self.refused(source))?;
         self.finished = true;
         Ok(())
+    }
+
+    /// Gives the file its name once it is on the disk.
+    ///
+    /// # Errors
+    /// It cannot be written or renamed.
+    pub fn finish_on_disk(mut self) -> Result<(), Error> {
+        let written = self.file.flush().and_then(|()| self.file.get_ref().sync_all());
+        written.map_err(|source| self.refused(source))?;
+        self.finish()
     }
 
     /// Gives the file its name once it is on the disk, and lets nobody write to it any more.

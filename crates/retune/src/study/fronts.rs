@@ -24,7 +24,7 @@ pub struct Fronts {
     /// Largest k2 allowed, N/m; every study is tuned under each.
     #[schemars(length(min = 1))]
     pub k2: Vec<Positive>,
-    /// Largest stroke |x2 - x1 - D| allowed, m; every study is tuned under each, with k2 as free as its bounds say.
+    /// Largest stroke (spring deflection |x2 - x1 - D|) allowed, m, as the limit of that name in a study; every study is tuned under each, with k2 as free as its bounds say.
     #[schemars(length(min = 1))]
     pub stroke: Vec<Positive>,
     /// Samples of the bands on which the designs that were found are looked at again, to be compared.

@@ -2,7 +2,7 @@
 
 use super::{Rule, Study};
 use retune_model::{Positive, Scene};
-use retune_optim::{Frequencies, Goal, Limits, PerLimit, Statistic, Stiffnesses, Term, When};
+use retune_optim::{Frequencies, Goal, Statistic, Stiffnesses, Term, When};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -91,22 +91,24 @@ pub enum Response {
     /// The largest once all transients have died, in closed form. A design whose damper would reach a wall has no value; the
     /// solver only runs the design that was found.
     Steady,
-    /// The largest in the first blocks of a run from rest that agree, see `settle`; in `window`, if they do not by its end (the
+    /// The largest once the motion of a run from rest repeats, see `settle`; in `window`, if it does not by its end (the
     /// result counts such runs). For motions with contacts too.
     Settled,
 }
 
-/// When a motion counts as settled: the E1max of successive blocks of periods, counted from t = 0, agree.
+/// When a motion counts as settled: its state returns after some periods of the force, throughout successive blocks of periods
+/// counted from t = 0. E1max is then that of the last of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settle {
-    /// Length of a block in periods of the force. A motion that repeats less often may be taken to have settled too early.
+    /// Length of a block in periods of the force. A motion that repeats less often does not settle.
     #[schemars(range(min = 1, max = 10000))]
     pub periods: u32,
     /// How many blocks in a row must agree.
     #[schemars(range(min = 2, max = 100))]
     pub blocks: u32,
-    /// Largest difference of their E1max, as a share of the largest.
+    /// The most by which the state may still change, as a share of its size: from return to return, and all that is to follow if
+    /// the change keeps falling as it fell from block to block.
     pub tolerance: Positive,
 }
 
@@ -143,22 +145,6 @@ pub enum Of {
     Worst,
     /// The smallest that at least this share of the members does not exceed, above 0 and at most 1.
     Quantile(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
-}
-
-/// Largest values allowed. A design that breaks a limit is worse than any that keeps all; of two that do, the one that breaks
-/// them by less (the sum of reached / limit - 1) is better.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct LimitsGiven {
-    /// Largest |x2 - x1 - D| in any run of the objective, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stroke: Option<Positive>,
-    /// Largest contact force on either wall in any run of the objective, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<Positive>,
-    /// Largest D + C, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cavity: Option<Positive>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
@@ -308,19 +294,6 @@ impl Objective {
             retune_optim::Ensemble { members, phases, errors, seed, statistic }
         });
         vec![Term { weight, when, omega: self.band(), k1, ensemble }]
-    }
-}
-
-impl LimitsGiven {
-    /// The limits as searches take them.
-    pub fn limits(&self) -> Limits {
-        let Self { stroke, force, cavity } = self;
-        PerLimit([stroke, force, cavity].map(|limit| limit.map(Positive::get)))
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.limits().is_empty()
     }
 }
 

@@ -34,11 +34,7 @@ impl Study {
     /// # Errors
     /// The first [`Rule`] that is broken.
     pub fn check(&self) -> Result<(), Rule> {
-        let name = self.name();
-        let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-        if name.is_empty() || name.starts_with('.') || !name.chars().all(plain) {
-            return Err(Rule::Name { name: name.to_owned() });
-        }
+        check_name(self.name())?;
         let (t0, end) = (self.window.t0.get(), self.window.end.get());
         if t0 >= end {
             return Err(Rule::EmptyWindow { t0, end });
@@ -66,6 +62,7 @@ impl Study {
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         let variables = varied(&optimize.vary)?;
         optimize.objective.check("optimize.objective", self.scene.forcing.frequency.get())?;
+        optimize.limits.check(self.window.end.get())?;
         let tuned = |field, variable: &Variable| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),
@@ -207,4 +204,16 @@ fn options(optimize: &Optimize, bounds: Vec<Bounds>) -> Result<Options, Rule> {
         bounds,
         scaling: if refine.scaled { Scaling::Start } else { Scaling::None },
     })
+}
+
+/// Whether a directory of results may have this name.
+///
+/// # Errors
+/// [`Rule::Name`].
+pub fn check_name(name: &str) -> Result<(), Rule> {
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(plain) {
+        return Err(Rule::Name { name: name.to_owned() });
+    }
+    Ok(())
 }

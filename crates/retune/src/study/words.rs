@@ -1,4 +1,4 @@
-//! An objective in words, for figures, tables and the screen.
+//! An objective in words, for figures, tables and the screen; and how many there are of something.
 
 use super::objective::{Band, Ensemble, K1, K1Range, Objective, Of, Response};
 
@@ -6,7 +6,7 @@ impl Objective {
     /// Over what its E1max is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
     pub fn over(&self, omega: f64) -> String {
         if !self.sum.is_empty() {
-            return format!("weighted sum of {} objectives", self.sum.len());
+            return format!("weighted sum of {}", counted(self.sum.len() as u64, "objective"));
         }
         let band = |Band { from, to, relative, .. }: Band| {
             let unit = if relative { "times √(k1/m1)" } else { "rad/s" };
@@ -52,6 +52,16 @@ impl Ensemble {
             Of::Quantile(share) => format!("{share} quantile"),
         };
         let phases = if *phases { "all phases, " } else { "" };
-        format!("{of} of {members} members ({phases}errors to {} %)", 100.0 * errors)
+        format!("{of} of {} ({phases}errors to {} %)", counted((*members).into(), "member"), 100.0 * errors)
     }
+}
+
+/// So many of something: `1 design`, `2 searches`.
+pub fn counted(count: u64, noun: &str) -> String {
+    let ending = match count {
+        1 => "",
+        _ if noun.ends_with("ch") => "es",
+        _ => "s",
+    };
+    format!("{count} {noun}{ending}")
 }

@@ -1,60 +1,116 @@
 //! The results of one study: the rows of its search, its band, the design it found, its certificate.
 
-use super::table::Sample;
-use super::{Check, Report, text};
+use super::table::{Row, Sample};
+use super::{Check, Report, json};
+use crate::certify::{self, certify};
 use crate::error::Error;
 use crate::optimize::{band, objective};
 use crate::study::{self, Setting, Study};
+use crate::summary::Summary;
 use retune_model::{NonNegative, Scene};
-use retune_optim::{PeakEnergy, Variable};
-use serde_json::Value;
+use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// The curves of a band: without damper, with that of the study, with the best.
 const CURVES: usize = 3;
 
-/// Looks at the results of a search again, at `most` rows of a table.
+/// Tables of designs with what the search saw of them.
+const TABLES: [&str; 4] = ["surf.csv", "fminsearch.csv", "fminsearch-starts.csv", "basins.csv"];
+
+/// Looks at the results of a study again, at `most` rows of a table.
 ///
 /// # Errors
 /// They cannot be read.
 pub fn verify(place: &Path, most: usize, report: &mut Report) -> Result<(), Error> {
     let study = study::read(&place.join("study.json"))?;
+    let has = |name: &str| place.join(name).exists();
+    let searched = has("optimum.json") || TABLES.into_iter().any(has) || has("band.csv");
+    if searched {
+        search(place, &study, most, report)?;
+    }
+    if has(certify::FILE) {
+        let said = json(place, certify::FILE)?;
+        let study = if has("optimum.json") {
+            certify::read(&place.join("optimum.json"))?.0
+        } else if searched {
+            study.with(&Setting::design(design(&said["design"])))? // what was found stands nowhere else
+        } else {
+            study
+        };
+        certificate(&study, &said, certify::FILE, report)?;
+    } else if !searched {
+        report.unchecked("no row of these results can be run again by itself")?;
+    }
+    Ok(())
+}
+
+/// Looks at the tables of a search, and at what it found.
+fn search(place: &Path, study: &Study, most: usize, report: &mut Report) -> Result<(), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let objective = objective(&study, &search, &Variable::ALL);
-    let optimum = json(place, "optimum.json")?;
-    for name in ["surf.csv", "fminsearch.csv", "fminsearch-starts.csv"] {
+    let objective = objective(study, &search, &Variable::ALL);
+    for name in TABLES {
         if place.join(name).exists() {
             let sample = Sample::read(&place.join(name), most)?;
-            let checks: Vec<Check> = sample
-                .rows()
-                .filter_map(|row| value(&objective, &row.design(), row.number("E1max")))
-                .collect();
+            let checks: Vec<Check> = sample.rows().map(|row| value(&objective, row)).collect();
             report.look(name, &sample.of(checks.len()), &checks)?;
         }
     }
-    let found = design(&optimum);
+    if !place.join("optimum.json").exists() {
+        return report.unchecked("there is no optimum.json: the design that was found");
+    }
+    let optimum = json(place, "optimum.json")?;
+    let Ok(tuned) = objective.scene(&design(&optimum)) else {
+        return report.fail("optimum.json", "its design cannot be run");
+    };
     if place.join("band.csv").exists() {
         let sample = Sample::read(&place.join("band.csv"), most)?;
-        let tuned = objective.scene(&found).ok();
-        let checks = tuned.map(|tuned| curves(&study, tuned, &sample)).unwrap_or_default();
+        let checks = curves(study, tuned, &sample);
         report.look("band.csv", &sample.of(checks.len() / CURVES), &checks)?;
     }
-    match value(&objective, &found, number(&optimum["E1max"])) {
-        Some(best) => report.look("optimum.json", "its design", &[best]),
-        None => report.fail("optimum.json", "its design cannot be run"),
+    match objective.evaluate(&tuned, f64::INFINITY) {
+        Err(error) => report.fail("optimum.json", &format!("its design cannot be run: {error}")),
+        Ok(found) => {
+            let again = again(study, &objective, tuned, &found, &optimum)?;
+            report.compare("optimum.json", "its design", &optimum, &again)
+        }
     }
 }
 
-/// Looks at a certificate again that stands by itself.
+/// What `optimum.json` says of its design, made again.
+fn again(
+    study: &Study,
+    objective: &PeakEnergy,
+    tuned: Scene,
+    found: &Evaluation,
+    optimum: &Value,
+) -> Result<Value, Error> {
+    let scene = found.worst_run(tuned, objective.goal());
+    let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
+    let mut again = json!({ "E1max": found.energy, "simulation": Summary::new(study, scene, &response) });
+    if !objective.goal().limits.is_empty() {
+        let [stroke, force, cavity] = Limit::ALL.map(|limit| found.reached.get(limit));
+        let (violation, feasible) = (found.violation, found.violation == 0.0);
+        again["limits"] = json!({
+            "stroke": stroke, "force": force, "cavity": cavity, "violation": violation, "feasible": feasible
+        });
+    }
+    if optimum.get("certificate").is_some() {
+        let certificate = certify(&Study { scene: tuned, ..study.clone() })?;
+        again["certificate"] = json!(certificate.short());
+    }
+    Ok(again)
+}
+
+/// Makes the certificate of the design in the scene of a study again.
 ///
 /// # Errors
-/// It cannot be read.
-pub fn certificate(place: &Path, report: &mut Report) -> Result<(), Error> {
-    let study = study::read(&place.join("study.json"))?;
-    let certificate = json(place, "certificate.json")?;
-    let again = || energy(&study, &design(&certificate["design"]));
-    let check = Check { said: number(&certificate["E1max"]), again: Box::new(again) };
-    report.look("certificate.json", "its design", &[check])
+/// Standard output cannot be written.
+pub fn certificate(study: &Study, said: &Value, name: &str, report: &mut Report) -> Result<(), Error> {
+    match certify(study) {
+        Ok(again) => report.compare(name, "all of it", said, &json!(again)),
+        Err(error) => report.fail(name, &format!("cannot be made again: {error}")),
+    }
 }
 
 /// E1max by the objective of a study for a design (k2, c2, D, C in SI units), J; infinite where it has none.
@@ -63,44 +119,46 @@ pub fn energy(study: &Study, design: &[f64; 4]) -> f64 {
     scene.and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
-/// The check of the value that a search saw at a design.
-fn value<'a>(objective: &'a PeakEnergy, design: &[f64; 4], said: f64) -> Option<Check<'a>> {
-    let scene = objective.scene(design).ok()?;
+/// The check of a row of a search: the number that it made small, or the E1max of a basin, empty where that breaks a limit.
+fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
+    let text = row.text("E1max");
+    let basin = !row.text("basin").is_empty();
+    if !(basin && text.is_empty()) && row.number("E1max").is_nan() {
+        return Check::never();
+    }
+    let scene = objective.scene(&row.design());
     let again = move || {
-        let found = objective.evaluate(&scene, f64::INFINITY);
-        found.map_or(f64::INFINITY, |found| found.value)
+        let found = scene.and_then(|scene| objective.evaluate(&scene, f64::INFINITY));
+        let value = found.map_or(f64::INFINITY, |found| found.value);
+        if basin { retune_optim::energy(value) } else { value }
     };
-    Some(Check { said, again: Box::new(again) })
+    Check { said: row.number("E1max"), again: Box::new(again) }
 }
 
 /// The checks of the curves over the band: without damper, with that of the study, with the best.
 fn curves<'a>(study: &'a Study, tuned: Scene, sample: &Sample) -> Vec<Check<'a>> {
     let mut checks = Vec::new();
     for row in sample.rows() {
-        let Ok(omega) = NonNegative::new(row.number("omega")) else { continue };
         let scenes: [_; CURVES] = [
             ("E1max_none", Scene { damper: None, ..tuned }),
             ("E1max_study", study.scene),
             ("E1max_tuned", tuned),
         ];
         for (column, mut scene) in scenes {
-            scene.forcing.frequency = omega;
-            let again = move || band::at_its_own(study, scene);
-            checks.push(Check { said: row.number(column), again: Box::new(again) });
+            checks.push(match NonNegative::new(row.number("omega")) {
+                Ok(omega) => {
+                    scene.forcing.frequency = omega;
+                    let again = move || band::at_its_own(study, scene);
+                    Check { said: row.number(column), again: Box::new(again) }
+                }
+                Err(_) => Check::never(),
+            });
         }
     }
     checks
 }
 
-fn json(place: &Path, name: &str) -> Result<Value, Error> {
-    let refuse = |error: serde_json::Error| Error::Input { path: place.join(name), source: error.into() };
-    serde_json::from_str(&text(place, name)?).map_err(refuse)
-}
-
-fn design(of: &Value) -> [f64; 4] {
-    Variable::ALL.map(|variable| number(&of[variable.symbol()]))
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or(f64::NAN)
+/// k2, c2, D and C in a JSON object; NaN where there is no number.
+pub fn design(of: &Value) -> [f64; 4] {
+    Variable::ALL.map(|variable| of[variable.symbol()].as_f64().unwrap_or(f64::NAN))
 }

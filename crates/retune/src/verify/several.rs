@@ -1,13 +1,14 @@
 //! The results of several studies: tables of designs (`table2`, `retune`, `fronts`) and curves along k1.
 
-use super::search::energy;
+use super::search::{self, certificate, energy};
 use super::table::{Row, Sample};
-use super::{Check, Report};
+use super::{Check, Report, json};
 use crate::error::Error;
 use crate::fronts;
 use crate::results::resolved::Resolved;
 use crate::retention;
 use crate::study::{Setting, Study};
+use serde_json::Value;
 use std::path::Path;
 
 /// Looks at the tables again, at `most` rows of each.
@@ -33,20 +34,47 @@ pub fn verify(place: &Path, most: usize, report: &mut Report) -> Result<(), Erro
         let designs = Sample::read(&place.join("retune.csv"), usize::MAX)?;
         let (columns, checks) = curves(&studies, &designs, &sample);
         report.look(name, &sample.of(checks.len() / columns.max(1)), &checks)?;
-    } else if !looked {
-        report.screen.line("  no row of these results can be run again by itself")?;
+        looked = true;
     }
-    Ok(())
+    for name in names(place).map_err(|source| Error::Input { path: place.to_owned(), source })? {
+        let said = json(place, &name)?;
+        match certified(&studies, samples, &said) {
+            Some(study) => certificate(&study, &said, &name, report)?,
+            None => report.fail(&name, "is of none of the studies")?,
+        }
+    }
+    if looked { Ok(()) } else { report.unchecked("no row of these results can be run again by itself") }
 }
 
-/// The check of a row with a design; none where the row has none.
+/// The certificates in a directory, sorted.
+fn names(place: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(place)? {
+        names.extend(entry?.file_name().into_string());
+    }
+    names.retain(|name| name.starts_with("certificate-") && name.ends_with(".json"));
+    names.sort();
+    Ok(names)
+}
+
+/// The study with the design that a certificate of `fronts` is of.
+fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
+    let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
+    fronts::finer(study, samples?, search::design(&said["design"]))
+}
+
+/// The check of a row with a design; none where the row says that it has none.
 fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> Option<Check<'a>> {
-    let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
-    let at = row.design();
-    if at.iter().any(|value| value.is_nan()) {
+    let Some((_, study)) = studies.iter().find(|(name, _)| name == row.text("damper")) else {
+        return Some(Check::never());
+    };
+    let (at, said) = (row.design(), row.number("E1max"));
+    if ["k2", "c2", "D", "C", "E1max"].iter().all(|name| row.text(name).is_empty()) {
         return None; // no design keeps this bound
     }
-    let said = row.number("E1max");
+    if at.iter().chain([&said]).any(|value| value.is_nan()) {
+        return Some(Check::never());
+    }
     let k1 = row.number("k1");
     let study = if k1.is_nan() { study.clone() } else { study.with(&[Setting::new("k1", k1)]).ok()? };
     let again = move || match samples {

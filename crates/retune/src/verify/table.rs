@@ -1,6 +1,7 @@
 //! A table of results as it is looked at again: a sample of its rows, their fields by the names of the columns.
 
 use crate::error::Error;
+use crate::optimize::log::counted;
 use std::path::Path;
 
 /// A sample of the rows of a CSV file.
@@ -55,7 +56,7 @@ impl Sample {
 
     /// How many rows there are, and how many were run again.
     pub fn of(&self, looked: usize) -> String {
-        format!("{looked} of {} rows", self.count)
+        format!("{looked} of {}", counted(self.count as u64, "row"))
     }
 }
 

@@ -4,7 +4,8 @@
 
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A directory to work in.
@@ -56,7 +57,8 @@ impl Desk {
 
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_retune"));
-        command.args(arguments).current_dir(self.0.path());
+        // A `just test` must not be told from the tests.
+        command.args(arguments).current_dir(self.0.path()).env_remove("RETUNE_RUN_AS");
         command
     }
 
@@ -107,4 +109,43 @@ pub fn altered(text: &str) -> String {
 /// The studies of the repository.
 pub fn studies() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies")
+}
+
+/// A study whose search takes about a second.
+pub fn longer() -> Value {
+    let mut study = tiny();
+    study["window"] = json!({ "t0": 10, "T": 40 });
+    for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
+        axis["points"] = json!(6);
+    }
+    study
+}
+
+#[track_caller]
+pub fn assert_same(desk: &Desk, one: &str, other: &str) {
+    assert_eq!(desk.names(one), desk.names(other));
+    for name in desk.names(one) {
+        assert!(desk.read(&format!("{one}/{name}")) == desk.read(&format!("{other}/{name}")), "{name}");
+    }
+}
+
+/// Starts a run and waits until its journal has `lines` lines.
+pub fn begun(desk: &Desk, arguments: &[&str], out: &str, lines: usize) -> Child {
+    started(desk.command(arguments), desk, out, lines)
+}
+
+/// The same of any command.
+pub fn started(mut command: Command, desk: &Desk, out: &str, lines: usize) -> Child {
+    let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program");
+    let journal = desk.path(out).join("unfinished/journal");
+    let patience = Instant::now();
+    while count_lines(&journal) < lines {
+        assert!(patience.elapsed() < Duration::from_secs(60), "the run does not begin");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child
+}
+
+pub fn count_lines(path: &Path) -> usize {
+    std::fs::read(path).map_or(0, |bytes| bytes.iter().filter(|byte| **byte == b'\n').count())
 }

@@ -3,8 +3,8 @@
 use super::{Collisions, FREE};
 use crate::contact::Piece;
 use crate::flow::{Expansion, Flow};
-use crate::observe::{Knot, Observer, Path};
-use crate::rule::{MOMENTS, Nodes, Rule, at_nodes, dot, node, product};
+use crate::observe::{Form, Knot, Observer, Path};
+use crate::rule::{MOMENTS, Nodes, Rule, at_nodes, dot, each, node};
 
 /// A contact from touch-down to lift-off.
 pub(super) struct Collision<'a, const N: usize, const M: usize> {
@@ -21,6 +21,8 @@ pub(super) struct Collision<'a, const N: usize, const M: usize> {
     pub(super) last: &'a [f64; MOMENTS],
     pub(super) scale: f64,
     pub(super) duration: f64,
+    /// Greatest depth of the undisturbed collision, m.
+    pub(super) depth: f64,
     /// `q = √z` at the nodes.
     pub(super) roots: Nodes<M>,
     /// `[x1, v1, x2, v2]` at lift-off.
@@ -57,6 +59,37 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         nodes
     }
 
+    /// The state at one node: what [`Self::component`] has for it, to the last bit.
+    fn state(&self, i: usize) -> [f64; 4] {
+        let time = node(&self.rule.times, i) * self.duration;
+        each(|c| {
+            let mut value = 0.0;
+            for block in self.free.0[c].0.iter().take(self.free_terms.div_ceil(4)).rev() {
+                for coefficient in block.to_array().into_iter().rev() {
+                    value = value * time + coefficient;
+                }
+            }
+            let mut power = self.scale;
+            for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
+                value += node(moment, i) * (kick[c] * power);
+                power *= self.duration;
+            }
+            value
+        })
+    }
+
+    /// `θ = ∫ dt / √z` at a knot.
+    fn theta(&self, slope: &Nodes<M>, knot: usize) -> f64 {
+        match knot {
+            0 => 0.0,
+            inner if inner <= N => {
+                let columns = self.rule.running.iter().enumerate();
+                columns.map(|(j, column)| node(column, inner - 1) * node(slope, j)).sum()
+            }
+            _ => dot(&self.rule.whole, slope),
+        }
+    }
+
     /// `τ` of a knot: touch-down, the nodes, lift-off.
     fn time(&self, knot: usize) -> f64 {
         match knot {
@@ -70,10 +103,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         let elapsed = self.time(knot) * self.duration;
         let (y, root) = match knot {
             0 => (self.touch.y, 0.0),
-            inner if inner <= N => {
-                let state = [0, 1, 2, 3].map(|c| node(&self.component(c), inner - 1));
-                (state, node(&self.roots, inner - 1))
-            }
+            inner if inner <= N => (self.state(inner - 1), node(&self.roots, inner - 1)),
             _ => (self.end, 0.0),
         };
         Knot {
@@ -91,15 +121,28 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     }
 
     #[inline(always)]
-    fn states(&self, mut visit: impl FnMut(&[f64; 4])) {
-        visit(&self.touch.y);
+    fn states(&self, mut visit: impl FnMut(f64, &[f64; 4])) {
+        visit(0.0, &self.touch.y);
         // Written out, what a visitor does not look at is not computed.
         let [x1, v1] = [self.component(0), self.component(1)];
         let [x2, v2] = [self.component(2), self.component(3)];
         for i in 0..N {
-            visit(&[node(&x1, i), node(&v1, i), node(&x2, i), node(&v2, i)]);
+            let state = [node(&x1, i), node(&v1, i), node(&x2, i), node(&v2, i)];
+            visit(self.duration * node(&self.rule.times, i), &state);
         }
-        visit(&self.end);
+        visit(self.duration, &self.end);
+    }
+
+    #[inline(always)]
+    fn second_derivative(&self, form: &Form<4>) -> f64 {
+        let touch = self.of.equations.compress(&self.touch.y);
+        let growth = self.of.equations.growth_over_contact(
+            &touch,
+            self.depth.sqrt(),
+            self.duration,
+            self.of.amplitude,
+        );
+        growth.map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, 2)) // 2! of a Taylor coefficient
     }
 
     /// A piece between two knots is followed by steps from the first of them.
@@ -109,15 +152,8 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         from[0] = ends[0].clock[0];
         let mut equations = self.of.equations;
         equations.set_drive(0.0, ends[0].drive);
-        // θ = ∫ dt / √z
         let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
-        let running = product(&self.rule.running, &slope);
-        let theta = |knot: usize| match knot {
-            0 => 0.0,
-            inner if inner <= N => node(&running, inner - 1),
-            _ => dot(&self.rule.whole, &slope),
-        };
-        let length = self.duration * (theta(piece + 1) - theta(piece));
+        let length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));
         let derivative = equations.derivative(&from);
         observer.segment(&Piece {
             equations: &equations,

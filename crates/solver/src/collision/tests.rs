@@ -1,8 +1,10 @@
 //! Contacts computed at once beside the same contacts followed step by step.
 
 use super::*;
+use crate::budget::Budget;
 use crate::contact;
 use crate::observe::Unobserved;
+use crate::settings::Method;
 use crate::settings::Work;
 
 #[path = "../../../model/tests/scenes/mod.rs"]
@@ -42,7 +44,8 @@ fn contact(draw: &mut Draw) -> (Coupled, Side, Knot<4>) {
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.compression(side);
     let pressed = equations.compress(&touch.y);
-    let (limits, mut work) = ((1e-13, 100_000), Work::default());
+    let budget = Budget::new(Method::Hybrid, 100_000, 0, [0.0, 1e9]);
+    let (limits, mut work) = ((1e-13, budget), Work::default());
     match contact::integrate(equations, touch, pressed, 1e9, limits, &mut work, &mut Unobserved) {
         Ok(contact::End::LiftOff(end)) => end,
         _ => panic!("no lift-off"),
@@ -108,7 +111,7 @@ impl Observer<4> for Compare<'_> {
         {
             let mut find = Find { t: seen.t, y: None };
             let mut work = Work::default();
-            let limits = (1e-13, 100_000);
+            let limits = (1e-13, Budget::new(Method::Hybrid, 100_000, 0, [0.0, 1e9]));
             let _ = contact::integrate(
                 equations,
                 &self.touch,

@@ -17,15 +17,7 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<contact::End, SolverError> {
-        contact::integrate(
-            equations,
-            from,
-            pressed,
-            to,
-            (self.rtol, self.max_steps),
-            &mut self.work,
-            observer,
-        )
+        contact::integrate(equations, from, pressed, to, (self.rtol, self.budget), &mut self.work, observer)
     }
 
     /// Starts a contact at a touch-down. One that begins (almost) at rest has no time scale of its own at `q = 0`: it is flown
@@ -56,10 +48,11 @@ impl Hybrid<'_> {
         let depth = press(&motion, sign);
         let (mean_rate, rate) = (depth.over_s(), depth.derivative());
         let mut s = self.flow.step().min(remaining);
+        let energy = self.system.energy_norm(&touch.y) + self.flow.step() * self.system.energy_norm_growth();
         for _ in 0..400 {
             let z = s * mean_rate.at(s);
             if unfelt(s, z) {
-                let mut step = Step::part(&self.flow, touch, &motion, s);
+                let mut step = Step::part(&self.flow, touch, &motion, s, energy);
                 step.end().y[2] = step.end().y[0] + self.system.wall(equations.side()) + sign * z;
                 observer.segment(&step);
                 let end = *step.ends()[1];
@@ -70,10 +63,10 @@ impl Hybrid<'_> {
             s *= 0.5;
         }
         if remaining > self.flow.step() {
-            return Err(SolverError::StepTooSmall { t: touch.t, h: s });
+            return Err(SolverError::Contact { t: touch.t });
         }
         // The run ends before the damper is in the wall by more than rounding.
-        let mut step = Step::part(&self.flow, touch, &motion, remaining);
+        let mut step = Step::part(&self.flow, touch, &motion, remaining, energy);
         step.end().t = to;
         observer.segment(&step);
         let end = *step.ends()[1];

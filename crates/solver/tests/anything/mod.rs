@@ -129,7 +129,7 @@ impl Anything {
         match simulate(scene, *window, settings) {
             Err(error) => self.check_error(&error),
             Ok(found) => {
-                let numbers = [found.e1_max.value, found.e2_max.value, found.stroke_max];
+                let numbers = [found.e1_max.value, found.e2_max.value, found.relative_displacement_max];
                 let all = numbers.iter().chain(&found.force_max);
                 assert!(all.clone().all(|value| value.is_finite() && *value >= 0.0), "{found:?}: {self:?}");
                 assert!(found.final_state.iter().all(|value| value.is_finite()), "{found:?}: {self:?}");
@@ -162,10 +162,13 @@ impl Anything {
     fn check_error(&self, error: &SolverError) {
         let t = match *error {
             SolverError::StepTooSmall { t, .. }
+            | SolverError::TooFast { t, .. }
+            | SolverError::Contact { t }
+            | SolverError::Unstable { t }
             | SolverError::NonFinite { t }
             | SolverError::Implausible { t, .. } => t,
             SolverError::Missed { .. } => panic!("{error}: {self:?}"),
-            SolverError::TooManySteps { t, limit } => {
+            SolverError::TooManySteps { t, limit, .. } | SolverError::TooSlow { t, limit, .. } => {
                 assert_eq!(limit, self.settings.max_steps);
                 t
             }

@@ -51,6 +51,11 @@ impl std::fmt::Display for Certificate {
             "neighbours    {members} within {} %: 90 % of them have {low} to {high} J, the median {median} J",
             100.0 * errors
         )?;
+        if let Some(limits) = &self.limits {
+            let near = limits.broken_near().unwrap_or_else(|| "kept by all designs near it".to_owned());
+            let own = limits.broken().map_or(near, |broken| format!("NOT KEPT: {broken}"));
+            writeln!(f, "limits        {own}; broken by {} of {members} neighbours", limits.neighbours())?;
+        }
         writeln!(f, "verdict       {}", self.words)?;
         write!(f, "rule          {}", self.rule)
     }

@@ -1,0 +1,241 @@
+//! The factors of the steady response, by how far a frequency is from where they are zero.
+//!
+//! In `u = ω²` over a unit: `|X1|² = (P/m1)² N / M` and `|X2 - X1|² = (P/m1)² u² / M` with
+//! `N = (u - u_d)² + u (c2/m2)²` and `M = (u - u_1)² (u - u_2)² + u ℓ² (u - u_z)²`. `u_1 <= u_2` are the natural frequencies (of the real
+//! part of the determinant), `u_d = k2/m2` that of the damper alone and `u_p = k1/m1` that of the structure; `u_z` is where the
+//! imaginary part is zero, and `ℓ = c1/m1 + c2/m2 + c2/m1`. `u_d`, `u_p` and `u_z` lie between `u_1` and `u_2`.
+
+use super::ON_IT;
+use super::roots::{product, sum, times};
+use crate::{Bare, Coupled};
+
+/// A place on the axis of `u`: `u`, `u - u_1` and `u - u_2`, of which the smaller difference is accurate however small it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    u: f64,
+    past_lower: f64,
+    past_upper: f64,
+}
+
+impl Point {
+    /// How far it lies above another.
+    pub fn past(&self, other: &Self) -> f64 {
+        if self.past_lower.abs() + other.past_lower.abs() <= self.past_upper.abs() + other.past_upper.abs() {
+            self.past_lower - other.past_lower
+        } else {
+            self.past_upper - other.past_upper
+        }
+    }
+
+    /// How far it is from the nearer natural frequency.
+    pub fn off_resonance(&self) -> f64 {
+        self.past_lower.abs().min(self.past_upper.abs())
+    }
+}
+
+/// Where the factors are zero.
+pub struct Factors {
+    /// The unit of `u`, rad²/s².
+    pub unit: f64,
+    /// `u_p`.
+    pub primary: Point,
+    lower: Point,
+    upper: Point,
+    damper: Point,
+    in_phase: Point,
+    /// `(c2/m2)²` over the unit.
+    loss: f64,
+    /// `ℓ²` over the unit.
+    drag: f64,
+}
+
+impl Factors {
+    pub fn new(system: &Coupled, unit: f64) -> Self {
+        let Bare { m1, c1, k1, .. } = *system.bare();
+        let (m2, k2, c2) = system.damper();
+        let (primary, damper) = (k1 / m1 / unit, k2 / m2 / unit);
+        let (rate_1, rate_2, back) = (c1 / m1, c2 / m2, c2 / m1);
+        // (u - u_p)(u - u_d) = u s. About u_d that is x² - (u_p - u_d + s) x - s u_d, about u_p likewise.
+        let s = k2 / m1 / unit + rate_1 * rate_2 / unit;
+        let [lower_d, upper_d] = about(primary - damper + s, s * damper);
+        let [lower_p, upper_p] = about(damper - primary + s, s * primary);
+        let upper = damper + upper_d;
+        // By Vieta, for a difference would lose digits.
+        let share = if upper > 0.0 { primary / upper } else { 0.0 };
+        let lower = share * damper;
+        // The imaginary part at both, by sums of what the dampers take: it falls from one to the other.
+        let at_lower = rate_2 * share * (rate_1 * rate_2 / unit - lower_p) - rate_1 * lower_d;
+        let at_upper = rate_2 * upper_p + back * upper + rate_1 * upper_d;
+        let slope = rate_1 + rate_2 + back;
+        let between = |lower: f64, upper: f64, u: f64| Point { u, past_lower: -lower, past_upper: -upper };
+        let (to_lower, to_upper) =
+            if slope > 0.0 { (at_lower / slope, at_upper / slope) } else { (0.0, upper_d - lower_d) };
+        Self {
+            unit,
+            primary: between(lower_p, upper_p, primary),
+            lower: between(0.0, upper_d - lower_d, lower),
+            upper: between(lower_d - upper_d, 0.0, upper),
+            damper: between(lower_d, upper_d, damper),
+            in_phase: between(-to_lower, to_upper, lower + to_lower),
+            loss: rate_2 * rate_2 / unit,
+            drag: slope * slope / unit,
+        }
+    }
+
+    /// The end of a band, rad/s.
+    pub fn end(&self, omega: f64) -> Point {
+        let u = omega * omega / self.unit;
+        let past = |natural: &Point| u - natural.u;
+        for natural in [self.lower, self.upper] {
+            if past(&natural).abs() <= 2.0 * ON_IT * u {
+                return natural;
+            }
+        }
+        Point { u, past_lower: past(&self.lower), past_upper: past(&self.upper) }
+    }
+
+    /// Where a band is cut, in their order.
+    pub fn cuts(&self) -> [Point; 6] {
+        let gap = self.upper.past_lower;
+        let middle = Point { u: self.lower.u + 0.5 * gap, past_lower: 0.5 * gap, past_upper: -0.5 * gap };
+        let mut cuts = [self.lower, self.damper, self.primary, self.in_phase, middle, self.upper];
+        for last in 2..5 {
+            for i in (2..=last).rev() {
+                if cuts[i - 1].past(&cuts[i]) > 0.0 {
+                    cuts.swap(i - 1, i);
+                }
+            }
+        }
+        cuts
+    }
+
+    /// The stretch from `start` to `end`, in either direction, with no cut inside.
+    pub fn piece(&self, start: &Point, end: &Point) -> Piece {
+        let ends = |zero: &Point| [start.past(zero), end.past(zero)];
+        Piece {
+            forward: if end.past(start) < 0.0 { -1.0 } else { 1.0 },
+            u: [start.u, end.u],
+            damper: ends(&self.damper),
+            lower: [start.past_lower, end.past_lower],
+            upper: [start.past_upper, end.past_upper],
+            in_phase: ends(&self.in_phase),
+            loss: self.loss,
+            drag: self.drag,
+        }
+    }
+}
+
+/// The roots of `x² - b x - c`, `c >= 0`, without a difference: one is not above zero, the other not below.
+fn about(b: f64, c: f64) -> [f64; 2] {
+    let far = 0.5 * b.abs() + (0.5 * b).hypot(c.sqrt());
+    let near = if far > 0.0 { c / far } else { 0.0 };
+    if b >= 0.0 { [-near, far] } else { [-far, near] }
+}
+
+/// The numerator `V`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numerator {
+    /// `N`.
+    Damper,
+    /// `u N`.
+    DamperBySquare,
+    /// `u²`.
+    Square,
+}
+
+/// A stretch on which no factor changes its sign; each has its values at both ends. Polynomials of `s`, from 0 at the start to 1 at
+/// the end, are kept as their coefficients of `(1-s)^(n-i) s^i`.
+pub struct Piece {
+    /// The sign of `du/ds`. Slopes are divided by its size.
+    forward: f64,
+    u: [f64; 2],
+    damper: [f64; 2],
+    lower: [f64; 2],
+    upper: [f64; 2],
+    in_phase: [f64; 2],
+    loss: f64,
+    drag: f64,
+}
+
+/// The constant 1, as linear polynomial: what raises a degree.
+const ONE: [f64; 2] = [1.0, 1.0];
+
+impl Piece {
+    /// `u` at `s`.
+    pub fn u(&self, s: f64) -> f64 {
+        at(&self.u, s)
+    }
+
+    /// `V / M` at `s`.
+    pub fn ratio(&self, numerator: Numerator, s: f64) -> f64 {
+        let [u, x, p, q, z] =
+            [&self.u, &self.damper, &self.lower, &self.upper, &self.in_phase].map(|factor| at(factor, s));
+        let real = p * q;
+        let damper = x * x + u * self.loss;
+        let v = match numerator {
+            Numerator::Damper => damper,
+            Numerator::DamperBySquare => u * damper,
+            Numerator::Square => u * u,
+        };
+        v / (real * real + u * self.drag * z * z)
+    }
+
+    fn numerator(&self, numerator: Numerator) -> ([f64; 4], [f64; 3]) {
+        let [a, b] = self.u;
+        let u = &self.u;
+        let damper: [f64; 3] =
+            sum(&product(&self.damper, &self.damper), &times(&product(u, &ONE), self.loss));
+        // N' = 2 (u - u_d) + (c2/m2)²
+        let damper_slope = self.damper.map(|x| self.forward * (2.0 * x + self.loss));
+        match numerator {
+            Numerator::Damper => (product(&damper, &ONE), product(&damper_slope, &ONE)),
+            Numerator::DamperBySquare => (
+                product(&damper, u),
+                sum(&product::<2, 2, 3>(&damper_slope, u), &times(&damper, self.forward)),
+            ),
+            Numerator::Square => (
+                product::<3, 2, 4>(&product(u, u), &ONE),
+                product(&[2.0 * self.forward * a, 2.0 * self.forward * b], &ONE),
+            ),
+        }
+    }
+
+    fn denominator(&self) -> ([f64; 5], [f64; 4]) {
+        let (u, p, q, z) = (&self.u, &self.lower, &self.upper, &self.in_phase);
+        let real: [f64; 3] = product(p, q);
+        let square: [f64; 3] = product(z, z);
+        let m = sum(
+            &product::<3, 3, 5>(&real, &real),
+            &times(&product::<4, 2, 5>(&product::<3, 2, 4>(&square, u), &ONE), self.drag),
+        );
+        // M' = 2 (u - u_1)(u - u_2)((u - u_1) + (u - u_2)) + ℓ² (u - u_z)((u - u_z) + 2u)
+        let both = [p[0] + q[0], p[1] + q[1]];
+        let z_and_u = [z[0] + 2.0 * u[0], z[1] + 2.0 * u[1]];
+        let slope = sum(
+            &times(&product::<3, 2, 4>(&real, &both), 2.0 * self.forward),
+            &times(&product::<3, 2, 4>(&product(z, &z_and_u), &ONE), self.drag * self.forward),
+        );
+        (m, slope)
+    }
+
+    /// Bounds on the largest `V` and the smallest `M` of the piece.
+    pub fn bounds(&self, numerator: Numerator) -> [f64; 2] {
+        let ([v0, v1, v2, v3], _) = self.numerator(numerator);
+        let ([m0, m1, m2, m3, m4], _) = self.denominator();
+        [v0.max(v1 / 3.0).max(v2 / 3.0).max(v3), m0.min(m1 / 4.0).min(m2 / 6.0).min(m3 / 4.0).min(m4)]
+    }
+
+    /// `W = V' M - V M'`, the sign of the slope of `V / M` by `s`, as Bernstein coefficients.
+    pub fn slope(&self, numerator: Numerator) -> [f64; 7] {
+        let (v, v_slope) = self.numerator(numerator);
+        let (m, m_slope) = self.denominator();
+        let (rising, falling): ([f64; 7], [f64; 7]) = (product(&v_slope, &m), product(&v, &m_slope));
+        const BINOMIAL: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
+        std::array::from_fn(|i| (rising[i] - falling[i]) / BINOMIAL[i])
+    }
+}
+
+/// A linear polynomial at `s`.
+fn at([a, b]: &[f64; 2], s: f64) -> f64 {
+    a * (1.0 - s) + b * s
+}

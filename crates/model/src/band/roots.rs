@@ -1,0 +1,96 @@
+//! Where a polynomial falls through zero, by halving: on an interval its Bernstein coefficients change sign at least as often as it
+//! has roots, and if once, exactly once (Descartes' rule of signs; R. T. Farouki, The Bernstein polynomial basis, Comput. Aided
+//! Geom. Des. 29, 2012). Halving adds no sign changes, so of all intervals of one length at most three need another one.
+
+/// Visits every place in `[0, 1]` where a polynomial, by its Bernstein coefficients, falls through zero: to rounding of its distance
+/// from 0, however small.
+pub fn falls(w: [f64; 7], visit: &mut impl FnMut(f64)) {
+    fall(w, [0.0, 1.0], visit);
+}
+
+/// Length of an interval, relative to its distance from 0, in which roots are not told apart: what has factors without zeros inside of
+/// it varies by less than rounding.
+const SHORT: f64 = 4.0 * f64::EPSILON;
+
+fn fall(w: [f64; 7], [a, b]: [f64; 2], visit: &mut impl FnMut(f64)) {
+    let mut signs = w.into_iter().filter(|c| *c != 0.0).map(|c| c > 0.0);
+    let Some(first) = signs.next() else { return };
+    let (_, changes) =
+        signs.fold((first, 0), |(last, changes), sign| (sign, changes + u32::from(sign != last)));
+    let middle = 0.5 * (a + b);
+    if changes == 1 && first {
+        visit(a + (b - a) * root(&w));
+    } else if changes > 1 && (b - a <= SHORT * b || b < f64::MIN_POSITIVE) {
+        visit(middle);
+    } else if changes > 1 {
+        let (mut left, mut right) = (w, w);
+        for level in 1..7 {
+            for i in (level..7).rev() {
+                left[i] = 0.5 * (left[i - 1] + left[i]);
+            }
+            right[6 - level] = left[6]; // the last of this level of de Casteljau's triangle
+        }
+        if left[6] == 0.0 {
+            visit(middle);
+        }
+        fall(left, [a, middle], visit);
+        fall(right, [middle, b], visit);
+    }
+}
+
+/// The only root, on [0, 1], of a polynomial that is positive before it and negative after: Newton steps, bisection where they
+/// leave the bracket.
+fn root(w: &[f64; 7]) -> f64 {
+    let (mut lower, mut upper) = (0.0, 1.0);
+    // A peak near 0 is a matter of the first two coefficients.
+    let first = w[0] / (6.0 * (w[0] - w[1]));
+    let mut t = if first > 0.0 && first < 0.5 { first } else { 0.5 };
+    // Newton's steps take a handful; halving to the smallest number would take a thousand.
+    for _ in 0..1100 {
+        let mut triangle = *w;
+        for level in 1..6 {
+            for i in 0..7 - level {
+                triangle[i] += t * (triangle[i + 1] - triangle[i]);
+            }
+        }
+        let slope = triangle[1] - triangle[0]; // a sixth of it
+        let value = triangle[0] + t * slope;
+        if value > 0.0 {
+            lower = t;
+        } else {
+            upper = t;
+        }
+        let newton = t - value / (6.0 * slope);
+        let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+        if (next - t).abs() <= f64::EPSILON * next {
+            return next;
+        }
+        t = next;
+    }
+    t
+}
+
+/// The product of two polynomials by their coefficients of `(1-s)^(n-i) s^i`; `C = A + B - 1`.
+#[inline(always)]
+pub fn product<const A: usize, const B: usize, const C: usize>(a: &[f64; A], b: &[f64; B]) -> [f64; C] {
+    const { assert!(C + 1 == A + B) };
+    let mut product = [0.0; C];
+    for i in 0..A {
+        for j in 0..B {
+            product[i + j] += a[i] * b[j];
+        }
+    }
+    product
+}
+
+/// The sum of two polynomials of one degree.
+#[inline(always)]
+pub fn sum<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// A polynomial times a number.
+#[inline(always)]
+pub fn times<const N: usize>(a: &[f64; N], factor: f64) -> [f64; N] {
+    a.map(|c| c * factor)
+}

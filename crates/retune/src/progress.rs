@@ -1,0 +1,136 @@
+//! How far a stage is: a bar where standard error is a terminal, a line now and then where it is none.
+//!
+//! Rate and time left count new work only: what the journal of an interrupted run knows is answered in no time.
+
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+/// Time between two lines where there is no terminal.
+const TELL_EVERY: Duration = Duration::from_secs(30);
+
+/// The progress of a stage.
+pub struct Progress {
+    bar: ProgressBar,
+    count: Arc<Count>,
+    /// Whether lines take the place of the bar.
+    lines: bool,
+}
+
+/// What has been done.
+struct Count {
+    what: &'static str,
+    all: u64,
+    begun: Instant,
+    done: AtomicU64,
+    /// Of these, those that were known from before.
+    known: AtomicU64,
+    /// When the last line was told, ms after the beginning.
+    told: AtomicU64,
+}
+
+impl Progress {
+    /// That of `all` evaluations; nothing is shown if `quiet`.
+    pub fn new(what: &'static str, all: u64, quiet: bool) -> Self {
+        let [done, known, told] = [0; 3].map(AtomicU64::new);
+        let count = Arc::new(Count { what, all, begun: Instant::now(), done, known, told });
+        let bar = if quiet { ProgressBar::hidden() } else { bar(&count) };
+        Self { bar, count, lines: !quiet && !std::io::stderr().is_terminal() }
+    }
+
+    /// One more is to be answered from before, in no time; [`Self::inc`] counts it, too.
+    pub fn known(&self) {
+        self.count.known.fetch_add(1, Relaxed);
+    }
+
+    /// So many more are done.
+    pub fn inc(&self, more: u64) {
+        self.count.done.fetch_add(more, Relaxed);
+        self.bar.inc(more);
+        if let Some(line) = self.lines.then(|| self.count.tell(self.count.begun.elapsed())).flatten() {
+            let _ = writeln!(std::io::stderr(), "{line}"); // nobody reads: no reason to end
+        }
+    }
+
+    /// All is done.
+    pub fn finish_and_clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn bar(count: &Arc<Count>) -> ProgressBar {
+    let template = "{prefix} [{bar:30}] {human_pos}/{human_len}  {rate}  {left}";
+    let [rate, left] = [count, count].map(Arc::clone);
+    let style = ProgressStyle::with_template(template)
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("rate", move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let _ = out.write_str(&words(rate.rate(rate.begun.elapsed())));
+        })
+        .with_key("left", move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let _ = out.write_str(&left.left(left.begun.elapsed()));
+        });
+    ProgressBar::new(count.all).with_style(style.progress_chars("=> ")).with_prefix(count.what)
+}
+
+impl Count {
+    /// The line to tell, if one is due.
+    fn tell(&self, elapsed: Duration) -> Option<String> {
+        let (now, last) = (elapsed.as_millis() as u64, self.told.load(Relaxed));
+        let due = now >= last + TELL_EVERY.as_millis() as u64;
+        let mine = due && self.told.compare_exchange(last, now, Relaxed, Relaxed).is_ok();
+        let Self { what, all, .. } = self;
+        let done = self.done.load(Relaxed);
+        mine.then(|| {
+            format!("{what}: {done} of {all}, {}, {}", words(self.rate(elapsed)), self.left(elapsed))
+        })
+    }
+
+    /// New evaluations a second.
+    fn rate(&self, elapsed: Duration) -> f64 {
+        let new = self.done.load(Relaxed).saturating_sub(self.known.load(Relaxed));
+        new as f64 / elapsed.as_secs_f64().max(1e-9)
+    }
+
+    /// How much longer it takes, in words.
+    fn left(&self, elapsed: Duration) -> String {
+        let rest = self.all.saturating_sub(self.done.load(Relaxed)) as f64;
+        match Duration::try_from_secs_f64(rest / self.rate(elapsed)) {
+            Ok(left) => format!("{} left", HumanDuration(left)),
+            Err(_) => "time left not known yet".to_owned(),
+        }
+    }
+}
+
+/// A rate to two or three digits: `3.4/s`, `1250/s`.
+fn words(per_second: f64) -> String {
+    if per_second < 10.0 { format!("{per_second:.1}/s") } else { format!("{per_second:.0}/s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_rates_have_few_digits() {
+        assert_eq!([0.0, 3.4219, 1249.8].map(words), ["0.0/s", "3.4/s", "1250/s"]);
+    }
+
+    /// 900 of 1000 were known, so 50 new ones in 25 s are 2/s, and the other 50 take as long again.
+    #[test]
+    fn exact_what_was_known_makes_no_rate() {
+        let progress = Progress::new("surf", 1000, true);
+        progress.inc(950);
+        (0..900).for_each(|_| progress.known());
+        let count = &progress.count;
+        let at = Duration::from_secs;
+        assert_eq!((count.rate(at(25)), count.left(at(25)).as_str()), (2.0, "25 seconds left"));
+        assert_eq!(count.tell(at(25)), None, "not yet due");
+        assert_eq!(count.tell(at(30)).as_deref(), Some("surf: 950 of 1000, 1.7/s, 30 seconds left"));
+        assert_eq!(count.tell(at(59)), None);
+        assert!(count.tell(at(60)).is_some());
+        let fresh = Progress::new("surf", 10, true);
+        assert_eq!(fresh.count.left(at(1)), "time left not known yet");
+    }
+}

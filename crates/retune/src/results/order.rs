@@ -1,0 +1,168 @@
+//! Whose results a directory holds, and what may be replaced in it.
+//!
+//! A run may replace what Retune made of the same study file with the same command, however the file was edited since: that is
+//! everyday work. Anything else it is asked to replace in so many words (`--replace`): results of another study, a file that
+//! Retune did not make, or one that was changed after it was made.
+
+use super::manifest::{self, MadeBy, Manifest};
+use super::{Identity, names, plain};
+use crate::error::Error;
+use std::path::{Component, Path, PathBuf};
+
+/// What becomes of unfinished work that is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Begin {
+    /// Nothing: it is announced, and the run refused.
+    #[default]
+    New,
+    /// The run goes on with it.
+    Resume,
+    /// It is thrown away.
+    Restart,
+}
+
+/// What was asked for that makes results.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// The command that makes such results.
+    pub command: &'static str,
+    /// The study file.
+    pub study: PathBuf,
+    /// What becomes of unfinished work.
+    pub begin: Begin,
+    /// Whether results of others may be replaced.
+    pub replace: bool,
+}
+
+/// How much of what stands in a directory a run makes anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// All of it.
+    Whole,
+    /// Some files; the others stay.
+    Share,
+    /// Some files, beside the results of whoever made the others.
+    Guest,
+}
+
+impl Order {
+    /// Who makes results in `place`, which must exist.
+    pub fn made_by(&self, place: &Path) -> MadeBy {
+        let full = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let (study, place) = (full(&self.study), full(place));
+        let study = pathdiff::diff_paths(&study, place).unwrap_or(study);
+        let study = study.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/");
+        MadeBy { command: self.command.to_owned(), study }
+    }
+
+    /// Whether a run may put its results, which `is_ours` names, into `place`.
+    ///
+    /// # Errors
+    /// [`Error::Standing`] if it was not told to replace what stands there; [`Error::Protected`] if that is its own study.
+    pub fn may_replace(
+        &self,
+        place: &Path,
+        extent: Extent,
+        identity: &Identity,
+        is_ours: impl Fn(&str) -> bool,
+    ) -> Result<(), Error> {
+        let manifest = Manifest::read(place);
+        let by_hand = |name: &String| match &manifest {
+            Some(manifest) => name != manifest::NAME && !manifest.has_made(place, name),
+            None => true,
+        };
+        let entries = names(place).map_err(|source| Error::Output { path: place.to_owned(), source })?;
+        let foreign: Vec<String> = entries.into_iter().filter(|name| is_ours(name)).filter(by_hand).collect();
+        if let Some(name) = foreign.iter().find(|name| is_same(&place.join(name), &self.study)) {
+            let problem = "it is the study itself, and results of this name would take its place";
+            return Err(Error::Protected { path: place.join(name), problem: problem.to_owned() });
+        }
+        if self.replace {
+            return Ok(());
+        }
+        if extent != Extent::Guest
+            && let Some(other) = manifest.as_ref().and_then(|it| self.other(place, identity, it))
+        {
+            return Err(Error::Standing { path: place.to_owned(), problem: other });
+        }
+        if foreign.is_empty() {
+            return Ok(());
+        }
+        let problem =
+            format!("{} stands here, which Retune did not make or which was changed since", list(&foreign));
+        Err(Error::Standing { path: place.to_owned(), problem })
+    }
+
+    /// Whose results they are, if they are another's.
+    fn other(&self, place: &Path, identity: &Identity, manifest: &Manifest) -> Option<String> {
+        if manifest.identity() == *identity {
+            return None;
+        }
+        let Some(made_by) = &manifest.made_by else {
+            // Written before it said so: it must do that the directory has the name of the study.
+            let name = self.study.file_stem();
+            let is_named = place.components().any(|part| Some(part.as_os_str()) == name);
+            return (!is_named).then(|| "the results of another study stand here".to_owned());
+        };
+        (*made_by != self.made_by(place)).then(|| {
+            format!(
+                "the results of `retune {}` with {} stand here",
+                made_by.command,
+                made_by.seen_from_here(place)
+            )
+        })
+    }
+}
+
+impl MadeBy {
+    /// The study file as seen from the working directory.
+    fn seen_from_here(&self, place: &Path) -> String {
+        let path = place.join(&self.study);
+        let seen = || pathdiff::diff_paths(path.canonicalize().ok()?, std::env::current_dir().ok()?);
+        seen().unwrap_or(path).display().to_string()
+    }
+}
+
+/// Whether a file that is to be written at `path` may replace what stands there: only a plain file that is none of `inputs` and
+/// begins with `head`, as all do that Retune makes.
+///
+/// # Errors
+/// [`Error::Protected`].
+pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error> {
+    let protected = |problem: &str| Error::Protected { path: path.to_owned(), problem: problem.to_owned() };
+    if inputs.iter().any(|input| is_same(path, input)) {
+        return Err(protected("it is an input of this command"));
+    }
+    match plain::is_there(path) {
+        Ok(false) => return Ok(()),
+        Ok(true) => {}
+        Err(error) => return Err(protected(&error.to_string())),
+    }
+    use std::io::Read;
+    let mut found = Vec::new();
+    let read = plain::open(path).and_then(|file| file.take(head.len() as u64).read_to_end(&mut found));
+    match read {
+        Ok(_) if found.is_empty() || found == head.as_bytes() => Ok(()),
+        Ok(_) => Err(protected("a file stands there that Retune did not make")),
+        Err(source) => Err(Error::Output { path: path.to_owned(), source }),
+    }
+}
+
+/// Whether both are the same file.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let [one, other] = [one, other].map(|path| path.canonicalize().ok());
+    one.is_some() && one == other
+}
+
+/// Whether `name` leads to something below a directory, and nowhere else.
+pub fn is_below(name: &str) -> bool {
+    let mut parts = Path::new(name).components().peekable();
+    parts.peek().is_some() && parts.all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// The first few names.
+fn list(names: &[String]) -> String {
+    const NAMED: usize = 3;
+    let more = if names.len() > NAMED { ", ..." } else { "" };
+    names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ") + more
+}

@@ -1,0 +1,73 @@
+//! Opening files at names that others can guess: only plain files, never what a symbolic link points to, a pipe or a device.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Error, ErrorKind, Result};
+use std::path::Path;
+
+/// Opens a plain file to read it.
+///
+/// # Errors
+/// There is none, it is something else, or it may not be read.
+pub fn open(path: &Path) -> Result<File> {
+    is_there(path)?;
+    without_links(OpenOptions::new().read(true)).open(path)
+}
+
+/// Opens a plain file with `options`, which may make one.
+///
+/// # Errors
+/// Something else stands there, or it may not be opened.
+pub fn open_with(path: &Path, options: &mut OpenOptions) -> Result<File> {
+    is_there(path)?;
+    without_links(options).open(path)
+}
+
+/// Makes a new file, in place of one that an earlier process left.
+///
+/// # Errors
+/// It cannot be made.
+pub fn create(path: &Path) -> Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true); // which follows no link
+    match options.open(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            std::fs::remove_file(path)?; // a link itself, not what it points to
+            options.open(path)
+        }
+        other => other,
+    }
+}
+
+/// Whether a plain file stands there.
+///
+/// # Errors
+/// Something else does, or it cannot be told.
+pub fn is_there(path: &Path) -> Result<bool> {
+    let kind = match path.symlink_metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+        other => other?.file_type(),
+    };
+    let what = if kind.is_file() {
+        return Ok(true);
+    } else if kind.is_dir() {
+        return Err(ErrorKind::IsADirectory.into());
+    } else if kind.is_symlink() {
+        "a symbolic link"
+    } else {
+        "no plain file"
+    };
+    Err(Error::other(format!("it is {what}, and Retune follows none: move it away")))
+}
+
+/// What happens between looking and opening must not matter either.
+#[cfg(unix)]
+fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.custom_flags(libc::O_NOFOLLOW)
+}
+
+/// Elsewhere there is no such flag.
+#[cfg(not(unix))]
+fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
+    options
+}

@@ -1,0 +1,162 @@
+//! Whether a motion repeats: its states at whole periods of the force, and how far they are from where they will end.
+
+use super::Settle;
+use crate::observe::{Observer, Path, Segment};
+use crate::settings::Settings;
+use crate::steps::Steps;
+use retune_model::Coupled;
+use std::collections::VecDeque;
+
+/// The states at whole periods of the force, of the last blocks.
+pub struct Strobe {
+    period: f64,
+    /// Periods that are over.
+    count: f64,
+    most: usize,
+    states: VecDeque<[f64; 4]>,
+}
+
+impl Strobe {
+    /// For a force of this period, s.
+    pub fn new(period: f64, settle: Settle) -> Self {
+        let most = settle.periods as usize * settle.blocks as usize;
+        Self { period, count: 0.0, most, states: VecDeque::new() }
+    }
+
+    /// The latest states, those of `blocks` blocks at most.
+    pub fn states(&mut self) -> &[[f64; 4]] {
+        self.states.make_contiguous()
+    }
+
+    /// The next moment to keep, s.
+    fn next(&self) -> f64 {
+        (self.count + 1.0) * self.period
+    }
+}
+
+impl Observer<4> for Strobe {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let [begin, end] = segment.ends();
+        while self.next() <= end.t {
+            let state = match self.next() {
+                t if t == end.t => end.y,
+                t if t <= begin.t => begin.y, // between two pieces, by rounding
+                t => segment.at_time(t).y,
+            };
+            self.count += 1.0;
+            if self.states.len() == self.most {
+                self.states.pop_front();
+            }
+            self.states.push_back(state);
+        }
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        // A path does not say how long it is; its last piece does.
+        let mut end = End(f64::NEG_INFINITY);
+        path.show(path.pieces() - 1, &mut end);
+        if self.next() <= end.0 {
+            (0..path.pieces()).for_each(|piece| path.show(piece, self));
+        }
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        if self.next() <= steps.time(steps.count()) {
+            (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
+        }
+    }
+}
+
+/// When the last piece ended, s.
+struct End(f64);
+
+impl Observer<4> for End {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.0 = segment.ends()[1].t;
+    }
+}
+
+/// Whether states return.
+pub struct Recurrence<'a> {
+    system: &'a Coupled,
+    settle: Settle,
+    /// The most returns that a change is taken to go on for, however slowly it falls.
+    most_returns: f64,
+}
+
+impl<'a> Recurrence<'a> {
+    /// As `settle` says. Changes below a thousandth of its tolerance, or below what a solver of these settings makes of a motion that
+    /// repeats, are not told from none.
+    pub fn new(system: &'a Coupled, settle: Settle, settings: &Settings) -> Self {
+        const SLOWEST: f64 = 1e3;
+        const NOISE: f64 = 100.0;
+        let resolved = settle.tolerance / (NOISE * settings.rtol);
+        Self { system, settle, most_returns: resolved.clamp(1.0, SLOWEST) }
+    }
+
+    /// Whether the motion has settled, by the states of its last blocks at whole periods of the force.
+    pub fn has_settled(&self, states: &[[f64; 4]]) -> bool {
+        let Settle { periods, blocks, .. } = self.settle;
+        let periods = periods as usize;
+        if states.len() < periods * blocks as usize {
+            return false;
+        }
+        let size = self.size(&states[states.len() - periods..]);
+        (1..=periods).any(|lag| self.returns(states, lag, size))
+    }
+
+    /// Whether states return after `lag` periods.
+    fn returns(&self, states: &[[f64; 4]], lag: usize, size: [f64; 2]) -> bool {
+        let Settle { periods, tolerance, .. } = self.settle;
+        let periods = periods as usize;
+        let change = |i: usize| self.change(&states[i], &states[i - lag], size);
+        let small = |change: f64| change <= tolerance;
+        // The latest change tells at once of most that do not return.
+        if !small(change(states.len() - 1)) {
+            return false;
+        }
+        // The largest change of each block but the first, and how slowly it falls from block to block.
+        let (mut largest, mut falls) = (f64::NAN, f64::NAN);
+        for block in (periods..states.len()).step_by(periods) {
+            let now = (block..block + periods).map(change).fold(0.0, f64::max);
+            if !small(now) {
+                return false;
+            }
+            falls = falls.max(now / largest); // NaN of the first
+            largest = now;
+        }
+        let share = falls.powf(lag as f64 / periods as f64);
+        let returns = 1.0 / (1.0 - share);
+        let to_come = if returns > 0.0 { returns.min(self.most_returns) } else { self.most_returns };
+        largest == 0.0 || small(largest * to_come)
+    }
+
+    /// The parts of a state that are compared: energy of the structure, J, and `r² + (dr/dt)²/ω²` of the damper's place in it, m².
+    fn parts(&self, [x1, v1, x2, v2]: [f64; 4]) -> [f64; 2] {
+        let omega = self.system.bare().frequency();
+        [self.system.bare().primary_energy(x1, v1), (x2 - x1).powi(2) + ((v2 - v1) / omega).powi(2)]
+    }
+
+    /// The sizes of both parts of a motion. Where one body moves a million times less than the other it is not looked at as closely.
+    fn size(&self, states: &[[f64; 4]]) -> [f64; 2] {
+        const LEAST: f64 = 1e-6;
+        let omega = self.system.bare().frequency();
+        let rest = self.system.rest_distance();
+        let mut size = [0.0_f64; 2];
+        for &[x1, v1, x2, v2] in states {
+            let [structure, damper] = self.parts([x1, v1, x2 - rest, v2]);
+            let moved = LEAST * damper.sqrt();
+            let least = [
+                self.system.bare().primary_energy(moved, omega * moved),
+                LEAST * LEAST * (x1 * x1 + (v1 / omega).powi(2)),
+            ];
+            size = [size[0].max(structure).max(least[0]), size[1].max(damper).max(least[1])];
+        }
+        size
+    }
+
+    /// The change from one state to another, as a share of the size of the motion.
+    fn change(&self, a: &[f64; 4], b: &[f64; 4], size: [f64; 2]) -> f64 {
+        let [structure, damper] = self.parts(std::array::from_fn(|i| a[i] - b[i]));
+        let share = |part: f64, size: f64| if part == 0.0 { 0.0 } else { (part / size).sqrt() };
+        share(structure, size[0]).max(share(damper, size[1]))
+    }
+}

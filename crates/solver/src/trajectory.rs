@@ -1,0 +1,256 @@
+//! A motion as rows: at equal intervals, and at the moments that lie between them.
+
+use crate::follow::{follow_bare, follow_coupled};
+use crate::observe::{Knot, Observer, Segment, Unobserved};
+use crate::settings::{Settings, SolverError, Window};
+use retune_model::{Bare, Coupled, Scene, Side};
+
+/// Why a moment of the motion is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Moment {
+    /// It lies at a whole number of intervals from the start of the window.
+    Grid,
+    /// The damper touches a wall.
+    TouchDown,
+    /// The force of a contact is at a maximum: a contact of some milliseconds has one, a long press may have several.
+    ForceMax,
+    /// The damper leaves a wall.
+    LiftOff,
+    /// E1 is at a maximum.
+    EnergyMax,
+}
+
+impl Moment {
+    /// Its name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::TouchDown => "touch-down",
+            Self::ForceMax => "force-max",
+            Self::LiftOff => "lift-off",
+            Self::EnergyMax => "E1-max",
+        }
+    }
+}
+
+/// A moment of a recorded trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time, s.
+    pub t: f64,
+    /// `[x1, v1, x2, v2]` (m, m/s); `[x1, v1, 0, 0]` without a damper.
+    pub state: [f64; 4],
+    /// Energy of the primary structure, J.
+    pub e1: f64,
+    /// Energy of the damper, the paper's E2, J.
+    pub e2: f64,
+    /// Contact forces on the primary structure and on the obstacle, N.
+    pub forces: [f64; 2],
+    /// Why it is recorded.
+    pub moment: Moment,
+}
+
+/// What is recorded of the motion in a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rows {
+    /// Time between two moments of [`Moment::Grid`], s.
+    pub interval: f64,
+    /// Whether the other moments are recorded, too.
+    pub events: bool,
+}
+
+impl Rows {
+    /// The grid alone.
+    pub fn every(interval: f64) -> Self {
+        Self { interval, events: false }
+    }
+}
+
+/// Visits the motion in the order of time at `window.from + k interval` (s) for `k = 0, 1, …` up to the end of the window and, if
+/// they are asked for, at the other moments of [`Moment`].
+///
+/// Touch-downs and lift-offs are those that the method locates; one that steps over them tells of them at the end of its step.
+/// Maxima are located to rounding on the motion of the method, which is looked at four times a step.
+///
+/// # Errors
+/// [`SolverError`] with the time reached; samples before that have been visited.
+pub fn trajectory(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    rows: Rows,
+    visit: &mut dyn FnMut(&Sample),
+) -> Result<(), SolverError> {
+    match &scene.damper {
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            let mut recorder = Recorder::new(&system, window.from, rows, visit);
+            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
+        }
+        Some(damper) => {
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            let mut recorder = Recorder::new(&system, window.from, rows, visit);
+            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
+        }
+    }
+    Ok(())
+}
+
+/// What is recorded of a system.
+trait Recorded<const N: usize> {
+    fn sample(&self, knot: &Knot<N>, moment: Moment) -> Sample;
+    /// dE1/dt, W.
+    fn power(&self, knot: &Knot<N>) -> f64;
+    /// How deep the damper is in a wall, m, and how fast it goes deeper, m/s.
+    fn depth(&self, knot: &Knot<N>, side: Side) -> [f64; 2];
+}
+
+impl Recorded<2> for Bare {
+    fn sample(&self, knot: &Knot<2>, moment: Moment) -> Sample {
+        let [x1, v1] = knot.y;
+        let e1 = self.primary_energy(x1, v1);
+        Sample { t: knot.t, state: [x1, v1, 0.0, 0.0], e1, e2: 0.0, forces: [0.0; 2], moment }
+    }
+    fn power(&self, knot: &Knot<2>) -> f64 {
+        self.primary_energy_rates(knot.drive, &knot.y)[1]
+    }
+    fn depth(&self, _knot: &Knot<2>, _side: Side) -> [f64; 2] {
+        [f64::NEG_INFINITY, 0.0]
+    }
+}
+
+impl Recorded<4> for Coupled {
+    fn sample(&self, knot: &Knot<4>, moment: Moment) -> Sample {
+        Sample {
+            t: knot.t,
+            state: knot.y,
+            e1: self.bare().primary_energy(knot.y[0], knot.y[1]),
+            e2: self.damper_energy_rates(knot.drive, &knot.y)[0],
+            forces: self.contact_forces(&knot.y),
+            moment,
+        }
+    }
+    fn power(&self, knot: &Knot<4>) -> f64 {
+        self.primary_energy_rates(knot.drive, &knot.y)[1]
+    }
+    fn depth(&self, knot: &Knot<4>, side: Side) -> [f64; 2] {
+        [self.rapprochement(&knot.y)[side as usize], side.sign() * (knot.y[3] - knot.y[1])]
+    }
+}
+
+struct Recorder<'a, S, const N: usize> {
+    system: &'a S,
+    start: f64,
+    rows: Rows,
+    next: f64,
+    visit: &'a mut dyn FnMut(&Sample),
+    /// The end of the last piece.
+    last: Option<Knot<N>>,
+    /// The wall that the damper is pressed into, and the deepest that it has been.
+    pressed: Option<(Side, f64)>,
+}
+
+/// Share of the greatest depth of a contact that is none any more.
+const LEFT: f64 = 1e-9;
+
+impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
+    fn new(system: &'a S, start: f64, rows: Rows, visit: &'a mut dyn FnMut(&Sample)) -> Self {
+        Self { system, start, rows, next: 0.0, visit, last: None, pressed: None }
+    }
+
+    fn show(&mut self, knot: &Knot<N>, moment: Moment) {
+        (self.visit)(&self.system.sample(knot, moment));
+    }
+
+    /// The moments in a piece, in the order of time.
+    fn moments(&mut self, segment: &impl Segment<N>) -> Vec<(Knot<N>, Moment)> {
+        const LOOKS: usize = 4;
+        let [from, to] = segment.ends();
+        let theta = |look: usize| segment.length() * look as f64 / LOOKS as f64;
+        let looks: [f64; LOOKS + 1] = std::array::from_fn(theta);
+        let knots: [Knot<N>; LOOKS + 1] = std::array::from_fn(|look| match look {
+            0 => *from,
+            LOOKS => *to,
+            _ => segment.at(looks[look]),
+        });
+        let mut moments = Vec::new();
+        let mut maxima = |rate: &dyn Fn(&Knot<N>) -> f64, moment: Moment| {
+            for look in 0..LOOKS {
+                if rate(&knots[look]) > 0.0 && rate(&knots[look + 1]) <= 0.0 {
+                    let place = falls(|theta| rate(&segment.at(theta)), [looks[look], looks[look + 1]]);
+                    moments.push((segment.at(place), moment));
+                }
+            }
+        };
+        maxima(&|knot| self.system.power(knot), Moment::EnergyMax);
+        // A damper that rests on a wall from the start is pressed into it without a touch-down.
+        let depth = |side: Side| knots.map(|knot| self.system.depth(&knot, side)[0]);
+        let deepest = |side: Side| depth(side).into_iter().fold(0.0, f64::max);
+        let pressed = self
+            .pressed
+            .or_else(|| Side::BOTH.into_iter().find(|&side| deepest(side) > 1e-12).map(|side| (side, 0.0)));
+        if let Some((side, before)) = pressed {
+            maxima(&|knot| self.system.depth(knot, side)[1], Moment::ForceMax);
+            // Not what arithmetic leaves of a depth of zero.
+            moments.retain(|(knot, moment)| {
+                *moment != Moment::ForceMax || self.system.depth(knot, side)[0] > 0.0
+            });
+            let deepest = deepest(side).max(before);
+            let [depth, rate] = self.system.depth(to, side);
+            let left = deepest > 0.0 && rate < 0.0 && depth <= LEFT * deepest;
+            self.pressed = (!left).then_some((side, deepest));
+            if left {
+                moments.push((*to, Moment::LiftOff));
+            }
+        }
+        moments.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
+        moments
+    }
+}
+
+/// Where a rate that is positive at the one end and not at the other falls through zero.
+fn falls(rate: impl Fn(f64) -> f64, [mut from, mut to]: [f64; 2]) -> f64 {
+    for _ in 0..64 {
+        let middle = 0.5 * (from + to);
+        if middle <= from || middle >= to {
+            break;
+        }
+        if rate(middle) > 0.0 { from = middle } else { to = middle }
+    }
+    to
+}
+
+impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
+    fn segment(&mut self, segment: &impl Segment<N>) {
+        let [from, to] = segment.ends();
+        let moments = if self.rows.events { self.moments(segment) } else { Vec::new() };
+        let mut moments = moments.into_iter().peekable();
+        loop {
+            let t = self.start + self.next * self.rows.interval;
+            let row = t.min(to.t);
+            while let Some((knot, moment)) = moments.next_if(|(knot, _)| knot.t < row || t > to.t) {
+                self.show(&knot, moment);
+            }
+            if t > to.t {
+                break;
+            }
+            let knot = if t <= from.t {
+                *from
+            } else if t == to.t {
+                *to
+            } else {
+                segment.at_time(t)
+            };
+            self.show(&knot, Moment::Grid);
+            self.next += 1.0;
+        }
+        self.last = Some(*to);
+    }
+
+    fn touch_down(&mut self, _t: f64, side: Side) {
+        self.pressed = Some((side, 0.0));
+        if let (true, Some(knot)) = (self.rows.events, self.last) {
+            self.show(&knot, Moment::TouchDown);
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! A hunt for a largest value that is missed, over the ranges that an engineer uses: the search with its bounds beside a look at
+//! everything in the same motion, and the hybrid beside DOP853.
+//!
+//! `just hunt` draws as many scenes as it is told to (`RETUNE_HUNT`); the test suite draws few.
+
+mod problems;
+
+use problems::scenes::{Numbers, SSVI, Spread};
+use rayon::prelude::*;
+use retune_solver::observe::{
+    DamperEnergy, Knot, Observer, Path, Peak, PrimaryEnergy, Quantity, RelativePosition, Segment, Unobserved,
+};
+use retune_solver::steps::Steps;
+use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
+
+/// A scene of an engineer's: every number within its range, some of them at its ends.
+fn anywhere(draw: &mut Spread) -> Numbers {
+    let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
+    let mut numbers = Numbers {
+        m2: 0.0,
+        k1: within(1e4, 1e5),
+        k2: within(0.0, 3500.0),
+        c2: within(0.0, 400.0),
+        d: within(0.0, 0.2),
+        c: within(0.0, 0.7),
+        r: within(0.2, 5.0),
+        omega: within(3.0, 10.0),
+        ..SSVI
+    };
+    numbers.m2 = draw.logarithmic(1.0, 3000.0);
+    // Designs end on their bounds: no gap, no spring, no dashpot.
+    for value in [&mut numbers.d, &mut numbers.c, &mut numbers.k2, &mut numbers.c2] {
+        if draw.unit() < 0.05 {
+            *value = 0.0;
+        }
+    }
+    if draw.unit() < 0.3 {
+        numbers.c2 = draw.logarithmic(0.1, 400.0);
+    }
+    numbers
+}
+
+/// Where two maxima in one step are common.
+fn dense(draw: &mut Spread) -> Numbers {
+    let mut about = |value: f64| value * (1.0 + 0.15 * draw.signed());
+    Numbers { k1: about(6e4), k2: about(2500.0), c2: about(20.0), omega: about(7.6), ..anywhere_masses(draw) }
+}
+
+fn anywhere_masses(draw: &mut Spread) -> Numbers {
+    let numbers = anywhere(draw);
+    Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
+}
+
+/// The largest value by looking everywhere: many moments in each piece, and every sign change of the slope between them.
+struct Everywhere<Q> {
+    quantity: Q,
+    looks: usize,
+    largest: f64,
+}
+
+impl<Q: Quantity<4>> Everywhere<Q> {
+    fn new(quantity: Q) -> Self {
+        Self { quantity, looks: 24, largest: f64::NEG_INFINITY }
+    }
+    fn slope(&mut self, knot: &Knot<4>) -> f64 {
+        let [value, slope, _] = self.quantity.rates(knot.drive, &knot.y);
+        self.largest = self.largest.max(value);
+        slope
+    }
+}
+
+impl<Q: Quantity<4>> Observer<4> for Everywhere<Q> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let (h, [first, last]) = (segment.length(), segment.ends());
+        // Contact pieces are a ninth of a contact, or less.
+        let looks = if first.clock == [1.0, 0.0] { self.looks } else { self.looks / 3 };
+        let mut before = (0.0, self.slope(first));
+        for look in 1..=looks {
+            let theta = h * look as f64 / looks as f64;
+            let slope = if look == looks { self.slope(last) } else { self.slope(&segment.at(theta)) };
+            if before.1 > 0.0 && slope < 0.0 {
+                let (mut low, mut high) = (before.0, theta);
+                for _ in 0..30 {
+                    let middle = 0.5 * (low + high);
+                    if self.slope(&segment.at(middle)) > 0.0 { low = middle } else { high = middle }
+                }
+            }
+            before = (theta, slope);
+        }
+    }
+}
+
+/// A fast search and a slow one, side by side.
+struct Pair<A, B>(Peak<A>, Everywhere<B>);
+
+impl<A: Quantity<4>, B: Quantity<4>> Pair<A, B> {
+    fn new(fast: A, slow: B) -> Self {
+        Self(Peak::new(fast, f64::INFINITY), Everywhere::new(slow))
+    }
+    /// What the search missed, relative to the largest value; infinite if the search could not prove its record.
+    fn missed(&self, size: f64) -> f64 {
+        let found = self.0.record().value;
+        let missed = self.1.largest - found;
+        if self.0.doubt() > 1e-10 * size {
+            f64::INFINITY
+        } else if missed <= 0.0 {
+            0.0
+        } else {
+            missed / size
+        }
+    }
+}
+
+impl<A: Quantity<4>, B: Quantity<4>> Observer<4> for Pair<A, B> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.0.segment(segment);
+        self.1.segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        self.0.path(path);
+        self.1.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.0.steps(steps);
+        self.1.steps(steps);
+    }
+}
+
+/// Counts the pieces of contacts.
+#[derive(Default)]
+struct Contacts {
+    pieces: u64,
+    touches: u64,
+}
+
+impl Observer<4> for Contacts {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.pieces += u64::from(segment.ends()[0].clock != [1.0, 0.0]);
+    }
+    fn steps(&mut self, _steps: &Steps<'_, 4>) {}
+    fn touch_down(&mut self, _t: f64, _side: retune_model::Side) {
+        self.touches += 1;
+    }
+}
+
+struct All<'a>(
+    Pair<PrimaryEnergy<'a>, PrimaryEnergy<'a>>,
+    Pair<DamperEnergy<'a>, DamperEnergy<'a>>,
+    [Pair<RelativePosition<'a>, RelativePosition<'a>>; 2],
+    Contacts,
+);
+
+impl Observer<4> for All<'_> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.0.segment(segment);
+        self.1.segment(segment);
+        self.2.iter_mut().for_each(|pair| pair.segment(segment));
+        self.3.segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        self.0.path(path);
+        self.1.path(path);
+        self.2.iter_mut().for_each(|pair| pair.path(path));
+        self.3.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.0.steps(steps);
+        self.1.steps(steps);
+        self.2.iter_mut().for_each(|pair| pair.steps(steps));
+    }
+    fn touch_down(&mut self, t: f64, side: retune_model::Side) {
+        self.3.touch_down(t, side);
+    }
+}
+
+/// What a scene's paired search found: what was missed of E1, E2 and both ends of the relative displacement, and contact pieces.
+fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 4], u64), SolverError> {
+    let system = numbers.coupled();
+    let side =
+        |sign: f64| Pair::new(RelativePosition::new(&system, sign), RelativePosition::new(&system, sign));
+    let mut all = All(
+        Pair::new(PrimaryEnergy::new(&system), PrimaryEnergy::new(&system)),
+        Pair::new(DamperEnergy::new(&system), DamperEnergy::new(&system)),
+        [side(1.0), side(-1.0)],
+        Contacts::default(),
+    );
+    let mut hybrid = Hybrid::new(&system, rtol, 20.0, 20_000_000);
+    let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+    let middle = if from > 0.0 { hybrid.propagate(rest, from, &mut Unobserved)? } else { rest };
+    hybrid.propagate(middle, 20.0, &mut all)?;
+    let All(e1, e2, [far, near], contacts) = all;
+    let reach = far.1.largest.abs().max(near.1.largest.abs());
+    let missed = [e1.missed(e1.1.largest), e2.missed(e2.1.largest), far.missed(reach), near.missed(reach)];
+    Ok((missed, contacts.pieces))
+}
+
+/// A difference relative to a size; infinite for what is no number.
+fn apart(a: f64, b: f64, size: f64) -> f64 {
+    let difference = ((a - b) / size).abs();
+    if a == b {
+        0.0
+    } else if difference.is_nan() {
+        f64::INFINITY
+    } else {
+        difference
+    }
+}
+
+/// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where their final states part, so that the
+/// motion cannot be predicted so far, or where DOP853 gives up.
+fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
+    let window = Window { from, to: 20.0 };
+    let [a, b] = [(Method::Hybrid, 1e-12), (Method::Dop853, 1e-12)].map(|(method, rtol)| {
+        let settings =
+            Settings { method, rtol, atol: 1e-3 * rtol, max_steps: 2_000_000, ..Settings::default() };
+        simulate(&numbers.scene(), window, &settings)
+    });
+    let a = a.unwrap_or_else(|error| panic!("{error}: {numbers:?}"));
+    let b = b.ok()?;
+    let speeds = [1, 3].map(|i| apart(a.final_state[i], b.final_state[i], 1.0));
+    let positions = [0, 2].map(|i| apart(a.final_state[i], b.final_state[i], 1.0));
+    if speeds.into_iter().chain(positions).any(|difference| difference > 1e-10) {
+        return None;
+    }
+    let force = b.force_max[0].max(b.force_max[1]).max(1.0);
+    let stroke = b.spring_deflection_max;
+    let late = apart(a.e1_max.time, b.e1_max.time, 1.0);
+    // Where two maxima are equally high, or one is flat, its time says nothing.
+    let told_by_height = apart(a.e1_max.value, b.e1_max.value, b.e1_max.value) < 1e-13 || late < 1e-4;
+    let differences = [
+        apart(a.e1_max.value, b.e1_max.value, b.e1_max.value),
+        apart(a.e2_max.value, b.e2_max.value, b.e2_max.value),
+        apart(a.relative_displacement_max, b.relative_displacement_max, stroke),
+        apart(a.spring_deflection_max, b.spring_deflection_max, stroke),
+        apart(a.force_max[0], b.force_max[0], force).max(apart(a.force_max[1], b.force_max[1], force)),
+        f64::from(u8::from(a.impacts != b.impacts)),
+        if told_by_height { 0.0 } else { late },
+    ];
+    Some((differences, a))
+}
+
+/// The number of scenes to draw.
+fn scenes(few: u64) -> u64 {
+    std::env::var("RETUNE_HUNT").ok().and_then(|n| n.parse().ok()).unwrap_or(few)
+}
+
+/// A scene, the beginning of its window and its tolerance, by number.
+fn drawn(number: u64, scene: fn(&mut Spread) -> Numbers) -> (Numbers, f64, f64) {
+    let mut draw = Spread::new(number + 1);
+    let numbers = scene(&mut draw);
+    let from = if draw.unit() < 0.5 { 0.0 } else { 15.0 * draw.unit() };
+    (numbers, from, if number % 2 == 0 { 1e-6 } else { 1e-10 })
+}
+
+fn hunt(what: &str, scene: fn(&mut Spread) -> Numbers, count: u64) {
+    let looked: Vec<_> = (0..count)
+        .into_par_iter()
+        .map(|number| {
+            let (numbers, from, rtol) = drawn(number, scene);
+            (number, search(&numbers, from, rtol))
+        })
+        .collect();
+    let (mut pieces, mut contact_scenes, mut faults) = (0, 0, Vec::new());
+    for (number, found) in looked {
+        let (missed, seen) = found.unwrap_or_else(|error| panic!("{what} {number}: {error}"));
+        pieces += seen;
+        contact_scenes += u64::from(seen > 0);
+        let worst = missed.into_iter().fold(0.0, f64::max);
+        if worst > 1e-9 || missed.iter().any(|m| m.is_nan()) {
+            faults.push((number, missed));
+        }
+    }
+    println!(
+        "{what}: {count} scenes, {contact_scenes} with contacts, {pieces} contact pieces, {} faults",
+        faults.len()
+    );
+    for (number, missed) in faults.iter().take(8) {
+        println!("{number} {missed:?} {:?}", drawn(*number, scene));
+    }
+    assert!(faults.is_empty(), "{what}: {} of {count} scenes", faults.len());
+    assert!(contact_scenes > count / 4, "{contact_scenes} of {count}");
+}
+
+#[test]
+fn invariant_no_search_misses_what_a_look_at_everything_finds() {
+    hunt("anywhere", anywhere, scenes(400));
+}
+
+#[test]
+fn invariant_nor_where_two_maxima_in_a_step_are_common() {
+    hunt("dense", dense, scenes(5000));
+}
+
+#[test]
+fn reference_the_hybrid_sees_what_dop853_sees() {
+    let count = scenes(150);
+    let compared: Vec<_> = (0..count)
+        .into_par_iter()
+        .filter_map(|number| {
+            // Two in three are anywhere, one where two maxima in a step are common.
+            let (numbers, from, _) = drawn(number, if number % 3 == 0 { dense } else { anywhere });
+            let (differences, run) = compare(&numbers, from)?;
+            Some((number, differences, run.impacts[0] + run.impacts[1]))
+        })
+        .collect();
+    let contact_scenes = compared.iter().filter(|(_, _, impacts)| *impacts > 0).count();
+    let impacts: u64 = compared.iter().map(|(_, _, impacts)| impacts).sum();
+    let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > 1e-8)).collect();
+    println!(
+        "hybrid and DOP853: {count} scenes, {} predictable, {contact_scenes} of them with contacts, {impacts} impacts, {} faults",
+        compared.len(),
+        faults.len()
+    );
+    for (number, differences, _) in faults.iter().take(12) {
+        println!("{number} {differences:?}");
+    }
+    assert!(faults.is_empty(), "{} of {count}", faults.len());
+    assert!(contact_scenes as u64 > count / 5, "{contact_scenes}");
+}
