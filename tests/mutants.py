@@ -1,24 +1,28 @@
 """Whether the tests see a mistake: mutants drawn at random, each against the tests of its own crate. `just mutants`.
 
 cargo-mutants makes the mutants; which of them are drawn follows from the seed and from what they change, not from the lines that they
-stand on, so that a draw stays nearly the same when code moves. They are built in a copy of the project inside `target/mutants`, where
-a mutant that was caught is remembered until its file changes. A survivor whose name stands in `tests/mutants.json` changes nothing,
-for the reason given there.
+stand on, so that a draw stays nearly the same when code moves. Those of each crate are built in a copy of the project inside
+`target/mutants`, where a mutant that was caught is remembered until its file changes: a pass that was stopped goes on, and passes over
+different crates (`--package`) may run at once. A survivor whose name stands in `tests/mutants.json` changes nothing, for the reason
+given there.
 """
 
 import argparse, collections, fnmatch, hashlib, json, os, pathlib, re, shutil, subprocess, sys
 
-DRAWN = 330
+DRAWN = 345
+# As many are tried before what became of them is written down.
+AT_ONCE = 10
 # Files of each crate, and its tests: quick and decisive ones first, what they miss to all.
+QUICK = "allocation exact extreme_values extremes general_methods order paper peak reference settled trajectory work".split()
 CRATES = {
     "retune-model": (["crates/model/src/*"], ["--tests"]),
-    "retune-solver": (["crates/solver/src/*"], ["--lib --test order --test extremes --test paper --test reference --test invariant --test exact", "--tests"]),
+    "retune-solver": (["crates/solver/src/*"], ["--lib " + " ".join(f"--test {test}" for test in QUICK), "--tests"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
     "retune": (["crates/retune/src/results*"], ["--bins", "--tests"]),
 }
+# How much is drawn at random in the slowest tests.
+SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_SETTLED": "40", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}
 HOME = pathlib.Path("target/mutants")
-TREE = HOME / "tree"
-KNOWN = HOME / "outcomes.json"
 REASONS = pathlib.Path("tests/mutants.json")
 TABLE = pathlib.Path("results/robustness/mutants.md")
 
@@ -44,33 +48,36 @@ def drawn(seed, count):
     return {package: sorted(mutants, key=rank)[: share(package)] for package, mutants in lists.items()}
 
 
-def copy():
+def copy(tree):
     """Brings the copy of the project up to date; only what differs is written, so that cargo builds no more than that."""
     said = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], capture_output=True, check=True, text=True)
     files = {file for file in said.stdout.split("\0") if file and os.path.isfile(file)}
     for file in files:
-        target = TREE / file
+        target = tree / file
         if not target.is_file() or target.read_bytes() != pathlib.Path(file).read_bytes():
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, target)
             shutil.copymode(file, target)
-    for target in [path for path in TREE.rglob("*") if path.is_file() and str(path.relative_to(TREE)) not in files]:
+    for target in [path for path in tree.rglob("*") if path.is_file() and str(path.relative_to(tree)) not in files]:
         target.unlink()
 
 
 def tried(package, names, tests, timeout):
-    """What becomes of these mutants of a crate with these of its tests."""
-    out = HOME / "out"
-    shutil.rmtree(out, ignore_errors=True)
+    """What becomes of these mutants of a crate with these of its tests, and the time in seconds that tests may take; without such a time
+    they are run without a mutant first, and may take ten times as long afterwards."""
+    home = HOME / package
+    shutil.rmtree(home / "mutants.out", ignore_errors=True)
     only = ["--re=^" + re.sub(r"([][\\.*+?^$|(){}])", r"\\\1", name) + "$" for name in names]
-    command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(TREE), "--output", str(out), "--package", package,
-               "--profile", "mutants", "--timeout", str(timeout), "--build-timeout", str(timeout), "--no-times", "--jobserver=false", *only, "--", *tests.split()]
-    environment = {**os.environ, "CARGO_TARGET_DIR": str((HOME / "build").absolute())}
+    limit = ["--timeout", str(timeout), "--baseline=skip"] if timeout else ["--timeout-multiplier", "10", "--minimum-test-timeout", "60"]
+    command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(home / "tree"), "--output", str(home), "--package", package,
+               "--profile", "mutants", *limit, "--build-timeout", "600", "--no-times", "--jobserver=false", *only, "--", *tests.split()]
+    environment = {**os.environ, **SMALL, "CARGO_TARGET_DIR": str((home / "build").absolute())}
     status = subprocess.run(command, env=environment).returncode
     if status not in (0, 2, 3):
         sys.exit(f"cargo mutants ended with {status}: do the tests pass without a mutant?")
-    outcomes = json.loads((out / "mutants.out/outcomes.json").read_text())["outcomes"]
-    return {o["scenario"]["Mutant"]["name"]: o["summary"].removesuffix("Mutant").lower() for o in outcomes if o["scenario"] != "Baseline"}
+    outcomes = json.loads((home / "mutants.out/outcomes.json").read_text())["outcomes"]
+    timeout = timeout or max(60, round(10 * next(o for o in outcomes if o["scenario"] == "Baseline")["phase_results"][-1]["duration"]))
+    return {o["scenario"]["Mutant"]["name"]: o["summary"].removesuffix("Mutant").lower() for o in outcomes if o["scenario"] != "Baseline"}, timeout
 
 
 def table(seed, draw, outcomes, reasons):
@@ -106,32 +113,35 @@ def main():
     asked.add_argument("--mutants", type=int, default=DRAWN, help="how many are drawn")
     asked.add_argument("--package", choices=CRATES, action="append", help="only those of this crate")
     asked.add_argument("--file", action="append", help="only those of files that match, for instance crates/solver/src/rule*")
-    asked.add_argument("--timeout", type=int, default=300, help="seconds that a build or the tests may take")
     asked.add_argument("--list", action="store_true", help="only say what is drawn and what is known of it")
     asked = asked.parse_args()
     draw = drawn(asked.seed, asked.mutants)
-    HOME.mkdir(parents=True, exist_ok=True)
-    known = json.loads(KNOWN.read_text()) if KNOWN.exists() else {}
     digest = lambda file: hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest()
     reasons = json.loads(REASONS.read_text())
-    # What was found of a file as it is now.
-    outcomes = {m[0]: known[m[0]][1] for mutants in draw.values() for m in mutants if m[0] in known and known[m[0]][0] == digest(m[2])}
+    outcomes = {}
     print(f"seed {asked.seed}: " + ", ".join(f"{len(mutants)} mutants of {package}" for package, mutants in draw.items()), flush=True)
     for package, mutants in draw.items():
+        remembered = HOME / package / "outcomes.json"
+        known = json.loads(remembered.read_text()) if remembered.exists() else {}
+        # What was found of a file as it is now.
+        outcomes |= {m[0]: known[m[0]][1] for m in mutants if m[0] in known and known[m[0]][0] == digest(m[2])}
         chosen = [m for m in mutants if not asked.package or package in asked.package]
         chosen = [m for m in chosen if not asked.file or any(fnmatch.fnmatch(m[2], pattern) for pattern in asked.file)]
-        left = {m[1]: m for m in chosen if outcomes.get(m[0], "missed") == "missed" and m[0] not in reasons}
         if asked.list:
             print("\n".join(f"{outcomes.get(m[0], '-'):9} {m[1]} #{m[0].rsplit('#')[1]}" for m in chosen))
             continue
-        copy()
+        left = {m[1]: m for m in chosen if outcomes.get(m[0], "missed") == "missed" and m[0] not in reasons}
+        if left:
+            copy(HOME / package / "tree")
         for tests in CRATES[package][1]:
-            found = tried(package, list(left), tests, asked.timeout) if left else {}
-            for name, outcome in found.items():
-                outcomes[left[name][0]] = outcome
-                known[left[name][0]] = (digest(left[name][2]), outcome)
-            KNOWN.write_text(json.dumps(known, indent=0))
-            left = {name: m for name, m in left.items() if found.get(name) == "missed"}
+            timeout = None
+            for names in [list(left)[i : i + AT_ONCE] for i in range(0, len(left), AT_ONCE)]:
+                found, timeout = tried(package, names, tests, timeout)
+                for name, outcome in found.items():
+                    outcomes[left[name][0]] = outcome
+                    known[left[name][0]] = (digest(left[name][2]), outcome)
+                remembered.write_text(json.dumps(known, indent=0))
+            left = {name: m for name, m in left.items() if outcomes.get(m[0]) == "missed"}
     if not asked.list:
         TABLE.write_text(table(asked.seed, draw, outcomes, reasons))
         print(TABLE.read_text())
