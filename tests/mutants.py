@@ -7,16 +7,17 @@ different crates (`--package`) may run at once. A survivor whose name stands in 
 given there.
 """
 
-import argparse, collections, fnmatch, hashlib, json, os, pathlib, re, shutil, subprocess, sys
+import argparse, collections, fnmatch, functools, hashlib, json, os, pathlib, shutil, subprocess, sys
 
 DRAWN = 345
 # As many are tried before what became of them is written down.
 AT_ONCE = 10
-# Files of each crate, and its tests: quick and decisive ones first, what they miss to all.
-QUICK = "allocation exact extreme_values extremes general_methods order paper peak reference settled trajectory work".split()
+# Files of each crate, and its tests: quick and decisive ones first, what they miss to the next.
 CRATES = {
     "retune-model": (["crates/model/src/*"], ["--tests"]),
-    "retune-solver": (["crates/solver/src/*"], ["--lib " + " ".join(f"--test {test}" for test in QUICK), "--tests"]),
+    "retune-solver": (["crates/solver/src/*"], [
+        "--lib --test allocation --test extreme_values --test extremes --test order --test paper --test peak --test reference --test trajectory --test work",
+        "--test exact --test general_methods --test settled --test invariant", "--test edge --test any_scene --test hunt"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
     "retune": (["crates/retune/src/results*"], ["--bins", "--tests"]),
 }
@@ -27,16 +28,22 @@ REASONS = pathlib.Path("tests/mutants.json")
 TABLE = pathlib.Path("results/robustness/mutants.md")
 
 
-def listed(package):
-    """The mutants of a crate, each with the name that it keeps when lines move."""
+@functools.cache
+def made(package):
+    """Every mutant of a crate."""
     said = subprocess.run(["cargo", "mutants", "--no-config", "--list", "--json", "--package", package], capture_output=True, check=True, text=True)
+    return [mutant["name"] for mutant in json.loads(said.stdout)]
+
+
+def listed(package):
+    """The mutants of a crate that may be drawn, each with the name that it keeps when lines move."""
     files, counted = CRATES[package][0], collections.Counter()
-    for mutant in json.loads(said.stdout):
-        file, _, _, change = mutant["name"].split(":", 3)
+    for mutant in made(package):
+        file, _, _, change = mutant.split(":", 3)
         if any(fnmatch.fnmatch(file, pattern) for pattern in files):
             name = f"{file}:{change}"
             counted[name] += 1
-            yield f"{name} #{counted[name]}", mutant["name"], file
+            yield f"{name} #{counted[name]}", mutant, file
 
 
 def drawn(seed, count):
@@ -66,11 +73,13 @@ def tried(package, names, tests, timeout):
     """What becomes of these mutants of a crate with these of its tests, and the time in seconds that tests may take; without such a time
     they are run without a mutant first, and may take ten times as long afterwards."""
     home = HOME / package
+    # Taken for caught are all others: cargo-mutants has no other choice that holds for every kind of mutant.
     shutil.rmtree(home / "mutants.out", ignore_errors=True)
-    only = ["--re=^" + re.sub(r"([][\\.*+?^$|(){}])", r"\\\1", name) + "$" for name in names]
+    (home / "mutants.out").mkdir(parents=True)
+    (home / "mutants.out/caught.txt").write_text("".join(f"{name}\n" for name in set(made(package)) - set(names)))
     limit = ["--timeout", str(timeout), "--baseline=skip"] if timeout else ["--timeout-multiplier", "10", "--minimum-test-timeout", "60"]
     command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(home / "tree"), "--output", str(home), "--package", package,
-               "--profile", "mutants", *limit, "--build-timeout", "600", "--no-times", "--jobserver=false", *only, "--", *tests.split()]
+               "--profile", "mutants", *limit, "--build-timeout", "600", "--no-times", "--jobserver=false", "--iterate", *(f"--cargo-arg={choice}" for choice in tests.split())]
     environment = {**os.environ, **SMALL, "CARGO_TARGET_DIR": str((home / "build").absolute())}
     status = subprocess.run(command, env=environment).returncode
     if status not in (0, 2, 3):
