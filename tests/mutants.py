@@ -16,8 +16,9 @@ AT_ONCE = 10
 CRATES = {
     "retune-model": (["crates/model/src/*"], ["--tests"]),
     "retune-solver": (["crates/solver/src/*"], [
-        "--lib --test allocation --test extreme_values --test extremes --test order --test paper --test peak --test reference --test trajectory --test work",
-        "--test exact --test general_methods --test settled --test invariant", "--test edge --test any_scene --test hunt"]),
+        "--test extremes --test reference --test work",
+        "--lib --test allocation --test exact --test extreme_values --test general_methods --test invariant --test order --test paper --test peak --test settled --test trajectory",
+        "--test any_scene --test edge --test hunt"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
     "retune": (["crates/retune/src/results*"], ["--bins", "--tests"]),
 }
@@ -69,6 +70,13 @@ def copy(tree):
         target.unlink()
 
 
+def ended(package):
+    """What became of each mutant of the latest run of cargo-mutants, which may have been stopped."""
+    written = HOME / package / "mutants.out/outcomes.json"
+    outcomes = json.loads(written.read_text())["outcomes"] if written.exists() else []
+    return {o["scenario"]["Mutant"]["name"]: o["summary"].removesuffix("Mutant").lower() for o in outcomes if o["scenario"] != "Baseline"}
+
+
 def tried(package, names, tests, timeout):
     """What becomes of these mutants of a crate with these of its tests, and the time in seconds that tests may take; without such a time
     they are run without a mutant first, and may take ten times as long afterwards."""
@@ -84,9 +92,10 @@ def tried(package, names, tests, timeout):
     status = subprocess.run(command, env=environment).returncode
     if status not in (0, 2, 3):
         sys.exit(f"cargo mutants ended with {status}: do the tests pass without a mutant?")
-    outcomes = json.loads((home / "mutants.out/outcomes.json").read_text())["outcomes"]
-    timeout = timeout or max(60, round(10 * next(o for o in outcomes if o["scenario"] == "Baseline")["phase_results"][-1]["duration"]))
-    return {o["scenario"]["Mutant"]["name"]: o["summary"].removesuffix("Mutant").lower() for o in outcomes if o["scenario"] != "Baseline"}, timeout
+    if not timeout:
+        baseline = json.loads((home / "mutants.out/outcomes.json").read_text())["outcomes"][0]
+        timeout = max(60, round(10 * baseline["phase_results"][-1]["duration"]))
+    return ended(package), timeout
 
 
 def table(seed, draw, outcomes, reasons):
@@ -125,13 +134,19 @@ def main():
     asked.add_argument("--list", action="store_true", help="only say what is drawn and what is known of it")
     asked = asked.parse_args()
     draw = drawn(asked.seed, asked.mutants)
-    digest = lambda file: hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest()
+    # Tests at the end of a file may be added to without making it another.
+    digest = lambda file: hashlib.sha256(pathlib.Path(file).read_bytes().split(b"#[cfg(test)]\n")[0].rstrip()).hexdigest()
     reasons = json.loads(REASONS.read_text())
     outcomes = {}
     print(f"seed {asked.seed}: " + ", ".join(f"{len(mutants)} mutants of {package}" for package, mutants in draw.items()), flush=True)
     for package, mutants in draw.items():
         remembered = HOME / package / "outcomes.json"
         known = json.loads(remembered.read_text()) if remembered.exists() else {}
+        by_name = {m[1]: m for m in mutants}
+        for name, outcome in ended(package).items():
+            key, _, file = by_name.get(name, (None, None, None))
+            if key and (HOME / package / "tree" / file).exists():
+                known[key] = (digest(HOME / package / "tree" / file), outcome)
         # What was found of a file as it is now.
         outcomes |= {m[0]: known[m[0]][1] for m in mutants if m[0] in known and known[m[0]][0] == digest(m[2])}
         chosen = [m for m in mutants if not asked.package or package in asked.package]
