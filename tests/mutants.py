@@ -103,8 +103,8 @@ def table(seed, draw, outcomes, reasons):
         "# Whether the tests see a mistake", "",
         f"`just mutants`: mutants of cargo-mutants, drawn at random (seed {seed}), shared among the crates by their lines, each against the tests",
         "of its own crate. Caught: a test fails, or none ends in time. Unviable: does not compile. Without effect: listed below with the reason.", "",
-        "| crate | mutants | caught | of these out of time | unviable | without effect | missed | caught of those with effect |",
-        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
+        "| crate | drawn | not yet tried | caught | of these out of time | unviable | without effect | missed | caught of those with effect |",
+        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
     ]
     total, survivors = collections.Counter(), []
     for package, mutants in [*draw.items(), ("all", None)]:
@@ -118,8 +118,8 @@ def table(seed, draw, outcomes, reasons):
         total += count
         count = count if mutants else total
         caught = count["caught"] + count["timeout"]
-        share = 100 * caught / max(1, caught + count["missed"])
-        lines.append(f"| {package} | {count.total() - count['not tried']} | {caught} | {count['timeout']} | {count['unviable']} | {count['without effect']} | {count['missed']} | {share:.1f} % |")
+        share = f"{100 * caught / (caught + count['missed']):.1f} %" if caught else "–"
+        lines.append(f"| {package} | {count.total()} | {count['not tried']} | {caught} | {count['timeout']} | {count['unviable']} | {count['without effect']} | {count['missed']} | {share} |")
     lines += ["", "| survivor | what becomes of it |", "| --- | --- |"]
     lines += [f"| `{name.replace('|', '&#124;')}` | {reason} |" for name, reason in sorted(survivors)]
     return "\n".join(lines) + "\n"
