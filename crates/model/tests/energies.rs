@@ -67,6 +67,15 @@ fn exact_dual_energy_norm_is_the_largest_value_of_a_row() {
         let reached = row.dot(&(back * (back.transpose() * row).normalize()));
         assert!((reached / bound - 1.0).abs() < 1e-12, "{reached} {bound}");
     }
+    // Of the bare structure, too: √(x²/k1 + v²/m1).
+    let bare = SSVI.bare();
+    for (row, expected) in [
+        ([3.0, 0.0], 3.0 / SSVI.k1.sqrt()),
+        ([0.0, -5.0], 5.0 / SSVI.m1.sqrt()),
+        ([3.0, -5.0], (9.0 / SSVI.k1 + 25.0 / SSVI.m1).sqrt()),
+    ] {
+        assert!((bare.dual_energy_norm(&row) / expected - 1.0).abs() < 1e-14, "{row:?}");
+    }
     // Nothing holds the damper: only a row that does not weigh its place has a bound.
     let free = Numbers { k2: 0.0, ..SSVI }.coupled();
     assert_eq!(free.dual_energy_norm(&[0.0, 0.0, 1.0, 0.0]), f64::INFINITY);
@@ -131,6 +140,7 @@ fn exact_momentum_and_ratios() {
     let system = TMD.coupled();
     assert_eq!(system.momentum(&[0.3, 2.0, 0.1, -5.0]), 2000.0 - 300.0);
     assert_eq!(energy_ratios(3.0, 1.0), [0.75, 0.25]);
+    assert_eq!(system.damper_energy_weights(), [TMD.m2, TMD.k2]);
     assert!(energy_ratios(0.0, 0.0).iter().all(|r| r.is_nan()));
 }
 

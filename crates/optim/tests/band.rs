@@ -62,6 +62,63 @@ fn exact_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
     assert_eq!(count.load(Relaxed), 8, "one group of samples is enough");
 }
 
+/// Nothing at a cutoff is above it: a search that comes upon just that value goes on.
+#[test]
+fn contract_a_search_ends_above_its_cutoff_not_at_it() {
+    let band = Band { from: 5.0, to: 8.0, samples: 7 };
+    let looked = std::sync::Mutex::new(Vec::new());
+    let peak = |omega: f64| {
+        let value = 1.0 / (1.0 + (omega - 6.21).powi(2));
+        looked.lock().expect("no panic").push(value);
+        Ok::<f64, ()>(value)
+    };
+    let whole = worst_over(&band, peak, f64::INFINITY).expect("no failures");
+    let refined = looked.lock().expect("no panic")[7..].to_vec();
+    let sample = 1.0 / (1.0 + 0.21_f64.powi(2));
+    let first = *refined.iter().find(|value| **value > sample).expect("a better place");
+    assert!(first < whole.value);
+    let found = worst_over(&band, peak, first).expect("no failures");
+    assert!(found.value > first, "{found:?} {first}");
+}
+
+/// The places that a search looks at: few where the function is smooth, and never more than 12 more than the samples.
+#[test]
+fn regress_places_that_a_search_looks_at() {
+    let band = Band { from: 5.0, to: 8.0, samples: 4 };
+    let functions: [fn(f64) -> f64; 6] = [
+        |x| -(x - 6.111_f64).powi(2),
+        |x| 1.0 / (1.0 + ((x - 6.3) / 0.2).powi(2)),
+        |x| -(x - 6.111_f64).powi(4),
+        |x| -(x - 6.223_f64).abs(),
+        |x| (x - 4.9) * (-2.0 * (x - 4.9)).exp(),
+        |x| -((x - 6.4) / 0.3).tanh().powi(2) * (1.0 + 0.3 * (x - 6.4)),
+    ];
+    let looks = functions.map(|f| {
+        let looked = std::sync::Mutex::new((0, 0.0));
+        let told = worst_over(
+            &band,
+            |omega| {
+                let mut looked = looked.lock().expect("no panic");
+                *looked = (looked.0 + 1, looked.1 + omega);
+                Ok::<f64, ()>(f(omega))
+            },
+            f64::INFINITY,
+        );
+        let (count, sum) = *looked.lock().expect("no panic");
+        (count, (1e6 * sum).round() / 1e6, (1e6 * told.expect("no failures").frequency).round() / 1e6)
+    });
+    // How many, their sum and the largest: the last function rises to the end of the band.
+    let expected = [
+        (7, 44.333, 6.111),
+        (16, 101.89636, 6.3),
+        (12, 74.986217, 6.111),
+        (16, 100.723997, 6.222996),
+        (16, 91.401404, 5.4),
+        (16, 86.618028, 5.0),
+    ];
+    assert_eq!(looks, expected);
+}
+
 #[test]
 fn exact_the_first_failure_in_the_order_of_the_band_is_told() {
     let failing = |omega: f64| if omega > 6.0 { Err(omega) } else { Ok(1.0) };

@@ -146,3 +146,35 @@ fn exact_settled_is_steady_where_nothing_touches() {
     let found = evaluate(term(never), &SSVI.scene(), f64::INFINITY);
     assert!(found.unsettled == found.runs && found.runs >= 4, "{found:?}");
 }
+
+/// What is known to be above a cutoff is not looked at further: a stiffness at a time, members in groups of eight.
+#[test]
+fn contract_nothing_is_run_beyond_a_cutoff() {
+    let set = Term { k1: Some(Stiffnesses::Set(vec![3e4, 4e4, 5e4])), ..Term::new(WINDOW) };
+    let scene = SSVI.scene();
+    let [first, _, last] =
+        [3e4, 4e4, 5e4].map(|k1| value(&Term::new(WINDOW), &Numbers { k1, ..SSVI }.scene()));
+    assert!(first < last);
+    for (cutoff, runs) in [(0.0, 1), (0.5 * first, 1), (f64::INFINITY, 3)] {
+        assert_eq!(evaluate(set.clone(), &scene, cutoff).runs, runs, "{cutoff}");
+    }
+    for (statistic, cutoff, expected) in [
+        (Statistic::Mean, 0.3, 8),
+        (Statistic::Mean, 0.5, 16),
+        (Statistic::Mean, 2.0, 24),
+        (Statistic::Worst, 0.9, 8),
+        (Statistic::Worst, 1.0, 24),
+        (Statistic::Quantile(0.5), 0.9, 16),
+        (Statistic::Quantile(0.5), 1.0, 24),
+    ] {
+        let ensemble = Ensemble { members: 24, ..ensemble(statistic) };
+        let run = std::sync::atomic::AtomicU32::new(0);
+        let one = |_, _| {
+            run.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            Ok::<f64, ()>(1.0)
+        };
+        let found = ensemble.over(one, cutoff).expect("no failures");
+        assert_eq!(run.into_inner(), expected, "{statistic:?} {cutoff}");
+        assert!(if cutoff < 1.0 { found > cutoff } else { found == 1.0 }, "{statistic:?} {cutoff} {found}");
+    }
+}

@@ -91,3 +91,9 @@ fn exact_grids_above_the_limit_are_refused_before_anything_is_made() {
     assert_eq!(overflow, Err(GridError::TooLarge { points: u128::MAX, limit: usize::MAX }));
     assert_eq!(Grid::new(vec![], 10), Err(GridError::NoAxes));
 }
+
+#[test]
+fn exact_an_axis_tells_what_it_was_made_of() {
+    let axis = Axis::new(2.0, 50.0, 7, Scale::Log).expect("an axis");
+    assert_eq!((axis.from(), axis.to(), axis.points()), (2.0, 50.0, 7));
+}

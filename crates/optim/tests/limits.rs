@@ -188,3 +188,10 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
         assert!(kept_on_samples.runs < 31 + 12 * 8, "{kept_on_samples:?}");
     }
 }
+
+#[test]
+fn contract_limits_have_names_and_units() {
+    let told = Limit::ALL.map(|limit| (limit.name(), limit.unit()));
+    assert_eq!(Limit::ALL.map(|limit| format!("{limit:>7}")), [" stroke", "  force", " cavity"]);
+    assert_eq!(told, [("stroke", "m"), ("force", "N"), ("cavity", "m")]);
+}

@@ -3,7 +3,7 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_optim::{Failures, PeakEnergy, Variable};
+use retune_optim::{Failures, INFEASIBLE, PeakEnergy, Variable};
 use retune_solver::{Settings, Window};
 use scenes::TMD;
 
@@ -41,4 +41,15 @@ fn exact_failures_are_infinite_counted_and_one_is_kept() {
     let (design, reason) = *failures.example.expect("an example");
     assert_eq!(design, [-1.0, 0.0]);
     assert_eq!(reason.to_string(), "c2: -1 is not allowed here: give a finite number not below 0");
+}
+
+/// What keeps its limits is at most [`INFEASIBLE`], what is recalled counts as what was found.
+#[test]
+fn exact_recalled_values_are_counted_as_when_they_were_found() {
+    let objective = objective(vec![Variable::C2], 5.0, Settings::default());
+    for value in [1.0, INFEASIBLE, 1.5 * INFEASIBLE, f64::INFINITY] {
+        objective.recall(value);
+    }
+    let counts = objective.counts();
+    assert_eq!((counts.evaluations, counts.infeasible), (4, 2));
 }

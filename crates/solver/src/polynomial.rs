@@ -87,6 +87,14 @@ mod tests {
         assert_eq!(p.derivative().at(2.0), -1.0 + 16.0 - 12.0 + 160.0 - 720.0);
         assert_eq!(p.over_s().at(2.0), -1.0 + 8.0 - 4.0 + 40.0 - 144.0);
         assert_eq!(p.fourth_derivative_bound(2.0), 24.0 * 5.0 + 120.0 * 9.0 * 2.0);
+        // x^k has the fourth derivative k! / (k - 4)! x^(k-4), whatever the signs.
+        for k in 0..12 {
+            let mut c = [0.0; 12];
+            c[k] = -3.0;
+            let falling = (0..4).map(|i| k as f64 - f64::from(i)).product::<f64>();
+            let expected = 3.0 * falling * 2.0_f64.powi(k as i32 - 4);
+            assert_eq!(Polynomial::<3>::new(&c).fourth_derivative_bound(2.0), expected, "{k}");
+        }
         assert_eq!((p.coefficient(4), p.with_constant(7.0).at(0.0)), (5.0, 7.0));
     }
 }

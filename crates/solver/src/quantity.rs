@@ -291,3 +291,6 @@ impl Quantity<4> for RelativePosition<'_> {
         &self.form
     }
 }
+
+#[cfg(test)]
+mod tests;

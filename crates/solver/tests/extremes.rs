@@ -167,3 +167,22 @@ fn exact_the_stroke_before_a_closed_form_counts() {
     assert!((stroke(0.0) / run.spring_deflection_max - 1.0).abs() < 1e-9 && stroke(0.0) > 1.1 * steady);
     assert_eq!(stroke(f64::INFINITY), steady);
 }
+
+/// Off resonance the transient is above what follows: a window that begins later knows nothing of it, with a damper or without.
+#[test]
+fn exact_a_window_is_watched_and_nothing_before_it() {
+    let numbers = Numbers { omega: 5.0, ..TMD };
+    for scene in [numbers.scene(), numbers.bare_scene()] {
+        for method in [Method::Hybrid, Method::Dop853] {
+            let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
+            let late = Window { from: 30.0, to: 40.0 };
+            let found = simulate(&scene, late, &settings).expect("a run").e1_max;
+            let all = simulate(&scene, Window { from: 0.0, ..late }, &settings).expect("a run").e1_max;
+            assert!(all.value > 1.2 * found.value && found.time >= 30.0, "{method:?} {all:?} {found:?}");
+            let mut largest = 0.0_f64;
+            trajectory(&scene, late, &settings, Rows::every(1e-3), &mut |row| largest = largest.max(row.e1))
+                .expect("a run");
+            assert!(largest <= found.value * (1.0 + 1e-9) && largest > found.value * (1.0 - 1e-4));
+        }
+    }
+}

@@ -215,3 +215,14 @@ fn exact_a_motion_that_blows_up_is_reported() {
         );
     }
 }
+
+/// A method has one name, in studies as in tables, and no two have the same.
+#[test]
+fn contract_methods_are_called_what_studies_call_them() {
+    for method in Method::ALL {
+        let written = serde_json::to_string(&method).expect("a name");
+        assert_eq!(written, format!("\"{}\"", method.name()));
+        assert_eq!(serde_json::from_str::<Method>(&written).expect("the same"), method);
+        assert_eq!(Method::ALL.iter().filter(|other| other.name() == method.name()).count(), 1);
+    }
+}

@@ -94,3 +94,39 @@ pub fn sum<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
 pub fn times<const N: usize>(a: &[f64; N], factor: f64) -> [f64; N] {
     a.map(|c| c * factor)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bernstein coefficients of `Π (r - s)` over six roots.
+    fn with_roots(roots: [f64; 6]) -> [f64; 7] {
+        let mut w = vec![1.0];
+        for r in roots {
+            let wider = |i: usize| {
+                r * w.get(i).copied().unwrap_or(0.0) + (r - 1.0) * if i > 0 { w[i - 1] } else { 0.0 }
+            };
+            w = (0..=w.len()).map(wider).collect();
+        }
+        let choose = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
+        std::array::from_fn(|i| w[i] / choose[i])
+    }
+
+    #[test]
+    fn exact_falls_are_every_other_root_and_nothing_else() {
+        for roots in [
+            [0.1, 0.23, 0.31, 0.47, 0.66, 0.9],
+            [1e-6, 0.2, 0.51, 0.53, 0.77, 1.5],
+            [-0.4, -0.1, 0.3, 2.0, 2.5, 4.0],
+        ] {
+            let mut found = Vec::new();
+            falls(with_roots(roots), &mut |s| found.push(s));
+            let expected: Vec<f64> =
+                roots.into_iter().step_by(2).filter(|r| (0.0..=1.0).contains(r)).collect();
+            assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+            }
+        }
+    }
+}

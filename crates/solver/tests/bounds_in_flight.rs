@@ -1,0 +1,103 @@
+//! How far a quantity leaves the quintic that meets it at two places of a flight, beside the bounds on it.
+
+mod problems;
+
+use problems::scenes::{Numbers, SSVI, TWO_SIDED};
+use retune_model::Side;
+use retune_solver::observe::{
+    DamperEnergy, Knot, Observer, PrimaryEnergy, Quantity, RelativePosition, Segment,
+};
+use retune_solver::{Hybrid, Motion, Phase};
+
+/// Value, slope and curvature with respect to `θ`.
+fn rates(quantity: &impl Quantity<4>, knot: &Knot<4>) -> [f64; 3] {
+    let [value, slope, curvature] = quantity.rates(knot.drive, &knot.y);
+    let [rate, bend] = knot.clock;
+    [value, slope * rate, curvature * rate * rate + slope * bend]
+}
+
+/// The quintic through value, slope and curvature at the ends of a stretch of length `h`, at a share `s` of it.
+fn quintic(h: f64, a: [f64; 3], b: [f64; 3], s: f64) -> f64 {
+    let c = [
+        a[0],
+        a[0] + h * a[1] / 5.0,
+        a[0] + 2.0 * h * a[1] / 5.0 + h * h * a[2] / 20.0,
+        b[0] - 2.0 * h * b[1] / 5.0 + h * h * b[2] / 20.0,
+        b[0] - h * b[1] / 5.0,
+        b[0],
+    ];
+    let binomial = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+    (0..6).map(|i| binomial[i] * c[i] * s.powi(i as i32) * (1.0 - s).powi(5 - i as i32)).sum()
+}
+
+/// Looks at every piece of flight, and keeps the largest share of its sharp bound that an error reaches.
+struct Errors<Q> {
+    quantity: Q,
+    walls: [f64; 2],
+    reached: f64,
+    pieces: u32,
+}
+
+impl<Q: Quantity<4>> Observer<4> for Errors<Q> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        // What the bounds of contacts rest on is tested where it is made (`retune_model::Compression::growth`).
+        if segment.ends()[0].clock != [1.0, 0.0] {
+            return;
+        }
+        for share in [1.0, 0.5, 0.125] {
+            let h = share * segment.length();
+            let (from, to) = (*segment.ends()[0], segment.at(h));
+            // On a wall to rounding, 1e-16 m deep, the slope of Hertz's force shows in the curvature: a share of 1e-3 of it.
+            let on_a_wall =
+                |knot: &Knot<4>| self.walls.iter().any(|w| (knot.y[2] - knot.y[0] - w).abs() < 1e-12);
+            if on_a_wall(&from) || on_a_wall(&to) {
+                continue;
+            }
+            let bound = |h: f64, sharp: bool| {
+                segment.quintic_error(self.quantity.form(), [&from, &to], h, sharp).expect("known")
+            };
+            // A stretch half as long has a 64th.
+            for sharp in [false, true] {
+                let (whole, half) = (bound(h, sharp), bound(0.5 * h, sharp));
+                assert!((64.0 * half - whole).abs() <= 1e-12 * whole, "{whole} {half}");
+            }
+            let (a, b) = (rates(&self.quantity, &from), rates(&self.quantity, &to));
+            let size =
+                a.iter().zip(&b).zip([1.0, h, h * h]).map(|((a, b), h)| (a.abs() + b.abs()) * h).sum::<f64>();
+            let rounding = 1e-12 * (size + self.quantity.form().size(&from.y));
+            for s in [0.3, 0.5, 0.7] {
+                let value = rates(&self.quantity, &segment.at(s * h))[0];
+                let error = ((value - quintic(h, a, b, s)).abs() - rounding).max(0.0);
+                for sharp in [false, true] {
+                    let bound = bound(h, sharp);
+                    assert!(error <= bound * (1.0 + 1e-9), "{h} {s} {sharp}: {error} {bound}");
+                    if sharp && bound > 0.0 {
+                        self.reached = self.reached.max(error / bound);
+                    }
+                }
+            }
+        }
+        self.pieces += 1;
+    }
+}
+
+#[test]
+fn invariant_no_quantity_leaves_its_quintic_by_more_than_its_bound() {
+    let stiff = Numbers { k1: 6e4, k2: 2500.0, c2: 20.0, omega: 7.6, ..SSVI };
+    for numbers in [SSVI, TWO_SIDED, stiff] {
+        let system = numbers.coupled();
+        fn check<Q: Quantity<4>>(numbers: &Numbers, quantity: Q) {
+            let system = numbers.coupled();
+            let walls = Side::BOTH.map(|side| system.wall(side));
+            let mut errors = Errors { quantity, walls, reached: 0.0, pieces: 0 };
+            let mut hybrid = Hybrid::new(&system, 1e-9, 20.0, 1_000_000);
+            let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+            hybrid.propagate(rest, 20.0, &mut errors).expect("a run");
+            assert!(errors.pieces > 100, "{}", errors.pieces);
+            assert!(errors.reached > 0.5, "a bound that is never nearly reached: {}", errors.reached);
+        }
+        check(&numbers, PrimaryEnergy::new(&system));
+        check(&numbers, DamperEnergy::new(&system));
+        check(&numbers, RelativePosition::new(&system, -1.0));
+    }
+}

@@ -1,0 +1,73 @@
+//! How much work a run is. A mistake that only makes runs slow is seen here, on a busy machine as on a quiet one; times and
+//! instructions are measured by `just bench` and `just bench-instructions`.
+
+mod problems;
+
+use problems::scenes::{SSVI, TMD};
+use retune_solver::ode23s::Ode23s;
+use retune_solver::ode45::Ode45;
+use retune_solver::onestep::{OneStep, Tolerance};
+use retune_solver::{Budget, Contacts, Method, Settings, System, Window, Work, simulate};
+
+/// The first step from a state: MATLAB's `ode45` and `ode23s`, formula by formula, of numbers that are easily followed by hand.
+#[test]
+fn exact_first_steps_are_matlabs() {
+    struct Given;
+    impl System<2> for Given {
+        fn derivative(&self, _t: f64, _y: &[f64; 2]) -> [f64; 2] {
+            [6.0, -8.0]
+        }
+        fn jacobian(&self, _t: f64, _y: &[f64; 2]) -> nalgebra::SMatrix<f64, 2, 2> {
+            nalgebra::SMatrix::<f64, 2, 2>::from_row_slice(&[0.0, 2.0, -9.0, 1.0])
+        }
+        fn time_derivative(&self, _t: f64, _y: &[f64; 2]) -> [f64; 2] {
+            [0.0, 12.0]
+        }
+    }
+    let (y, f) = ([3.0, 0.1], [6.0, -8.0]);
+    let tolerance = Tolerance { rtol: 1e-5, threshold: 0.5 };
+    // max |f / max(|y|, threshold)| = 16, and 10 = rtol^(-1/5): rh = 16 / (0.8 · 0.1) = 200.
+    let first = |longest| Ode45::first_step(&Given, 0.0, &y, &f, tolerance, longest);
+    assert!((first(1.0) * 200.0 - 1.0).abs() < 1e-14, "{}", first(1.0));
+    assert_eq!(first(0.004), 0.004, "no longer than allowed");
+    // y'' = J f + ∂f/∂t = [-16, -62 + 12] = [-16, -50]: rh = 1.25 √(0.5 · 100 / rtol).
+    let first = |longest| Ode23s::first_step(&Given, 0.0, &y, &f, tolerance, longest);
+    let expected = 1.0 / (1.25 * f64::sqrt(0.5 * 100.0 / 1e-5));
+    assert!((first(1.0) / expected - 1.0).abs() < 1e-14, "{}", first(1.0));
+    assert_eq!(first(1e-4), 1e-4, "no longer than allowed");
+}
+
+/// Steps, rejected steps and evaluations of every method. A change for a reason changes the numbers here; more of them need one.
+#[test]
+fn regress_work_of_every_method() {
+    let window = Window { from: 2.0, to: 12.0 };
+    for (method, rtol, contacts, expected) in [
+        (Method::Ode45, 1e-6, Contacts::Located, [[434, 18, 2713], [448, 2, 2701], [840, 108, 6067]]),
+        (Method::Ode45, 1e-6, Contacts::Stepped, [[434, 18, 2713], [448, 2, 2701], [837, 100, 5623]]),
+        (Method::Ode23s, 1e-4, Contacts::Located, [[1014, 39, 3160], [1117, 61, 3535], [1763, 133, 5896]]),
+        (Method::Ode23, 1e-4, Contacts::Located, [[819, 45, 2593], [893, 68, 2884], [1391, 163, 4828]]),
+        (Method::Dop853, 1e-8, Contacts::Located, [[170, 6, 2641], [177, 6, 2746], [616, 199, 13006]]),
+        (Method::Hybrid, 1e-6, Contacts::Located, [[65, 0, 0], [118, 0, 0], [127, 0, 224]]),
+        (Method::Hybrid, 1e-10, Contacts::Located, [[65, 0, 0], [118, 0, 0], [127, 0, 736]]),
+    ] {
+        let settings = Settings { method, rtol, atol: 1e-2 * rtol, contacts, ..Settings::default() };
+        let found = [SSVI.bare_scene(), TMD.scene(), SSVI.scene()].map(|scene| {
+            let Work { steps, rejected, evaluations } =
+                simulate(&scene, window, &settings).expect("a run").work;
+            [steps, rejected, evaluations]
+        });
+        assert_eq!(found, expected, "{method:?} at {rtol:e}, {contacts:?}");
+    }
+}
+
+/// A stretch is asked whether it gets anywhere by its own steps: those before it do not hurry it.
+#[test]
+fn exact_a_budget_counts_the_steps_of_its_stretch() {
+    let budget = Budget::new(Method::Hybrid, 1_000_000, 200_000, [10.0, 20.0]);
+    assert_eq!(budget.check(200_500, 10.0), Ok(()), "too early to tell");
+    assert_eq!(budget.check(262_200, 10.0), Ok(()), "too early to tell");
+    assert!(budget.check(462_145, 10.0).is_err(), "no way made in 262,145 steps");
+    // 300,000 steps for 10 s / 333 are 99.9 million for all of it, whatever came before.
+    assert_eq!(budget.check(500_000, 10.0 + 10.0 / 333.0), Ok(()));
+    assert!(budget.check(500_000, 10.0 + 10.0 / 334.0).is_err());
+}
