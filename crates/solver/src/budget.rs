@@ -146,6 +146,17 @@ mod tests {
         assert_eq!(FLIGHT.remedy(100.0, 0.0), Remedy::LessForce);
     }
 
+    /// A stretch is asked whether it gets anywhere by its own steps: those before it do not hurry it.
+    #[test]
+    fn exact_a_budget_counts_the_steps_of_its_stretch() {
+        let budget = Budget::new(FLIGHT, 1_000_000, 200_000, [10.0, 20.0]);
+        assert_eq!(budget.check(200_000 + LOOK, 10.0), Ok(()), "too early to tell");
+        assert!(budget.check(200_001 + LOOK, 10.0).is_err(), "no way made");
+        // 300,000 steps for 10 s / 333 are 99.9 million for all of it, whatever came before.
+        assert_eq!(budget.check(500_000, 10.0 + 10.0 / 333.0), Ok(()));
+        assert!(budget.check(500_000, 10.0 + 10.0 / 334.0).is_err());
+    }
+
     /// A limit that is too low for any run is to be raised.
     #[test]
     fn exact_few_steps_tell_nothing_of_a_run() {
