@@ -2,7 +2,7 @@
 //! everything in the same motion, and the hybrid beside DOP853.
 //!
 //! `just hunt` draws as many scenes as it is told to (`RETUNE_HUNT`); the test suite draws few.
-#![allow(clippy::print_stdout, reason = "a hunt says what it looked at")]
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a hunt says what it looked at")]
 
 mod problems;
 
