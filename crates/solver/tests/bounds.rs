@@ -3,26 +3,11 @@
 mod problems;
 
 use problems::scenes::{Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED};
+use problems::{quintic, rates};
 use retune_solver::observe::{
-    DamperEnergy, Knot, Observer, Path, PrimaryEnergy, Quantity, RelativePosition, Segment,
+    DamperEnergy, Observer, Path, PrimaryEnergy, Quantity, RelativePosition, Segment,
 };
 use retune_solver::{Hybrid, Motion, Phase};
-
-/// Value, slope and curvature with respect to `θ`.
-fn rates<Q: Quantity<4>>(quantity: &Q, knot: &Knot<4>) -> [f64; 3] {
-    let ([value, slope, curvature], [rate, rate_slope]) = (quantity.rates(knot.drive, &knot.y), knot.clock);
-    [value, slope * rate, curvature * rate * rate + slope * rate_slope]
-}
-
-/// The quintic through value, slope and curvature at both ends of `[0, h]`, at `s h`.
-fn quintic(h: f64, a: [f64; 3], b: [f64; 3], s: f64) -> f64 {
-    let r = 1.0 - s;
-    let from = |[value, slope, curvature]: [f64; 3], s: f64, r: f64| {
-        r.powi(3)
-            * (value * (1.0 + 3.0 * s + 6.0 * s * s) + slope * s * (1.0 + 3.0 * s) + 0.5 * curvature * s * s)
-    };
-    from([a[0], h * a[1], h * h * a[2]], s, r) + from([b[0], -h * b[1], h * h * b[2]], r, s)
-}
 
 /// Holds every piece of a motion against its bounds.
 struct Held<Q> {

@@ -3,32 +3,12 @@
 mod problems;
 
 use problems::scenes::{Numbers, SSVI, TWO_SIDED};
+use problems::{quintic, rates};
 use retune_model::Side;
 use retune_solver::observe::{
     DamperEnergy, Knot, Observer, PrimaryEnergy, Quantity, RelativePosition, Segment,
 };
 use retune_solver::{Hybrid, Motion, Phase};
-
-/// Value, slope and curvature with respect to `θ`.
-fn rates(quantity: &impl Quantity<4>, knot: &Knot<4>) -> [f64; 3] {
-    let [value, slope, curvature] = quantity.rates(knot.drive, &knot.y);
-    let [rate, bend] = knot.clock;
-    [value, slope * rate, curvature * rate * rate + slope * bend]
-}
-
-/// The quintic through value, slope and curvature at the ends of a stretch of length `h`, at a share `s` of it.
-fn quintic(h: f64, a: [f64; 3], b: [f64; 3], s: f64) -> f64 {
-    let c = [
-        a[0],
-        a[0] + h * a[1] / 5.0,
-        a[0] + 2.0 * h * a[1] / 5.0 + h * h * a[2] / 20.0,
-        b[0] - 2.0 * h * b[1] / 5.0 + h * h * b[2] / 20.0,
-        b[0] - h * b[1] / 5.0,
-        b[0],
-    ];
-    let binomial = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
-    (0..6).map(|i| binomial[i] * c[i] * s.powi(i as i32) * (1.0 - s).powi(5 - i as i32)).sum()
-}
 
 /// Looks at every piece of flight, and keeps the largest share of its sharp bound that an error reaches.
 struct Errors<Q> {

@@ -8,7 +8,7 @@ pub mod smooth;
 pub mod trees;
 
 use retune_model::Side;
-use retune_solver::observe::{Knot, Observer, Segment};
+use retune_solver::observe::{Knot, Observer, Quantity, Segment};
 
 /// Looks at every moment that a method hands over, and at two between, and counts touch-downs.
 pub struct Watch<F> {
@@ -48,4 +48,25 @@ pub fn assert_states(found: [f64; 4], expected: [f64; 4], [x, v]: [f64; 2], tole
     for (i, size) in [x, v, x, v].into_iter().enumerate() {
         assert_close(found[i], expected[i], size, tolerance, &format!("{what}, component {i}"));
     }
+}
+
+/// Value, slope and curvature with respect to `θ`.
+pub fn rates(quantity: &impl Quantity<4>, knot: &Knot<4>) -> [f64; 3] {
+    let [value, slope, curvature] = quantity.rates(knot.drive, &knot.y);
+    let [rate, bend] = knot.clock;
+    [value, slope * rate, curvature * rate * rate + slope * bend]
+}
+
+/// The quintic through value, slope and curvature at the ends of a stretch of length `h`, at a share `s` of it.
+pub fn quintic(h: f64, a: [f64; 3], b: [f64; 3], s: f64) -> f64 {
+    let c = [
+        a[0],
+        a[0] + h * a[1] / 5.0,
+        a[0] + 2.0 * h * a[1] / 5.0 + h * h * a[2] / 20.0,
+        b[0] - 2.0 * h * b[1] / 5.0 + h * h * b[2] / 20.0,
+        b[0] - h * b[1] / 5.0,
+        b[0],
+    ];
+    let binomial = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+    (0..6).map(|i| binomial[i] * c[i] * s.powi(i as i32) * (1.0 - s).powi(5 - i as i32)).sum()
 }
