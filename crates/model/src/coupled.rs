@@ -1,9 +1,10 @@
 //! Equation (1): the primary structure and the damper in its cavity, with Hertz contact on both walls.
 
+mod energies;
+
 use crate::bare::largest;
-use crate::{Bare, Damper, Drive, Forcing, Primary, hertz_energy, hertz_force, hertz_force_slope};
+use crate::{Bare, Damper, Drive, Forcing, Primary, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
-use wide::f64x4;
 
 /// The two walls of the cavity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -198,88 +199,6 @@ impl Coupled {
     /// `∂y'/∂t` of equation (1), which only the force makes.
     pub fn time_derivative(&self, [_, sin]: Drive) -> [f64; 4] {
         [0.0, -self.bare.omega * sin / self.bare.m1, 0.0, 0.0]
-    }
-
-    /// `[E1, dE1/dt, d²E1/dt²]` of the primary structure in J, W, W/s (see [`Bare::primary_energy_rates`]);
-    /// here `G = P cos ωt - c1 v1 + c2 (v2 - v1) + k2 (x2 - x1 - D) - F_con(z1) + F_con(z2)`.
-    #[inline]
-    pub fn primary_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        let [z1, z2] = self.rapprochement(y);
-        let contact = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
-        let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
-        let (drive, y) = (drive.map(f64x4::splat), y.map(f64x4::splat));
-        let rates = self.primary_energy_rates_under(&drive, &y, f64x4::splat(contact), f64x4::splat(slope));
-        rates.map(|rate| rate.to_array()[0])
-    }
-
-    /// [`Self::primary_energy_rates`] of four moments side by side at which the damper touches no wall.
-    #[inline(always)]
-    pub fn primary_energy_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.primary_energy_rates_under(drive, y, f64x4::ZERO, f64x4::ZERO)
-    }
-
-    /// Both of the above, from the net contact force on the damper, N, and the sum of the slopes of both forces, N/m.
-    #[inline(always)]
-    fn primary_energy_rates_under(
-        &self,
-        &[cos, sin]: &[f64x4; 2],
-        &[x1, v1, x2, v2]: &[f64x4; 4],
-        contact: f64x4,
-        contact_slope: f64x4,
-    ) -> [f64x4; 3] {
-        let Bare { m1, c1, k1, omega, .. } = self.bare;
-        let (stretch, stretch_rate) = (x2 - x1 - self.d, v2 - v1);
-        let on_damper = contact - stretch_rate * self.c2 - stretch * self.k2;
-        let g = cos - v1 * c1 - on_damper;
-        let (a1, a2) = ((g - x1 * k1) / m1, on_damper / self.m2);
-        let on_damper_rate = -contact_slope * stretch_rate - (a2 - a1) * self.c2 - stretch_rate * self.k2;
-        let g_rate = sin * -omega - a1 * c1 - on_damper_rate;
-        [(v1 * v1 * m1 + x1 * x1 * k1) * 0.5, v1 * g, a1 * g + v1 * g_rate]
-    }
-
-    /// The paper's damper energy `E2 = (m2 v2² + k2 (x2 - D)²) / 2` with its first two time derivatives, in J, W, W/s.
-    ///
-    /// Not the energy the damper really holds: its spring is stretched by `x2 - x1 - D` (see [`Self::total_energy`]).
-    #[inline]
-    pub fn damper_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        let &[_, v1, x2, v2] = y;
-        let [_, a1, _, a2] = self.derivative(drive, y);
-        let [z1, z2] = self.rapprochement(y);
-        let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
-        let jerk = (-(slope + self.k2) * (v2 - v1) - self.c2 * (a2 - a1)) / self.m2;
-        let (m2, k2, x) = (self.m2, self.k2, x2 - self.d);
-        let net = m2 * a2 + k2 * x;
-        [0.5 * (m2 * v2 * v2 + k2 * x * x), v2 * net, a2 * net + v2 * (m2 * jerk + k2 * v2)]
-    }
-
-    /// `[m2, k2]`: the weights of `v2²` and `(x2 - D)²` in twice the paper's damper energy.
-    pub fn damper_energy_weights(&self) -> [f64; 2] {
-        [self.m2, self.k2]
-    }
-
-    /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².
-    #[inline]
-    pub fn stroke_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        let [v1, a1, v2, a2] = self.derivative(drive, y);
-        [y[2] - y[0], v2 - v1, a2 - a1]
-    }
-
-    /// True mechanical energy, J: kinetic, both springs (the damper's by its own stretch), and `(2/5) K z^(5/2)` a contact.
-    ///
-    /// Constant when `P = c1 = c2 = 0`.
-    pub fn total_energy(&self, y: &[f64; 4]) -> f64 {
-        let &[x1, v1, x2, v2] = y;
-        let [z1, z2] = self.rapprochement(y);
-        let stretch = x2 - x1 - self.d;
-        self.bare.primary_energy(x1, v1)
-            + 0.5 * (self.m2 * v2 * v2 + self.k2 * stretch * stretch)
-            + hertz_energy(self.hertz[0], z1)
-            + hertz_energy(self.hertz[1], z2)
-    }
-
-    /// Momentum `m1 v1 + m2 v2`, kg·m/s. Constant when `P = c1 = k1 = 0`.
-    pub fn momentum(&self, y: &[f64; 4]) -> f64 {
-        self.bare.m1 * y[1] + self.m2 * y[3]
     }
 
     /// The numbers of the steady response: `(m2, k2, c2)`.

@@ -129,7 +129,7 @@ fn exact_rates_of_the_observed_quantities() {
         let system = numbers.coupled();
         assert_rates(&system, "E1", |drive, y| system.primary_energy_rates(drive, y));
         assert_rates(&system, "E2", |drive, y| system.damper_energy_rates(drive, y));
-        assert_rates(&system, "r", |drive, y| system.stroke_rates(drive, y));
+        assert_rates(&system, "r", |drive, y| system.relative_position_rates(drive, y));
     }
 }
 

@@ -170,6 +170,9 @@ impl<S: Segment<4>> Segment<4> for Tail<'_, S> {
     fn at_time(&self, t: f64) -> Knot<4> {
         self.whole.at_time(t)
     }
+    fn in_flight(&self) -> bool {
+        self.whole.in_flight()
+    }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, sharp: bool) -> Option<f64> {
         self.whole.quintic_error(form, ends, h, sharp)
     }

@@ -4,6 +4,7 @@ pub use crate::peak::Peak;
 pub use crate::quantity::{BareEnergy, DamperEnergy, Form, PrimaryEnergy, Quantity, RelativePosition};
 use crate::steps::Steps;
 use retune_model::{Drive, Side};
+use wide::f64x4;
 
 /// A moment of the motion.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +19,19 @@ pub struct Knot<const N: usize> {
     pub clock: [f64; 2],
 }
 
+impl<const N: usize> Knot<N> {
+    /// A quantity with its first two time derivatives at this moment, of flight or not.
+    #[inline(always)]
+    pub fn rates(&self, quantity: &impl Quantity<N>, in_flight: bool) -> [f64; 3] {
+        if in_flight {
+            let (drive, y) = (self.drive.map(f64x4::splat), self.y.map(f64x4::splat));
+            quantity.rates_in_flight(&drive, &y).map(|lanes| lanes.to_array()[0])
+        } else {
+            quantity.rates(self.drive, &self.y)
+        }
+    }
+}
+
 /// A piece of the motion on which it is smooth in its own coordinate `θ`, from 0 to `length`.
 pub trait Segment<const N: usize> {
     /// First and last moment.
@@ -28,6 +42,10 @@ pub trait Segment<const N: usize> {
     fn at(&self, theta: f64) -> Knot<N>;
     /// The moment at time `t` (s) inside the piece.
     fn at_time(&self, t: f64) -> Knot<N>;
+    /// Whether no wall pushes in it, not even where rounding has left an end of it inside one.
+    fn in_flight(&self) -> bool {
+        false
+    }
     /// How far a quantity may leave the quintic that meets its value, slope and curvature (with respect to `θ`) at two places `h`
     /// apart: `h⁶/46080` times a bound on its sixth derivative between them; a `sharp` bound may cost more. Infinite where they are
     /// too far apart to say; `None` for a motion that is not known well enough to say.

@@ -18,7 +18,8 @@ pub struct Peak<Q> {
     quantity: Q,
     record: Extreme,
     cutoff: f64,
-    last: Option<(f64, [f64; 3])>,
+    /// Time and rates at the end of the latest piece, and whether these are rates of flight.
+    last: Option<(f64, bool, [f64; 3])>,
     /// Halvings left in the segment that is searched.
     halvings: u32,
     /// Whether its sharp bound is in use.
@@ -162,7 +163,7 @@ impl<Q> Peak<Q> {
         Q: Quantity<N>,
     {
         let knot = segment.at(theta);
-        (theta, knot, in_theta(self.quantity.rates(knot.drive, &knot.y), knot.clock))
+        (theta, knot, in_theta(knot.rates(&self.quantity, segment.in_flight()), knot.clock))
     }
 
     fn quintic_error<const N: usize>(
@@ -222,17 +223,17 @@ where
 {
     #[inline(always)]
     fn segment(&mut self, segment: &impl Segment<N>) {
-        let [a, b] = segment.ends();
+        let ([a, b], in_flight) = (segment.ends(), segment.in_flight());
         let rates_a = match self.last {
-            Some((t, rates)) if t == a.t => rates,
+            Some((t, flown, rates)) if t == a.t && flown == in_flight => rates,
             _ => {
-                let rates = self.quantity.rates(a.drive, &a.y);
+                let rates = a.rates(&self.quantity, in_flight);
                 note(&mut self.record, rates[0], a.t);
                 rates
             }
         };
-        let rates_b = self.quantity.rates(b.drive, &b.y);
-        self.last = Some((b.t, rates_b));
+        let rates_b = b.rates(&self.quantity, in_flight);
+        self.last = Some((b.t, in_flight, rates_b));
         note(&mut self.record, rates_b[0], b.t);
         let from = (0.0, *a, in_theta(rates_a, a.clock));
         let to = (segment.length(), *b, in_theta(rates_b, b.clock));
@@ -266,8 +267,8 @@ where
     fn steps(&mut self, steps: &Steps<'_, N>) {
         let (from, to) = (steps.from(), steps.ends());
         let first = match self.last {
-            Some((t, rates)) if t == from.t => rates,
-            _ => self.quantity.rates(from.drive, &from.y),
+            Some((t, true, rates)) if t == from.t => rates,
+            _ => from.rates(&self.quantity, true),
         };
         let ends = self.quantity.rates_in_flight(&to.drive, &to.y);
         let begins = [0, 1, 2].map(|order| shifted(first[order], ends[order]));
@@ -276,7 +277,7 @@ where
         let remainder = QUINTIC * h.powi(6) * sixth;
         let highest = highest(quintic(h, begins, ends), f64x4::splat(remainder));
         let last = steps.count() - 1;
-        self.last = Some((steps.time(last + 1), ends.map(|lanes| lanes.to_array()[last])));
+        self.last = Some((steps.time(last + 1), true, ends.map(|lanes| lanes.to_array()[last])));
         // The values at both ends are among the coefficients.
         let dropped = highest.simd_le(f64x4::splat(self.record.value)).to_bitmask();
         let wanted = !dropped & ((2 << last) - 1);

@@ -11,7 +11,7 @@ pub trait Quantity<const N: usize> {
     /// Its value with its first two time derivatives. The value itself must depend on the state alone: between the ends of a
     /// [`Path`](crate::observe::Path) it is asked for without the force.
     fn rates(&self, drive: Drive, y: &[f64; N]) -> [f64; 3];
-    /// The same at moments of flight, side by side.
+    /// The same at moments of flight side by side, where no wall pushes even if rounding has left the damper inside one.
     #[inline(always)]
     fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 3] {
         let mut rates = [f64x4::ZERO; 3];
@@ -262,6 +262,10 @@ impl Quantity<4> for DamperEnergy<'_> {
     fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
         self.system.damper_energy_rates(drive, y)
     }
+    #[inline(always)]
+    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.system.damper_energy_rates_in_flight(drive, y)
+    }
     fn form(&self) -> &Form<4> {
         &self.form
     }
@@ -285,7 +289,11 @@ impl<'a> RelativePosition<'a> {
 impl Quantity<4> for RelativePosition<'_> {
     #[inline(always)]
     fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        self.system.stroke_rates(drive, y).map(|rate| self.sign * rate)
+        self.system.relative_position_rates(drive, y).map(|rate| self.sign * rate)
+    }
+    #[inline(always)]
+    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.system.relative_position_rates_in_flight(drive, y).map(|rate| rate * self.sign)
     }
     fn form(&self) -> &Form<4> {
         &self.form

@@ -52,6 +52,9 @@ impl<const N: usize> Segment<N> for Step<'_, N> {
     fn at_time(&self, t: f64) -> Knot<N> {
         Knot { t, ..self.at(t - self.ends[0].t) }
     }
+    fn in_flight(&self) -> bool {
+        true
+    }
     /// By the energy of the motion; sharply, by its Taylor polynomial over the step.
     fn quintic_error(&self, form: &Form<N>, _ends: [&Knot<N>; 2], h: f64, sharp: bool) -> Option<f64> {
         Some(if sharp {

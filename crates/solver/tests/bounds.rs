@@ -36,7 +36,7 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
         // The last digits of a contact's ends are another computation's: the piece is taken between moments of its own.
         let (from, to) = (0.001 * h, 0.999 * h);
         let [begin, end] = [from, to].map(|theta| segment.at(theta));
-        let [a, b] = [&begin, &end].map(|knot| rates(&self.quantity, knot));
+        let [a, b] = [&begin, &end].map(|knot| rates(&self.quantity, knot, segment.in_flight()));
         let form = self.quantity.form();
         let size = form.size(&begin.y).max(form.size(&end.y));
         let bounds = [false, true]

@@ -75,7 +75,7 @@ fn exact_grazes_by_shooting_on_the_distance() {
     let state = linear.after(0.0, [0.0, 0.0, numbers.d, 0.0], at);
     let turn = {
         let shifted = [state[0], state[1], state[2] - numbers.d + reach, state[3]];
-        system.stroke_rates(system.drive(at), &shifted)[2]
+        system.relative_position_rates(system.drive(at), &shifted)[2]
     };
     assert!(turn > 1.0, "{turn}");
     for speed in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {

@@ -210,28 +210,46 @@ fn apart(a: f64, b: f64, size: f64) -> f64 {
     }
 }
 
-/// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where their final states part, so that the
-/// motion cannot be predicted so far, or where DOP853 gives up.
-fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
-    let window = Window { from, to: 20.0 };
+/// What both methods make of a scene, or `None` where DOP853 gives up.
+fn both(numbers: &Numbers, window: Window) -> Option<[Response; 2]> {
     let [a, b] = [(Method::Hybrid, 1e-12), (Method::Dop853, 1e-12)].map(|(method, rtol)| {
         let settings =
             Settings { method, rtol, atol: 1e-3 * rtol, max_steps: 2_000_000, ..Settings::default() };
         simulate(&numbers.scene(), window, &settings)
     });
-    let a = a.unwrap_or_else(|error| panic!("{error}: {numbers:?}"));
-    let b = b.ok()?;
-    let speeds = [1, 3].map(|i| apart(a.final_state[i], b.final_state[i], 1.0));
-    let positions = [0, 2].map(|i| apart(a.final_state[i], b.final_state[i], 1.0));
-    if speeds.into_iter().chain(positions).any(|difference| difference > 1e-10) {
-        return None;
-    }
+    Some([a.unwrap_or_else(|error| panic!("{error}: {numbers:?}")), b.ok()?])
+}
+
+/// Whether two runs end in the same state.
+fn agree([a, b]: &[Response; 2]) -> bool {
+    (0..4).all(|i| apart(a.final_state[i], b.final_state[i], 1.0) <= 1e-10)
+}
+
+/// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where the motion cannot be predicted so far,
+/// so that states part, or where DOP853 gives up. Motions that part may meet again (scenes 36673 and 45169 part to 6e-9 and do):
+/// where a quantity differs, states are compared at every second.
+fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
+    let runs = both(numbers, Window { from, to: 20.0 })?;
+    let differences = differences(&runs);
+    let part = || {
+        (1..20).any(|to| {
+            !both(numbers, Window { from: 0.0, to: f64::from(to) }).is_some_and(|runs| agree(&runs))
+        })
+    };
+    let told = agree(&runs) && !(differences.iter().any(|d| *d > ALIKE) && part());
+    told.then(|| (differences, runs[0].clone()))
+}
+
+/// By how much the hybrid and DOP853 may differ.
+const ALIKE: f64 = 1e-8;
+
+fn differences([a, b]: &[Response; 2]) -> [f64; 7] {
     let force = b.force_max[0].max(b.force_max[1]).max(1.0);
     let stroke = b.spring_deflection_max;
     let late = apart(a.e1_max.time, b.e1_max.time, 1.0);
     // Where two maxima are equally high, or one is flat, its time says nothing.
     let told_by_height = apart(a.e1_max.value, b.e1_max.value, b.e1_max.value) < 1e-13 || late < 1e-4;
-    let differences = [
+    [
         apart(a.e1_max.value, b.e1_max.value, b.e1_max.value),
         apart(a.e2_max.value, b.e2_max.value, b.e2_max.value),
         apart(a.relative_displacement_max, b.relative_displacement_max, stroke),
@@ -239,8 +257,7 @@ fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
         apart(a.force_max[0], b.force_max[0], force).max(apart(a.force_max[1], b.force_max[1], force)),
         f64::from(u8::from(a.impacts != b.impacts)),
         if told_by_height { 0.0 } else { late },
-    ];
-    Some((differences, a))
+    ]
 }
 
 /// The number of scenes to draw.
@@ -310,7 +327,7 @@ fn reference_the_hybrid_sees_what_dop853_sees() {
         .collect();
     let contact_scenes = compared.iter().filter(|(_, _, impacts)| *impacts > 0).count();
     let impacts: u64 = compared.iter().map(|(_, _, impacts)| impacts).sum();
-    let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > 1e-8)).collect();
+    let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > ALIKE)).collect();
     println!(
         "\n| hybrid beside DOP853, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
         compared.len(),

@@ -51,8 +51,8 @@ pub fn assert_states(found: [f64; 4], expected: [f64; 4], [x, v]: [f64; 2], tole
 }
 
 /// Value, slope and curvature with respect to `θ`.
-pub fn rates(quantity: &impl Quantity<4>, knot: &Knot<4>) -> [f64; 3] {
-    let [value, slope, curvature] = quantity.rates(knot.drive, &knot.y);
+pub fn rates(quantity: &impl Quantity<4>, knot: &Knot<4>, in_flight: bool) -> [f64; 3] {
+    let [value, slope, curvature] = knot.rates(quantity, in_flight);
     let [rate, bend] = knot.clock;
     [value, slope * rate, curvature * rate * rate + slope * bend]
 }

@@ -1,0 +1,161 @@
+//! Energies, momentum and relative displacement of the coupled system, with the rates at which they change.
+
+use super::Coupled;
+use crate::{Bare, Drive, hertz_energy, hertz_force, hertz_force_slope};
+use wide::f64x4;
+
+impl Coupled {
+    /// `[E1, dE1/dt, d²E1/dt²]` of the primary structure in J, W, W/s (see [`Bare::primary_energy_rates`]);
+    /// here `G = P cos ωt - c1 v1 + c2 (v2 - v1) + k2 (x2 - x1 - D) - F_con(z1) + F_con(z2)`.
+    #[inline]
+    pub fn primary_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        at_one_moment(drive, y, |drive, y| self.primary_energy_rates_under(drive, y, self.wall_forces(y)))
+    }
+
+    /// [`Self::primary_energy_rates`] of four moments side by side at which the damper touches no wall.
+    #[inline(always)]
+    pub fn primary_energy_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.primary_energy_rates_under(drive, y, WallForces::NONE)
+    }
+
+    #[inline(always)]
+    fn primary_energy_rates_under(
+        &self,
+        drive: &[f64x4; 2],
+        y: &[f64x4; 4],
+        walls: WallForces,
+    ) -> [f64x4; 3] {
+        let &[x1, v1, ..] = y;
+        let Bare { m1, k1, .. } = self.bare;
+        let Accelerations { a: [a1, _], force: [g, _], force_rate: [g_rate, _] } =
+            self.accelerations(drive, y, walls);
+        [(v1 * v1 * m1 + x1 * x1 * k1) * 0.5, v1 * g, a1 * g + v1 * g_rate]
+    }
+
+    /// The paper's damper energy `E2 = (m2 v2² + k2 (x2 - D)²) / 2` with its first two time derivatives, in J, W, W/s.
+    ///
+    /// Not the energy the damper really holds: its spring is stretched by `x2 - x1 - D` (see [`Self::total_energy`]).
+    #[inline]
+    pub fn damper_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        at_one_moment(drive, y, |drive, y| self.damper_energy_rates_under(drive, y, self.wall_forces(y)))
+    }
+
+    /// [`Self::damper_energy_rates`] of four moments side by side at which the damper touches no wall.
+    #[inline(always)]
+    pub fn damper_energy_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.damper_energy_rates_under(drive, y, WallForces::NONE)
+    }
+
+    #[inline(always)]
+    fn damper_energy_rates_under(&self, drive: &[f64x4; 2], y: &[f64x4; 4], walls: WallForces) -> [f64x4; 3] {
+        let &[_, _, x2, v2] = y;
+        let Accelerations { a: [_, a2], force: [_, force], force_rate: [_, rate] } =
+            self.accelerations(drive, y, walls);
+        let (m2, k2, x) = (self.m2, self.k2, x2 - self.d);
+        let net = force + x * k2;
+        [(v2 * v2 * m2 + x * x * k2) * 0.5, v2 * net, a2 * net + v2 * (rate + v2 * k2)]
+    }
+
+    /// `[m2, k2]`: the weights of `v2²` and `(x2 - D)²` in twice the paper's damper energy.
+    pub fn damper_energy_weights(&self) -> [f64; 2] {
+        [self.m2, self.k2]
+    }
+
+    /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².
+    #[inline]
+    pub fn relative_position_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+        at_one_moment(drive, y, |drive, y| self.relative_position_rates_under(drive, y, self.wall_forces(y)))
+    }
+
+    /// [`Self::relative_position_rates`] of four moments side by side at which the damper touches no wall.
+    #[inline(always)]
+    pub fn relative_position_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.relative_position_rates_under(drive, y, WallForces::NONE)
+    }
+
+    #[inline(always)]
+    fn relative_position_rates_under(
+        &self,
+        drive: &[f64x4; 2],
+        y: &[f64x4; 4],
+        walls: WallForces,
+    ) -> [f64x4; 3] {
+        let &[x1, v1, x2, v2] = y;
+        let Accelerations { a: [a1, a2], .. } = self.accelerations(drive, y, walls);
+        [x2 - x1, v2 - v1, a2 - a1]
+    }
+
+    /// Equation (1) and its time derivative.
+    #[inline(always)]
+    fn accelerations(
+        &self,
+        &[cos, sin]: &[f64x4; 2],
+        &[x1, v1, x2, v2]: &[f64x4; 4],
+        walls: WallForces,
+    ) -> Accelerations {
+        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let (stretch, stretch_rate) = (x2 - x1 - self.d, v2 - v1);
+        let on_damper = walls.net - stretch_rate * self.c2 - stretch * self.k2;
+        let g = cos - v1 * c1 - on_damper;
+        let (a1, a2) = ((g - x1 * k1) / m1, on_damper / self.m2);
+        let on_damper_rate = -walls.slope * stretch_rate - (a2 - a1) * self.c2 - stretch_rate * self.k2;
+        let g_rate = sin * -omega - a1 * c1 - on_damper_rate;
+        Accelerations { a: [a1, a2], force: [g, on_damper], force_rate: [g_rate, on_damper_rate] }
+    }
+
+    /// What both walls do to the damper.
+    #[inline(always)]
+    fn wall_forces(&self, y: &[f64x4; 4]) -> WallForces {
+        let [z1, z2] = self.rapprochement(&y.map(|lanes| lanes.to_array()[0]));
+        let net = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
+        let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
+        WallForces { net: f64x4::splat(net), slope: f64x4::splat(slope) }
+    }
+
+    /// True mechanical energy, J: kinetic, both springs (the damper's by its own stretch), and `(2/5) K z^(5/2)` a contact.
+    ///
+    /// Constant when `P = c1 = c2 = 0`.
+    pub fn total_energy(&self, y: &[f64; 4]) -> f64 {
+        let &[x1, v1, x2, v2] = y;
+        let [z1, z2] = self.rapprochement(y);
+        let stretch = x2 - x1 - self.d;
+        self.bare.primary_energy(x1, v1)
+            + 0.5 * (self.m2 * v2 * v2 + self.k2 * stretch * stretch)
+            + hertz_energy(self.hertz[0], z1)
+            + hertz_energy(self.hertz[1], z2)
+    }
+
+    /// Momentum `m1 v1 + m2 v2`, kg·m/s. Constant when `P = c1 = k1 = 0`.
+    pub fn momentum(&self, y: &[f64; 4]) -> f64 {
+        self.bare.m1 * y[1] + self.m2 * y[3]
+    }
+}
+
+/// What walls do to the damper: the net contact force on it, N, and the sum of the slopes of both forces, N/m.
+#[derive(Clone, Copy)]
+struct WallForces {
+    net: f64x4,
+    slope: f64x4,
+}
+
+impl WallForces {
+    const NONE: Self = Self { net: f64x4::ZERO, slope: f64x4::ZERO };
+}
+
+/// Of the structure and of the damper: the acceleration, the sum of all forces but its own spring's on the structure and of all
+/// forces on the damper, and the rates of these sums.
+struct Accelerations {
+    a: [f64x4; 2],
+    force: [f64x4; 2],
+    force_rate: [f64x4; 2],
+}
+
+/// What is written for moments side by side, at one.
+#[inline(always)]
+fn at_one_moment(
+    drive: Drive,
+    y: &[f64; 4],
+    rates: impl Fn(&[f64x4; 2], &[f64x4; 4]) -> [f64x4; 3],
+) -> [f64; 3] {
+    rates(&drive.map(f64x4::splat), &y.map(f64x4::splat)).map(|lanes| lanes.to_array()[0])
+}
