@@ -1,11 +1,13 @@
 //! What may be typed: commands, arguments and their help.
 
-use crate::optimize::shard::Shard;
-use crate::results::{Begin, Order};
-use crate::study::{Setting, SettingError};
+use crate::screen::Screen;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_solver::{Contacts, Method};
+use retune_store::Begin;
+use retune_study::{Setting, SettingError};
+use retune_workbench::Request;
+use retune_workbench::tune::shard::Shard;
 use std::path::{Path, PathBuf};
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
@@ -32,7 +34,7 @@ pub enum Command {
     /// Run one scene and say what happened
     Simulate(Simulate),
     /// Read designs from standard input, one a line, and answer each with the value that `optimize` makes small
-    #[command(after_help = crate::evaluate::PROTOCOL)]
+    #[command(after_help = retune_workbench::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
@@ -115,14 +117,22 @@ pub struct Running {
 }
 
 impl Running {
-    /// What is asked of `command` with a study file.
-    pub fn order(&self, command: &'static str, study: &Path) -> Order {
+    /// What is asked of a job with a study file, and where it is shown.
+    pub fn request(&self, study: &Path) -> (Request, Screen) {
         let begin = match (self.resume, self.restart) {
             (true, _) => Begin::Resume,
             (false, true) => Begin::Restart,
             (false, false) => Begin::New,
         };
-        Order { command, study: study.to_owned(), begin, replace: self.replace }
+        let Self { out, threads, replace, quiet, .. } = self;
+        let request = Request {
+            study: study.to_owned(),
+            out: out.clone(),
+            threads: *threads,
+            begin,
+            replace: *replace,
+        };
+        (request, Screen::new(*quiet))
     }
 }
 

@@ -1,5 +1,7 @@
 //! What the exit code of the program says. One list: for the code, `--help` and the README.
 
+use retune_workbench::Error;
+
 /// The computation failed; results do not hold (`verify`); a line had no value (`evaluate`).
 pub const FAILED: u8 = 1;
 /// What was given is wrong, or a place cannot be read or written.
@@ -11,6 +13,31 @@ pub const UNCHECKED: u8 = 4;
 /// Stopped by Ctrl-C or SIGTERM; `--resume` goes on.
 #[cfg(unix)]
 pub const STOPPED: u8 = 130;
+
+/// The exit code of a command that ends without its result: what the user can mend is [`WRONG`].
+pub fn code_of(error: &Error) -> u8 {
+    match error {
+        Error::Store(_)
+        | Error::Study(_)
+        | Error::Setting(_)
+        | Error::Rule { .. }
+        | Error::Interval { .. }
+        | Error::Part { .. }
+        | Error::MissingParts { .. } => WRONG,
+        Error::Infeasible { .. } => INFEASIBLE,
+        Error::NotChecked { .. } => UNCHECKED,
+        Error::Threads(_)
+        | Error::Run(_)
+        | Error::Atlas(_)
+        | Error::Unusable(_)
+        | Error::NoStart(_)
+        | Error::Global { .. }
+        | Error::Search { .. }
+        | Error::Figure { .. }
+        | Error::Lines { .. }
+        | Error::NotHeld { .. } => FAILED,
+    }
+}
 
 /// The list for `--help`.
 pub const HELP: &str = "\
@@ -25,6 +52,28 @@ Exit codes:
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What the user can mend has exit code 2, what failed in the computation 1; limits that are not kept, and what cannot be
+    /// checked, have their own.
+    #[test]
+    fn contract_exit_codes_say_whose_fault_it_is() {
+        let source = || std::io::Error::from(std::io::ErrorKind::StorageFull);
+        let place = || std::path::PathBuf::from("results/ssvi");
+        let name = || "ssvi".to_owned();
+        let codes = [
+            (Error::Store(retune_store::Error::Output { path: place(), source: source() }), WRONG),
+            (Error::Store(retune_store::Error::Busy { path: place(), holder: None }), WRONG),
+            (Error::Rule { name: name(), rule: retune_study::Rule::NoOptimize }, WRONG),
+            (Error::Infeasible { name: name(), words: String::new() }, INFEASIBLE),
+            (Error::NotChecked { path: place(), problem: String::new() }, UNCHECKED),
+            (Error::NotHeld { path: place(), problem: String::new() }, FAILED),
+            (Error::Lines { failed: 1, lines: 24 }, FAILED),
+            (Error::Run(retune_solver::SolverError::NonFinite { t: 1.5 }), FAILED),
+        ];
+        for (error, code) in codes {
+            assert_eq!(code_of(&error), code, "{error}");
+        }
+    }
 
     #[test]
     fn contract_every_code_stands_in_the_help_and_in_the_readme() {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const TELL_EVERY: Duration = Duration::from_secs(30);
 
 /// The progress of a stage.
-pub struct Progress {
+pub struct Stage {
     bar: ProgressBar,
     count: Arc<Count>,
     /// Whether lines take the place of the bar.
@@ -31,7 +31,7 @@ struct Count {
     told: AtomicU64,
 }
 
-impl Progress {
+impl Stage {
     /// That of `all` evaluations; nothing is shown if `quiet`.
     pub fn new(what: &'static str, all: u64, quiet: bool) -> Self {
         let [done, known, told] = [0; 3].map(AtomicU64::new);
@@ -39,14 +39,14 @@ impl Progress {
         let bar = if quiet { ProgressBar::hidden() } else { bar(&count) };
         Self { bar, count, lines: !quiet && !std::io::stderr().is_terminal() }
     }
+}
 
-    /// One more is to be answered from before, in no time; [`Self::inc`] counts it, too.
-    pub fn known(&self) {
+impl retune_workbench::Progress for Stage {
+    fn known(&self) {
         self.count.known.fetch_add(1, Relaxed);
     }
 
-    /// So many more are done.
-    pub fn inc(&self, more: u64) {
+    fn inc(&self, more: u64) {
         self.count.done.fetch_add(more, Relaxed);
         self.bar.inc(more);
         if let Some(line) = self.lines.then(|| self.count.tell(self.count.begun.elapsed())).flatten() {
@@ -54,8 +54,7 @@ impl Progress {
         }
     }
 
-    /// All is done.
-    pub fn finish_and_clear(&self) {
+    fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }

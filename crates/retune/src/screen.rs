@@ -1,7 +1,7 @@
 //! What appears on the screen: results and the log on standard output, errors and progress on standard error.
 
-use crate::error::Error;
-use crate::progress::Progress;
+use crate::{interrupt, progress};
+use retune_workbench::{Error, Observer, Progress};
 use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -28,22 +28,27 @@ impl Screen {
         let mut out = std::io::stdout().lock();
         match writeln!(out, "{}", visible(&text.to_string())).and_then(|()| out.flush()) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-            Err(source) => Err(Error::Output { path: "standard output".into(), source }),
+            Err(source) => Err(retune_store::Error::Output { path: "standard output".into(), source }.into()),
             Ok(()) => Ok(()),
         }
     }
+}
 
-    /// Shows a line of the log.
-    ///
-    /// # Errors
-    /// As [`Self::line`].
-    pub fn log(&self, text: impl Display) -> Result<(), Error> {
-        if self.quiet { Ok(()) } else { self.line(text) }
+impl Observer for Screen {
+    fn result(&self, line: &str) -> Result<(), Error> {
+        self.line(line)
     }
-
-    /// The progress over `count` evaluations, with rate and time left.
-    pub fn progress(&self, what: &'static str, count: u64) -> Progress {
-        Progress::new(what, count, self.quiet)
+    fn log(&self, line: &str) -> Result<(), Error> {
+        if self.quiet { Ok(()) } else { self.line(line) }
+    }
+    fn warn(&self, words: &str) {
+        say("warning", words);
+    }
+    fn progress(&self, stage: &'static str, count: u64) -> Box<dyn Progress> {
+        Box::new(progress::Stage::new(stage, count, self.quiet))
+    }
+    fn resumable(&self) {
+        interrupt::say_how_to_go_on();
     }
 }
 
@@ -52,9 +57,9 @@ pub fn show_error(error: &Error) {
     say("error", &error.to_string());
 }
 
-/// Shows what a person should know of a command that goes on, however quiet it is asked to be.
-pub fn warn(words: &str) {
-    say("warning", words);
+/// Shows a line about an input that has no value; where that cannot be written, the answer must do.
+pub fn complain(words: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", visible(words));
 }
 
 /// Writes to standard error; where that cannot be, nothing can be done about it.

@@ -1,0 +1,119 @@
+//! Figure 3: the curves of the largest energy for several stiffnesses.
+
+use super::family::{Family, Peak};
+use super::item::{Grid, Item, numbers};
+use super::keeping::statements;
+use super::plan::{Plan, stiffness};
+use retune_figures::sheet::{BLUE, Chart, Drawing, GREEN, Key, Layer, ORANGE, PURPLE, SKY, VERMILION, sheet};
+use retune_workbench::Error;
+
+const NAMES: [&str; 3] = ["without damper", "with SSVI NES", "with TMD"];
+/// One colour and dash for each stiffness; the tuned one is red, as in the paper.
+const OTHERS: [(&str, &str); 5] =
+    [(BLUE, ""), (SKY, "18 8"), (GREEN, "6 6"), (PURPLE, "22 6 6 6"), (ORANGE, "12 6")];
+
+/// Makes Figure 3.
+///
+/// # Errors
+/// A run fails.
+pub fn figure3(plan: &Plan) -> Result<Item, Error> {
+    let families = Family::all(plan, "figure 3")?;
+    let paper = "E1max against the frequency for several stiffnesses k1, dampers tuned at k1 = 3.95e4 N/m (red): without damper, with SSVI NES, with TMD.";
+    let mut item = Item::new(
+        "figure3",
+        "Figure 3. Does a damper keep its tuning?",
+        paper,
+        plan.made_by("One run from rest at each frequency."),
+    );
+    item.picture(
+        "figure3",
+        picture(plan, &families),
+        "Largest energy of the primary structure after the transient. The tuned stiffness is red.",
+    );
+    let header = "k1_N_per_m,omega_rad_per_s,E1max_none_J,E1max_SSVI_J,E1max_TMD_J,E2max_SSVI_J,E2max_TMD_J,impacts_PS,impacts_obstacle";
+    let rows = families.iter().flat_map(|f| {
+        (0..f.points[0].len()).map(move |i| {
+            let [none, ssvi, tmd] = [0, 1, 2].map(|s| f.points[s][i]);
+            let [ps, obstacle] = ssvi.impacts.map(|n| n as f64);
+            vec![
+                f.k1,
+                none.value,
+                none.e1_max,
+                ssvi.e1_max,
+                tmd.e1_max,
+                ssvi.e2_max,
+                tmd.e2_max,
+                ps,
+                obstacle,
+            ]
+        })
+    });
+    item.data.push(("figure3.csv".into(), numbers(header, rows)));
+    item.grids.push(highest(&families));
+    statements(plan, &families, &mut item);
+    Ok(item)
+}
+
+fn picture(plan: &Plan, families: &[Family]) -> Drawing {
+    let style =
+        |i: usize, k1: f64| if k1 == plan.tuned() { (VERMILION, "") } else { OTHERS[i % OTHERS.len()] };
+    let top = families.iter().map(|f| f.highest(0).energy).fold(0.0, f64::max) * 1.06;
+    let charts: Vec<Chart> = (0..3)
+        .map(|scene| Chart {
+            title: format!("({}) {}", ["a", "b", "c"][scene], NAMES[scene]),
+            labels: ["ω, rad/s".into(), "E₁max, J".into()],
+            ranges: [
+                (plan.file.omega.from, plan.file.omega.to),
+                (0.0, if scene == 0 { top } else { 0.7 * top }),
+            ],
+            log: false,
+            layers: families
+                .iter()
+                .enumerate()
+                .map(|(i, family)| {
+                    let (colour, dash) = style(i, family.k1);
+                    let points = family.points[scene].iter().map(|p| (p.value, p.e1_max)).collect();
+                    Layer::Line { points, colour, width: if colour == VERMILION { 5.0 } else { 3.5 }, dash }
+                })
+                .collect(),
+        })
+        .collect();
+    let words: Vec<String> = families.iter().map(|f| format!("k₁ = {} N/m", stiffness(f.k1))).collect();
+    let legend: Vec<(Key, &str)> = words
+        .iter()
+        .enumerate()
+        .map(|(i, words)| {
+            let (colour, dash) = style(i, families[i].k1);
+            (Key::Line(colour, dash), words.as_str())
+        })
+        .collect();
+    sheet(&charts, 1, 480.0, &legend)
+}
+
+fn highest(families: &[Family]) -> Grid {
+    let head = [
+        "k1, N/m",
+        "ω₀, rad/s",
+        "no damper: E1max, J",
+        "at ω",
+        "SSVI NES: E1max, J",
+        "at ω",
+        "reduced",
+        "TMD: E1max, J",
+        "at ω",
+        "reduced",
+    ];
+    let mut grid = Grid::new("Highest points of the curves", &head);
+    for f in families {
+        let [none, ssvi, tmd] = [0, 1, 2].map(|scene| f.highest(scene));
+        let pair = |p: Peak| [format!("{:.1}", p.energy), format!("{:.2}", p.omega)];
+        let mut row = vec![stiffness(f.k1), format!("{:.3}", f.natural)];
+        row.extend(pair(none));
+        row.extend(pair(ssvi));
+        row.push(format!("{:.2} ×", f.reduction(1)));
+        row.extend(pair(tmd));
+        row.push(format!("{:.2} ×", f.reduction(2)));
+        grid.rows.push(row);
+    }
+    grid
+}

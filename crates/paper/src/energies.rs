@@ -1,0 +1,97 @@
+//! Figure 6: the energies over time at resonance.
+
+use super::item::{Item, Verdict, numbers};
+use super::plan::Plan;
+use retune_figures::sheet::{BLACK, Chart, Key, Layer, ORANGE, VERMILION, sheet};
+use retune_model::Scene;
+use retune_solver::{Rows, Sample, Window, trajectory};
+use retune_workbench::Error;
+
+const INTERVAL: f64 = 0.05;
+
+/// Makes Figure 6.
+///
+/// # Errors
+/// A run fails.
+pub fn figure6(plan: &Plan) -> Result<Item, Error> {
+    let scenes = plan.scenes(plan.tuned())?;
+    let window = Window { from: 0.0, to: plan.window().to };
+    let omega = scenes[1].forcing.frequency.get();
+    let record = |scene: &Scene| -> Result<Vec<Sample>, Error> {
+        let mut samples = Vec::new();
+        trajectory(scene, window, &plan.settings(), Rows::every(INTERVAL), &mut |sample| {
+            samples.push(*sample)
+        })?;
+        Ok(samples)
+    };
+    let [none, ssvi, tmd] = [record(&scenes[0])?, record(&scenes[1])?, record(&scenes[2])?];
+    let mut item = Item::new(
+        "figure6",
+        "Figure 6. Energies over time at resonance",
+        "E1(t) of the structure without damper and with a damper, and E2(t) of the damper, at ω = 6.28 rad/s: (a) SSVI NES, (b) TMD.",
+        plan.made_by(&format!("ω = {omega} rad/s, from rest, shown every {INTERVAL} s.")),
+    );
+    let top = none.iter().map(|s| s.e1).fold(0.0, f64::max) * 1.05;
+    let charts = [("(a) SSVI NES", &ssvi), ("(b) TMD", &tmd)].map(|(title, damper)| {
+        let line = |samples: &[Sample], energy: fn(&Sample) -> f64, colour, width| Layer::Line {
+            points: samples.iter().map(|s| (s.t, energy(s))).collect(),
+            colour,
+            width,
+            dash: "",
+        };
+        Chart {
+            title: title.to_owned(),
+            labels: ["t, s".into(), "E, J".into()],
+            ranges: [(0.0, window.to), (0.0, top)],
+            log: false,
+            layers: vec![
+                line(&none, |s| s.e1, BLACK, 1.2),
+                line(damper, |s| s.e1, VERMILION, 1.6),
+                line(damper, |s| s.e2, ORANGE, 1.6),
+            ],
+        }
+    });
+    let legend = [
+        (Key::Line(BLACK, ""), "E₁, PS without damper"),
+        (Key::Line(VERMILION, ""), "E₁, PS with damper"),
+        (Key::Line(ORANGE, ""), "E₂, damper"),
+    ];
+    item.picture("figure6", sheet(&charts, 1, 520.0, &legend), "Energies from rest.");
+    let rows = none
+        .iter()
+        .zip(&ssvi)
+        .zip(&tmd)
+        .map(|((n, s), t)| vec![(n.t * 1e6).round() / 1e6, n.e1, s.e1, s.e2, t.e1, t.e2]);
+    item.data
+        .push(("figure6.csv".into(), numbers("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J", rows)));
+    let late = |samples: &[Sample], energy: fn(&Sample) -> f64| {
+        samples.iter().filter(|s| s.t >= plan.window().from).map(energy).fold(0.0, f64::max)
+    };
+    let e1 = [late(&none, |s| s.e1), late(&ssvi, |s| s.e1), late(&tmd, |s| s.e1)];
+    let e2 = [late(&ssvi, |s| s.e2), late(&tmd, |s| s.e2)];
+    let share = |e1: f64, e2: f64| retune_model::energy_ratios(e1, e2)[1];
+    item.statement(
+        "Both dampers effectively reduce the maximum energy of the PS at resonance",
+        "The paper gives no number. Holds if the largest energy after the transient is at most half of that without damper, with each damper.",
+        Verdict::of_all(&[e1[1] < 0.5 * e1[0], e1[2] < 0.5 * e1[0]]),
+        format!(
+            "after the transient {:.0} J without damper, {:.0} J with the SSVI NES, {:.0} J with the TMD",
+            e1[0], e1[1], e1[2]
+        ),
+    );
+    item.statement(
+        "The SSVI NES takes energy from the PS somewhat better than the TMD",
+        "Holds if after the transient E1max is the smaller and R2 the larger with the SSVI NES; in part if only one is.",
+        Verdict::of_all(&[e1[1] < e1[2], share(e1[1], e2[0]) > share(e1[2], e2[1])]),
+        format!(
+            "largest E1 {:.0} J against {:.0} J, largest E2 {:.0} J against {:.0} J, R2 {:.2} against {:.2}",
+            e1[1],
+            e1[2],
+            e2[0],
+            e2[1],
+            share(e1[1], e2[0]),
+            share(e1[2], e2[1])
+        ),
+    );
+    Ok(item)
+}

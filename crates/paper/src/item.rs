@@ -1,0 +1,163 @@
+//! A table or figure of the paper, made again: what the paper says, what was found, and a verdict on each statement.
+
+use retune_figures::sheet::Drawing;
+use serde::{Deserialize, Serialize};
+
+/// What becomes of a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// It holds under our settings.
+    Holds,
+    /// It holds in part, or in a sense that the paper does not state.
+    Partly,
+    /// It does not hold under our settings.
+    Fails,
+}
+
+impl Verdict {
+    /// The verdict in words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Partly => "holds in part",
+            Self::Fails => "does not hold",
+        }
+    }
+
+    /// Holds or fails.
+    pub const fn of(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::Fails }
+    }
+
+    /// Holds if all of `parts` do, fails if none does, else holds in part.
+    pub fn of_all(parts: &[bool]) -> Self {
+        match parts.iter().filter(|&&holds| holds).count() {
+            0 => Self::Fails,
+            count if count == parts.len() => Self::Holds,
+            _ => Self::Partly,
+        }
+    }
+}
+
+/// A statement of the paper beside what was found.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Statement {
+    /// The paper's words, or nearly.
+    pub paper: String,
+    /// When it counts as holding, and why then: where the paper has only words, this says what is measured.
+    pub rule: String,
+    /// What becomes of it.
+    pub verdict: Verdict,
+    /// The numbers it rests on.
+    pub found: String,
+}
+
+/// A table to be read.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Grid {
+    /// What it shows.
+    pub caption: String,
+    /// Names and units of its columns.
+    pub head: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Grid {
+    /// An empty table.
+    pub fn new(caption: &str, head: &[&str]) -> Self {
+        Self {
+            caption: caption.to_owned(),
+            head: head.iter().map(|&name| name.to_owned()).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// The table as CSV.
+    pub fn csv(&self) -> String {
+        let quoted = |text: &String| {
+            if text.contains([',', '"']) {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            } else {
+                text.clone()
+            }
+        };
+        let line = |cells: &Vec<String>| cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n";
+        std::iter::once(&self.head).chain(&self.rows).map(line).collect()
+    }
+}
+
+/// A picture with its words.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Picture {
+    /// File name without its ending.
+    pub name: String,
+    /// As SVG.
+    pub drawing: Drawing,
+    /// What there is to see, and how it was made.
+    pub caption: String,
+}
+
+/// A table or figure of the paper, made again.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Item {
+    /// `table1`, `figure4`.
+    pub name: String,
+    /// "Table 1. ..."
+    pub title: String,
+    /// What the paper shows here.
+    pub paper: String,
+    /// The settings that made ours.
+    pub made_by: String,
+    /// Ours.
+    pub pictures: Vec<Picture>,
+    /// Ours.
+    pub grids: Vec<Grid>,
+    /// The paper's statements, one by one.
+    pub statements: Vec<Statement>,
+    /// What a reader should know besides.
+    pub notes: Vec<String>,
+    /// Data files: name and content.
+    pub data: Vec<(String, String)>,
+}
+
+impl Item {
+    /// An item without content.
+    pub fn new(name: &str, title: &str, paper: &str, made_by: String) -> Self {
+        let [name, title, paper] = [name, title, paper].map(str::to_owned);
+        Self {
+            name,
+            title,
+            paper,
+            made_by,
+            pictures: Vec::new(),
+            grids: Vec::new(),
+            statements: Vec::new(),
+            notes: Vec::new(),
+            data: Vec::new(),
+        }
+    }
+
+    /// Adds a picture.
+    pub fn picture(&mut self, name: &str, drawing: impl Into<Drawing>, caption: &str) {
+        let [name, caption] = [name, caption].map(str::to_owned);
+        self.pictures.push(Picture { name, drawing: drawing.into(), caption });
+    }
+
+    /// Adds a statement.
+    pub fn statement(&mut self, paper: &str, rule: &str, verdict: Verdict, found: String) {
+        let [paper, rule] = [paper, rule].map(str::to_owned);
+        self.statements.push(Statement { paper, rule, verdict, found });
+    }
+}
+
+/// Rows of numbers as CSV under `header`.
+pub fn numbers(header: &str, rows: impl IntoIterator<Item = Vec<f64>>) -> String {
+    let mut text = format!("{header}\n");
+    for row in rows {
+        text += &row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,110 @@
+//! The page: every item beside what the paper says, in one file that needs no network.
+
+use super::item::{Grid, Item, Picture, Statement, Verdict};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use retune_figures::sheet::Drawing;
+
+const STYLE: &str = include_str!("page.css");
+
+/// The whole page.
+pub fn page(items: &[Item]) -> String {
+    let count = |verdict: Verdict| {
+        items.iter().flat_map(|item| &item.statements).filter(|s| s.verdict == verdict).count()
+    };
+    let [holds, partly, fails] = [Verdict::Holds, Verdict::Partly, Verdict::Fails].map(count);
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                link rel="icon" href="data:,";
+                title { "Retune: the paper on one page" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "Retention of tuning for vibro-impact and linear dampers: the whole paper, made again" }
+                    p {
+                        "Each table and figure of the paper beside what Retune " (env!("CARGO_PKG_VERSION"))
+                        " computes, and a verdict on each statement. Of " (holds + partly + fails) " statements "
+                        (holds) " hold, " (partly) " hold in part, and " (fails) " do not hold under our settings."
+                    }
+                    p {
+                        "The paper leaves out the radius R and the coefficient q of the contact, the length of a run, the window of its "
+                        "maxima and the tolerances. Ours stand under each item; where a verdict hangs on them, it says so."
+                    }
+                    nav { ul { @for item in items { li { a href={ "#" (item.name) } { (item.title) } } } } }
+                }
+                main { @for item in items { (section(item)) } }
+                footer { p { "Made by " code { "retune reproduce" } ". All data stand beside this page as CSV, all figures as SVG; the study is " a href="study.json" { "study.json" } ", with all that it names " a href="resolved.json" { "resolved.json" } "; what made each file stands in " a href="manifest.json" { "manifest.json" } "." } }
+            }
+        }
+    };
+    markup.into_string()
+}
+
+fn section(item: &Item) -> Markup {
+    html! {
+        section id=(item.name) {
+            h2 { (item.title) }
+            p.paper-says { b { "In the paper: " } (item.paper) }
+            @if !item.statements.is_empty() { ul.statements { @for s in &item.statements { (statement(s)) } } }
+            @for picture in &item.pictures { (figure(picture)) }
+            @for grid in &item.grids { (table(grid)) }
+            @for note in &item.notes { p.note { (note) } }
+            p.made-by { b { "Made by: " } (item.made_by) }
+            @if !item.data.is_empty() {
+                p.made-by { b { "Data: " } @for (name, _) in &item.data { a href=(name) { (name) } " " } }
+            }
+        }
+    }
+}
+
+fn statement(statement: &Statement) -> Markup {
+    let class = match statement.verdict {
+        Verdict::Holds => "holds",
+        Verdict::Partly => "partly",
+        Verdict::Fails => "fails",
+    };
+    html! {
+        li class=(class) {
+            span.says { (statement.paper) small.rule { (statement.rule) } }
+            span.verdict { (statement.verdict.words()) }
+            span.found { (statement.found) }
+        }
+    }
+}
+
+fn figure(picture: &Picture) -> Markup {
+    let svg = |text: &str| PreEscaped(text[text.find("<svg").unwrap_or(0)..].to_owned());
+    let Drawing { wide, narrow } = &picture.drawing;
+    let class = if narrow.is_some() { "wide" } else { "any" };
+    html! {
+        figure {
+            div.(class) role="img" aria-label=(picture.caption) { (svg(wide)) }
+            @if let Some(narrow) = narrow { div.narrow role="img" aria-label=(picture.caption) { (svg(narrow)) } }
+            figcaption { (picture.caption) " " a href={ (picture.name) ".svg" } { (picture.name) ".svg" } }
+        }
+    }
+}
+
+/// Cells of more letters than this may break into lines.
+const LONG: usize = 48;
+
+fn table(grid: &Grid) -> Markup {
+    let cell = |text: &String| {
+        let long = text.chars().count() > LONG;
+        html! { td class=[long.then_some("long")] { (text) } }
+    };
+    html! {
+        p.caption { (grid.caption) }
+        div.scroll tabindex="0" {
+            table {
+                thead { tr { @for name in &grid.head { th { (name) } } } }
+                tbody { @for row in &grid.rows { tr { @for text in row { (cell(text)) } } } }
+            }
+        }
+    }
+}

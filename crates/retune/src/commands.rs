@@ -1,0 +1,136 @@
+//! What each command does: from arguments to a job, and from what the job found to the screen.
+
+use crate::cli::{self, Cli, Command, Kind};
+use crate::screen::{self, Screen};
+use clap::CommandFactory;
+use retune_paper::Plan;
+use retune_study as study;
+use retune_workbench::evaluate::Streams;
+use retune_workbench::simulate::Trajectory;
+use retune_workbench::tune::Tuned;
+use retune_workbench::{
+    Error, Observer, Request, Silent, certify, describe, evaluate, pareto, retune, table2, tune, verify,
+};
+use std::io::BufReader;
+use std::path::Path;
+
+/// Runs a command.
+///
+/// # Errors
+/// Those of its job.
+pub fn run(command: Command) -> Result<(), Error> {
+    let all = Screen::new(false);
+    match command {
+        Command::Optimize(arguments) => optimize(&arguments),
+        Command::Merge(cli::Merge { study, parts, running }) => {
+            let (request, screen) = running.request(&study);
+            check_limits(&study, tune::merge::merge(&request, &parts, &screen)?)
+        }
+        Command::Verify(cli::Verify { results, sample, within }) => {
+            verify::verify(&results, sample as usize, within, &all)
+        }
+        Command::Certify(cli::Certify { design, running }) => {
+            let (request, screen) = running.request(&design);
+            let (study, certificate) = certify::certify_file(&request, &screen)?;
+            certificate.short().check_limits(study.name())
+        }
+        Command::Simulate(arguments) => simulate(&arguments, &all),
+        Command::Evaluate(arguments) => evaluate(&arguments),
+        Command::Table2(cli::Table2 { study, running }) => {
+            let (request, screen) = running.request(&study);
+            table2::table2(&request, &screen)
+        }
+        Command::Retune(cli::Retune { k1, study, running }) => {
+            let (request, screen) = running.request(&study);
+            retune::retune(&request, &k1, &screen)
+        }
+        Command::Fronts(cli::Fronts { study, running }) => {
+            let (request, screen) = running.request(&study);
+            pareto::pareto(&request, &screen)
+        }
+        Command::Reproduce(arguments) => reproduce(&arguments, None),
+        Command::Figure { number, paper } => reproduce(&paper, Some(&format!("figure{number}"))),
+        Command::Table { number, paper } => reproduce(&paper, Some(&format!("table{number}"))),
+        Command::Check { study } => check(&study, &all),
+        Command::Schema { kind } => all.line(json(&match kind {
+            Kind::Study => schemars::schema_for!(study::Study),
+            Kind::Table2 => schemars::schema_for!(study::Table2),
+            Kind::Fronts => schemars::schema_for!(study::Fronts),
+            Kind::Paper => schemars::schema_for!(retune_paper::PaperPlan),
+        })?),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "retune", &mut script);
+            all.line(String::from_utf8_lossy(&script).trim_end())
+        }
+    }
+}
+
+fn optimize(cli::Optimize { study, shard, running }: &cli::Optimize) -> Result<(), Error> {
+    let (request, screen) = running.request(study);
+    match shard {
+        Some(shard) => tune::tune_share(&request, *shard, &screen),
+        None => check_limits(study, tune::tune(&request, &screen)?),
+    }
+}
+
+/// A design that breaks the limits of its study has an exit code of its own.
+fn check_limits(study: &Path, tuned: Tuned) -> Result<(), Error> {
+    match tuned {
+        Tuned::Found(optimum) => optimum.check_limits(study::read(study)?.name()),
+        Tuned::FinishedBefore => Ok(()),
+    }
+}
+
+fn reproduce(cli::Reproduce { study, running }: &cli::Reproduce, only: Option<&str>) -> Result<(), Error> {
+    let (request, screen) = running.request(study);
+    retune_paper::reproduce(&request, only, &screen)
+}
+
+fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
+    let mut study = study::read(&arguments.study)?;
+    study.solver.method = arguments.solver.unwrap_or(study.solver.method);
+    study.solver.contacts = arguments.contacts.unwrap_or(study.solver.contacts);
+    study.solver.rtol = arguments.rtol.unwrap_or(study.solver.rtol);
+    let study = study.with(&arguments.settings)?;
+    let inputs = [arguments.study.as_path()];
+    let trajectory = arguments.trajectory.as_deref();
+    let trajectory =
+        trajectory.map(|file| Trajectory { file, interval: arguments.interval, inputs: &inputs });
+    let summary = retune_workbench::simulate::simulate(&study, trajectory)?;
+    screen.line(if arguments.json { json(&summary)? } else { summary.to_string() })
+}
+
+fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<(), Error> {
+    let request = Request { threads: *threads, ..Request::new(study) };
+    let streams = Streams {
+        input: BufReader::new(std::io::stdin()),
+        answers: &mut std::io::stdout(),
+        complaints: &mut screen::complain,
+    };
+    evaluate::evaluate(&study::read(study)?, *json, &request, streams)
+}
+
+/// Checks a study file and shows what it asks for.
+fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
+    screen.line(if study::is_table2(path)? {
+        describe::table2(&study::read_table2(path)?)
+    } else if study::is_fronts(path)? {
+        describe::fronts(&study::read_fronts(path)?)
+    } else if study::is_paper(path)? {
+        Plan::read(path, &Silent)?;
+        "every table and figure of the paper".to_owned()
+    } else {
+        describe::study(&study::read(path)?)
+    })?;
+    screen.result(&format!("{}: good", path.display()))
+}
+
+/// A result as indented JSON.
+fn json(value: &impl serde::Serialize) -> Result<String, Error> {
+    let refuse = |error: serde_json::Error| retune_store::Error::Output {
+        path: "standard output".into(),
+        source: error.into(),
+    };
+    Ok(serde_json::to_string_pretty(value).map_err(refuse)?)
+}

@@ -1,0 +1,179 @@
+//! Reading a journal, whatever became of it: every record that is whole is kept, and what is not is counted.
+
+use super::super::identity::Identity;
+use super::super::plain;
+use super::super::seal::Seal;
+use super::{Key, TITLE, bits, grid_value};
+use crate::Pending;
+use crate::error::Error;
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::io::{BufRead, BufReader, ErrorKind};
+use std::path::Path;
+
+/// Longest line that is one, bytes.
+const LONGEST: usize = 1024;
+
+/// Most points of a grid.
+pub const MOST_POINTS: usize = 10_000_000;
+
+/// What a journal knows.
+#[derive(Debug, Default)]
+pub struct Known {
+    pub(super) values: HashMap<Key, f64>,
+    /// The values of the points of the grid; NaN where one is not known.
+    pub(super) grid: Vec<f64>,
+    pub(super) marks: HashSet<String>,
+    /// The directories below that the work has begun searches in.
+    pub parts: BTreeSet<String>,
+    /// How much it knows: values and marks.
+    pub lines: u64,
+}
+
+/// What is wrong with a journal that can be gone on with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Damage {
+    /// Its first line, which says whose it is.
+    pub head: bool,
+    /// Lines that are not whole.
+    pub lines: u64,
+}
+
+impl Damage {
+    /// Whether there is none.
+    pub fn is_none(self) -> bool {
+        self == Self::default()
+    }
+}
+
+/// What was found in the place of a journal.
+#[derive(Debug)]
+pub enum Found {
+    /// Nothing, not even a first line.
+    Nothing,
+    /// Something of which cannot be told whose work it is; why.
+    Unclear(&'static str),
+    /// The journal of a work: what made it, what it knows and what is wrong with it.
+    Work(Identity, Box<Known>, Damage),
+}
+
+/// Reads a journal. Where its first line is damaged, its records tell whether it is of the work `ours`.
+///
+/// # Errors
+/// It cannot be read.
+pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
+    let mut lines = BufReader::new(match plain::open(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Found::Nothing),
+        other => other?,
+    });
+    let mut line = Vec::new();
+    if !next(&mut lines, &mut line)? {
+        return Ok(Found::Nothing);
+    }
+    let head = head(&line);
+    let of = head.clone().unwrap_or_else(|| ours.clone());
+    let seal = Seal::of(&of);
+    let mut known = Known::default();
+    let mut damage = Damage { head: head.is_none(), lines: 0 };
+    if head.is_none() {
+        // Cut off at the front, it begins with a record, or the rest of one.
+        seal.open(&line).and_then(|text| known.learn(text));
+    }
+    while next(&mut lines, &mut line)? {
+        if seal.open(&line).and_then(|text| known.learn(text)).is_some() {
+            continue;
+        }
+        match self::head(&line) {
+            Some(other) if damage.head || other != of => {
+                return Ok(Found::Unclear("it holds the work of two studies, one after the other"));
+            }
+            Some(_) => {}
+            None => damage.lines += 1,
+        }
+    }
+    if damage.head && known.lines == 0 && known.parts.is_empty() {
+        return Ok(Found::Unclear(
+            "its first line, which says whose work it is, is damaged or of another version, and no record in it is of this study",
+        ));
+    }
+    Ok(Found::Work(of, Box::new(known), damage))
+}
+
+/// Writes a damaged journal anew: a first line, and every record that is whole. The old one stays until the new one is.
+///
+/// # Errors
+/// It cannot be read or written.
+pub fn mend(path: &Path, identity: &Identity) -> Result<(), Error> {
+    let refuse = |source| Error::Output { path: path.to_owned(), source };
+    let mut lines = BufReader::new(plain::open(path).map_err(refuse)?);
+    let seal = Seal::of(identity);
+    let mut mended = Pending::create(path)?;
+    mended.push(&first_line(identity))?;
+    let mut line = Vec::new();
+    while next(&mut lines, &mut line).map_err(refuse)? {
+        if let Some(text) = seal.open(&line) {
+            mended.push(&seal.close(text))?;
+        }
+    }
+    mended.finish_on_disk()
+}
+
+/// The first line of the journal of a work.
+pub fn first_line(identity: &Identity) -> String {
+    Seal::plain().close(&format!("{TITLE} {}", identity.words()))
+}
+
+/// Reads [`first_line`].
+fn head(line: &[u8]) -> Option<Identity> {
+    Identity::parse(Seal::plain().open(line)?.strip_prefix(TITLE)?.strip_prefix(' ')?)
+}
+
+/// Reads the next line with its end, of one that is too long only the beginning. False at the end of the file.
+fn next(file: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<bool> {
+    line.clear();
+    loop {
+        let there = match file.fill_buf() {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            other => other?,
+        };
+        let end = there.iter().position(|byte| *byte == b'\n').map(|at| at + 1);
+        let length = end.unwrap_or(there.len());
+        line.extend_from_slice(&there[..length.min(LONGEST.saturating_sub(line.len()))]);
+        file.consume(length);
+        if end.is_some() || length == 0 {
+            return Ok(!line.is_empty());
+        }
+    }
+}
+
+impl Known {
+    fn learn(&mut self, text: &str) -> Option<()> {
+        let (kind, rest) = text.split_once(' ')?;
+        let is_new = match kind {
+            "g" => {
+                let (point, value) = grid_value(text)?;
+                self.set_grid(point, value)?
+            }
+            "e" => {
+                let (name, value) = rest.split_once(' ')?;
+                let number = (name.len() == 32).then(|| u128::from_str_radix(name, 16).ok())??;
+                self.values.insert(number.to_be_bytes(), bits(value)?).is_none()
+            }
+            "m" => self.marks.insert(rest.to_owned()),
+            "p" => {
+                self.parts.insert(rest.to_owned());
+                false
+            }
+            _ => return None,
+        };
+        self.lines += u64::from(is_new);
+        Some(())
+    }
+
+    /// Sets the value of a point; whether it was not known. None if there can be no such point.
+    pub(super) fn set_grid(&mut self, point: usize, value: f64) -> Option<bool> {
+        if point >= self.grid.len() {
+            (point < MOST_POINTS).then(|| self.grid.resize(point + 1, f64::NAN))?;
+        }
+        Some(std::mem::replace(&mut self.grid[point], value).is_nan())
+    }
+}

@@ -1,0 +1,184 @@
+//! Work that was begun in a directory and has not come to its end: found, gone on with, thrown away.
+
+use super::journal::{self, Damage, Found, Journal, Known};
+use super::lock::Lock;
+use super::manifest::{self, Manifest};
+use super::order::is_below;
+use super::{Begin, Identity, names, plain};
+use crate::error::Error;
+use std::collections::BTreeSet;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Where new results come about.
+pub const UNFINISHED: &str = "unfinished";
+
+/// The journal, in [`UNFINISHED`].
+pub const JOURNAL: &str = "journal";
+
+/// What a run that begins does with what it found.
+#[derive(Debug)]
+pub enum Unfinished {
+    /// It goes on with it.
+    GoOn(Known, Damage),
+    /// It begins anew, and throws the work in these directories below away.
+    Anew(BTreeSet<String>),
+}
+
+impl Unfinished {
+    /// Looks for unfinished work in a directory, and whether a run of this identity may go on with it.
+    ///
+    /// # Errors
+    /// There is some and `begin` does not say what becomes of it, or it is another's, or nobody can tell whose it is.
+    pub fn find(place: &Path, begin: Begin, identity: &Identity) -> Result<Self, Error> {
+        let unfinished = place.join(UNFINISHED);
+        let path = unfinished.join(JOURNAL);
+        let refuse = |source| Error::Input { path: path.clone(), source };
+        check(&unfinished)?;
+        let (of, known, damage) = match journal::read(&path, identity).map_err(refuse)? {
+            Found::Nothing => return Ok(Self::Anew(BTreeSet::new())),
+            Found::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
+            Found::Unclear(problem) => return Err(Error::Journal { path, problem }),
+            Found::Work(of, known, damage) => (of, *known, damage),
+        };
+        let kept = known.lines + known.parts.iter().map(|part| kept(&place.join(part), &of)).sum::<u64>();
+        if begin == Begin::Restart {
+            return Ok(Self::Anew(known.parts));
+        }
+        if kept == 0 && damage.is_none() && of != *identity {
+            return Ok(Self::Anew(known.parts)); // nothing was computed
+        }
+        let difference = identity.difference(&of);
+        let is_work = kept > 0 || !damage.is_none();
+        if difference.is_some() || begin == Begin::New && is_work {
+            let damaged = damage.lines + u64::from(damage.head);
+            return Err(Error::Unfinished { path: place.to_owned(), lines: kept, damaged, difference });
+        }
+        Ok(Self::GoOn(known, damage))
+    }
+
+    /// Takes the work up in its directory, and says which directories below hold work that was thrown away, and what a person should
+    /// know of the journal that was found.
+    ///
+    /// # Errors
+    /// The journal cannot be written.
+    pub fn take_up(
+        self,
+        unfinished: &Path,
+        identity: &Identity,
+    ) -> Result<(Journal, BTreeSet<String>, Option<String>), Error> {
+        let path = unfinished.join(JOURNAL);
+        let refuse = |source| Error::Output { path: unfinished.to_owned(), source };
+        std::fs::create_dir_all(unfinished).map_err(refuse)?;
+        match self {
+            Self::GoOn(known, damage) => {
+                clear(unfinished, |name| name == JOURNAL || name.ends_with(".item")).map_err(refuse)?;
+                let warning = (!damage.is_none()).then(|| damaged(&path, known.lines, damage));
+                Ok((Journal::go_on(&path, identity, known, damage)?, BTreeSet::new(), warning))
+            }
+            Self::Anew(parts) => {
+                clear(unfinished, |name| name == JOURNAL)
+                    .and_then(|()| clear(unfinished, |_| false))
+                    .map_err(refuse)?;
+                let journal = Journal::begin(&path, identity)?;
+                // A run that is stopped before it has put these away must find them again.
+                parts.iter().for_each(|part| journal.note_part(part));
+                Ok((journal, parts, None))
+            }
+        }
+    }
+}
+
+/// What is said of a damaged journal.
+fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
+    let first = "its first line is damaged, but its records are of this study";
+    let rest = format!(
+        "{lines} of its lines {} damaged, and what {} held is computed again; {kept} results are kept",
+        if lines == 1 { "is" } else { "are" },
+        if lines == 1 { "it" } else { "they" },
+    );
+    let words = match (head, lines) {
+        (true, 0) => format!("{first}; {kept} results are kept"),
+        (true, _) => format!("{first}; {rest}"),
+        (false, _) => rest,
+    };
+    format!("{}: {words}", path.display())
+}
+
+/// How many results the unfinished work in a directory below holds.
+fn kept(place: &Path, identity: &Identity) -> u64 {
+    match journal::read(&place.join(UNFINISHED).join(JOURNAL), identity) {
+        Ok(Found::Work(_, known, _)) => known.lines,
+        _ => 0,
+    }
+}
+
+/// Whether a directory of this name is one that Retune left behind: it has a journal, or nothing but temporary files.
+fn check(unfinished: &Path) -> Result<(), Error> {
+    let standing =
+        |problem: &str| Error::Protected { path: unfinished.to_owned(), problem: problem.to_owned() };
+    let refuse = |source| Error::Input { path: unfinished.to_owned(), source };
+    match unfinished.symlink_metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(refuse(error)),
+        Ok(metadata) if !metadata.is_dir() => {
+            return Err(standing("it is no directory, and Retune keeps its unfinished work there"));
+        }
+        Ok(_) => {}
+    }
+    let names = names(unfinished).map_err(refuse)?;
+    let is_temporary = |name: &String| name.starts_with('.') && name.ends_with(".tmp");
+    if names.iter().any(|name| name == JOURNAL) || names.iter().all(is_temporary) {
+        return Ok(());
+    }
+    Err(standing(
+        "it holds files but no journal, so Retune did not make it, and its unfinished work needs this place",
+    ))
+}
+
+/// Removes the files in a directory that are not to be kept.
+fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
+    for name in names(directory)?.iter().filter(|name| !keep(name)) {
+        std::fs::remove_file(directory.join(name))?;
+    }
+    Ok(())
+}
+
+/// Removes unfinished work. Its journal goes last: without one the directory is not known as Retune's.
+///
+/// # Errors
+/// A file cannot be removed.
+pub fn remove(unfinished: &Path) -> std::io::Result<()> {
+    clear(unfinished, |name| name == JOURNAL)?;
+    clear(unfinished, |_| false)?;
+    std::fs::remove_dir(unfinished)
+}
+
+/// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Where there is unfinished
+/// work, it all stays unless that is to go, too; so it does where another process is at work.
+///
+/// # Errors
+/// A file cannot be removed.
+pub fn remove_results(place: &Path, with_unfinished: bool) -> std::io::Result<()> {
+    let is_directory = place.symlink_metadata().is_ok_and(|metadata| metadata.is_dir());
+    let Some(lock) = is_directory.then(|| Lock::take(place).ok()).flatten() else { return Ok(()) };
+    let unfinished: PathBuf = place.join(UNFINISHED);
+    if unfinished.exists() {
+        if !with_unfinished || check(&unfinished).is_err() {
+            return Ok(());
+        }
+        remove(&unfinished)?;
+    }
+    if let Some(manifest) = Manifest::read(place) {
+        let files = manifest.files.keys().chain(manifest.earlier.keys()).collect::<BTreeSet<_>>();
+        for name in files.into_iter().filter(|name| is_below(name) && manifest.has_made(place, name)) {
+            std::fs::remove_file(place.join(name))?;
+        }
+        if plain::is_there(&place.join(manifest::NAME))? {
+            std::fs::remove_file(place.join(manifest::NAME))?;
+        }
+    }
+    drop(lock);
+    let _ = std::fs::remove_dir(place); // it stays if anything else is in it
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! An objective in words, for figures, tables and the screen; numbers and counts in words.
+
+use super::objective::{Band, Ensemble, K1, K1Range, Objective, Of, Response};
+use std::fmt::Display;
+
+impl Objective {
+    /// Over what its E1max is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
+    pub fn over(&self, omega: f64) -> String {
+        if !self.sum.is_empty() {
+            return format!("weighted sum of {}", counted(self.sum.len() as u64, "objective"));
+        }
+        let band = |Band { from, to, relative, .. }: Band| {
+            let unit = if relative { "times √(k1/m1)" } else { "rad/s" };
+            format!("omega = {} to {} {unit}", from.get(), to.get())
+        };
+        let over = [self.omega.map(band), self.k1.as_ref().map(K1::words)];
+        let over: Vec<String> = over.into_iter().flatten().collect();
+        let own = if self.omega.is_none() { format!("omega = {omega} rad/s") } else { String::new() };
+        let worst =
+            if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
+        let mut parts: Vec<String> = self.ensemble.iter().map(Ensemble::words).collect();
+        parts.extend([own, worst].into_iter().filter(|part| !part.is_empty()));
+        parts.join(", ")
+    }
+
+    /// Whether every part of it is steady, so that no window and no solver matter.
+    pub fn is_steady(&self) -> bool {
+        match self.sum.as_slice() {
+            [] => self.response == Response::Steady,
+            parts => parts.iter().all(|part| part.objective.is_steady()),
+        }
+    }
+}
+
+impl K1 {
+    fn words(&self) -> String {
+        match self {
+            Self::Set(set) => {
+                let values: Vec<String> = set.iter().map(|k1| k1.get().to_string()).collect();
+                format!("k1 = {} N/m", values.join(", "))
+            }
+            Self::Range(K1Range { from, to, .. }) => format!("k1 = {} to {} N/m", from.get(), to.get()),
+        }
+    }
+}
+
+impl Ensemble {
+    fn words(&self) -> String {
+        let Self { members, phases, errors, statistic, .. } = self;
+        let of = match statistic {
+            Of::Mean => "mean".to_owned(),
+            Of::Worst => "worst".to_owned(),
+            Of::Quantile(share) => format!("{share} quantile"),
+        };
+        let phases = if *phases { "all phases, " } else { "" };
+        format!("{of} of {} ({phases}errors to {} %)", counted((*members).into(), "member"), 100.0 * errors)
+    }
+}
+
+/// So many of something: `1 design`, `2 searches`.
+pub fn counted(count: u64, noun: &str) -> String {
+    let ending = match count {
+        1 => "",
+        _ if noun.ends_with("ch") => "es",
+        _ => "s",
+    };
+    format!("{count} {noun}{ending}")
+}
+
+/// So many of something are: `1 design is`, `2 designs are`.
+pub fn are(count: u64, noun: &str) -> String {
+    format!("{} {}", counted(count, noun), if count == 1 { "is" } else { "are" })
+}
+
+/// A number to six significant digits, as short as it can be: `215`, `0.0603333`, `1.23457e-9`.
+pub fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
+}
+
+/// The items with `separator` between them.
+pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
+    items.iter().map(T::to_string).collect::<Vec<_>>().join(separator)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_one_is_one_and_not_many() {
+        let said = |count| [counted(count, "design"), counted(count, "CMA-ES search"), are(count, "value")];
+        assert_eq!(said(1), ["1 design", "1 CMA-ES search", "1 value is"]);
+        assert_eq!(said(0), ["0 designs", "0 CMA-ES searches", "0 values are"]);
+        assert_eq!(said(2), ["2 designs", "2 CMA-ES searches", "2 values are"]);
+    }
+
+    #[test]
+    fn exact_short_numbers_have_six_digits() {
+        assert_eq!(short(215.0), "215");
+        assert_eq!(short(0.060_333_333_3), "0.0603333");
+        assert_eq!(short(1_234.567_89), "1234.57");
+        assert_eq!(short(1.234_567_8e-9), "1.23457e-9");
+        assert_eq!(short(0.0), "0");
+    }
+}

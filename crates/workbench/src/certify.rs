@@ -1,0 +1,102 @@
+//! `certify`: what a design's E1max is worth. An error bar, how it takes small errors, what motion it is, a verdict.
+
+mod certificate;
+mod measure;
+
+pub use certificate::{Certificate, Short};
+
+use crate::request::{open, where_results_are};
+use crate::resolved::{identity_of, study_text};
+use crate::{Error, Observer, Request};
+use retune_store::{Extent, manifest};
+use retune_study::{self as study, Rule, Study};
+use std::path::{Path, PathBuf};
+
+/// The file that a certificate is written to.
+pub const FILE: &str = "certificate.json";
+
+/// Certifies the design of a study, or the one that a search found: `request.study` is a study, an `optimum.json`, or the directory of
+/// a search's results. The certificate goes beside an optimum, or to `results/certify/<study>`, unless told otherwise.
+///
+/// # Errors
+/// The input is wrong, the design cannot be run, or the certificate cannot be written.
+pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<(Study, Certificate), Error> {
+    let (study, found_in) = read(&request.study)?;
+    let out = request.out.clone().or(found_in.clone());
+    let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
+    // Beside the search that found the design, whose study and manifest stay.
+    let beside = found_in.is_some_and(|found_in| is_same(&found_in, &out));
+    if !beside && out.join("optimum.json").exists() {
+        let source = std::io::Error::other("the results of a search stand there; give another --out");
+        return Err(retune_store::Error::Output { path: out, source }.into());
+    }
+    let certificate = request.on_threads(|| certify(&study))?;
+    let identity = identity_of(&study)?;
+    let is_ours = move |name: &str| name == FILE || !beside && ["study.json", manifest::NAME].contains(&name);
+    let extent = if beside { Extent::Guest } else { Extent::Whole };
+    let results = open(&out, &request.order("certify"), &identity, extent, is_ours, watch)?;
+    results.write_json(FILE, &certificate)?;
+    if beside {
+        manifest::amend(&results)?;
+    } else {
+        results.write("study.json", &study_text(&study)?)?;
+        manifest::write(identity, [study.solver], &results)?;
+    }
+    results.finish()?;
+    watch.result(&certificate.to_string())?;
+    watch.result(&where_results_are(&out)?)?;
+    Ok((study, certificate))
+}
+
+/// Whether both are the same directory.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let [one, other] = [one, other].map(|path| path.canonicalize().ok());
+    one.is_some() && one == other
+}
+
+/// The certificate of the damper in the scene of a study, under the study's objective.
+///
+/// # Errors
+/// There is no damper, or the design has no value.
+pub fn certify(study: &Study) -> Result<Certificate, Error> {
+    if study.scene.damper.is_none() {
+        let rule = Rule::NotAllowed {
+            field: "scene.damper".to_owned(),
+            value: "none".to_owned(),
+            allowed: "a damper, for that is what is certified",
+        };
+        return Err(Error::Rule { name: study.name().to_owned(), rule });
+    }
+    measure::measure(study)
+}
+
+/// Refuses the results of a search in `out` whose design breaks the limits of its study.
+///
+/// # Errors
+/// [`Error::Infeasible`].
+pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
+    let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
+    let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match (said.get("verdict"), said["words"].as_str()) {
+        (Some(serde_json::Value::Null), Some(words)) => {
+            Err(Error::Infeasible { name: study.to_owned(), words: words.to_owned() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The study whose scene has the design of a study, an `optimum.json` or a directory of results, and where its certificate goes if that is beside what was read.
+///
+/// # Errors
+/// They cannot be read, or are wrong.
+pub fn read(path: &Path) -> Result<(Study, Option<PathBuf>), Error> {
+    let optimum = if path.is_dir() { path.join("optimum.json") } else { path.to_owned() };
+    if !path.is_dir() && !study::is_optimum(path)? {
+        return Ok((study::read(path)?, None));
+    }
+    let directory = optimum.parent().unwrap_or(Path::new("")).to_owned();
+    let study = study::read(&directory.join("study.json"))?;
+    let name = study.name().to_owned();
+    let study = study::at_found(study, &optimum)?.map_err(|rule| Error::Rule { name, rule })?;
+    Ok((study, Some(directory)))
+}

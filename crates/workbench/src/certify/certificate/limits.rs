@@ -1,0 +1,117 @@
+//! How a design and those near it keep the limits of their study.
+
+use retune_optim::{Limit, Limits, PerLimit};
+use retune_study::short;
+use serde::Serialize;
+
+/// Which limits are broken, where the study has any.
+#[derive(Clone, Debug, Serialize)]
+pub struct Kept {
+    /// The limits that the design itself breaks.
+    broken: Vec<Excess>,
+    /// Of each limit that is broken near the design (by a neighbour, with 1 % of one parameter, or on the finer band), the place
+    /// that breaks it most.
+    broken_near: Vec<Excess>,
+    /// How many of the neighbours break a limit.
+    neighbours: usize,
+}
+
+/// A limit that is broken. SI units.
+#[derive(Clone, Debug, Serialize)]
+pub struct Excess {
+    limit: Limit,
+    allowed: f64,
+    reached: f64,
+    over_percent: f64,
+    /// Where, in words; nothing for the design itself.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    at: String,
+}
+
+/// What was reached at a place near the design.
+pub struct Near {
+    /// The place in words.
+    pub at: String,
+    /// Whether it is one of the neighbours.
+    pub neighbour: bool,
+    /// The largest values there.
+    pub reached: PerLimit<f64>,
+}
+
+impl Kept {
+    /// None where there is no limit. `own` is what the design reaches.
+    pub fn new(limits: &Limits, own: &PerLimit<f64>, near: &[Near]) -> Option<Self> {
+        if limits.is_empty() {
+            return None;
+        }
+        let worst = |limit: Limit| {
+            let excesses = near.iter().filter_map(|near| Excess::new(limits, limit, &near.reached, &near.at));
+            excesses.max_by(|a, b| a.reached.total_cmp(&b.reached))
+        };
+        let neighbours = near.iter().filter(|near| near.neighbour && limits.violation(&near.reached) > 0.0);
+        Some(Self {
+            broken: Limit::ALL.into_iter().filter_map(|limit| Excess::new(limits, limit, own, "")).collect(),
+            broken_near: Limit::ALL.into_iter().filter_map(worst).collect(),
+            neighbours: neighbours.count(),
+        })
+    }
+
+    /// How the design itself breaks limits; none if it keeps them.
+    pub fn broken(&self) -> Option<String> {
+        words(&self.broken, |Excess { limit, allowed, reached, over_percent, .. }| {
+            let (reached, allowed, over) = (short(*reached), short(*allowed), short(*over_percent));
+            format!("the limit of {limit}: {reached} of {allowed} {}, {over} % over", limit.unit())
+        })
+    }
+
+    /// How designs near it break limits; none if all keep them.
+    pub fn broken_near(&self) -> Option<String> {
+        words(&self.broken_near, |Excess { limit, allowed, reached, over_percent, at }| {
+            let (reached, allowed, over) = (short(*reached), short(*allowed), short(*over_percent));
+            let unit = limit.unit();
+            format!("{limit} is {reached} {unit} {at}, {over} % over its limit of {allowed} {unit}")
+        })
+    }
+
+    /// How many of the neighbours break a limit.
+    pub fn neighbours(&self) -> usize {
+        self.neighbours
+    }
+}
+
+impl Excess {
+    fn new(limits: &Limits, limit: Limit, reached: &PerLimit<f64>, at: &str) -> Option<Self> {
+        let (allowed, reached) = (limits.get(limit)?, reached.get(limit));
+        let over_percent = 100.0 * (reached / allowed - 1.0);
+        (over_percent > 0.0).then(|| Self { limit, allowed, reached, over_percent, at: at.to_owned() })
+    }
+}
+
+fn words(excesses: &[Excess], say: impl Fn(&Excess) -> String) -> Option<String> {
+    let said: Vec<String> = excesses.iter().map(say).collect();
+    (!said.is_empty()).then(|| said.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_what_breaks_a_limit_most_is_told_with_its_place() {
+        let limits = Limits::from(PerLimit([Some(0.2), None, Some(0.5)]));
+        let near =
+            |at: &str, neighbour, reached| Near { at: at.to_owned(), neighbour, reached: PerLimit(reached) };
+        let around = [
+            near("here", true, [0.2, 9e9, 0.5]),
+            near("there", true, [0.201, 0.0, 0.4]),
+            near("beyond", false, [0.21, 0.0, 0.4]),
+        ];
+        let kept = Kept::new(&limits, &PerLimit([0.2, 9e9, 0.5]), &around).expect("limits");
+        assert_eq!((kept.broken(), kept.neighbours()), (None, 1));
+        let said = kept.broken_near().expect("a limit is broken");
+        assert_eq!(said, "stroke is 0.21 m beyond, 5 % over its limit of 0.2 m");
+        let kept = Kept::new(&limits, &PerLimit([0.1, 0.0, 0.75]), &[]).expect("limits");
+        assert_eq!(kept.broken().as_deref(), Some("the limit of cavity: 0.75 of 0.5 m, 50 % over"));
+        assert!(Kept::new(&Limits::from(PerLimit([None; 3])), &PerLimit([1.0; 3]), &around).is_none());
+    }
+}

@@ -1,0 +1,62 @@
+//! A certificate as text.
+
+use super::{Certificate, FINER, Motion, Neighbourhood, Rung, Sensitivity, Short, WorstRun};
+use crate::summary::Design;
+use retune_study::short;
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { words, error_bar, regime, exponent, .. } = self;
+        write!(f, "certificate: {words}\n  E1max ± {error_bar:.1e} J, ")?;
+        write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
+    }
+}
+
+impl std::fmt::Display for Certificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { made_by, design, e1_max, error_bar, worst_run, motion, neighbourhood, .. } = self;
+        let Design { m2, k2, c2, d, c } = design;
+        let [m2, k2, c2, d, c] = [m2, k2, c2, d, c].map(|value| short(*value));
+        writeln!(f, "{made_by}")?;
+        writeln!(f, "design        m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m")?;
+        let predictable = if self.predictable { "predictable" } else { "not predictable" };
+        writeln!(f, "E1max         {} J ± {error_bar:.1e} J, {predictable}", short(*e1_max))?;
+        let WorstRun { e1_max, omega, k1, phase } = worst_run;
+        let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
+        let (omega, k1) = (short(*omega), short(*k1));
+        writeln!(f, "worst run     {} J at omega = {omega} rad/s, k1 = {k1} N/m{phase}", short(*e1_max))?;
+        for Rung { method, rtol, e1_max } in &self.ladder {
+            let method = format!("{} {rtol:e}", method.name());
+            writeln!(f, "  {method:<14}{e1_max:.10} J")?;
+        }
+        if let Some(finer) = self.finer {
+            writeln!(f, "finer band    {} J with {FINER} times the samples", short(finer))?;
+        }
+        let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
+        writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
+        writeln!(f, "exponent      {exponent:.4} ± {exponent_error:.4} /s, the largest Lyapunov exponent")?;
+        writeln!(
+            f,
+            "contacts      {a:.2} on the structure, {b:.2} on the obstacle in a period of the force"
+        )?;
+        writeln!(f, "parameter     slope, J for 1 % more    worst within 1 %")?;
+        for Sensitivity { parameter, slope_per_percent, worst, worst_at_percent, .. } in &self.sensitivity {
+            let slope = format!("{slope_per_percent:+.4}");
+            writeln!(f, "  {parameter:<12}{slope:<25}{} J at {worst_at_percent:+} %", short(*worst))?;
+        }
+        let Neighbourhood { members, errors, low, median, high } = neighbourhood;
+        let [low, median, high] = [low, median, high].map(|energy| short(*energy));
+        writeln!(
+            f,
+            "neighbours    {members} within {} %: 90 % of them have {low} to {high} J, the median {median} J",
+            100.0 * errors
+        )?;
+        if let Some(limits) = &self.limits {
+            let near = limits.broken_near().unwrap_or_else(|| "kept by all designs near it".to_owned());
+            let own = limits.broken().map_or(near, |broken| format!("NOT KEPT: {broken}"));
+            writeln!(f, "limits        {own}; broken by {} of {members} neighbours", limits.neighbours())?;
+        }
+        writeln!(f, "verdict       {}", self.words)?;
+        write!(f, "rule          {}", self.rule)
+    }
+}

@@ -1,0 +1,147 @@
+//! The measurements behind a certificate.
+
+use super::certificate::{
+    Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Rung, Sensitivity, WorstRun,
+};
+use crate::Error;
+use rayon::prelude::*;
+use retune_atlas::{Stretch, classify, follow};
+use retune_model::Scene;
+use retune_optim::{Ensemble, Frequencies, Goal, PerLimit, Place, Statistic, When};
+use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
+use retune_study::{Setting, Study};
+
+/// Relative errors of a parameter that its sensitivity is read from.
+const ERRORS: [f64; 6] = [-0.01, -0.005, -0.0025, 0.0025, 0.005, 0.01];
+/// The neighbourhood: designs whose k1, k2, c2, D and C are off by at most a thousandth.
+const NEIGHBOURS: Ensemble =
+    Ensemble { members: 64, phases: false, errors: 1e-3, seed: 0, statistic: Statistic::Mean };
+/// The ladder: the study's own method at three tolerances, and two methods that share nothing with it but the equations.
+const LADDER: [(Method, f64); 5] = [
+    (Method::Hybrid, 1e-8),
+    (Method::Hybrid, 1e-10),
+    (Method::Hybrid, 1e-12),
+    (Method::Dop853, 1e-12),
+    (Method::Ode45, 1e-10),
+];
+/// How long a steady motion is followed by the methods that step in time, s, and when it has settled.
+const LONG: f64 = 2000.0;
+const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
+
+/// All of them.
+///
+/// # Errors
+/// The design itself has no value, or its worst run cannot be followed.
+pub(super) fn measure(study: &Study) -> Result<Certificate, Error> {
+    let (goal, settings) = (study.goal(), study.solver.settings());
+    let own = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
+    let mut near = Vec::new();
+    let sensitivity = sensitivities(study, &goal, &settings, &mut near);
+    let neighbourhood = neighbourhood(&study.scene, &goal, &settings, &mut near);
+    let ladder = ladder(&own.worst, &goal, &settings)?;
+    let finer = finer(&goal).map(|goal| {
+        let found = look(&study.scene, &goal, &settings);
+        near.push(Near {
+            at: format!("with {FINER} times the samples"),
+            neighbour: false,
+            reached: found.reached,
+        });
+        found.energy
+    });
+    let record = follow(&own.worst.scene, None, Stretch::default(), &settings)?;
+    let motion = Motion::new(&classify(&record));
+    let limits = Kept::new(&goal.limits, &own.reached, &near);
+    let Place { e1_max, scene, phase, .. } = own.worst;
+    let worst_run =
+        WorstRun { e1_max, omega: scene.forcing.frequency.get(), k1: scene.primary.stiffness.get(), phase };
+    let measured = Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits };
+    Ok(Certificate::new(study, &own, measured))
+}
+
+/// The goal with more samples, if any of its bands of frequencies is sampled.
+fn finer(goal: &Goal) -> Option<Goal> {
+    let mut goal = goal.clone();
+    let sampled = goal.terms.iter_mut().filter(|term| term.when != When::Steady);
+    let bands: Vec<&mut Frequencies> = sampled.filter_map(|term| term.omega.as_mut()).collect();
+    if bands.is_empty() {
+        return None;
+    }
+    for Frequencies { band, .. } in bands {
+        band.samples = FINER * (band.samples - 1) + 1;
+    }
+    Some(goal)
+}
+
+/// E1max of the worst run by every rung.
+fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, SolverError> {
+    let when = goal.terms.get(worst.term).map_or(When::Steady, |term| term.when);
+    let rung = |&(method, rtol): &(Method, f64)| {
+        let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
+        let ask = Ask { phase: worst.phase, ..Ask::default() };
+        let found = match when {
+            When::Window(window) => extremes(&worst.scene, window, &settings, ask)?,
+            When::Settled(window, settle) => settled(&worst.scene, window, settle, &settings, ask)?,
+            When::Steady => settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?,
+        };
+        Ok(Rung { method, rtol, e1_max: found.e1_max.value })
+    };
+    LADDER.par_iter().map(rung).collect()
+}
+
+/// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to
+/// `near`.
+fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Vec<Sensitivity> {
+    let omega = goal.terms.iter().any(|term| term.omega.is_none()).then_some("omega");
+    let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(omega);
+    let known =
+        names.filter_map(|name| Some((name, study.value_of(name)?))).filter(|(_, value)| *value != 0.0);
+    let known: Vec<(&'static str, f64)> = known.collect();
+    let off: Vec<(&'static str, f64, f64)> = known
+        .iter()
+        .flat_map(|&(name, value)| ERRORS.map(|error| (name, error, value * (1.0 + error))))
+        .collect();
+    let at = |&(name, _, value): &(&'static str, f64, f64)| {
+        let scene = study.scene_with(&[Setting::new(name, value)]);
+        scene.map_or(Look::NOTHING, |scene| look(&scene, goal, settings))
+    };
+    let found: Vec<Look> = off.par_iter().map(at).collect();
+    near.extend(off.iter().zip(&found).map(|((name, error, _), found)| Near {
+        at: format!("with {name} off by {:+} %", 100.0 * error),
+        neighbour: false,
+        reached: found.reached,
+    }));
+    let energies: Vec<f64> = found.iter().map(|found| found.energy).collect();
+    let read = |(&(name, value), energies): (&(&'static str, f64), &[f64])| {
+        Sensitivity::new(name, value, &ERRORS, energies)
+    };
+    known.iter().zip(energies.chunks(ERRORS.len())).map(read).collect()
+}
+
+/// The objective of the neighbours. What they reach goes to `near`.
+fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Neighbourhood {
+    let member = |i: u32| {
+        let scene = NEIGHBOURS.member(scene, i);
+        scene.map_or(Look::NOTHING, |(scene, _)| look(&scene, goal, settings))
+    };
+    let found: Vec<Look> = (0..NEIGHBOURS.members).into_par_iter().map(member).collect();
+    let at = format!("for a design within {} %", 100.0 * NEIGHBOURS.errors);
+    near.extend(found.iter().map(|found| Near { at: at.clone(), neighbour: true, reached: found.reached }));
+    Neighbourhood::new(NEIGHBOURS.errors, found.iter().map(|found| found.energy).collect())
+}
+
+/// What a scene gives.
+struct Look {
+    /// J, infinite where there is none.
+    energy: f64,
+    reached: PerLimit<f64>,
+}
+
+impl Look {
+    /// Of a scene that cannot be run.
+    const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 3]) };
+}
+
+fn look(scene: &Scene, goal: &Goal, settings: &Settings) -> Look {
+    let found = goal.evaluate(scene, settings, f64::INFINITY);
+    found.map_or(Look::NOTHING, |found| Look { energy: found.energy, reached: found.reached })
+}

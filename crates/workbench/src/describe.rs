@@ -1,0 +1,118 @@
+//! What a study file asks for, in words: `check`.
+
+use retune_optim::Limit;
+use retune_study::{FrontsPlan, PaperStudy, Part, Response, Search, Study, Sweep, counted, joined, short};
+
+/// What a table of studies asks for.
+pub fn table2(rows: &[PaperStudy]) -> String {
+    rows.iter().map(|row| format!("{}: {}", row.damper, study(&row.study))).collect::<Vec<_>>().join("\n")
+}
+
+/// What a study of fronts asks for.
+pub fn fronts(plan: &FrontsPlan) -> String {
+    let dampers = plan.dampers.iter().map(|(damper, of)| format!("{damper}: {}", study(of)));
+    let sweeps = Sweep::ALL.into_iter().map(|sweep| {
+        let values = joined(&plan.values(sweep), ", ");
+        format!("each for {} at most {values} {}", sweep.name(), sweep.unit())
+    });
+    dampers.chain(sweeps).collect::<Vec<_>>().join("\n")
+}
+
+/// What a study asks for.
+pub fn study(study: &Study) -> String {
+    let (primary, forcing) = (study.scene.primary, study.scene.forcing);
+    let mut lines = vec![format!(
+        "study {}: k1 = {} N/m, forced at omega = {} rad/s; maxima from t0 = {} s to T = {} s",
+        study.name(),
+        primary.stiffness.get(),
+        forcing.frequency.get(),
+        study.window.t0.get(),
+        study.window.end.get(),
+    )];
+    match study.scene.damper {
+        None => lines.push("no damper".to_owned()),
+        Some(damper) => lines.push(format!(
+            "damper of {} kg; contact stiffnesses {} N/m^1.5",
+            damper.mass.get(),
+            joined(&damper.contact.stiffness().map(short), " and "),
+        )),
+    }
+    if let Ok(search) = study.search() {
+        lines.push(format!("tunes {} from {}", joined(&search.variables, ", "), starts(&search)));
+        lines.extend(goal(study));
+    }
+    lines.join("\n  ")
+}
+
+/// Where the refinements of a search start.
+fn starts(search: &Search) -> String {
+    let mut from = Vec::new();
+    if let Some((variables, grid)) = &search.surf {
+        from.push(format!(
+            "a grid of {} over {}",
+            counted(grid.len() as u64, "point"),
+            joined(variables, ", ")
+        ));
+    }
+    if let Some((global, ..)) = &search.global {
+        from.push(format!(
+            "a global search ({}, {})",
+            counted(global.samples.into(), "design"),
+            counted(global.searches as u64, "CMA-ES search")
+        ));
+    }
+    if !search.given.is_empty() {
+        from.push(counted(search.given.len() as u64, "given design"));
+    }
+    if from.is_empty() { "the damper of the scene".to_owned() } else { from.join(" and ") }
+}
+
+/// What is made small, where it is not E1max in the window at the scene's omega, and the limits.
+fn goal(study: &Study) -> Vec<String> {
+    let mut lines = Vec::new();
+    let objective = study.objective();
+    let omega = study.scene.forcing.frequency.get();
+    let steady = objective.response == Response::Steady;
+    let how = match (objective.response, objective.omega) {
+        (Response::Window, Some(band)) => {
+            format!("in the window, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
+        }
+        (Response::Settled, Some(band)) => {
+            format!("settled, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
+        }
+        (Response::Window, None) => "in the window".to_owned(),
+        (Response::Settled, None) => "settled".to_owned(),
+        (Response::Steady, _) => "steady, exact".to_owned(),
+    };
+    if !objective.sum.is_empty() {
+        lines.push(format!("for the {}", objective.over(omega)));
+        let part = |part: &Part| {
+            format!("  {} times E1max, {}", short(part.weight.get()), part.objective.over(omega))
+        };
+        lines.extend(objective.sum.iter().map(part));
+    } else if objective.ensemble.is_none() && objective.k1.is_none() && objective.omega.is_none() {
+        if steady {
+            lines.push("for the steady E1max".to_owned());
+        } else if objective.response == Response::Settled {
+            lines.push("for the settled E1max".to_owned());
+        }
+    } else {
+        let over = objective.over(omega).replacen("worst over", "worst E1max over", 1);
+        lines.push(format!("for the {over}, {how}"));
+    }
+    let limits = study.goal().limits;
+    let words: Vec<String> = Limit::ALL
+        .into_iter()
+        .filter_map(|limit| Some(format!("{limit} at most {} {}", short(limits.get(limit)?), limit.unit())))
+        .collect();
+    if !words.is_empty() {
+        let when = match limits.walls_from() {
+            None => String::new(),
+            Some(_) if steady => ", of the steady motion".to_owned(),
+            Some(0.0) => ", over the whole run".to_owned(),
+            Some(from) => format!(", from {} s on", short(from)),
+        };
+        lines.push(format!("under limits: {}{when}", words.join(", ")));
+    }
+    lines
+}

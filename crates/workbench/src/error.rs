@@ -1,0 +1,149 @@
+//! Everything that can go wrong in a job.
+
+use retune_optim::{Failures, Unusable};
+use retune_solver::SolverError;
+use retune_study::{Rule, SettingError, StudyError, counted};
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a job ends without its result.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// Results cannot be read, made or replaced.
+    #[error(transparent)]
+    Store(#[from] retune_store::Error),
+    /// A study file is wrong.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A number given on the command line is wrong.
+    #[error("command line: {0}")]
+    Setting(#[from] SettingError),
+    /// A study does not ask for what the command does, or an option contradicts it.
+    #[error("study {name}: {rule}")]
+    Rule {
+        /// The study.
+        name: String,
+        /// The rule that is broken.
+        rule: Rule,
+    },
+    /// The interval of a trajectory is none, or makes a file that nobody can read.
+    #[error(
+        "--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows"
+    )]
+    Interval {
+        /// The interval as given.
+        value: f64,
+        /// Most rows of a trajectory.
+        most: u32,
+    },
+    /// A part of a grid is not what it must be.
+    #[error("{}: {problem}", path.display())]
+    Part {
+        /// The part.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Points that no part holds.
+    #[error(
+        "{}: no part holds points {points} of {len}: make what is missing with `retune optimize {} --shard i/N`{}",
+        place.display(),
+        study.display(),
+        shards.as_ref().map(|shards| format!(", i/N = {shards}")).unwrap_or_default()
+    )]
+    MissingParts {
+        /// The points.
+        points: String,
+        /// How many the grid has.
+        len: usize,
+        /// The shares that hold them, if that can be told.
+        shards: Option<String>,
+        /// The study.
+        study: PathBuf,
+        /// Where parts are looked for.
+        place: PathBuf,
+    },
+    /// Results that do not hold.
+    #[error("{}: {problem}", path.display())]
+    NotHeld {
+        /// The directory of the results.
+        path: PathBuf,
+        /// What does not hold.
+        problem: String,
+    },
+    /// Results of which something cannot be checked; all that can be holds.
+    #[error("{}: cannot be checked: {problem}", path.display())]
+    NotChecked {
+        /// The directory of the results.
+        path: PathBuf,
+        /// What cannot be checked.
+        problem: String,
+    },
+    /// No design that keeps the limits: the results are of the nearest.
+    #[error(
+        "study {name}: the limits are not kept: {words}; loosen a limit, widen a bound, or look at more designs"
+    )]
+    Infeasible {
+        /// The study.
+        name: String,
+        /// Which limits are broken, and by how much.
+        words: String,
+    },
+    /// Lines that `evaluate` could not answer with a value.
+    #[error("standard input: {failed} of {} had no value", counted(*lines, "line"))]
+    Lines {
+        /// How many.
+        failed: u64,
+        /// How many there were.
+        lines: u64,
+    },
+    /// The threads could not be started.
+    #[error("cannot start the threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A run could not be finished.
+    #[error("the run failed: {0}")]
+    Run(#[from] SolverError),
+    /// A motion could not be followed.
+    #[error("the run failed: {0}")]
+    Atlas(#[from] retune_atlas::Error),
+    /// A design that was found cannot be run.
+    #[error("a design that was found cannot be run: {0}")]
+    Unusable(#[from] Unusable),
+    /// No point of the grid has a value.
+    #[error("no point of the grid could be computed{}", example(.0))]
+    NoStart(Failures),
+    /// A global search found nothing to start from.
+    #[error("the global search failed: {source}{}", example(.failures))]
+    Global {
+        /// What it says.
+        source: retune_optim::GlobalError,
+        /// The evaluations that failed.
+        failures: Failures,
+    },
+    /// A refinement could not be started.
+    #[error("the refinement failed: {source}{}", example(.failures))]
+    Search {
+        /// What it says.
+        source: retune_optim::Error,
+        /// The evaluations that failed.
+        failures: Failures,
+    },
+    /// A figure could not be drawn.
+    #[error("cannot draw {name}: {problem}")]
+    Figure {
+        /// The figure.
+        name: String,
+        /// What the drawing library says.
+        problem: String,
+    },
+}
+
+fn example(failures: &Failures) -> String {
+    match failures.example.as_deref() {
+        Some((design, reason)) => format!(" ({} failed; at {design:?}: {reason})", failures.count),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! `evaluate`: the objective of a study as a service, for optimisers outside of Retune.
+
+mod input;
+
+use crate::tune::objective;
+use crate::{Error, Request};
+use input::Line;
+use rayon::prelude::*;
+use retune_optim::{Evaluation, Limit, PeakEnergy, Unusable, Variable};
+use retune_study::Study;
+use serde_json::json;
+use std::io::{BufRead, ErrorKind, Write};
+use thiserror::Error;
+
+/// The protocol, for `--help`.
+pub const PROTOCOL: &str = "\
+A design is a line on standard input: one number in SI units for each parameter that the study tunes, in the order k2 c2 D C, with \
+blanks or commas between them. Each line, an empty one too, is answered by one line on standard output, in order:
+
+  160.605      E1max by the study's objective, J, of a design that keeps the limits
+  inf          the design breaks a limit
+  error: ...   the design has no value, or the line is no design; the same goes to standard error with the number of the line \
+(the first 100), and the exit code at the end is 1
+
+A line is answered at once if it comes alone; of lines that come together, as many as there are threads are evaluated side by side. \
+A line has at most 4096 bytes. The end of the input ends the program.
+
+With --json the answer is an object: {\"E1max\": 190.2, \"violation\": 0.02, \"stroke\": 0.153}. E1max is then given whether limits \
+are kept or not; violation is the sum of reached / limit - 1 over the limits that are broken, 0 if none is; then follows what is \
+reached of each limit that the study sets (stroke and cavity in m, force in N). A line without a value is {\"error\": \"...\"}.
+
+An optimiser that takes constraints (SciPy's NonlinearConstraint, MATLAB's nonlcon, Optuna's constraints_func) makes E1max small \
+under violation <= 0. One that takes none, and has to find its way to designs that keep the limits, makes E1max small where violation \
+is 0 and 1e6 * (1 + violation) elsewhere, with a number above every E1max in the place of 1e6. One that stops at inf (a fit, a \
+gradient) needs the same.";
+
+/// How many lines without a value standard error names: who reads it not must not be held up by it.
+const TOLD: u64 = 100;
+
+/// Why a line has no value.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum LineError {
+    /// Too few numbers, or too many.
+    #[error("give one number for each of {}; found {found}", words(.wanted))]
+    Count {
+        /// How many there are.
+        found: usize,
+        /// The tuned parameters.
+        wanted: Vec<Variable>,
+    },
+    /// Not a number.
+    #[error("{variable}: \"{}\" is not a number", shown(.text))]
+    Number {
+        /// The parameter.
+        variable: Variable,
+        /// The text as given.
+        text: String,
+    },
+    /// A line that nobody would write.
+    #[error("the line is longer than {} bytes", input::MOST)]
+    Long,
+    /// A design without a value.
+    #[error(transparent)]
+    Unusable(#[from] Unusable),
+}
+
+fn words(variables: &[Variable]) -> String {
+    variables.iter().map(|variable| variable.symbol()).collect::<Vec<_>>().join(" ")
+}
+
+/// The beginning of a text, as a terminal may show it.
+fn shown(text: &str) -> String {
+    const MOST: usize = 40;
+    let begin: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();
+    if text.chars().nth(MOST).is_some() { begin + "..." } else { begin }
+}
+
+/// Where designs come from and answers go.
+pub struct Streams<'a, I> {
+    /// Designs, one a line.
+    pub input: I,
+    /// An answer for each.
+    pub answers: &'a mut (dyn Write + Send),
+    /// What is said of lines without a value: a line each.
+    pub complaints: &'a mut (dyn FnMut(&str) + Send),
+}
+
+/// Reads designs, one a line, and answers each; see [`PROTOCOL`]. Ends with its input, or when nobody reads any more. At most as many
+/// lines as there are `threads` (all cores, if none are given) are evaluated side by side.
+///
+/// # Errors
+/// The study does not say what to tune, the input cannot be read, the answers cannot be written, or a line had no value.
+pub fn evaluate<I: BufRead + Send + 'static>(
+    study: &Study,
+    json: bool,
+    request: &Request,
+    streams: Streams<'_, I>,
+) -> Result<(), Error> {
+    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+    let objective = objective(study, &search, &search.variables);
+    request.on_threads(|| answer(&objective, json, streams))
+}
+
+fn answer<I: BufRead + Send + 'static>(
+    objective: &PeakEnergy,
+    json: bool,
+    Streams { input, answers, complaints }: Streams<'_, I>,
+) -> Result<(), Error> {
+    let together = rayon::current_num_threads();
+    let lines = input::lines(input, together);
+    let (mut count, mut failed) = (0, 0);
+    while let Ok(first) = lines.recv() {
+        let refuse = |source| retune_store::Error::Input { path: "standard input".into(), source };
+        let mut batch = vec![first.map_err(refuse)?];
+        while batch.len() < together
+            && let Ok(Ok(line)) = lines.try_recv()
+        {
+            batch.push(line);
+        }
+        let found: Vec<Result<Evaluation, LineError>> =
+            batch.par_iter().map(|line| value(objective, line)).collect();
+        let mut text = String::new();
+        for found in &found {
+            count += 1;
+            if let Err(reason) = found {
+                failed += 1;
+                complain(count, failed, reason, complaints);
+            }
+            text += &if json { object(objective, found) } else { plain(found) };
+            text.push('\n');
+        }
+        match answers.write_all(text.as_bytes()).and_then(|()| answers.flush()) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => break,
+            Err(source) => {
+                let path = "standard output".into();
+                return Err(retune_store::Error::Output { path, source }.into());
+            }
+            Ok(()) => {}
+        }
+    }
+    if failed == 0 { Ok(()) } else { Err(Error::Lines { failed, lines: count }) }
+}
+
+/// Says that a line has no value, of the first [`TOLD`].
+fn complain(line: u64, failed: u64, reason: &LineError, complaints: &mut dyn FnMut(&str)) {
+    if failed <= TOLD {
+        complaints(&format!("error: line {line}: {reason}"));
+    } else if failed == TOLD + 1 {
+        complaints("further lines without a value are answered on standard output only");
+    }
+}
+
+fn plain(found: &Result<Evaluation, LineError>) -> String {
+    match found {
+        Ok(found) if found.violation > 0.0 => "inf".to_owned(),
+        Ok(found) => found.energy.to_string(),
+        Err(reason) => format!("error: {reason}"),
+    }
+}
+
+fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> String {
+    let found = match found {
+        Ok(found) => found,
+        Err(reason) => return json!({ "error": reason.to_string() }).to_string(),
+    };
+    let limits = objective.goal().limits;
+    // The sum of no excess is -0.
+    let mut fields = vec![("E1max", found.energy), ("violation", found.violation + 0.0)];
+    let set = Limit::ALL.into_iter().filter(|limit| limits.get(*limit).is_some());
+    fields.extend(set.map(|limit| (limit.name(), found.reached.get(limit))));
+    let fields: Vec<String> =
+        fields.iter().map(|(name, value)| format!("\"{name}\": {}", json!(value))).collect();
+    format!("{{{}}}", fields.join(", "))
+}
+
+/// What a design is worth that is given as numbers between blanks or commas.
+fn value(objective: &PeakEnergy, line: &Line) -> Result<Evaluation, LineError> {
+    let Line::Text(line) = line else { return Err(LineError::Long) };
+    let texts: Vec<&str> =
+        line.split(|c: char| c.is_whitespace() || c == ',').filter(|text| !text.is_empty()).collect();
+    let variables = objective.variables();
+    if texts.len() != variables.len() {
+        return Err(LineError::Count { found: texts.len(), wanted: variables.to_vec() });
+    }
+    let number = |(&variable, &text): (&Variable, &&str)| {
+        text.parse().map_err(|_| LineError::Number { variable, text: text.to_owned() })
+    };
+    let design = variables.iter().zip(&texts).map(number).collect::<Result<Vec<f64>, _>>()?;
+    let scene = objective.scene(&design)?;
+    Ok(objective.evaluate(&scene, f64::INFINITY)?)
+}

@@ -1,0 +1,84 @@
+//! Lines of an input, read beside the work so that it is known whether more than one is there.
+
+use std::io::{BufRead, Error, Result};
+use std::sync::mpsc::{Receiver, sync_channel};
+
+/// Most bytes of a line.
+pub const MOST: usize = 4096;
+
+/// A line.
+#[derive(Debug, PartialEq)]
+pub enum Line {
+    /// Its text; what is no UTF-8 is replaced.
+    Text(String),
+    /// One that is longer than [`MOST`]; its text is not kept.
+    Long,
+}
+
+/// The lines of an input, at most `ahead` of them read before they are wanted.
+pub fn lines(mut input: impl BufRead + Send + 'static, ahead: usize) -> Receiver<Result<Line>> {
+    let (sender, receiver) = sync_channel(ahead);
+    let read = move || {
+        while let Some(line) = next(&mut input).transpose() {
+            let broken = line.is_err();
+            if sender.send(line).is_err() || broken {
+                break; // nobody wants more
+            }
+        }
+    };
+    // The thread is not waited for: when nobody reads the answers, it may still wait for a line.
+    let started = std::thread::Builder::new().name("input".to_owned()).spawn(read);
+    if let Err(error) = started {
+        let (sender, receiver) = sync_channel(1);
+        let _ = sender.send(Err(Error::other(error)));
+        return receiver;
+    }
+    receiver
+}
+
+/// The next line; none at the end.
+fn next(input: &mut impl BufRead) -> Result<Option<Line>> {
+    let mut line = Vec::new();
+    let (mut any, mut long) = (false, false);
+    loop {
+        let there = input.fill_buf()?;
+        if there.is_empty() {
+            break;
+        }
+        any = true;
+        let end = there.iter().position(|byte| *byte == b'\n');
+        let part = &there[..end.unwrap_or(there.len())];
+        long |= line.len() + part.len() > MOST;
+        if !long {
+            line.extend_from_slice(part);
+        }
+        let used = part.len() + usize::from(end.is_some());
+        input.consume(used);
+        if end.is_some() {
+            break;
+        }
+    }
+    let text = || Line::Text(String::from_utf8_lossy(&line).into_owned());
+    Ok(any.then(|| if long { Line::Long } else { text() }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::BufReader;
+
+    #[test]
+    fn exact_lines_are_taken_apart_and_long_ones_not_kept() {
+        let most = "1".repeat(MOST);
+        let input = format!("1 2\n\n{most}\n{most}1\nlast");
+        for capacity in [1, 7, 1 << 16] {
+            let mut input = BufReader::with_capacity(capacity, input.as_bytes());
+            let mut lines = Vec::new();
+            while let Some(line) = next(&mut input).expect("readable") {
+                lines.push(line);
+            }
+            let text = |text: &str| Line::Text(text.to_owned());
+            assert_eq!(lines, [text("1 2"), text(""), text(&most), Line::Long, text("last")]);
+        }
+    }
+}

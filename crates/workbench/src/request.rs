@@ -1,0 +1,95 @@
+//! What is asked of a job beside its study, and what every job does first and last.
+
+use crate::{Error, Observer};
+use retune_store::{Begin, Directory, Extent, Identity, Order};
+use retune_study::{Study, StudyError, check_name};
+use std::path::{Path, PathBuf};
+
+/// How a job is run.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// The study file.
+    pub study: PathBuf,
+    /// Directory of the results; that of the job, if none is given.
+    pub out: Option<PathBuf>,
+    /// Threads; all cores, if none are given. The results are the same for any number.
+    pub threads: Option<u16>,
+    /// What becomes of unfinished work that is found.
+    pub begin: Begin,
+    /// Whether results of others may be replaced.
+    pub replace: bool,
+}
+
+impl Request {
+    /// Of a study file, with results where the job has them and all cores.
+    pub fn new(study: &Path) -> Self {
+        Self { study: study.to_owned(), ..Self::default() }
+    }
+
+    /// What a directory of results is asked for.
+    pub fn order(&self, command: &'static str) -> Order {
+        Order { command, study: self.study.clone(), begin: self.begin, replace: self.replace }
+    }
+
+    /// Where the results of one study go: `results/` and its name, unless told otherwise.
+    pub fn out_of(&self, study: &Study) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| Path::new("results").join(study.name()))
+    }
+
+    /// Where the results of a study of several dampers go: `results/` and its file's own name, unless told otherwise.
+    ///
+    /// # Errors
+    /// The file's name is none for a directory.
+    pub fn out_of_file(&self) -> Result<PathBuf, Error> {
+        if let Some(out) = &self.out {
+            return Ok(out.clone());
+        }
+        let name = self.study.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let file = self.study.display().to_string();
+        check_name(&name).map_err(|rule| StudyError::Rule { file, rule })?;
+        Ok(Path::new("results").join(name))
+    }
+
+    /// Runs `work` on the threads of the request.
+    ///
+    /// # Errors
+    /// The threads cannot be started, or `work` fails.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()?;
+        pool.install(work)
+    }
+}
+
+/// Opens a directory of results and tells the observer of it.
+///
+/// # Errors
+/// As [`Directory::open`].
+pub fn open(
+    path: &Path,
+    order: &Order,
+    identity: &Identity,
+    extent: Extent,
+    is_ours: impl Fn(&str) -> bool + Send + Sync + 'static,
+    watch: &dyn Observer,
+) -> Result<Directory, Error> {
+    let directory = Directory::open(path, order, identity, extent, is_ours)?;
+    if let Some(warning) = directory.warning() {
+        watch.warn(warning);
+    }
+    watch.resumable();
+    Ok(directory)
+}
+
+/// Says where the results are, and lists them.
+///
+/// # Errors
+/// The directory cannot be read.
+pub fn where_results_are(out: &Path) -> Result<String, Error> {
+    let refuse = |source| retune_store::Error::Output { path: PathBuf::from(out), source };
+    let entries = std::fs::read_dir(out).map_err(refuse)?;
+    let mut names: Vec<String> =
+        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.retain(|name| !name.starts_with('.'));
+    names.sort();
+    Ok(format!("results in {}: {}", out.display(), names.join(" ")))
+}

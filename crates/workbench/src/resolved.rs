@@ -1,0 +1,81 @@
+//! All that results follow from, with every default written out: `study.json` of one study, `resolved.json` of several.
+
+use crate::Error;
+use retune_store::{Identity, json_text};
+use retune_study::{Study, read::from_text};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::path::Path;
+
+/// The text of `study.json`.
+///
+/// # Errors
+/// None that is known.
+pub fn study_text(study: &Study) -> Result<String, Error> {
+    Ok(json_text(&study.resolved(), "study.json")?)
+}
+
+/// The identity of the search of a study.
+///
+/// # Errors
+/// None that is known.
+pub fn identity_of(study: &Study) -> Result<Identity, Error> {
+    Ok(Identity::of(&study_text(study)?))
+}
+
+/// The name of the file that several studies are written to.
+pub const NAME: &str = "resolved.json";
+
+/// What was asked for, and the study of each damper.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Resolved {
+    /// What was asked for beside the studies.
+    pub plan: Value,
+    dampers: Vec<Damper>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Damper {
+    damper: String,
+    study: Value,
+}
+
+impl Resolved {
+    /// Of a plan and the studies of the dampers that it names.
+    pub fn new<'a>(plan: Value, studies: impl Iterator<Item = (&'a str, &'a Study)>) -> Self {
+        let damper = |(name, study): (&str, &Study)| Damper {
+            damper: name.to_owned(),
+            study: serde_json::json!(study.resolved()),
+        };
+        Self { plan, dampers: studies.map(damper).collect() }
+    }
+
+    /// The text of the file.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub fn text(&self) -> Result<String, Error> {
+        Ok(json_text(self, NAME)?)
+    }
+
+    /// Reads the file in a directory of results.
+    ///
+    /// # Errors
+    /// It cannot be read, or is none.
+    pub fn read(place: &Path) -> Result<Self, Error> {
+        let path = place.join(NAME);
+        let refuse = |source| retune_store::Error::Input { path: path.clone(), source };
+        let text = std::fs::read_to_string(&path).map_err(refuse)?;
+        Ok(serde_json::from_str(&text).map_err(|error| refuse(error.into()))?)
+    }
+
+    /// The name and the study of each damper.
+    ///
+    /// # Errors
+    /// A study is none.
+    pub fn studies(&self) -> Result<Vec<(String, Study)>, Error> {
+        let study =
+            |damper: &Damper| Ok((damper.damper.clone(), from_text(&damper.study.to_string(), NAME)?));
+        self.dampers.iter().map(study).collect()
+    }
+}

@@ -1,0 +1,63 @@
+//! `simulate`: one run.
+
+use crate::Error;
+use crate::summary::Summary;
+use retune_solver::{Rows, Sample, trajectory};
+use retune_store::{Pending, order::may_write};
+use retune_study::Study;
+use std::path::Path;
+
+/// Most rows of a trajectory.
+const MOST_ROWS: u32 = 100_000_000;
+
+/// What every trajectory begins with, of this and of earlier versions: by it a file is known as one.
+const HEAD: &str = "t,x1,v1,x2,v2,";
+
+/// Where the motion of a run is written to.
+#[derive(Clone, Copy, Debug)]
+pub struct Trajectory<'a> {
+    /// The file.
+    pub file: &'a Path,
+    /// Time between two rows of its grid, s.
+    pub interval: f64,
+    /// Files that it must not replace.
+    pub inputs: &'a [&'a Path],
+}
+
+/// Runs the scene of a study.
+///
+/// # Errors
+/// The run fails, or the trajectory cannot be written.
+pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Summary, Error> {
+    if let Some(Trajectory { file, inputs, .. }) = trajectory {
+        may_write(file, inputs, HEAD)?;
+    }
+    let response = retune_solver::simulate(&study.scene, study.window.window(), &study.solver.settings())?;
+    if let Some(Trajectory { file, interval, .. }) = trajectory {
+        write_trajectory(study, file, interval)?;
+    }
+    Ok(Summary::new(study, study.scene, &response))
+}
+
+/// Writes the motion in the window: a row each `interval` seconds, and one for each moment that lies between (column `moment`).
+/// A row says which it is in its last column, so that `df[df.moment == "grid"]` are the equidistant ones.
+fn write_trajectory(study: &Study, file: &Path, interval: f64) -> Result<(), Error> {
+    let window = study.window.window();
+    let rows = (window.to - window.from) / interval;
+    if !(interval > 0.0 && rows <= f64::from(MOST_ROWS)) {
+        return Err(Error::Interval { value: interval, most: MOST_ROWS });
+    }
+    let mut csv = Pending::create(file)?;
+    csv.push("t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment\n")?;
+    let mut written = Ok(());
+    let mut row = |sample: &Sample| {
+        let Sample { t, state: [x1, v1, x2, v2], e1, e2, forces: [left, right], moment } = sample;
+        let text = format!("{t},{x1},{v1},{x2},{v2},{e1},{e2},{left},{right},{}\n", moment.name());
+        if written.is_ok() {
+            written = csv.push(&text);
+        }
+    };
+    trajectory(&study.scene, window, &study.solver.settings(), Rows { interval, events: true }, &mut row)?;
+    written?;
+    Ok(csv.finish()?)
+}

@@ -1,0 +1,195 @@
+//! What a run gave: one type, from which JSON and text are made.
+
+use retune_model::{Damper, Scene, energy_ratios};
+use retune_optim::Variable;
+use retune_solver::{Response, SceneKind};
+use retune_study::counted;
+use retune_study::{Objective, Solver, Span, Study};
+use serde::Serialize;
+
+/// What was observed in the window of a run. SI units; a ratio of nothing to nothing is null.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    #[serde(flatten)]
+    made_by: MadeBy,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+    #[serde(rename = "t_E1max")]
+    t_e1_max: f64,
+    #[serde(rename = "E2max")]
+    e2_max: f64,
+    #[serde(rename = "t_E2max")]
+    t_e2_max: f64,
+    #[serde(rename = "R1")]
+    r1: f64,
+    #[serde(rename = "R2")]
+    r2: f64,
+    impacts: Walls<u64>,
+    /// Largest |x2 - x1| and |x2 - x1 - D|, m.
+    relative_displacement_max: f64,
+    spring_deflection_max: f64,
+    force_max: Walls<f64>,
+    final_state: FinalState,
+    /// The smallest model that was exact.
+    scene: SceneKind,
+    steps: u64,
+    rejected: u64,
+    evaluations: u64,
+    parameters: Scene,
+}
+
+/// A damper as in the paper's Table 2, SI units.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Design {
+    pub m2: f64,
+    pub k2: f64,
+    pub c2: f64,
+    #[serde(rename = "D")]
+    pub d: f64,
+    #[serde(rename = "C")]
+    pub c: f64,
+}
+
+impl Design {
+    /// That of a damper.
+    pub fn new(damper: &Damper) -> Self {
+        let [k2, c2, d, c] = Variable::ALL.map(|variable| variable.get(damper));
+        Self { m2: damper.mass.get(), k2, c2, d, c }
+    }
+}
+
+/// What made a result.
+#[derive(Clone, Debug, Serialize)]
+pub struct MadeBy {
+    retune: &'static str,
+    study: String,
+    omega: f64,
+    window: Span,
+    solver: Solver,
+    /// What was made small; of a run, the default.
+    #[serde(skip)]
+    objective: Objective,
+}
+
+/// Something for each wall of the cavity.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Walls<T> {
+    primary: T,
+    obstacle: T,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct FinalState {
+    x1: f64,
+    v1: f64,
+    x2: f64,
+    v2: f64,
+}
+
+impl MadeBy {
+    /// What makes the results of `study`.
+    pub fn new(study: &Study) -> Self {
+        let (window, solver) = (study.window, study.solver);
+        let omega = study.scene.forcing.frequency.get();
+        let (study, objective) = (study.name().to_owned(), study.objective());
+        Self { retune: env!("CARGO_PKG_VERSION"), study, omega, window, solver, objective }
+    }
+
+    /// What makes a run of `scene` under `study`.
+    fn run(study: &Study, scene: &Scene) -> Self {
+        let omega = scene.forcing.frequency.get();
+        Self { omega, objective: Objective::default(), ..Self::new(study) }
+    }
+}
+
+impl std::fmt::Display for MadeBy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { retune, study, omega, window, solver, objective } = self;
+        let method = format!("{:?}", solver.method).to_lowercase();
+        let (t0, end) = (window.t0.get(), window.end.get());
+        let rtol = solver.rtol;
+        write!(f, "study {study}, ")?;
+        write!(f, "{}, ", objective.over(*omega))?;
+        if objective.is_steady() {
+            return write!(f, "steady; Retune {retune}");
+        }
+        write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {rtol:e}")
+    }
+}
+
+impl Summary {
+    /// Collects the observations of a run of `scene` with the window and solver of `study`.
+    pub fn new(study: &Study, scene: Scene, response: &Response) -> Self {
+        let Response { e1_max, e2_max, impacts, force_max, final_state, scene: kind, work, .. } = *response;
+        let Response { relative_displacement_max, spring_deflection_max, .. } = *response;
+        let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
+        let [x1, v1, x2, v2] = final_state;
+        Self {
+            made_by: MadeBy::run(study, &scene),
+            e1_max: e1_max.value,
+            t_e1_max: e1_max.time,
+            e2_max: e2_max.value,
+            t_e2_max: e2_max.time,
+            r1,
+            r2,
+            impacts: Walls { primary: impacts[0], obstacle: impacts[1] },
+            relative_displacement_max,
+            spring_deflection_max,
+            force_max: Walls { primary: force_max[0], obstacle: force_max[1] },
+            final_state: FinalState { x1, v1, x2, v2 },
+            scene: kind,
+            steps: work.steps,
+            rejected: work.rejected,
+            evaluations: work.evaluations,
+            parameters: scene,
+        }
+    }
+
+    /// The paper's name for the damper: a TMD never touches.
+    pub fn damper_type(&self) -> &'static str {
+        match self.scene {
+            SceneKind::Contact => "SSVI NES",
+            SceneKind::Linear => "TMD",
+            SceneKind::Bare => "none",
+        }
+    }
+}
+
+impl std::fmt::Display for Summary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let model = match self.scene {
+            SceneKind::Bare => "no damper, one degree of freedom",
+            SceneKind::Linear => "the damper touched nothing, linear",
+            SceneKind::Contact => "with contacts",
+        };
+        writeln!(f, "{}", self.made_by)?;
+        writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
+        writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
+        writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
+        writeln!(
+            f,
+            "impacts     {} on the primary structure, {} on the obstacle",
+            self.impacts.primary, self.impacts.obstacle
+        )?;
+        let Walls { primary, obstacle } = self.force_max;
+        writeln!(f, "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle")?;
+        writeln!(
+            f,
+            "stroke      {:.6} m, the largest spring deflection |x2 - x1 - D|",
+            self.spring_deflection_max
+        )?;
+        writeln!(
+            f,
+            "rel. displ. {:.6} m, the largest relative displacement |x2 - x1|",
+            self.relative_displacement_max
+        )?;
+        writeln!(f, "model       {model}")?;
+        write!(
+            f,
+            "work        {}, {} rejected, {}",
+            counted(self.steps, "step"),
+            self.rejected,
+            counted(self.evaluations, "evaluation")
+        )
+    }
+}

@@ -1,0 +1,99 @@
+//! The band of a tuned damper: E1max against ω without a damper, with the damper of the study, and with the tuned one.
+
+use crate::Error;
+use crate::summary::MadeBy;
+use rayon::prelude::*;
+use retune_figures::sheet::{BLACK, BLUE, Chart, Key, Layer, VERMILION, sheet};
+use retune_model::{NonNegative, Scene};
+use retune_optim::{Band, Goal, Term, When};
+use retune_store::Directory;
+use retune_study::Study;
+use retune_study::short;
+
+/// Frequencies of the curves where each costs next to nothing.
+const FINE: usize = 601;
+/// How many times the samples of the search the curves have where each is a run.
+const FINER: usize = 4;
+
+/// Writes `band.csv` and `band.svg`; `tuned` is the scene with the damper that was found. What has no value (a steady motion
+/// that reaches a wall, a run that fails) is an empty field and a gap.
+///
+/// # Errors
+/// A file cannot be written.
+pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<(), Error> {
+    let Goal { terms, .. } = study.goal();
+    let Some((term, band)) = terms.first().and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
+    else {
+        return Ok(());
+    };
+    let samples =
+        if term.when == When::Steady { FINE.max(band.samples) } else { FINER * (band.samples - 1) + 1 };
+    let fine = Band { samples, ..band };
+    let scenes = [Scene { damper: None, ..tuned }, study.scene, tuned];
+    let worst = scenes.map(|scene| energy(study, scene, term));
+    let single = Term { omega: None, ..term.clone() };
+    let rows: Vec<(f64, [f64; 3])> = (0..samples)
+        .into_par_iter()
+        .map(|i| {
+            let omega = fine.at(i);
+            let energy = |scene| at(omega, scene).map_or(f64::NAN, |scene| energy(study, scene, &single));
+            (omega, scenes.map(energy))
+        })
+        .collect();
+
+    let mut csv = "omega,E1max_none,E1max_study,E1max_tuned\n".to_owned();
+    for (omega, energies) in &rows {
+        let fields = energies.map(|e| if e.is_finite() { e.to_string() } else { String::new() });
+        csv += &format!("{omega},{}\n", fields.join(","));
+    }
+    results.write("band.csv", &csv)?;
+    results.write("band.svg", &picture(study, &rows, worst))?;
+    Ok(())
+}
+
+/// The scene at another frequency, rad/s.
+fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
+    scene.forcing.frequency = NonNegative::new(omega).ok()?;
+    Some(scene)
+}
+
+/// E1max of a scene as a term takes it, without limits, J; NaN where it has none.
+fn energy(study: &Study, scene: Scene, term: &Term) -> f64 {
+    let value = Goal::one(term.clone()).evaluate(&scene, &study.solver.settings(), f64::INFINITY);
+    value.map_or(f64::NAN, |found| found.energy)
+}
+
+/// E1max of a scene at its own frequency, J, as `band.csv` has it; NaN where it has none.
+pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
+    let Goal { terms, .. } = study.goal();
+    terms.first().map_or(f64::NAN, |term| energy(study, scene, &Term { omega: None, ..term.clone() }))
+}
+
+fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
+    const LINES: [(&str, &str, &str); 3] = [
+        ("no damper", BLACK, "6 6"),
+        ("the study's damper", BLUE, "18 8"),
+        ("tuned for the band", VERMILION, ""),
+    ];
+    let said = |value: f64| if value.is_finite() { format!(": {} J", short(value)) } else { String::new() };
+    let words: Vec<String> = (0..3).map(|i| format!("{}{}", LINES[i].0, said(worst[i]))).collect();
+    let legend: Vec<(Key, &str)> = LINES
+        .iter()
+        .zip(&words)
+        .map(|(&(_, colour, dash), words)| (Key::Line(colour, dash), words.as_str()))
+        .collect();
+    let layers = LINES.iter().enumerate().map(|(i, &(_, colour, dash))| {
+        let points = rows.iter().map(|(omega, energies)| (*omega, energies[i])).collect();
+        Layer::Line { points, colour, width: 4.0, dash }
+    });
+    let top = rows.iter().flat_map(|row| row.1).filter(|e| e.is_finite()).fold(0.0, f64::max);
+    let ends = (rows[0].0, rows[rows.len() - 1].0);
+    let chart = Chart {
+        title: MadeBy::new(study).to_string(),
+        labels: ["ω, rad/s".to_owned(), "E₁max, J".to_owned()],
+        ranges: [ends, (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })],
+        log: false,
+        layers: layers.collect(),
+    };
+    sheet(&[chart], 1, 640.0, &legend).wide
+}

@@ -1,0 +1,193 @@
+//! The global search of a study, and the basins that it and the refinements found.
+
+use super::refine::{Refined, Run};
+use super::surf::design;
+use super::{kept, objective};
+use crate::Error;
+use crate::Observer;
+use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
+use retune_store::{Directory, Journal};
+use retune_study::{PerVariable, Search, Study};
+use retune_study::{counted, joined, short};
+use serde::Serialize;
+use std::time::Instant;
+
+/// What a global search found.
+pub struct Explored {
+    /// The searches, in the order of their starts.
+    pub searches: Vec<Descent>,
+    /// Where they came to.
+    pub basins: Vec<Basin>,
+    /// The box.
+    pub space: Space,
+    /// How near two ends are that are one basin.
+    pub apart: f64,
+    /// The designs that could not be computed.
+    pub failures: Failures,
+    /// How many designs were looked at.
+    pub counts: Counts,
+}
+
+/// Makes the global search of a study, if it asks for one.
+///
+/// # Errors
+/// Not one design could be computed.
+pub(super) fn global(
+    study: &Study,
+    search: &Search,
+    journal: &Journal,
+    watch: &dyn Observer,
+) -> Result<Option<Explored>, Error> {
+    let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
+    let objective = objective(study, search, &search.variables);
+    watch.log(&format!(
+        "global: {} over the box of {}, then {} of at most {} each",
+        counted(global.samples.into(), "design"),
+        joined(&search.variables, " "),
+        counted(global.searches as u64, "CMA-ES search"),
+        counted(global.evaluations, "evaluation")
+    ))?;
+    let begun = Instant::now();
+    let most = u64::from(global.samples) + global.searches as u64 * global.evaluations;
+    let bar = watch.progress("global", most);
+    let value = kept(&objective, journal, "global", || bar.known());
+    let found = explore(&value, &space, &global, || bar.inc(1));
+    bar.finish();
+    journal.check()?;
+    let failures = objective.failures();
+    let searches = found.map_err(|source| Error::Global { source, failures: failures.clone() })?;
+    let ends: Vec<Point> = searches.iter().map(|search| search.found.clone()).collect();
+    let basins = basins(value, &space, &ends, apart);
+    let counts = objective.counts();
+    let explored = Explored { searches, basins, space, apart, failures, counts };
+    watch.log(&explored.report(search, begun.elapsed().as_secs_f64()))?;
+    Ok(Some(explored))
+}
+
+impl Explored {
+    /// The best designs of the best basins: where refinements start.
+    pub(super) fn starts(&self, count: usize) -> Vec<Vec<f64>> {
+        self.basins.iter().take(count).map(|basin| basin.best.x.clone()).collect()
+    }
+
+    fn report(&self, search: &Search, seconds: f64) -> String {
+        let best = &self.basins[0].best;
+        let at = search.variables.iter().zip(&best.x);
+        let at: Vec<String> = at.map(|(variable, value)| format!("{variable} = {}", short(*value))).collect();
+        format!(
+            "global: {seconds:.1} s, {}; {} came to {}; the best has {} at {}",
+            counted(self.counts.evaluations, "evaluation"),
+            counted(self.searches.len() as u64, "search"),
+            counted(self.basins.len() as u64, "place"),
+            worth(best.value),
+            at.join(", ")
+        )
+    }
+}
+
+/// A value of the objective in words.
+pub(super) fn worth(value: f64) -> String {
+    let energy = energy(value);
+    if energy.is_nan() { "no feasible design".to_owned() } else { format!("{} J", short(energy)) }
+}
+
+/// Basins after the refinements, and how often each was reached.
+#[derive(Clone, Debug, Serialize)]
+pub struct Basins {
+    /// Designs that the first look and the searches evaluated.
+    evaluations: u64,
+    /// How many searches there were.
+    searches: usize,
+    /// How many of them came to the basin of the optimum.
+    reached_optimum: usize,
+    /// Best first.
+    basins: Vec<BasinNote>,
+}
+
+/// A basin: the best design of it, and what led there.
+#[derive(Clone, Debug, Serialize)]
+struct BasinNote {
+    #[serde(flatten)]
+    design: PerVariable<f64>,
+    /// null if it breaks a limit.
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+    /// Searches that came here.
+    searches: usize,
+    /// Refinements that ended here.
+    refinements: usize,
+}
+
+impl Basins {
+    /// Gathers what searches and refinements found: the end of a search whose basin was refined is what the refinement made of
+    /// it. Refinements come first in `runs` in the order of the basins, after `skip` others.
+    pub(super) fn new(
+        explored: &Explored,
+        search: &Search,
+        refined: &Refined,
+        journal: &Journal,
+        skip: usize,
+    ) -> Self {
+        let runs = &refined.runs;
+        let value = kept(&refined.objective, journal, "basins", || ());
+        let end = |run: &Run| Point { x: run.minimum.x.clone(), value: run.minimum.value };
+        let count = explored.basins.len().min(search.starts);
+        let mut points: Vec<Point> = explored.basins.iter().map(|basin| basin.best.clone()).collect();
+        for (point, run) in points.iter_mut().zip(&runs[skip..]).take(count) {
+            *point = end(run);
+        }
+        let others = runs[..skip].iter().chain(&runs[skip + count..]);
+        points.extend(others.map(end));
+        let is_refined = |i: usize| i < count || i >= explored.basins.len();
+        let notes =
+            basins(value, &explored.space, &points, explored.apart).into_iter().map(|basin| BasinNote {
+                design: super::optimum::per_variable(&search.variables, &basin.best.x),
+                e1_max: energy(basin.best.value),
+                searches: basin
+                    .reached_by
+                    .iter()
+                    .filter_map(|&i| explored.basins.get(i))
+                    .map(|basin| basin.reached_by.len())
+                    .sum(),
+                refinements: basin.reached_by.iter().filter(|&&i| is_refined(i)).count(),
+            });
+        let basins: Vec<BasinNote> = notes.collect();
+        Self {
+            evaluations: explored.counts.evaluations,
+            searches: explored.searches.len(),
+            reached_optimum: basins.first().map_or(0, |basin| basin.searches),
+            basins,
+        }
+    }
+
+    /// Writes `basins.csv`.
+    pub(super) fn write(&self, objective: &PeakEnergy, results: &Directory) -> Result<(), Error> {
+        let mut csv = "basin,searches,refinements,k2,c2,D,C,E1max\n".to_owned();
+        for (i, basin) in self.basins.iter().enumerate() {
+            let BasinNote { design: at, e1_max, searches, refinements } = basin;
+            let x: Vec<f64> = objective.variables().iter().filter_map(|&v| at.get(v)).collect();
+            let damper = objective.damper(&x)?;
+            let value = if e1_max.is_nan() { String::new() } else { e1_max.to_string() };
+            csv += &format!("{},{searches},{refinements},{},{value}\n", i + 1, joined(&design(&damper), ","));
+        }
+        Ok(results.write("basins.csv", &csv)?)
+    }
+
+    /// A line on screen.
+    pub(super) fn report(&self) -> String {
+        let Self { searches, reached_optimum, basins, .. } = self;
+        let next = basins.get(1).map_or(f64::NAN, |basin| basin.e1_max);
+        let next = if next.is_nan() { String::new() } else { format!("; the next has {} J", short(next)) };
+        let lonely = match reached_optimum {
+            0 => "no search came to it, a given start or the grid did",
+            1 => "a lonely one: more searches may find better",
+            _ => "",
+        };
+        let lonely = if lonely.is_empty() { String::new() } else { format!(" ({lonely})") };
+        format!(
+            "basins: {} found; that of the optimum was reached by {reached_optimum} of {}{lonely}{next}",
+            basins.len(),
+            counted(*searches as u64, "search")
+        )
+    }
+}

@@ -1,0 +1,61 @@
+//! The log of a refinement, in the forms it is written in.
+
+use retune_optim::Row;
+use retune_study::joined;
+
+/// Columns of `fminsearch.csv`.
+pub const CSV_HEADER: &str = "iteration,func_count,procedure,k2,c2,D,C,E1max";
+
+/// Columns of `fminsearch.txt`: those of the paper's Table 1.
+pub const TXT_HEADER: &str = "k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         E1max J";
+
+/// Columns of the log on screen.
+pub const SCREEN_HEADER: &str =
+    " iter evals  k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         E1max J         procedure";
+
+/// A row of `fminsearch.csv`; numbers to the last bit.
+pub fn csv(row: &Row, design: &[f64; 4]) -> String {
+    let Row { iteration, func_count, procedure, value, .. } = row;
+    format!("{iteration},{func_count},{procedure},{},{value}", joined(design, ","))
+}
+
+/// A row of `fminsearch.txt`, with the look of the paper's Table 1.
+pub fn table1(row: &Row, design: &[f64; 4]) -> String {
+    let [k2, c2, d, c] = design.map(scientific);
+    format!("{k2}   {c2}   {d}   {c}   {}", scientific(row.value))
+}
+
+/// A row of the log on screen.
+pub fn screen(row: &Row, design: &[f64; 4]) -> String {
+    let Row { iteration, func_count, procedure, .. } = row;
+    format!("{iteration:>5} {func_count:>5}  {}   {procedure}", table1(row, design)).trim_end().to_owned()
+}
+
+/// A number as in the paper's Table 1: `2.203750E+002`.
+pub fn scientific(value: f64) -> String {
+    let text = format!("{value:.6E}");
+    match text.split_once('E') {
+        Some((digits, exponent)) => {
+            let (sign, size) = match exponent.strip_prefix('-') {
+                Some(size) => ('-', size),
+                None => ('+', exponent),
+            };
+            format!("{digits}E{sign}{size:0>3}")
+        }
+        None => text, // not finite
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paper_numbers_look_like_table_1() {
+        assert_eq!(scientific(220.375), "2.203750E+002");
+        assert_eq!(scientific(0.060375), "6.037500E-002");
+        assert_eq!(scientific(0.0), "0.000000E+000");
+        assert_eq!(scientific(-1.5e-123), "-1.500000E-123");
+        assert_eq!(scientific(f64::INFINITY), "inf");
+    }
+}

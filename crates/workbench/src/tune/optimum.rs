@@ -1,0 +1,298 @@
+//! What a search found: one type, from which `optimum.json` and the last lines on screen are made.
+
+mod notes;
+
+use super::global::{Basins, Explored};
+use super::refine::{Refined, Run};
+use super::surf::Surf;
+use crate::Error;
+use crate::certify::Short;
+use crate::summary::{Design, MadeBy, Summary};
+use notes::{Goal, LimitNote, Met};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Unusable, Variable, energy};
+use retune_study::{PerVariable, Search, Study};
+use retune_study::{counted, short};
+use serde::Serialize;
+
+/// The best design and how it was found. SI units.
+#[derive(Clone, Debug, Serialize)]
+pub struct Optimum {
+    damper_type: &'static str,
+    #[serde(flatten)]
+    design: Design,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+    /// What E1max is, where it is not that of a window at the scene's omega.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    objective: Option<Goal>,
+    on_bound: Vec<Met>,
+    /// How the limits of the study are kept, where it has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<LimitNote>,
+    surf: Option<GridBest>,
+    /// What the global search found, where there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    global: Option<Basins>,
+    refine: Refinement,
+    failures: FailureNote,
+    /// The short form of `certificate.json`.
+    certificate: Short,
+    simulation: Summary,
+    #[serde(skip)]
+    start: Found,
+    #[serde(skip)]
+    made_by: MadeBy,
+}
+
+/// What came before the refinement.
+pub(super) struct Searched<'a> {
+    pub surf: Option<&'a Surf>,
+    pub explored: Option<&'a Explored>,
+    pub basins: Option<Basins>,
+}
+
+/// A design as in the paper's Table 2: m2, k2, c2, D, C in SI units; and its E1max, J.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// m2, k2, c2, D, C.
+    pub design: [f64; 5],
+    /// E1max, J.
+    pub e1_max: f64,
+}
+
+/// The best point of the grid.
+#[derive(Clone, Debug, Serialize)]
+struct GridBest {
+    points: usize,
+    best: PerVariable<f64>,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+}
+
+/// The refinements.
+#[derive(Clone, Debug, Serialize)]
+struct Refinement {
+    /// "absolute" or "scaled": what TolX measures.
+    #[serde(rename = "TolX_mode")]
+    tol_x_mode: &'static str,
+    #[serde(rename = "TolX")]
+    tol_x: f64,
+    #[serde(rename = "TolFun")]
+    tol_fun: f64,
+    /// The number, from 1, of the start that gave the optimum.
+    winner: usize,
+    runs: Vec<RunNote>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct RunNote {
+    start: PerVariable<f64>,
+    #[serde(rename = "E1max_start")]
+    e1_max_start: f64,
+    found: PerVariable<f64>,
+    #[serde(rename = "E1max")]
+    e1_max: f64,
+    iterations: u64,
+    func_count: u64,
+    stop: Stop,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FailureNote {
+    count: u64,
+    example: Option<String>,
+}
+
+impl Optimum {
+    /// Collects what a search found; `summary` is of a run of the best design at the worst frequency of `evaluation`.
+    pub(super) fn new(
+        study: &Study,
+        search: &Search,
+        Searched { surf, explored, basins }: Searched,
+        refined: &Refined,
+        summary: Summary,
+        evaluation: Evaluation,
+        certificate: Short,
+    ) -> Self {
+        let best = refined.best();
+        let damper = refined.objective.damper(&best.minimum.x).unwrap_or(search.damper);
+        let over = |values: &[f64]| per_variable(&search.variables, values);
+        let refine = study.optimize.as_ref().map(|optimize| optimize.refine).unwrap_or_default();
+        Self {
+            damper_type: summary.damper_type(),
+            design: Design::new(&damper),
+            e1_max: evaluation.energy,
+            objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
+            on_bound: notes::on_bound(search, best),
+            limits: LimitNote::new(study, &evaluation, surf, explored, refined),
+            surf: surf.map(|surf| GridBest {
+                points: surf.grid.len(),
+                best: per_variable(&surf.variables, &surf.point(surf.best)),
+                e1_max: energy(surf.values[surf.best]),
+            }),
+            global: basins,
+            refine: Refinement {
+                tol_x_mode: tol_x_mode(best.minimum.scaling),
+                tol_x: refine.tol_x,
+                tol_fun: refine.tol_fun,
+                winner: refined.winner + 1,
+                runs: refined.runs.iter().map(|run| RunNote::new(run, over)).collect(),
+            },
+            failures: FailureNote::new(&[
+                surf.map(|surf| &surf.failures),
+                explored.map(|explored| &explored.failures),
+                Some(&refined.objective.failures()),
+            ]),
+            certificate,
+            simulation: summary,
+            start: start(search, refined),
+            made_by: MadeBy::new(study),
+        }
+    }
+
+    /// The best design.
+    pub fn found(&self) -> Found {
+        let Design { m2, k2, c2, d, c } = self.design;
+        Found { design: [m2, k2, c2, d, c], e1_max: self.e1_max }
+    }
+
+    /// The verdict of its certificate.
+    pub fn verdict(&self) -> &'static str {
+        self.certificate.verdict()
+    }
+
+    /// Refuses a design that breaks the limits of its study.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`].
+    pub fn check_limits(&self, study: &str) -> Result<(), Error> {
+        self.certificate.check_limits(study)
+    }
+
+    /// The design at which the best refinement started.
+    pub fn start(&self) -> Found {
+        self.start
+    }
+
+    /// The last lines on screen.
+    pub fn report(&self) -> String {
+        let Refinement { tol_x, tol_x_mode, winner, runs, .. } = &self.refine;
+        let RunNote { iterations, func_count, stop, .. } = &runs[winner - 1];
+        let mut lines = vec![
+            String::new(),
+            table2_header(),
+            table2_row(self.damper_type, self.found().design),
+            format!("E1max = {} J; {}", short(self.e1_max), self.made_by),
+            format!(
+                "fminsearch, start {winner} of {}: {} after {}, {}; TolX {tol_x:e} is {tol_x_mode}",
+                runs.len(),
+                stop_words(*stop),
+                counted(*iterations, "iteration"),
+                counted(*func_count, "evaluation"),
+            ),
+        ];
+        lines.extend(self.global.as_ref().map(Basins::report));
+        lines.extend(self.limits.as_ref().map(LimitNote::report));
+        if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
+            lines.push(format!(
+                "note: {unsettled} of {} of this design had not settled at T; E1max is then that of the window",
+                counted(*runs, "run")
+            ));
+        }
+        lines.push(self.certificate.to_string());
+        lines.extend(notes::on_bound_words(&self.on_bound));
+        if let FailureNote { count, example: Some(example) } = &self.failures {
+            lines.push(format!(
+                "note: {} could not be computed, for instance {example}",
+                counted(*count, "design")
+            ));
+        }
+        lines.join("\n")
+    }
+}
+
+/// The header of the paper's Table 2.
+pub fn table2_header() -> String {
+    format!(
+        "{:<24}{:<10}{:<12}{:<14}{:<12}{:<12}",
+        "Damper type", "m2, kg", "k2, N/m", "c2, N·s/m", "D, m", "C, m"
+    )
+    .trim_end()
+    .to_owned()
+}
+
+/// A row of the paper's Table 2.
+pub fn table2_row(name: &str, row: [f64; 5]) -> String {
+    let [m2, k2, c2, d, c] = row.map(short);
+    format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
+}
+
+/// Where the best run started, with its energy whether it keeps the limits or not.
+fn start(search: &Search, refined: &Refined) -> Found {
+    let first = refined.best().rows.first();
+    let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
+    let Design { m2, k2, c2, d, c } = Design::new(&damper);
+    let again = |x: &[f64]| {
+        let scene = refined.objective.scene(x)?;
+        Ok::<f64, Unusable>(refined.objective.evaluate(&scene, f64::INFINITY)?.energy)
+    };
+    let e1_max = first.map_or(f64::NAN, |row| match energy(row.value) {
+        none if none.is_nan() => again(&row.best).unwrap_or(f64::NAN),
+        known => known,
+    });
+    Found { design: [m2, k2, c2, d, c], e1_max }
+}
+
+impl RunNote {
+    fn new(run: &Run, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
+        let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
+        let (start, e1_max_start) = match run.rows.first() {
+            Some(row) => (over(&row.best), energy(row.value)),
+            None => (PerVariable::default(), f64::NAN),
+        };
+        let (iterations, func_count) = (*iterations, *func_count);
+        Self {
+            start,
+            e1_max_start,
+            found: over(x),
+            e1_max: energy(*value),
+            iterations,
+            func_count,
+            stop: *stop,
+        }
+    }
+}
+
+impl FailureNote {
+    /// Of all stages, in their order.
+    fn new(stages: &[Option<&Failures>]) -> Self {
+        let count = stages.iter().flatten().map(|failures| failures.count).sum();
+        let first = stages.iter().flatten().find_map(|failures| failures.example.as_deref());
+        Self { count, example: first.map(|(design, reason)| format!("{design:?}: {reason}")) }
+    }
+}
+
+/// The values by the names of their parameters.
+pub(super) fn per_variable(variables: &[Variable], values: &[f64]) -> PerVariable<f64> {
+    let mut all = PerVariable::default();
+    for (&variable, &value) in variables.iter().zip(values) {
+        *all.get_mut(variable) = Some(value);
+    }
+    all
+}
+
+fn tol_x_mode(scaling: Scaling) -> &'static str {
+    match scaling {
+        Scaling::None => "absolute",
+        Scaling::Start => "scaled",
+    }
+}
+
+fn stop_words(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Converged => "converged",
+        Stop::MaxIter => "stopped at MaxIter",
+        Stop::MaxFunEvals => "stopped at MaxFunEvals",
+        Stop::Interrupted => "interrupted",
+    }
+}

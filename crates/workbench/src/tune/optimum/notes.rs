@@ -1,0 +1,172 @@
+//! What was made small and how limits were kept, as `optimum.json` tells it.
+
+use super::super::global::Explored;
+use super::super::refine::{Refined, Run};
+use super::super::surf::Surf;
+use retune_model::Scene;
+use retune_optim::{Bounds, Evaluation, Limit, Variable, When};
+use retune_study::{LimitsGiven, Objective, Search, Study};
+use retune_study::{counted, joined, short};
+use serde::Serialize;
+
+/// What was made small, and the ω at which E1max of the best design is reached, rad/s.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Goal {
+    #[serde(flatten)]
+    objective: Objective,
+    worst_omega: f64,
+    /// The stiffness k1 at which it is reached, N/m, where several were looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    worst_k1: Option<f64>,
+    /// Of the runs of the best design, those that were to settle and did not; their E1max is that of the window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) unsettled: Option<u64>,
+    /// Runs that its value is made of; a steady response in closed form counts as one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) runs: Option<u64>,
+}
+
+/// How the limits are kept by the best design.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LimitNote {
+    allowed: LimitsGiven,
+    /// The largest values in any run of the objective, SI units.
+    stroke: f64,
+    force: f64,
+    cavity: f64,
+    feasible: bool,
+    /// The sum of reached / limit - 1 over the limits that are broken.
+    violation: f64,
+    /// The limits that are broken, or reached to within 1 %: they decide the optimum.
+    active: Vec<Limit>,
+    /// Designs that were evaluated, and those among them that were seen to break a limit.
+    evaluations: u64,
+    infeasible: u64,
+}
+
+/// A parameter that ended on a bound.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub(super) struct Met {
+    variable: Variable,
+    #[serde(skip)]
+    bound: f64,
+}
+
+impl Goal {
+    pub(super) fn new(study: &Study, evaluation: &Evaluation) -> Self {
+        let goal = study.goal();
+        let Scene { primary, forcing, .. } = evaluation.worst.scene;
+        let settles = goal.terms.iter().any(|term| matches!(term.when, When::Settled(..)));
+        Self {
+            objective: study.objective(),
+            worst_omega: forcing.frequency.get(),
+            worst_k1: goal.terms.iter().any(|term| term.k1.is_some()).then_some(primary.stiffness.get()),
+            unsettled: settles.then_some(evaluation.unsettled),
+            runs: settles.then_some(evaluation.runs),
+        }
+    }
+}
+
+impl LimitNote {
+    pub(super) fn new(
+        study: &Study,
+        evaluation: &Evaluation,
+        surf: Option<&Surf>,
+        explored: Option<&Explored>,
+        refined: &Refined,
+    ) -> Option<Self> {
+        let allowed = study.optimize.as_ref()?.limits;
+        let limits = allowed.limits();
+        let Evaluation { reached, violation, .. } = *evaluation;
+        let counts = [surf.map(|surf| surf.counts), explored.map(|explored| explored.counts)];
+        let counts = || counts.iter().flatten().copied().chain([refined.objective.counts()]);
+        (!limits.is_empty()).then(|| Self {
+            allowed,
+            stroke: reached.get(Limit::Stroke),
+            force: reached.get(Limit::Force),
+            cavity: reached.get(Limit::Cavity),
+            feasible: violation == 0.0,
+            violation,
+            active: limits.active(&reached),
+            evaluations: counts().map(|counts| counts.evaluations).sum(),
+            infeasible: counts().map(|counts| counts.infeasible).sum(),
+        })
+    }
+
+    pub(super) fn report(&self) -> String {
+        let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
+        let limits = allowed.limits();
+        let reached = [self.stroke, self.force, self.cavity];
+        let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
+            let allowed = limits.get(limit)?;
+            let active = if active.contains(&limit) { ", active" } else { "" };
+            Some(format!("{limit} {} of {} {}{active}", short(reached), short(allowed), limit.unit()))
+        });
+        let kept = if *feasible { "limits kept" } else { "NO DESIGN KEEPS THE LIMITS; the nearest" };
+        format!(
+            "{kept}: {}; {infeasible} of {} broke one",
+            words.collect::<Vec<_>>().join("; "),
+            counted(*evaluations, "evaluation")
+        )
+    }
+}
+
+/// Parameters that ended on a bound: to a thousandth of the larger of what they started with and ended at, or to within rounding
+/// of the distance between the bounds.
+pub(super) fn on_bound(search: &Search, run: &Run) -> Vec<Met> {
+    let Some(first) = run.rows.first() else { return Vec::new() };
+    let ended = |i: usize| {
+        let variable = search.variables[i];
+        let bound = met(run.minimum.x[i], first.best[i], search.options.bounds[i])?;
+        Some(Met { variable, bound })
+    };
+    (0..search.variables.len()).filter_map(ended).collect()
+}
+
+/// The bound that a value which came from `start` has met.
+fn met(value: f64, start: f64, Bounds { lower, upper }: Bounds) -> Option<f64> {
+    /// A share of a distance that is rounding.
+    const ROUNDING: f64 = 1e-9;
+    // Without an upper bound 1 (N/m, N·s/m or m) stands for the distance: what is smaller by nine digits is nothing in any of them.
+    let apart = upper.zip(lower).map_or(1.0, |(upper, lower)| upper - lower);
+    let near = (1e-3 * value.abs().max(start.abs())).max(ROUNDING * apart);
+    [lower, upper].into_iter().flatten().find(|bound| (value - bound).abs() <= near)
+}
+
+/// The notes on the screen: what ended at zero can go no further, another bound can be widened.
+pub(super) fn on_bound_words(met: &[Met]) -> Vec<String> {
+    let (zero, wider): (Vec<&Met>, Vec<&Met>) = met.iter().partition(|met| met.bound == 0.0);
+    let names = |met: &[&Met]| joined(&met.iter().map(|met| met.variable).collect::<Vec<_>>(), ", ");
+    let mut notes = Vec::new();
+    if !zero.is_empty() {
+        notes.push(format!("note: {} ended on 0, the least that is possible", names(&zero)));
+    }
+    if !wider.is_empty() {
+        let names = names(&wider);
+        notes.push(format!("note: {names} ended on a bound of the study; a wider one may give less"));
+    }
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_a_bound_met_to_within_rounding_is_met() {
+        let open = Bounds { lower: Some(0.0), upper: None };
+        let closed = Bounds { lower: Some(10.0), upper: Some(600.0) };
+        // A search that was given a start on the bound: neither the start nor the end is of any size.
+        assert_eq!(met(1.3388507403093525e-16, 2.6e-16, open), Some(0.0));
+        assert_eq!(met(7.6e-16, 1e-16, Bounds { upper: Some(2.0), ..open }), Some(0.0));
+        assert_eq!(met(599.83, 600.0, closed), Some(600.0));
+        assert_eq!(met(10.0 + 1e-8, 10.0, closed), Some(10.0));
+        assert_eq!([met(590.0, 300.0, closed), met(1e-4, 2e-4, open)], [None, None]);
+        let on = |variable, bound| Met { variable, bound };
+        let said = on_bound_words(&[on(Variable::D, 0.0), on(Variable::K2, 600.0)]);
+        assert_eq!(said[0], "note: D ended on 0, the least that is possible");
+        assert_eq!(said[1], "note: k2 ended on a bound of the study; a wider one may give less");
+        assert_eq!(serde_json::to_string(&on(Variable::D, 0.0)).ok().as_deref(), Some("\"D\""));
+    }
+}

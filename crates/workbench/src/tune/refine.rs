@@ -1,0 +1,123 @@
+//! The fine stage: `fminsearch` from each start, logged as it happens.
+
+use super::log::{self, CSV_HEADER, TXT_HEADER};
+use super::surf::design;
+use super::{kept, objective};
+use crate::Error;
+use crate::Observer;
+use crate::summary::MadeBy;
+use retune_optim::{Minimum, PeakEnergy, Row, minimize};
+use retune_store::{Directory, Journal, Pending};
+use retune_study::{Search, Study};
+use std::ops::ControlFlow;
+
+/// All refinements of a study.
+pub struct Refined {
+    /// The objective that was made small; it keeps the evaluations that failed.
+    pub objective: PeakEnergy,
+    /// A run for each start, in the order of the starts.
+    pub runs: Vec<Run>,
+    /// The number of the best run.
+    pub winner: usize,
+}
+
+/// One refinement.
+pub struct Run {
+    /// Its log.
+    pub rows: Vec<Row>,
+    /// What it found.
+    pub minimum: Minimum,
+}
+
+impl Refined {
+    /// The run that found the smallest value; the first of equals.
+    pub fn best(&self) -> &Run {
+        &self.runs[self.winner]
+    }
+}
+
+/// Refines every start; writes `fminsearch.csv` and `fminsearch.txt` of the best run, and `fminsearch-starts.csv` of all
+/// where there are several.
+///
+/// # Errors
+/// A run cannot be started, or a file cannot be written.
+pub(super) fn refine(
+    study: &Study,
+    search: &Search,
+    starts: Vec<Vec<f64>>,
+    results: &Directory,
+    watch: &dyn Observer,
+) -> Result<Refined, Error> {
+    let objective = objective(study, search, &search.variables);
+    let mut all = results.file("fminsearch-starts.csv")?;
+    all.push_line(&format!("start,{CSV_HEADER}"))?;
+    let mut runs: Vec<Run> = Vec::new();
+    let mut winner = 0;
+    for (number, start) in starts.iter().enumerate() {
+        watch.log(&format!(
+            "\nfminsearch, start {} of {}\n{}",
+            number + 1,
+            starts.len(),
+            log::SCREEN_HEADER
+        ))?;
+        let run = run(&objective, search, start, results.journal(), |row, design| {
+            all.push_line(&format!("{},{}", number + 1, log::csv(row, design)))?;
+            watch.log(&log::screen(row, design))
+        })?;
+        let best = runs.get(winner).map_or(f64::INFINITY, |best: &Run| best.minimum.value);
+        if run.minimum.value < best {
+            winner = number;
+        }
+        runs.push(run);
+    }
+    let refined = Refined { objective, runs, winner };
+    write_winner(study, &refined, results)?;
+    if refined.runs.len() > 1 {
+        all.finish()?;
+    }
+    Ok(refined)
+}
+
+/// One run. `tell` gets each row with its whole design; its error ends the run.
+fn run(
+    objective: &PeakEnergy,
+    search: &Search,
+    start: &[f64],
+    journal: &Journal,
+    mut tell: impl FnMut(&Row, &[f64; 4]) -> Result<(), Error>,
+) -> Result<Run, Error> {
+    let mut rows = Vec::new();
+    let mut told = Ok(());
+    let found =
+        minimize(kept(objective, journal, "fminsearch", || ()), start, search.options.clone(), |row| {
+            if journal.is_broken() {
+                return ControlFlow::Break(());
+            }
+            rows.push(row.clone());
+            told = objective
+                .damper(&row.best)
+                .map_err(Error::from)
+                .and_then(|damper| tell(row, &design(&damper)));
+            if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+    told?;
+    journal.check()?;
+    let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;
+    Ok(Run { rows, minimum })
+}
+
+fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
+    let mut csv = results.file("fminsearch.csv")?;
+    let mut txt: Pending = results.file("fminsearch.txt")?;
+    csv.push(&format!("{CSV_HEADER}\n"))?;
+    txt.push(&format!("{TXT_HEADER}\n"))?;
+    for row in &refined.best().rows {
+        let design = design(&refined.objective.damper(&row.best)?);
+        csv.push(&format!("{}\n", log::csv(row, &design)))?;
+        txt.push(&format!("{}\n", log::table1(row, &design)))?;
+    }
+    txt.push(&format!("\n{}\n", MadeBy::new(study)))?;
+    csv.finish()?;
+    txt.finish()?;
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! The coarse stage: E1max on a grid.
+
+use super::objective;
+use crate::Error;
+use crate::Observer;
+use retune_model::Damper;
+use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
+use retune_store::Directory;
+use retune_study::{Search, Study};
+use retune_study::{counted, joined, short};
+use std::time::Instant;
+
+/// E1max at every point of the grid.
+pub struct Surf {
+    /// The grid's parameters, in the order of its axes.
+    pub variables: Vec<Variable>,
+    /// The grid.
+    pub grid: Grid,
+    /// E1max at each point, J; +∞ where it could not be computed.
+    pub values: Vec<f64>,
+    /// The number of the best point.
+    pub best: usize,
+    /// The points that could not be computed.
+    pub failures: Failures,
+    /// How many were looked at.
+    pub counts: Counts,
+}
+
+/// Computes the grid of a study, if it has one, and writes `surf.csv`.
+///
+/// # Errors
+/// Not one point could be computed, or the file cannot be written.
+pub(super) fn surf(
+    study: &Study,
+    search: &Search,
+    results: &Directory,
+    watch: &dyn Observer,
+) -> Result<Option<Surf>, Error> {
+    let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
+    let objective = objective(study, search, &variables);
+    let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
+    watch.log(&format!(
+        "surf: {} = {} over {}",
+        axes.join(" x "),
+        counted(grid.len() as u64, "point"),
+        joined(&variables, " ")
+    ))?;
+
+    let begun = Instant::now();
+    let bar = watch.progress("surf", grid.len() as u64);
+    let journal = results.journal();
+    let value = |point: usize, design: &[f64]| {
+        let known = |value| {
+            bar.known();
+            objective.recall(value);
+        };
+        journal.grid_value(point, || objective.value(design, f64::INFINITY), known)
+    };
+    let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));
+    bar.finish();
+    journal.check()?;
+
+    let failures = objective.failures();
+    let Some(&best) = best_separated(&grid, &values, 1, 0).first() else {
+        return Err(Error::NoStart(failures));
+    };
+    write(&objective, &grid, &values, results)?;
+    let counts = objective.counts();
+    let surf = Surf { variables, grid, values, best, failures, counts };
+    watch.log(&surf.report(begun.elapsed().as_secs_f64()))?;
+    Ok(Some(surf))
+}
+
+/// A row for each point, all four parameters and E1max.
+fn write(objective: &PeakEnergy, grid: &Grid, values: &[f64], results: &Directory) -> Result<(), Error> {
+    let mut file = results.file("surf.csv")?;
+    file.push(&format!("{},E1max\n", joined(&Variable::ALL, ",")))?;
+    let mut point = vec![0.0; grid.dim()];
+    for (i, value) in values.iter().enumerate() {
+        grid.point(i, &mut point);
+        let damper = objective.damper(&point)?;
+        file.push(&format!("{},{value}\n", joined(&design(&damper), ",")))?;
+    }
+    file.finish()?;
+    Ok(())
+}
+
+/// All four parameters of a damper, in the order of the paper's tables.
+pub(super) fn design(damper: &Damper) -> [f64; 4] {
+    Variable::ALL.map(|variable| variable.get(damper))
+}
+
+impl Surf {
+    /// The coordinates of point number `i`.
+    pub fn point(&self, i: usize) -> Vec<f64> {
+        let mut point = vec![0.0; self.grid.dim()];
+        self.grid.point(i, &mut point);
+        point
+    }
+
+    /// Where the refinements start: a value for each tuned parameter.
+    pub(super) fn starts(&self, search: &Search) -> Vec<Vec<f64>> {
+        let chosen = best_separated(&self.grid, &self.values, search.starts, search.apart);
+        let start = |i| {
+            let point = self.point(i);
+            let on_grid = |variable| self.variables.iter().position(|other| *other == variable);
+            let value = |&variable: &Variable| match on_grid(variable) {
+                Some(axis) => point[axis],
+                None => variable.get(&search.damper),
+            };
+            search.variables.iter().map(value).collect()
+        };
+        chosen.into_iter().map(start).collect()
+    }
+
+    fn report(&self, seconds: f64) -> String {
+        let failed = match self.failures.count {
+            0 => String::new(),
+            count => format!("; {count} could not be computed"),
+        };
+        let point: Vec<String> = self.point(self.best).iter().map(|value| short(*value)).collect();
+        let at: Vec<String> = self
+            .variables
+            .iter()
+            .zip(point)
+            .map(|(variable, value)| format!("{variable} = {value}"))
+            .collect();
+        let least = super::global::worth(self.values[self.best]);
+        format!("surf: {seconds:.1} s; least E1max {least} at {}{failed}", at.join(", "))
+    }
+}

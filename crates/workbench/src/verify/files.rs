@@ -1,0 +1,90 @@
+//! The files of a directory of results beside its manifest.
+
+use super::{Report, text};
+use crate::Error;
+use crate::resolved;
+use retune_store::identity::{Identity, VERSION, sha256};
+use retune_store::manifest::{self, Manifest};
+use retune_study::counted;
+use std::path::Path;
+
+/// Compares every file with the manifest.
+///
+/// # Errors
+/// The directory cannot be read.
+pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<(), Error> {
+    let there = names(place)?;
+    if !place.join(manifest::NAME).exists() {
+        return report.unchecked(
+            "there is no manifest.json: what made these files, and whether they are as it made them",
+        );
+    }
+    let manifest = text(place, manifest::NAME).map(|text| serde_json::from_str::<Manifest>(&text));
+    let manifest = match manifest {
+        Ok(Ok(manifest)) => manifest,
+        Ok(Err(error)) => return report.fail(manifest::NAME, &format!("is no manifest: {error}")),
+        Err(error) => return report.fail(manifest::NAME, &error.to_string()),
+    };
+    let mut problems = Vec::new();
+    for (name, expected) in &manifest.files {
+        match manifest::file_sha256(&place.join(name)) {
+            Ok(found) if found == *expected => {}
+            Ok(_) => problems.push(format!("{name} is not as it was made")),
+            Err(_) => problems.push(format!("{name} is missing")),
+        }
+    }
+    let input = [resolved::NAME, "study.json"].into_iter().find(|name| place.join(name).exists());
+    match input {
+        Some(input) if sha256(text(place, input).unwrap_or_default().as_bytes()) != manifest.study_sha256 => {
+            problems.push(format!("{input} is not the study that made these results"));
+        }
+        _ => {}
+    }
+    let whole =
+        format!("{} as {} made", counted(manifest.files.len() as u64, "file"), was(manifest.files.len()));
+    let words = if problems.is_empty() {
+        whole
+    } else {
+        format!("{}: {}", counted(manifest.files.len() as u64, "file"), problems.join("; "))
+    };
+    report.watch.result(&format!("  {words}"))?;
+    let place = report.place.clone();
+    report.problems.extend(problems.into_iter().map(|problem| format!("{place}{problem}")));
+    let unnamed: Vec<String> = there.into_iter().filter(|name| !manifest.files.contains_key(name)).collect();
+    if !unnamed.is_empty() {
+        let not = if unnamed.len() == 1 { "is" } else { "are" };
+        report.unchecked(&format!("{} {not} not in the manifest", unnamed.join(", ")))?;
+    }
+    if manifest.retune != VERSION {
+        report.watch.result(&format!("  note: made by Retune {}, this is {VERSION}", manifest.retune))?;
+    }
+    if manifest.arithmetic != Identity::of("").arithmetic {
+        report.watch.result(
+            "  note: made on a machine whose sines or powers differ in their last bits; --within allows for that",
+        )?;
+    }
+    Ok(())
+}
+
+fn was(files: usize) -> &'static str {
+    if files == 1 { "it was" } else { "they were" }
+}
+
+/// Whether a file is none of the results: a lock, an editor's.
+pub fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'))
+}
+
+/// The names of the files in a directory but the manifest, sorted.
+fn names(place: &Path) -> Result<Vec<String>, Error> {
+    let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(place).map_err(refuse)? {
+        let path = entry.map_err(refuse)?.path();
+        if path.is_file() && !is_hidden(&path) && !path.ends_with(manifest::NAME) {
+            names.extend(path.file_name().map(|name| name.to_string_lossy().into_owned()));
+        }
+    }
+    names.sort();
+    Ok(names)
+}

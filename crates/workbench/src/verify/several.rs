@@ -1,0 +1,113 @@
+//! The results of several studies: tables of designs (`table2`, `retune`, `fronts`) and curves along k1.
+
+use super::search::{self, certificate, energy};
+use super::table::{Row, Sample};
+use super::{Check, Report, json};
+use crate::Error;
+use crate::pareto;
+use crate::resolved::Resolved;
+use crate::retune;
+use retune_study::{Setting, Study};
+use serde_json::Value;
+use std::path::Path;
+
+/// Looks at the tables again, at `most` rows of each.
+///
+/// # Errors
+/// They cannot be read.
+pub fn verify(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+    let resolved = Resolved::read(place)?;
+    let studies = resolved.studies()?;
+    let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
+    let mut looked = false;
+    for name in ["table2.csv", "retune.csv", "k2.csv", "stroke.csv", "front.csv"] {
+        if place.join(name).exists() {
+            let sample = Sample::read(&place.join(name), most)?;
+            let checks: Vec<Check> = sample.rows().filter_map(|row| design(&studies, samples, row)).collect();
+            report.look(name, &sample.of(checks.len()), &checks)?;
+            looked = true;
+        }
+    }
+    let name = "retention.csv";
+    if place.join(name).exists() && place.join("retune.csv").exists() {
+        let sample = Sample::read(&place.join(name), most)?;
+        let designs = Sample::read(&place.join("retune.csv"), usize::MAX)?;
+        let (columns, checks) = curves(&studies, &designs, &sample);
+        report.look(name, &sample.of(checks.len() / columns.max(1)), &checks)?;
+        looked = true;
+    }
+    for name in
+        names(place).map_err(|source| retune_store::Error::Input { path: place.to_owned(), source })?
+    {
+        let said = json(place, &name)?;
+        match certified(&studies, samples, &said) {
+            Some(study) => certificate(&study, &said, &name, report)?,
+            None => report.fail(&name, "is of none of the studies")?,
+        }
+    }
+    if looked { Ok(()) } else { report.unchecked("no row of these results can be run again by itself") }
+}
+
+/// The certificates in a directory, sorted.
+fn names(place: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(place)? {
+        names.extend(entry?.file_name().into_string());
+    }
+    names.retain(|name| name.starts_with("certificate-") && name.ends_with(".json"));
+    names.sort();
+    Ok(names)
+}
+
+/// The study with the design that a certificate of `fronts` is of.
+fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
+    let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
+    pareto::finer(study, samples?, search::design(&said["design"]))
+}
+
+/// The check of a row with a design; none where the row says that it has none.
+fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> Option<Check<'a>> {
+    let Some((_, study)) = studies.iter().find(|(name, _)| name == row.text("damper")) else {
+        return Some(Check::never());
+    };
+    let (at, said) = (row.design(), row.number("E1max"));
+    if ["k2", "c2", "D", "C", "E1max"].iter().all(|name| row.text(name).is_empty()) {
+        return None; // no design keeps this bound
+    }
+    if at.iter().chain([&said]).any(|value| value.is_nan()) {
+        return Some(Check::never());
+    }
+    let k1 = row.number("k1");
+    let study = if k1.is_nan() { study.clone() } else { study.with(&[Setting::new("k1", k1)]).ok()? };
+    let again = move || match samples {
+        Some(samples) => pareto::energy(&study, samples, at).unwrap_or(f64::INFINITY),
+        None => energy(&study, &at),
+    };
+    Some(Check { said, again: Box::new(again) })
+}
+
+/// How many curves along k1 there are, and their checks: without damper, and with each damper as it was tuned for its own k1.
+fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample) -> (usize, Vec<Check<'a>>) {
+    let mut columns = Vec::new();
+    if let Some((_, first)) = studies.first() {
+        let bare = retune_model::Scene { damper: None, ..first.scene };
+        columns.push(("none".to_owned(), first, bare));
+    }
+    for (name, study) in studies {
+        let home = study.scene.primary.stiffness.get();
+        let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == home);
+        let scene = own.and_then(|row| study.scene_with(&Setting::design(row.design())).ok());
+        if let Some(scene) = scene {
+            columns.push((retune::kept(name, home), study, scene));
+        }
+    }
+    let mut checks = Vec::new();
+    for row in sample.rows() {
+        let k1 = row.number("k1");
+        for &(ref column, study, scene) in &columns {
+            let again = move || retune::energy(study, scene, k1).unwrap_or(f64::INFINITY);
+            checks.push(Check { said: row.number(column), again: Box::new(again) });
+        }
+    }
+    (columns.len(), checks)
+}
