@@ -119,7 +119,8 @@ fn root(
     (mut b, right): (f64, [f64; 2]),
 ) -> f64 {
     let mut s = a + cubic_root(b - a, left, right);
-    let mut before = b - a;
+    // No step has been made yet, so nothing is known of how steps shrink.
+    let mut before = 0.0;
     for _ in 0..100 {
         let [value, slope] = at(s);
         if value > 0.0 {
@@ -189,6 +190,23 @@ mod tests {
         assert_eq!(first(polynomial(&[0.0, -1.0, 4.0]), 1.0), Some(0.0));
         assert_eq!(first(polynomial(&[0.0, 0.0, -4.0]), 1.0), Some(0.0));
         assert_eq!(first(polynomial(&[0.0]), 1.0), None);
+    }
+
+    /// Found by the hunt: where the wall is approached slowly, a first step of Newton's method that was small was taken for the last.
+    #[test]
+    fn exact_a_slow_touch_down_is_found_to_rounding() {
+        for i in 1..4000_u32 {
+            let share = |k: u32| f64::from(i * k % 4001) / 4001.0;
+            // (c - s) (w + b (c - s)) + q s² (c - s)²: it closes at c, with the speed w.
+            let (c, w, b, q) =
+                (0.02 + 0.2 * share(7), 0.01 + 0.1 * share(11), 4.0 * share(13), 0.1 * share(17));
+            let closing = [c * (w + b * c), -w - 2.0 * b * c, b + q * c * c, -2.0 * q * c, q];
+            let found = first_contact(Polynomial::<2>::new(&closing), 0.25)
+                .expect("enough digits")
+                .expect("it closes");
+            let rounding = 1e-15 * closing[0] / w;
+            assert!((found - c).abs() <= rounding, "{i}: {:e} at {c}, rounding {rounding:e}", found - c);
+        }
     }
 
     #[test]
