@@ -1,13 +1,4 @@
-//! Any bytes as a study file: a checked study or one sentence, and what is accepted means the same when written out and read
-//! again.
+//! Any bytes as a study file: a checked study that means the same when it is written out and read again, or one sentence.
 #![no_main]
 
-#[path = "../../crates/retune/src"]
-#[allow(dead_code, unused_imports, reason = "the program uses the rest")]
-mod program {
-    pub mod study;
-}
-
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| program::study::any_text::check(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| retune_study::any_text::check(bytes));

@@ -119,7 +119,7 @@ mod tests {
     /// 900 of 1000 were known, so 50 new ones in 25 s are 2/s, and the other 50 take as long again.
     #[test]
     fn exact_what_was_known_makes_no_rate() {
-        let progress = Progress::new("surf", 1000, true);
+        let progress = Stage::new("surf", 1000, true);
         progress.inc(950);
         (0..900).for_each(|_| progress.known());
         let count = &progress.count;
@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(count.tell(at(30)).as_deref(), Some("surf: 950 of 1000, 1.7/s, 30 seconds left"));
         assert_eq!(count.tell(at(59)), None);
         assert!(count.tell(at(60)).is_some());
-        let fresh = Progress::new("surf", 10, true);
+        let fresh = Stage::new("surf", 10, true);
         assert_eq!(fresh.count.left(at(1)), "time left not known yet");
     }
 }

@@ -41,11 +41,16 @@ pub struct Summary {
 /// A damper as in the paper's Table 2, SI units.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Design {
+    /// m2, mass, kg.
     pub m2: f64,
+    /// k2, stiffness of its spring, N/m.
     pub k2: f64,
+    /// c2, damping between it and the structure, N·s/m.
     pub c2: f64,
+    /// D, distance to the structure at rest, m.
     #[serde(rename = "D")]
     pub d: f64,
+    /// C, clearance to the obstacle at rest, m.
     #[serde(rename = "C")]
     pub c: f64,
 }
