@@ -110,6 +110,7 @@ fn words(per_second: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use retune_workbench::Progress as _;
 
     #[test]
     fn exact_rates_have_few_digits() {
