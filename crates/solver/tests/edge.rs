@@ -315,6 +315,24 @@ fn exact_errors_are_typed() {
 }
 
 /// Wild parameters, drawn over many decades: finite numbers or a typed error, in bounded time.
+/// Steps that know no walls may look into one between their ends: the force is that of the interpolant, and no touch-down is counted.
+/// Only of the hybrid, which locates every contact, is that an error.
+#[test]
+fn contract_a_wall_that_steps_do_not_see_is_no_error() {
+    let stepped = Settings {
+        method: Method::Rk4,
+        contacts: retune_solver::Contacts::Stepped,
+        step: Some(1e-3),
+        ..HYBRID
+    };
+    let far = Numbers { d: 2.0, c: 2.0, ..SSVI };
+    let reach = run(&far, 10.0, &stepped).relative_displacement_max - far.d;
+    let near = Numbers { c: reach - 1e-8, ..far };
+    let seen = run(&near, 10.0, &stepped);
+    assert_eq!(seen.impacts, [0, 0], "{seen:?}");
+    assert!(seen.force_max[1] > 0.0, "{seen:?}");
+}
+
 #[test]
 fn exact_wild_parameters_never_give_nonsense() {
     let mut spread = problems::scenes::Spread::new(10);
