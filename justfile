@@ -89,6 +89,11 @@ schema:
 test *OPTIONS:
     cargo test "$@"
 
+# Run the commands of docs/tutorial.md and compare their output with the page (needs python3 with SciPy)
+test-tutorial:
+    cargo build --release --package retune
+    python3 tests/tutorial.py target/release/retune
+
 # Kill runs at random moments, KILLS times, and say in which stage each fell: results/robustness/kills.md
 test-kills KILLS="240":
     mkdir -p results/robustness
