@@ -9,18 +9,18 @@
 
 mod band;
 mod bare;
-mod compression;
 mod coupled;
 mod hertz;
+mod regularised;
 mod scene;
 mod steady;
 mod value;
 
 pub use band::Worst;
 pub use bare::Bare;
-pub use compression::{Compressed, Compression, Growth, ORDERS};
 pub use coupled::{Coupled, Side};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
+pub use regularised::{Compressed, Compression, Growth, ORDERS};
 pub use scene::{Contact, Damper, Forcing, Primary, Scene};
 pub use steady::Steady;
 pub use value::{NonNegative, OutOfRange, PoissonRatio, Positive};

@@ -1,7 +1,6 @@
 //! How many steps a run may take.
 
-use crate::settings::SolverError;
-use std::fmt;
+use crate::error::{Remedy, SolverError};
 
 /// Steps after which a run is asked whether it gets anywhere.
 const LOOK: u64 = 1 << 18;
@@ -12,30 +11,6 @@ const FEW: u64 = 1000;
 /// A run that would take more than so many times the steps it may take is hopeless. Less could be a burst of contacts after which
 /// the motion calms down.
 const HOPELESS: f64 = 100.0;
-
-/// The one thing that helps a run that cannot end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remedy {
-    /// It is the length of the run, and no step, that is out of all proportion.
-    ShorterRun,
-    /// Flight steps follow from what is fastest: ω, or a stiffness or a damping over a mass, by the names of a study.
-    Slower(&'static str),
-    /// Contacts take the steps.
-    LessForce,
-    /// Another method takes more steps than the hybrid, which also tells the cause if it cannot finish either.
-    Hybrid,
-}
-
-impl fmt::Display for Remedy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Remedy::ShorterRun => write!(f, "shorten T"),
-            Remedy::Slower(fastest) => write!(f, "lower {fastest}, which makes the motion this fast"),
-            Remedy::LessForce => write!(f, "lower P: nearly all steps are those of contacts"),
-            Remedy::Hybrid => write!(f, "choose the hybrid solver"),
-        }
-    }
-}
 
 /// What sets the steps of a run.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,11 @@
 //! A motion as rows: at equal intervals, and at the moments that lie between them.
 
-use crate::follow::{follow_bare, follow_coupled};
-use crate::observe::{Knot, Observer, Segment, Unobserved};
-use crate::settings::{Settings, SolverError, Window};
+use crate::error::SolverError;
+use crate::motion::knot::Knot;
+use crate::motion::segment::Segment;
+use crate::observe::observer::{Observer, Unobserved};
+use crate::run::{follow_bare, follow_coupled};
+use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Scene, Side};
 
 /// Why a moment of the motion is recorded.

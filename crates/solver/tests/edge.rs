@@ -7,7 +7,7 @@ use problems::linear::Joined;
 use problems::scenes::{Numbers, SSVI, TMD, TWO_SIDED};
 use problems::{Watch, assert_close, assert_states};
 use retune_model::{Coupled, Drive, Side};
-use retune_solver::observe::{DamperEnergy, Form, Peak, PrimaryEnergy, Quantity, RelativePosition};
+use retune_solver::observe::{DamperEnergy, Form, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum};
 use retune_solver::{
     Hybrid, Method, Motion, Phase, Response, Rows, SceneKind, Settings, SolverError, Window, e1_max,
     simulate, trajectory,
@@ -56,7 +56,7 @@ fn assert_agrees(numbers: &Numbers, to: f64, tolerance: f64) -> Response {
 /// The least `x2 - x1` of a run whose walls are out of reach, less `D`, and when.
 fn farthest_inward(numbers: &Numbers, to: f64) -> (f64, f64) {
     let system = Numbers { d: 100.0, c: 100.0, ..*numbers }.coupled();
-    let mut peak = Peak::new(RelativePosition::new(&system, -1.0), f64::INFINITY);
+    let mut peak = RunningMaximum::new(RelativePosition::new(&system, -1.0), f64::INFINITY);
     let mut hybrid = Hybrid::new(&system, 1e-12, to, 1_000_000);
     let begin = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     hybrid.propagate(begin, to, &mut peak).expect("a run");
@@ -373,7 +373,7 @@ impl<Q: Quantity<4>> Quantity<4> for Counted<'_, Q> {
 
 fn assert_few_looks(system: &Coupled, quantity: impl Quantity<4>) {
     let looks = std::cell::Cell::new(0_u64);
-    let mut peak = Peak::new(Counted(quantity, &looks), f64::INFINITY);
+    let mut peak = RunningMaximum::new(Counted(quantity, &looks), f64::INFINITY);
     let mut hybrid = Hybrid::new(system, 1e-10, 3.0, 100_000);
     let begin = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     hybrid.propagate(begin, 3.0, &mut peak).expect("a run");

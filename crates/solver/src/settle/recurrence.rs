@@ -1,76 +1,26 @@
-//! Whether a motion repeats: its states at whole periods of the force, and how far they are from where they will end.
+//! Whether a motion repeats: the states at whole periods of the force return, and their remaining drift is small.
 
-use super::Settle;
-use crate::observe::{Observer, Path, Segment};
 use crate::settings::Settings;
-use crate::steps::Steps;
 use retune_model::Coupled;
-use std::collections::VecDeque;
 
-/// The states at whole periods of the force, of the last blocks.
-pub struct Strobe {
-    period: f64,
-    /// Periods that are over.
-    count: f64,
-    most: usize,
-    states: VecDeque<[f64; 4]>,
+/// When a motion counts as settled: its state returns after some periods of the force, throughout successive blocks of time.
+///
+/// States are compared at whole periods of the force: the structure's as a share of the largest `√(m1 v1² + k1 x1²)`, the
+/// damper's, relative to the structure, of the largest `√((x2 - x1 - D)² + (v2 - v1)²/ω²)` at these moments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settle {
+    /// Length of a block in periods of the force, at least 1; the longest period of a motion that can settle.
+    pub periods: u32,
+    /// How many blocks in a row must agree, at least 2.
+    pub blocks: u32,
+    /// The most by which the state may still change, as a share of its size: the change from return to return in the last block,
+    /// and all that will follow if it keeps falling as it fell from block to block.
+    pub tolerance: f64,
 }
 
-impl Strobe {
-    /// For a force of this period, s.
-    pub fn new(period: f64, settle: Settle) -> Self {
-        let most = settle.periods as usize * settle.blocks as usize;
-        Self { period, count: 0.0, most, states: VecDeque::new() }
-    }
-
-    /// The latest states, those of `blocks` blocks at most.
-    pub fn states(&mut self) -> &[[f64; 4]] {
-        self.states.make_contiguous()
-    }
-
-    /// The next moment to keep, s.
-    fn next(&self) -> f64 {
-        (self.count + 1.0) * self.period
-    }
-}
-
-impl Observer<4> for Strobe {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        let [begin, end] = segment.ends();
-        while self.next() <= end.t {
-            let state = match self.next() {
-                t if t == end.t => end.y,
-                t if t <= begin.t => begin.y, // between two pieces, by rounding
-                t => segment.at_time(t).y,
-            };
-            self.count += 1.0;
-            if self.states.len() == self.most {
-                self.states.pop_front();
-            }
-            self.states.push_back(state);
-        }
-    }
-    fn path(&mut self, path: &impl Path<4>) {
-        // A path does not say how long it is; its last piece does.
-        let mut end = End(f64::NEG_INFINITY);
-        path.show(path.pieces() - 1, &mut end);
-        if self.next() <= end.0 {
-            (0..path.pieces()).for_each(|piece| path.show(piece, self));
-        }
-    }
-    fn steps(&mut self, steps: &Steps<'_, 4>) {
-        if self.next() <= steps.time(steps.count()) {
-            (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
-        }
-    }
-}
-
-/// When the last piece ended, s.
-struct End(f64);
-
-impl Observer<4> for End {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        self.0 = segment.ends()[1].t;
+impl Default for Settle {
+    fn default() -> Self {
+        Self { periods: 6, blocks: 3, tolerance: 1e-5 }
     }
 }
 
