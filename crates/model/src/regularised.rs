@@ -1,6 +1,6 @@
 //! Equation (1) during one contact, regularised: a polynomial system without the kink of `z^(3/2)`.
 //!
-//! While the damper presses into one wall, take `q = √z` for the rapprochement and a contact time `θ` with `dt = q dθ`
+//! While the damper is in contact with one wall, take `q = √z` for the indentation and a contact time `θ` with `dt = q dθ`
 //! (Levi-Civita's regularisation of a collision, for Hertz's law). Hertz's force is then `K q³`, and with `w = dz/dt`
 //!
 //! ```text
@@ -9,20 +9,18 @@
 //!
 //! Every right-hand side is a polynomial, so the motion is analytic in `θ` from before touch-down (`q = 0`, `w > 0`)
 //! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
-//! The force is a Taylor polynomial in the time since it was last set ([`Compression::set_drive`]).
+//! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
 
-mod bounds;
+pub(crate) mod bounds;
 
-pub use bounds::{Growth, ORDERS};
-
-use crate::{Coupled, Drive, Side};
+use crate::{Coupled, Excitation, Side};
 
 /// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.
-pub type Compressed = [f64; 5];
+pub type RegularisedState = [f64; 5];
 
 /// Equation (1) in contact with one wall.
 #[derive(Clone, Copy, Debug)]
-pub struct Compression {
+pub struct RegularisedContact {
     side: Side,
     sign: f64,
     wall: f64,
@@ -33,7 +31,7 @@ pub struct Compression {
     dashpot: [f64; 2], // c2/m1, c2 (1/m1 + 1/m2)
     spring: [f64; 2],  // k2/m1, k2 (1/m1 + 1/m2)
     stretch: f64,      // sign (wall - D): the spring's stretch at touch-down, towards the wall
-    since: f64,        // the time at which the drive was set
+    since: f64,        // the time at which the excitation was set
     cos: [f64; WAVE],  // Taylor coefficients of P cos ωt and P sin ωt about that time
     sin: [f64; WAVE],
 }
@@ -43,12 +41,12 @@ const WAVE: usize = 8;
 
 impl Coupled {
     /// The regularised equations of contact with `side`.
-    pub fn compression(&self, side: Side) -> Compression {
+    pub fn regularised_contact(&self, side: Side) -> RegularisedContact {
         let (_, k2, c2) = self.damper();
         let bare = self.bare();
         let (inv_m1, inv_m) = (1.0 / bare.m1, self.inverse_effective_mass());
         let pair = |factor: f64| [factor * inv_m1, factor * inv_m];
-        Compression {
+        RegularisedContact {
             side,
             sign: side.sign(),
             wall: self.wall(side),
@@ -65,18 +63,18 @@ impl Coupled {
     }
 }
 
-impl Compression {
+impl RegularisedContact {
     /// The wall in contact.
     pub fn side(&self) -> Side {
         self.side
     }
 
-    /// The angle (rad) by which the force may turn after [`Self::set_drive`]: the first neglected term is below
+    /// The angle (rad) by which the force may turn after [`Self::set_excitation`]: the first neglected term is below
     /// `0.05⁸ / 8! = 1e-15` of the force.
     pub const TURN: f64 = 0.05;
 
     /// Sets the force at time `t` (s, since touch-down); it is exact while `ω |t' - t| <= TURN`.
-    pub fn set_drive(&mut self, t: f64, [cos, sin]: Drive) {
+    pub fn set_excitation(&mut self, t: f64, [cos, sin]: Excitation) {
         (self.since, self.cos[0], self.sin[0]) = (t, cos, sin);
         for k in 1..WAVE {
             let turn = self.omega / k as f64;
@@ -85,7 +83,7 @@ impl Compression {
     }
 
     /// `[P cos ωt, P sin ωt]` at the time of a state, N.
-    pub fn drive(&self, y: &Compressed) -> Drive {
+    pub fn excitation(&self, y: &RegularisedState) -> Excitation {
         let t = y[4] - self.since;
         [polynomial(&self.cos, t), polynomial(&self.sin, t)]
     }
@@ -98,18 +96,21 @@ impl Compression {
     /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
     /// and the net force on the damper `-s (K q³ + c2 w + k2 (z + s (wall - D)))`.
     #[inline(always)]
-    fn accelerations(&self, &[q, w, x1, v1, t]: &Compressed) -> [f64; 2] {
+    fn accelerations(&self, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
         let z = q * q;
         let (cube, stretch) = (z * q, z + self.stretch);
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
         let resisting = self.primary[1] * v1 + self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
-        let drive = self.primary[0] * polynomial(&self.cos, t - self.since);
-        [(self.sign * resisting - push(1)) - self.sign * drive, (self.sign * push(0) - resisting) + drive]
+        let excitation = self.primary[0] * polynomial(&self.cos, t - self.since);
+        [
+            (self.sign * resisting - push(1)) - self.sign * excitation,
+            (self.sign * push(0) - resisting) + excitation,
+        ]
     }
 
-    /// How large the terms are whose sum accelerates the PS, m/s²: that sum is rounded at their size.
-    pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &Compressed) -> f64 {
+    /// The sum of the sizes of the terms that accelerate the PS, m/s², which sets the rounding error of its acceleration.
+    pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &RegularisedState) -> f64 {
         self.primary[0] * self.cos[0].hypot(self.sin[0])
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()
@@ -120,14 +121,14 @@ impl Compression {
 
     /// Derivative with respect to `θ` of every component.
     #[inline(always)]
-    pub fn derivative(&self, y: &Compressed) -> Compressed {
+    pub fn derivative(&self, y: &RegularisedState) -> RegularisedState {
         let &[q, w, _, v1, _] = y;
         let [rate, a1] = self.accelerations(y);
         [0.5 * w, q * rate, q * v1, q * a1, q]
     }
 
     /// `dw/dt`, the acceleration into the wall, m/s².
-    pub fn acceleration(&self, y: &Compressed) -> f64 {
+    pub fn acceleration(&self, y: &RegularisedState) -> f64 {
         self.accelerations(y)[0]
     }
 
@@ -141,21 +142,21 @@ impl Compression {
         (0.8 * self.hertz[1] * q.powi(5)).sqrt()
     }
 
-    /// `(1/m1 + 1/m2) m1`: how many times faster a contact force accelerates the two bodies apart than it accelerates the PS.
+    /// `(1/m1 + 1/m2) m1`: the relative acceleration of the two bodies under a contact force, over that of the PS.
     pub fn mass_ratio(&self) -> f64 {
         self.hertz[1] / self.hertz[0]
     }
 
     /// The state `[x1, v1, x2, v2]` as a regularised one, with no time elapsed. A damper that is not in contact with this
     /// wall is taken to be just touching it.
-    pub fn compress(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> Compressed {
+    pub fn regularise(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> RegularisedState {
         let z = self.sign * (x2 - x1 - self.wall);
         [z.max(0.0).sqrt(), self.sign * (v2 - v1), x1, v1, 0.0]
     }
 
     /// The state `[x1, v1, x2, v2]` of a regularised one.
     #[inline]
-    pub fn expand(&self, &[q, w, x1, v1, ..]: &Compressed) -> [f64; 4] {
+    pub fn physical(&self, &[q, w, x1, v1, ..]: &RegularisedState) -> [f64; 4] {
         [x1, v1, x1 + self.wall + self.sign * q * q, v1 + self.sign * w]
     }
 
@@ -168,7 +169,7 @@ impl Compression {
     ///
     /// With the acceleration beside Hertz's, `a = dw/dt + κ q³`, held constant, `w² = v² - (4/5) κ q⁵ + 2 a q²`, and
     /// `θ = ∫₀^q 2 dq / |w|` is expanded in `x = (4/5) κ q⁵ / v²` and `y = 2 a q² / v²`.
-    pub fn theta_to_wall(&self, y: &Compressed) -> f64 {
+    pub fn theta_to_wall(&self, y: &RegularisedState) -> f64 {
         let &[q, w, ..] = y;
         let depth = 0.8 * self.hertz[1] * q.powi(5);
         let steady = 2.0 * (self.acceleration(y) + self.hertz[1] * q.powi(3)) * q * q;
@@ -183,7 +184,7 @@ impl Compression {
     }
 }
 
-/// `Σ c_k t^k` by Estrin's scheme: pairs, then pairs of pairs, so that little waits for little.
+/// `Σ c_k t^k` by Estrin's scheme: pairs, then pairs of pairs, so that chains of dependent operations are short.
 #[inline(always)]
 fn polynomial(c: &[f64; WAVE], t: f64) -> f64 {
     let t2 = t * t;

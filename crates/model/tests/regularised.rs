@@ -2,7 +2,7 @@
 
 mod scenes;
 
-use retune_model::{Compressed, Compression, Side};
+use retune_model::{RegularisedContact, RegularisedState, Side};
 use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, slope};
 
 const T: f64 = 1.21;
@@ -19,19 +19,19 @@ fn exact_compressing_and_expanding_is_the_identity() {
     for numbers in [SSVI, ROW1] {
         let system = numbers.coupled();
         for side in Side::BOTH {
-            let equations = system.compression(side);
+            let equations = system.regularised_contact(side);
             assert_eq!(equations.side(), side);
             for z in [0.0, 1e-6, 1e-3, 0.02] {
                 let y = pressed(&system, side, z, &mut spread);
-                let compressed = equations.compress(&y);
-                assert!((compressed[0] - z.sqrt()).abs() < 1e-8, "{} {z}", compressed[0]);
-                assert_eq!(compressed[4], 0.0, "no time has passed");
-                let back = equations.expand(&compressed);
+                let regularised = equations.regularise(&y);
+                assert!((regularised[0] - z.sqrt()).abs() < 1e-8, "{} {z}", regularised[0]);
+                assert_eq!(regularised[4], 0.0, "no time has passed");
+                let back = equations.physical(&regularised);
                 for i in 0..4 {
                     assert!((back[i] - y[i]).abs() <= 1e-15, "{side:?} {z}: {back:?} {y:?}");
                 }
             }
-            let apart = equations.compress(&pressed(&system, side, -0.01, &mut spread));
+            let apart = equations.regularise(&pressed(&system, side, -0.01, &mut spread));
             assert_eq!(apart[0], 0.0, "a damper that is not in contact counts as touching");
         }
     }
@@ -44,17 +44,17 @@ fn exact_regularised_equations_are_equation_1() {
     for numbers in [SSVI, ROW1, TWO_SIDED] {
         let system = numbers.coupled();
         for side in Side::BOTH {
-            let mut equations = system.compression(side);
-            equations.set_drive(0.0, system.drive(T));
+            let mut equations = system.regularised_contact(side);
+            equations.set_excitation(0.0, system.excitation(T));
             for z in [1e-4, 1e-3, 5e-3] {
-                let (y, drive) = (pressed(&system, side, z, &mut spread), system.drive(T));
-                let compressed = equations.compress(&y);
-                let q = compressed[0];
-                let rate = equations.derivative(&compressed);
-                let expected = system.derivative(drive, &y);
+                let (y, excitation) = (pressed(&system, side, z, &mut spread), system.excitation(T));
+                let regularised = equations.regularise(&y);
+                let q = regularised[0];
+                let rate = equations.derivative(&regularised);
+                let expected = system.derivative(excitation, &y);
                 let moved = slope(1e-4, |s| {
-                    let ahead: Compressed = std::array::from_fn(|i| compressed[i] + s * rate[i]);
-                    equations.expand(&ahead)
+                    let ahead: RegularisedState = std::array::from_fn(|i| regularised[i] + s * rate[i]);
+                    equations.physical(&ahead)
                 });
                 for i in 0..4 {
                     let (found, expected) = (moved[i], q * expected[i]);
@@ -62,7 +62,7 @@ fn exact_regularised_equations_are_equation_1() {
                 }
                 assert_eq!(rate[4], q, "dt = q dθ");
                 let closing = side.sign() * (expected[3] - expected[1]);
-                let found = equations.acceleration(&compressed);
+                let found = equations.acceleration(&regularised);
                 assert!((found - closing).abs() < 1e-10 * closing.abs(), "{found} {closing}");
             }
         }
@@ -70,8 +70,9 @@ fn exact_regularised_equations_are_equation_1() {
 }
 
 /// One step of the classical Runge–Kutta method in `θ`.
-fn advance(equations: &Compression, y: &Compressed, h: f64) -> Compressed {
-    let along = |k: &Compressed, h: f64| -> Compressed { std::array::from_fn(|i| y[i] + h * k[i]) };
+fn advance(equations: &RegularisedContact, y: &RegularisedState, h: f64) -> RegularisedState {
+    let along =
+        |k: &RegularisedState, h: f64| -> RegularisedState { std::array::from_fn(|i| y[i] + h * k[i]) };
     let a = equations.derivative(y);
     let b = equations.derivative(&along(&a, 0.5 * h));
     let c = equations.derivative(&along(&b, 0.5 * h));
@@ -87,7 +88,7 @@ const COLLISION: Numbers = Numbers { k1: 0.0, c1: 0.0, p: 0.0, k2: 0.0, c2: 0.0,
 fn exact_undisturbed_collision() {
     let system = COLLISION.coupled();
     for side in Side::BOTH {
-        let equations = system.compression(side);
+        let equations = system.regularised_contact(side);
         let kappa = system.hertz(side) * (1.0 / SSVI.m1 + 1.0 / SSVI.m2);
         assert!((equations.hertz_rate() / kappa - 1.0).abs() < 1e-15);
         assert!((equations.mass_ratio() / (1.0 + SSVI.m1 / SSVI.m2) - 1.0).abs() < 1e-15);
@@ -95,7 +96,7 @@ fn exact_undisturbed_collision() {
             let depth = equations.greatest_depth(speed);
             assert!((equations.speed_at_depth(depth) / speed - 1.0).abs() < 1e-14);
             let wall = system.wall(side);
-            let mut y = equations.compress(&[0.0, 0.0, wall, side.sign() * speed]);
+            let mut y = equations.regularise(&[0.0, 0.0, wall, side.sign() * speed]);
             let mut deepest: f64 = 0.0;
             while y[1] > -0.5 * speed {
                 y = advance(&equations, &y, 1e-3 * depth / speed);
@@ -117,13 +118,14 @@ fn exact_prediction_of_the_lift_off() {
     {
         let system = numbers.coupled();
         for side in Side::BOTH {
-            let mut equations = system.compression(side);
-            equations.set_drive(0.0, system.drive(T));
+            let mut equations = system.regularised_contact(side);
+            equations.set_excitation(0.0, system.excitation(T));
             let speed = 0.5;
             let q = from * equations.greatest_depth(speed);
             let w = (speed * speed - equations.speed_at_depth(q).powi(2)).sqrt();
             let z = side.sign() * q * q;
-            let mut y = equations.compress(&[0.01, 0.1, 0.01 + system.wall(side) + z, 0.1 - side.sign() * w]);
+            let mut y =
+                equations.regularise(&[0.01, 0.1, 0.01 + system.wall(side) + z, 0.1 - side.sign() * w]);
             let predicted = equations.theta_to_wall(&y);
             let h = predicted / 400.0;
             let mut theta = 0.0;
@@ -141,14 +143,14 @@ fn exact_prediction_of_the_lift_off() {
 #[test]
 fn exact_force_during_a_contact() {
     let system = SSVI.coupled();
-    let mut equations = system.compression(Side::Primary);
+    let mut equations = system.regularised_contact(Side::Primary);
     assert_eq!(equations.frequency(), SSVI.omega);
     let since = 0.003;
-    equations.set_drive(since, system.drive(T));
+    equations.set_excitation(since, system.excitation(T));
     for share in [-1.0, -0.5, 0.0, 0.3, 1.0] {
-        let later = share * Compression::TURN / SSVI.omega;
-        let [cos, sin] = equations.drive(&[0.01, 0.0, 0.0, 0.0, since + later]);
-        let [c, s] = system.drive(T + later);
+        let later = share * RegularisedContact::TURN / SSVI.omega;
+        let [cos, sin] = equations.excitation(&[0.01, 0.0, 0.0, 0.0, since + later]);
+        let [c, s] = system.excitation(T + later);
         assert!((cos - c).abs() < 1e-15 * SSVI.p * 8.0 && (sin - s).abs() < 1e-15 * SSVI.p * 8.0, "{share}");
     }
 }
@@ -161,12 +163,12 @@ fn exact_size_of_terms_is_the_acceleration_when_nothing_cancels() {
         let system = numbers.coupled();
         for side in Side::BOTH {
             let s = side.sign();
-            let mut equations = system.compression(side);
+            let mut equations = system.regularised_contact(side);
             for z in [0.0, 1e-4, 3e-3] {
                 let q = f64::sqrt(z);
                 let [w, x1, v1] = [1.5, 0.1, 0.6].map(|size| size * spread.unit());
                 // Pressed, closing, and the structure driven away from where its spring and its dashpot hold it.
-                equations.set_drive(0.0, [s * numbers.p, 0.0]);
+                equations.set_excitation(0.0, [s * numbers.p, 0.0]);
                 let size = equations.size_of_terms(&[q, w, -s * x1, -s * v1, 0.0]);
                 let along = equations.size_of_terms(&[q, w, s * x1, v1, 0.0]);
                 let contact = system.hertz(side) * z.powf(1.5);
@@ -180,7 +182,7 @@ fn exact_size_of_terms_is_the_acceleration_when_nothing_cancels() {
                     assert!((accelerated / (s * size) - 1.0).abs() < 1e-12, "{side:?} {accelerated} {size}");
                 }
                 // The size of the force does not depend on its phase.
-                equations.set_drive(0.0, [0.6 * numbers.p, -0.8 * numbers.p]);
+                equations.set_excitation(0.0, [0.6 * numbers.p, -0.8 * numbers.p]);
                 let turned = equations.size_of_terms(&[q, w, -s * x1, -s * v1, 0.0]);
                 assert!((turned / size - 1.0).abs() < 1e-14);
             }
@@ -201,8 +203,8 @@ fn exact_series_of_the_lift_off_against_quadrature() {
             let q = (x * speed * speed / (0.8 * kappa)).powf(0.2).max(1e-2);
             let x = 0.8 * kappa * q.powi(5) / (speed * speed);
             let steady = y * speed * speed / (2.0 * q * q);
-            let mut equations = system.compression(side);
-            equations.set_drive(0.0, [-side.sign() * m1 * steady, 0.0]);
+            let mut equations = system.regularised_contact(side);
+            equations.set_excitation(0.0, [-side.sign() * m1 * steady, 0.0]);
             let w = -(speed * speed * (1.0 - x + y)).sqrt();
             let state = [q, w, 0.0, 0.0, 0.0];
             let beside = equations.acceleration(&state) + equations.hertz_rate() * q.powi(3);

@@ -1,21 +1,21 @@
-//! What no motion can do: the last look at a run before its numbers are believed.
+//! The energy bound check: no motion has more energy than the force can have supplied. The last check of every run.
 
 use crate::error::SolverError;
 use crate::response::{Extreme, Response};
 use crate::settings::{Method, Settings, Window};
 use retune_model::{Bare, Scene};
 
-/// Rounding that the bound on the energy is given.
+/// Allowance for rounding in the bound on the energy, relative.
 const SLACK: f64 = 1e-6;
 
-/// Roundings of a position between the search for touch-downs and that for the largest relative displacement, which do not compute it alike.
+/// Roundings by which the search for touch-downs and that for the largest relative displacement may differ in a position.
 const ROUNDINGS: f64 = 64.0;
 
-/// Passes on a largest energy of the primary structure that can be.
+/// Returns a largest energy of the primary structure that is within the bound.
 ///
-/// A run of the exact method that has more than the force can give (see [`Bare::most_energy`]) has lost its digits to parameters
-/// too far apart; the other methods are not held to it, for what they make of energy at a fixed step or a loose tolerance is
-/// their own.
+/// A run of the hybrid with more energy than the force can supply (see [`Bare::most_energy`]) has lost all digits, because its
+/// parameters are too many orders of magnitude apart. General methods are not held to the bound: at a fixed step or a loose
+/// tolerance they gain energy by themselves.
 ///
 /// # Errors
 /// [`SolverError::NonFinite`], [`SolverError::Implausible`].
@@ -23,11 +23,11 @@ pub fn energy(
     scene: &Scene,
     window: Window,
     settings: &Settings,
-    peak: Extreme,
+    maximum: Extreme,
 ) -> Result<Extreme, SolverError> {
-    let Extreme { value, time } = peak;
+    let Extreme { value, time } = maximum;
     if window.from >= window.to {
-        return Ok(peak); // nothing was looked at
+        return Ok(maximum); // an empty window
     }
     if !value.is_finite() {
         return Err(SolverError::NonFinite { t: window.to });
@@ -37,7 +37,7 @@ pub fn energy(
     if gained || value < 0.0 || !(window.from..=window.to).contains(&time) {
         return Err(SolverError::Implausible { t: window.to, value, time, most });
     }
-    Ok(peak)
+    Ok(maximum)
 }
 
 /// The most energy that the force can give in a run, J.
@@ -45,7 +45,7 @@ fn most(scene: &Scene, window: Window) -> f64 {
     Bare::new(&scene.primary, &scene.forcing).most_energy(window.to)
 }
 
-/// Passes on a response of which every number is finite and the energy can be.
+/// Returns a response whose numbers are all finite and whose energy is within the bound.
 ///
 /// # Errors
 /// As [`energy`].
@@ -56,7 +56,7 @@ pub fn response(
     found: Response,
 ) -> Result<Response, SolverError> {
     if window.from >= window.to {
-        return Ok(found); // nothing was looked at
+        return Ok(found); // an empty window
     }
     energy(scene, window, settings, found.e1_max)?;
     let Extreme { value, time } = found.e2_max;
@@ -68,11 +68,11 @@ pub fn response(
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }
 
-/// The depth, m, of a wall that was never touched, which is none: at positions of this size, m, rounding alone may put a damper
-/// a little inside.
+/// The indentation, m, of a wall that was never touched, which is zero or negative. At positions of this size, m, rounding alone
+/// may put the damper slightly inside.
 ///
 /// # Errors
-/// [`SolverError::Missed`]: rounding cannot have done it.
+/// [`SolverError::Missed`]: the indentation is larger than rounding can explain.
 pub fn untouched(depth: f64, position: f64, t: f64) -> Result<f64, SolverError> {
     if depth > ROUNDINGS * f64::EPSILON * position {
         return Err(SolverError::Missed { t, depth });
@@ -80,7 +80,7 @@ pub fn untouched(depth: f64, position: f64, t: f64) -> Result<f64, SolverError> 
     Ok(depth.min(0.0))
 }
 
-/// The same error with a time that can be: where digits are lost, that of a step may be among them.
+/// The same error with its time limited to the run: where digits are lost, the time of a step may be wrong too.
 pub fn error(window: Window, error: SolverError) -> SolverError {
     let sound = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
     match error {

@@ -21,10 +21,10 @@ pub enum SolverError {
         t: f64,
         /// The step, s.
         h: f64,
-        /// What helps.
+        /// The remedy.
         remedy: Remedy,
     },
-    /// The hybrid found no step to follow a contact with: its force is lost to rounding beside others, or they beside it.
+    /// The hybrid found no step for a contact: the contact force is lost to rounding beside the other forces, or they beside it.
     #[error(
         "a contact at t = {} s cannot be followed: its stiffness is too many orders of magnitude from that of the springs; \
          check what it is made of: R, q, E1 to E4", plain(*.t)
@@ -55,16 +55,16 @@ pub enum SolverError {
         needed: f64,
         /// The limit.
         limit: u64,
-        /// What helps.
+        /// The remedy.
         remedy: Remedy,
     },
-    /// A method of fixed step has left the finite numbers.
+    /// The motion of a fixed-step method has grown beyond the finite numbers.
     #[error("the motion blows up at t = {} s: a fixed step is too long for it; choose the hybrid solver", plain(*.t))]
     Unstable {
         /// Time reached, s.
         t: f64,
     },
-    /// The motion has more energy than the force can have given it, or its largest at a time that is not in the window.
+    /// The motion has more energy than the force can have supplied, or its maximum lies outside the window.
     #[error(
         "the motion cannot be: an energy of {} J at {} s, in a run to t = {} s whose force can give {} J; \
          the parameters are too far apart to be computed", plain(*.value), plain(*.time), plain(*.t), plain(*.most)
@@ -100,21 +100,21 @@ pub enum SolverError {
     },
 }
 
-/// A number in the fewest digits that read back to it, with a power of ten where it is very large or small.
+/// A number in the fewest digits that read back to the same value, with a power of ten where it is very large or small.
 fn plain(value: f64) -> String {
     if value == 0.0 || (1e-4..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
-/// The one thing that helps a run that cannot end.
+/// The change that helps a run that cannot finish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// It is the length of the run, and no step, that is out of all proportion.
+    /// The run is too long, not its steps too short.
     ShorterRun,
-    /// Flight steps follow from what is fastest: ω, or a stiffness or a damping over a mass, by the names of a study.
+    /// The fastest rate sets the flight step: ω, or a stiffness or a damping over a mass, in the symbols of a study file.
     Slower(&'static str),
-    /// Contacts take the steps.
+    /// Most steps are those of contacts.
     LessForce,
-    /// Another method takes more steps than the hybrid, which also tells the cause if it cannot finish either.
+    /// General methods take more steps than the hybrid, whose own error names the cause if it cannot finish either.
     Hybrid,
 }
 

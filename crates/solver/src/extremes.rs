@@ -1,5 +1,5 @@
-//! The largest values of a run beside E1max: those that limits are set on, from any phase of the force. Only what is asked for is
-//! looked at.
+//! The largest values on which a study may set limits: E1max, stroke and contact force, for any phase of the force. Only those that
+//! are asked for are computed.
 
 use crate::energy_bound;
 use crate::error::SolverError;
@@ -13,13 +13,13 @@ use crate::settings::{Settings, Window};
 use crate::simulate::e1_max;
 use retune_model::{Bare, Coupled, Scene};
 
-/// What is asked of a run.
+/// The question put to a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ask {
-    /// φ of the force `P cos(ωt + φ)`, rad. The run starts at rest at t = 0 as ever.
+    /// φ of the force `P cos(ωt + φ)`, rad. The run starts at rest at t = 0.
     pub phase: f64,
-    /// From when on the stroke and the contact forces are wanted too, s: 0 for the whole run, whatever the window of E1max;
-    /// `None` where they are not wanted.
+    /// The time, s, from which on stroke and contact forces are observed too: 0 for the whole run, whatever the window of E1max;
+    /// `None` if they are not needed.
     pub walls: Option<f64>,
     /// The run may end early, with any value above this one (J), once E1max exceeds it.
     pub cutoff: f64,
@@ -40,7 +40,7 @@ pub struct Extremes {
     pub stroke: f64,
     /// Largest contact force on either wall, N; 0 where it was not asked for, or without a damper.
     pub force: f64,
-    /// Whether the motion has settled, where that was asked.
+    /// Whether the motion has settled; true where that was not asked.
     pub settled: bool,
 }
 

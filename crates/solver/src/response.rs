@@ -23,7 +23,7 @@ pub enum SceneKind {
     Contact,
 }
 
-/// What a run cost.
+/// The work of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Steps taken (of the hybrid: flight and contact steps).
@@ -34,7 +34,7 @@ pub struct Work {
     pub evaluations: u64,
 }
 
-/// What was observed in a window of a run.
+/// The observations of a run within its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// Largest energy of the primary structure, J.
@@ -53,6 +53,6 @@ pub struct Response {
     pub final_state: [f64; 4],
     /// The smallest model that was exact for the whole run.
     pub scene: SceneKind,
-    /// What the run cost.
+    /// The work of the run.
     pub work: Work,
 }

@@ -12,7 +12,7 @@ use crate::system::System;
 use nalgebra::{Const, DimMin};
 use retune_model::{Bare, Coupled};
 
-/// The state at the end of a run, and what it cost.
+/// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
 /// Follows the bare structure from rest at `start` (s) on: `before` sees the motion to the window, `observer` that inside it.
@@ -62,7 +62,7 @@ pub fn follow_coupled(
     Ok((end.y, hybrid.work))
 }
 
-/// A structure and its damper, followed from any moment on by the method that is asked for.
+/// A structure and its damper, followed from any moment on by the method in [`Settings`].
 pub struct Follower<'a> {
     system: &'a Coupled,
     settings: Settings,
@@ -75,7 +75,7 @@ enum Way<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Prepares it for stretches of `longest` seconds at most, each of which may take [`Settings::max_steps`] steps.
+    /// Prepares for stretches of at most `longest` seconds, each of which may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings, longest: f64) -> Self {
         let way = General::of(settings.method).map_or_else(
             || Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps))),
@@ -109,7 +109,7 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// A method that goes step by step: every one but the hybrid.
+/// A general method: every one but the hybrid.
 #[derive(Clone, Copy)]
 enum General {
     Ode23s,
@@ -121,7 +121,7 @@ enum General {
 }
 
 impl General {
-    /// The method by its name; none is the hybrid.
+    /// The general method of this name; `None` for the hybrid.
     fn of(method: Method) -> Option<Self> {
         match method {
             Method::Hybrid => None,

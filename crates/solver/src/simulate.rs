@@ -27,7 +27,7 @@ pub fn e1_max(
 ) -> Result<Extreme, SolverError> {
     largest_energy(scene, window, settings, cutoff)
         .map_err(|error| energy_bound::error(window, error))
-        .and_then(|peak| energy_bound::energy(scene, window, settings, peak))
+        .and_then(|e1| energy_bound::energy(scene, window, settings, e1))
 }
 
 fn largest_energy(
@@ -40,30 +40,30 @@ fn largest_energy(
     match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut peak = RunningMaximum::new(BareEnergy::new(&system), cutoff);
+            let mut e1 = RunningMaximum::new(BareEnergy::new(&system), cutoff);
             if hybrid {
                 let steady = system.steady(system.frequency()).e1_max;
-                return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, peak, steady);
+                return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, e1, steady);
             }
-            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
-            Ok(peak.record())
+            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            Ok(e1.record())
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut peak = RunningMaximum::new(PrimaryEnergy::new(&system), cutoff);
+            let mut e1 = RunningMaximum::new(PrimaryEnergy::new(&system), cutoff);
             if hybrid {
                 let mut free = ContactFree::new(&system, window.to, settings.max_steps);
                 if free.clears_walls() {
-                    return free.e1_max(window, peak, system.steady(system.bare().frequency()).e1_max);
+                    return free.e1_max(window, e1, system.steady(system.bare().frequency()).e1_max);
                 }
             }
-            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
-            Ok(peak.record())
+            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            Ok(e1.record())
         }
     }
 }
 
-/// Everything that [`Response`] reports of a run.
+/// Runs a scene and returns everything that [`Response`] reports.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -80,10 +80,10 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 }
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    let mut peak = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
-    let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut peak)?;
+    let mut e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
+    let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
     Ok(Response {
-        e1_max: peak.record(),
+        e1_max: e1.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
         impacts: [0; 2],
         force_max: [0.0; 2],
@@ -121,7 +121,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
         }
     }
     let force_max = Side::BOTH.map(|side| hertz_force(system.hertz(side), depths[side as usize]));
-    // A damper that rests on a wall at t = 0 presses it without a touch-down.
+    // A damper that rests on a wall at t = 0 is in contact without a touch-down.
     let touched = before.0 != [0; 2] || impacts != [0; 2] || force_max != [0.0; 2];
     Ok(Response {
         e1_max,

@@ -6,7 +6,7 @@ mod problems;
 use problems::linear::Joined;
 use problems::scenes::{Numbers, SSVI, TMD, TWO_SIDED};
 use problems::{Watch, assert_close, assert_states};
-use retune_model::{Coupled, Drive, Side};
+use retune_model::{Coupled, Excitation, Side};
 use retune_solver::observe::{DamperEnergy, Form, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum};
 use retune_solver::{
     Hybrid, Method, Motion, Phase, Response, Rows, SceneKind, Settings, SolverError, Window, e1_max,
@@ -75,7 +75,7 @@ fn exact_grazes_by_shooting_on_the_distance() {
     let state = linear.after(0.0, [0.0, 0.0, numbers.d, 0.0], at);
     let turn = {
         let shifted = [state[0], state[1], state[2] - numbers.d + reach, state[3]];
-        system.relative_position_rates(system.drive(at), &shifted)[2]
+        system.relative_position_rates(system.excitation(at), &shifted)[2]
     };
     assert!(turn > 1.0, "{turn}");
     for speed in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
@@ -139,7 +139,7 @@ fn exact_resting_on_a_wall() {
         Numbers { d: 0.0, c: 0.0, ..soft },
         Numbers { d: 0.1, c: 0.0, ..soft },
         Numbers { d: 0.0, c: 1e-9, ..soft },
-        // Pressed on for a long time: a soft contact and a strong push.
+        // A sustained contact: a soft wall and a strong push.
         Numbers { d: 0.0, c: 5.0, r: 1e-10, ..soft },
         Numbers { d: 0.0, c: 5.0, k2: 6000.0, c2: 2000.0, ..soft },
     ] {
@@ -362,9 +362,9 @@ fn exact_wild_parameters_never_give_nonsense() {
 struct Counted<'a, Q>(Q, &'a std::cell::Cell<u64>);
 
 impl<Q: Quantity<4>> Quantity<4> for Counted<'_, Q> {
-    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+    fn rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
         self.1.set(self.1.get() + 1);
-        self.0.rates(drive, y)
+        self.0.rates(excitation, y)
     }
     fn form(&self) -> &Form<4> {
         self.0.form()

@@ -64,7 +64,7 @@ impl<Q: Quantity<4>> Everywhere<Q> {
         Self { quantity, looks: 24, largest: f64::NEG_INFINITY }
     }
     fn slope(&mut self, knot: &Knot<4>) -> f64 {
-        let [value, slope, _] = self.quantity.rates(knot.drive, &knot.y);
+        let [value, slope, _] = self.quantity.rates(knot.excitation, &knot.y);
         self.largest = self.largest.max(value);
         slope
     }
@@ -91,7 +91,7 @@ impl<Q: Quantity<4>> Observer<4> for Everywhere<Q> {
     }
 }
 
-/// What a search may miss, relative to the largest value: no more than the contacts of a run at rtol 1e-6 are inexact by.
+/// The most that a search may miss, relative to the largest value: the error of the contacts in a run at rtol 1e-6.
 const ALLOWED: f64 = 1e-9;
 
 /// A fast search and a slow one, side by side.
@@ -101,7 +101,7 @@ fn pair<Q: Quantity<4>>(quantity: impl Fn() -> Q) -> Pair<Q> {
     (RunningMaximum::new(quantity(), f64::INFINITY), Everywhere::new(quantity()))
 }
 
-/// What the search missed, relative to the largest value; infinite if the search could not prove its record.
+/// The gain that the search missed, relative to the largest value; infinite if the search could not prove its record.
 fn missed<Q: Quantity<4>>((search, everywhere): &Pair<Q>, size: f64) -> f64 {
     let missed = everywhere.largest - search.record().value;
     if search.doubt() > ALLOWED * size {
@@ -123,7 +123,7 @@ impl Observer<4> for ContactPieces {
     }
 }
 
-/// What a scene's paired search found: what was missed of E1, E2 and both ends of the relative displacement, and contact pieces.
+/// The gains that the search missed in a scene, of E1, E2 and both ends of the relative displacement, and the number of contact pieces.
 fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 4], u64), SolverError> {
     let system = numbers.coupled();
     let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
@@ -152,7 +152,7 @@ fn apart(a: f64, b: f64, size: f64) -> f64 {
     }
 }
 
-/// What both methods make of a scene, or `None` where DOP853 gives up.
+/// A scene by both methods, or `None` where DOP853 gives up.
 fn both(numbers: &Numbers, window: Window) -> Option<[Response; 2]> {
     let [a, b] = [(Method::Hybrid, 1e-12), (Method::Dop853, 1e-12)].map(|(method, rtol)| {
         let settings =
@@ -179,7 +179,7 @@ fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
         })
     };
     let told = agree(&runs) && !(differences.iter().any(|d| *d > ALIKE) && part());
-    told.then(|| (differences, runs[0].clone()))
+    told.then(|| (differences, runs[0]))
 }
 
 /// By how much the hybrid and DOP853 may differ.

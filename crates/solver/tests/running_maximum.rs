@@ -3,7 +3,7 @@
 mod problems;
 
 use problems::scenes::{Numbers, SSVI};
-use retune_model::Drive;
+use retune_model::Excitation;
 use retune_solver::observe::{Form, Knot, Observer, Quantity, RunningMaximum, Segment};
 use retune_solver::{Method, Response, Settings, Window, simulate};
 use std::cell::Cell;
@@ -77,7 +77,7 @@ struct Wave {
 }
 
 fn knot(theta: f64) -> Knot<2> {
-    Knot { t: theta + 0.5 * theta * theta, drive: [0.0; 2], y: [theta, 0.0], clock: [1.0 + theta, 1.0] }
+    Knot { t: theta + 0.5 * theta * theta, excitation: [0.0; 2], y: [theta, 0.0], clock: [1.0 + theta, 1.0] }
 }
 
 impl Wave {
@@ -107,7 +107,7 @@ impl Segment<2> for Wave {
 }
 
 impl Quantity<2> for &Wave {
-    fn rates(&self, _drive: Drive, &[theta, _]: &[f64; 2]) -> [f64; 3] {
+    fn rates(&self, _drive: Excitation, &[theta, _]: &[f64; 2]) -> [f64; 3] {
         // θ' = 1/(1 + θ), θ'' = -θ'³.
         let (sin, cos) = (self.rate * theta + self.phase).sin_cos();
         let speed = 1.0 / (1.0 + theta);

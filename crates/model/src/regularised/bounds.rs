@@ -1,6 +1,6 @@
-//! How fast the motion can change during a contact: bounds that hold by proof, from the equations with every term taken by its size.
+//! Proven bounds on the derivatives of the motion during a contact, from the equations with every term replaced by its size.
 
-use super::{Compressed, Compression};
+use super::{RegularisedContact, RegularisedState};
 
 /// Orders of the derivatives that are bounded, 0 to 6.
 pub const ORDERS: usize = 7;
@@ -19,13 +19,13 @@ fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
     sum
 }
 
-impl Compression {
+impl RegularisedContact {
     /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m), from the states at its
-    /// ends; infinite if the piece is too long for the argument.
+    /// ends; infinite if the piece is too long for the proof.
     ///
-    /// A box that holds both ends, and that nothing in it can leave within `h/2` of either, holds the piece (Picard and Lindelöf).
-    /// In the box each coefficient follows from those before it by the equations, with all terms of one sign.
-    pub fn growth(&self, h: f64, from: &Compressed, to: &Compressed) -> Growth<ORDERS> {
+    /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf).
+    /// In the box each coefficient follows from those before it by the equations, with all terms taken as positive.
+    pub fn growth(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Growth<ORDERS> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let mut bounds = ends;
         for _ in 0..8 {
@@ -49,7 +49,7 @@ impl Compression {
             series
         };
         let [mut q, mut w, mut x1, mut v1] = [q0, w0, x0, v0].map(start);
-        let mut drive = start(self.cos[0].hypot(self.sin[0]));
+        let mut excitation = start(self.cos[0].hypot(self.sin[0]));
         let (mut z, mut stretch, mut cube) = ([0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
         for k in 0..K {
@@ -59,13 +59,13 @@ impl Compression {
             if k + 1 == K {
                 break;
             }
-            let outside = self.primary[0] * drive[k] + self.primary[1] * v1[k] + self.primary[2] * x1[k];
+            let outside = self.primary[0] * excitation[k] + self.primary[1] * v1[k] + self.primary[2] * x1[k];
             let push =
                 |i: usize| self.hertz[i] * cube[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
             (a1[k], rate[k]) = (outside + push(0), outside + push(1));
             let next = 1.0 / (k + 1) as f64;
-            let (along, turned) = (product(&q, &v1, k), self.omega * product(&q, &drive, k));
-            (x1[k + 1], drive[k + 1]) = (along * next, turned * next);
+            let (along, turned) = (product(&q, &v1, k), self.omega * product(&q, &excitation, k));
+            (x1[k + 1], excitation[k + 1]) = (along * next, turned * next);
             (v1[k + 1], w[k + 1]) = (product(&q, &a1, k) * next, product(&q, &rate, k) * next);
             q[k + 1] = 0.5 * w[k] * next;
         }
@@ -73,24 +73,24 @@ impl Compression {
     }
 
     /// Bounds on the first Taylor coefficients in *time* over a whole contact of `duration` seconds that begins at `touch`
-    /// (`q = 0`); `None` if forces other than Hertz's may change its speed too much for the argument. `q0` is the [`greatest
+    /// (`q = 0`); `None` if forces other than Hertz's may change its speed too much for the proof. `q0` is the [`greatest
     /// depth`](Self::greatest_depth) of an undisturbed collision at its touch-down speed, √m, `amplitude` that of the force, N.
     ///
-    /// Let `G` bound what accelerates the damper into the wall beside Hertz's force. Then `|w| <= ŵ = w0 + 2 G t`, as
+    /// Let `G` bound the acceleration into the wall by all forces but Hertz's. Then `|w| <= ŵ = w0 + 2 G t`, as
     /// `w² + (4/5) κ q⁵ = w0² + 2 ∫ g w dt <= w0² + 2 G t ŵ <= ŵ²`; so `q` stays below the greatest depth at
-    /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and `q |w|` below `max u √(1 - u⁵) = 0.658` times both. What contact and forces
-    /// may add to `v1` follows from the impulse. All of it is proven from a guess of the speeds that then turns out to hold.
+    /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and `q |w|` below `max u √(1 - u⁵) = 0.658` times both. The change of `v1` follows from the
+    /// impulse. The speeds are guessed first, and the proof holds if the bounds confirm the guess.
     pub fn growth_over_contact(
         &self,
-        touch: &Compressed,
+        touch: &RegularisedState,
         q0: f64,
         duration: f64,
         amplitude: f64,
     ) -> Option<Growth<3>> {
         let [w0, x1, v1] = [touch[1], touch[2], touch[3]].map(f64::abs);
-        let (share, drive) = (self.hertz[0] / self.hertz[1], self.primary[0] * amplitude);
+        let (share, excitation) = (self.hertz[0] / self.hertz[1], self.primary[0] * amplitude);
         let outside = |w: f64, v: f64, z: f64| {
-            let resisting = drive + self.primary[1] * v + self.primary[2] * (x1 + duration * v);
+            let resisting = excitation + self.primary[1] * v + self.primary[2] * (x1 + duration * v);
             [0, 1].map(|i| resisting + self.dashpot[i] * w + self.spring[i] * (z + self.stretch.abs()))
         };
         let depth = |w: f64| q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
@@ -119,7 +119,7 @@ impl Compression {
         let [on_primary, apart] = outside(w, v, z);
         let (cube, cube_rate) = (z * q, 1.5 * 0.658 * q * w);
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
-        let turning = self.omega * drive + self.primary[1] * a1 + self.primary[2] * v;
+        let turning = self.omega * excitation + self.primary[1] * a1 + self.primary[2] * v;
         let jerk =
             |i: usize| turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate;
         Some([

@@ -1,7 +1,7 @@
 //! Linear scenes in closed form: the bare structure, and a damper that provably never reaches a wall.
 //!
-//! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Dampers only take energy from the transient, so its
-//! energy norm bounds all that it can still do: whether a wall can ever be reached, and whether the record can still fall.
+//! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Damping only takes energy from the transient, so its
+//! energy norm bounds its later motion: it decides whether a wall can ever be reached, and whether the record can still be broken.
 
 use crate::budget::Budget;
 use crate::error::SolverError;
@@ -33,13 +33,13 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// The scene at rest at t = 0; no step will be longer than `longest` (s).
     pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
         let linear = system.linear();
-        let now = Knot { t: 0.0, drive: system.drive(0.0), y: linear.origin, clock: [1.0, 0.0] };
+        let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: linear.origin, clock: [1.0, 0.0] };
         Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
     }
 
     /// The same at rest at `t` (s) instead.
     pub fn started(mut self, t: f64) -> Self {
-        (self.now.t, self.now.drive) = (t, self.system.drive(t));
+        (self.now.t, self.now.excitation) = (t, self.system.excitation(t));
         self
     }
 
@@ -76,7 +76,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 self.now = steps.knot(steps.count());
                 clock.count(steps.count());
             } else {
-                let motion = self.flow.expand(now.drive, &now.y);
+                let motion = self.flow.expand(now.excitation, &now.y);
                 let mut step = Step::part(&self.flow, now, &motion, remaining, energy);
                 step.end().t = to;
                 observer.segment(&step);
@@ -91,7 +91,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Ok(())
     }
 
-    /// Goes to time `to` (s) without looking: the transient by repeated squaring, the steady motion by its phase. Steps where
+    /// Advances to time `to` (s) unobserved: the transient by repeated squaring, the steady motion by its phase; step by step where
     /// there is no steady motion.
     fn jump(&mut self, to: f64) -> Result<(), SolverError> {
         let whole = ((to - self.now.t) / self.flow.step()).floor();
@@ -102,7 +102,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
             let t = self.now.t + whole * self.flow.step();
             let y = sum(&steady_state(&self.flow, &steady, t), &self.flow.decay(whole as u64, transient));
-            self.now = Knot { t, drive: self.system.drive(t), y, clock: [1.0, 0.0] };
+            self.now = Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] };
         }
         self.propagate(to, &mut Unobserved)
     }
@@ -122,7 +122,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     pub fn e1_max<Q>(
         &mut self,
         window: Window,
-        mut peak: RunningMaximum<Q>,
+        mut maximum: RunningMaximum<Q>,
         steady_e1: f64,
     ) -> Result<Extreme, SolverError>
     where
@@ -130,28 +130,28 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     {
         /// Steps between looks at the bound.
         const STRIDE: f64 = 64.0;
-        // The maximum is near the steady one, more often than not: looked at first, it spares the search most others.
+        // The maximum is often that of the steady motion: with it known first, most of the search can be skipped.
         let (start, last) = (self.now, window.to - std::f64::consts::PI / self.flow.linear().frequency);
         if self.system.steady().is_some() && window.from < last {
             self.jump(last)?;
-            self.propagate(window.to, &mut peak)?;
+            self.propagate(window.to, &mut maximum)?;
             self.now = start;
         }
         self.jump(window.from)?;
         let budget = self.budget(window.to);
-        while self.now.t < window.to && !Observer::<N>::satisfied(&peak) {
+        while self.now.t < window.to && !Observer::<N>::satisfied(&maximum) {
             let to = window.to.min(self.now.t + STRIDE * self.flow.step());
             if to <= self.now.t {
                 // Late in a run a step may be less than the spacing of the numbers there.
                 return Err(self.flow.too_fast(self.now.t));
             }
-            self.go(to, &mut peak, budget)?;
+            self.go(to, &mut maximum, budget)?;
             let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
-            if bound <= peak.record().value {
+            if bound <= maximum.record().value {
                 break;
             }
         }
-        Ok(peak.record())
+        Ok(maximum.record())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::propagator::{Hybrid, Phase, relative_position};
 use crate::error::SolverError;
 use crate::linear::flow::Expansion;
-use crate::linear::gap::{CUBIC, ceiling, cubic, first_contact, floor, opening_floor};
+use crate::linear::gap::{CUBIC, Lost, ceiling, cubic, first_contact, floor, opening_floor};
 use crate::linear::steps::{Step, StepClock, Steps};
 use crate::motion::knot::Knot;
 use crate::motion::lanes::{LANES, shifted};
@@ -89,7 +89,7 @@ impl Hybrid<'_> {
         }
     }
 
-    /// How many of some steps are certified to touch no wall, and which walls the next one may touch.
+    /// The number of steps that are certified to touch no wall, and the walls that the next one may touch.
     #[inline(always)]
     fn open_steps(&self, steps: &Steps<'_, 4>, leaving: Option<Side>) -> (usize, [bool; 2]) {
         let (from, to, whole) = (steps.from(), steps.ends(), self.flow.step());
@@ -112,8 +112,8 @@ impl Hybrid<'_> {
         (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
     }
 
-    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: as far as it
-    /// goes. `energy` bounds the energy norm of the motion, √J.
+    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: up to that point. `energy` bounds
+    /// the energy norm of the motion, √J.
     fn careful_step(
         &self,
         [now, end]: [Knot<4>; 2],
@@ -122,11 +122,11 @@ impl Hybrid<'_> {
         (remaining, energy): (f64, f64),
     ) -> Result<(Step<'_, 4>, Option<Side>), SolverError> {
         let whole = self.flow.step();
-        let motion = self.flow.expand(now.drive, &now.y);
+        let motion = self.flow.expand(now.excitation, &now.y);
         let (mut length, mut touched) = (whole.min(remaining), None);
         for side in walls {
             let found = first_contact(self.gap_polynomial(&motion, side, leaving), length);
-            if let Some(s) = found.map_err(|_| SolverError::NonFinite { t: now.t })? {
+            if let Some(s) = found.map_err(|Lost| SolverError::NonFinite { t: now.t })? {
                 (length, touched) = (s, Some(side));
             }
         }

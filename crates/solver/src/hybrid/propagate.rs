@@ -26,11 +26,11 @@ impl Hybrid<'_> {
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
         loop {
-            if let Phase::Pressed(side) = phase {
+            if let Phase::InContact(side) = phase {
                 let equations = self.contacts[side as usize];
-                let pressed = equations.compress(&now.y);
+                let pressed = equations.regularise(&now.y);
                 match self.contact(equations, &now, pressed, to, observer)? {
-                    End::Pressed(end) => return stopped(end, phase),
+                    End::InContact(end) => return stopped(end, phase),
                     End::LiftOff(end) => now = self.knot(end.t, end.y),
                 }
                 phase = Phase::Leaving(side);
@@ -38,7 +38,7 @@ impl Hybrid<'_> {
             match self.flight(now, phase, to, observer)? {
                 FlightEnd::Stopped(end) => return stopped(end, Phase::Flight),
                 FlightEnd::TouchDown(side, touch) => {
-                    // A damper that rests on a wall from the start has not struck it.
+                    // A damper that rests on a wall from the start makes no touch-down.
                     let closing = side.sign() * (touch.y[3] - touch.y[1]);
                     if touch.t > from.t || closing > 0.0 {
                         observer.touch_down(touch.t, side);
@@ -56,12 +56,12 @@ impl Hybrid<'_> {
                         continue;
                     }
                     let equations = self.contacts[side as usize];
-                    let (begin, pressed) = self.press_in(equations, touch, to, observer)?;
+                    let (begin, pressed) = self.enter_contact(equations, touch, to, observer)?;
                     if begin.t >= to {
-                        return stopped(begin, Phase::Pressed(side));
+                        return stopped(begin, Phase::InContact(side));
                     }
                     match self.contact(equations, &begin, pressed, to, observer)? {
-                        End::Pressed(end) => return stopped(end, Phase::Pressed(side)),
+                        End::InContact(end) => return stopped(end, Phase::InContact(side)),
                         End::LiftOff(end) => now = self.knot(end.t, end.y),
                     }
                     phase = Phase::Leaving(side);

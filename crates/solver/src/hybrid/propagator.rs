@@ -1,4 +1,4 @@
-//! The state of the hybrid propagator: prepared once a system, then continued from motion to motion.
+//! The data of the hybrid propagator: prepared once for a system, then used for any stretch of its motion.
 
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
@@ -8,25 +8,25 @@ use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::response::Work;
 use crate::system::LinearSystem;
-use retune_model::{Compression, Coupled, Side};
+use retune_model::{Coupled, RegularisedContact, Side};
 
-/// What the damper is doing.
+/// The phase of the damper's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Between the walls.
     Flight,
     /// Between the walls, having just left one, where the gap is zero by definition rather than by arithmetic.
     Leaving(Side),
-    /// Pressed into a wall.
-    Pressed(Side),
+    /// In contact with a wall.
+    InContact(Side),
 }
 
 impl Phase {
-    /// What the damper does in a state that was not reached by moving there: pressed into a wall where it overlaps one.
+    /// The phase of a state that was set rather than reached: in contact where the damper overlaps a wall.
     pub fn of(system: &Coupled, y: &[f64; 4]) -> Self {
-        let overlaps = system.rapprochement(y);
+        let overlaps = system.indentation(y);
         let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
-        pressed.map_or(Self::Flight, Self::Pressed)
+        pressed.map_or(Self::Flight, Self::InContact)
     }
 }
 
@@ -37,7 +37,7 @@ pub struct Motion {
     pub t: f64,
     /// `[x1, v1, x2, v2]`.
     pub y: [f64; 4],
-    /// What the damper is doing.
+    /// The phase of the damper's motion.
     pub phase: Phase,
 }
 
@@ -45,7 +45,7 @@ pub struct Motion {
 pub struct Hybrid<'a> {
     pub(super) system: &'a Coupled,
     pub(super) flow: Flow<4>,
-    pub(super) contacts: [Compression; 2],
+    pub(super) contacts: [RegularisedContact; 2],
     pub(super) collisions: [Collisions; 2],
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
     pub(super) fourth: [f64; 2],
@@ -70,7 +70,7 @@ impl<'a> Hybrid<'a> {
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
             budget: Budget::new(flow.pace(), max_steps, 0, [0.0; 2]),
             flow,
-            contacts: Side::BOTH.map(|side| system.compression(side)),
+            contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
             rtol,
             max_steps,
@@ -80,7 +80,7 @@ impl<'a> Hybrid<'a> {
 
     /// The moment of flight with this state.
     pub(super) fn knot(&self, t: f64, y: [f64; 4]) -> Knot<4> {
-        Knot { t, drive: self.system.drive(t), y, clock: [1.0, 0.0] }
+        Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] }
     }
 }
 

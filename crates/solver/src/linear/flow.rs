@@ -1,9 +1,9 @@
 //! The exact flow of a forced linear system: Taylor series over one step of a fixed length.
 //!
 //! The step is little longer than the inverse of the flow's fastest rate, so the series of the matrix exponential needs no
-//! scaling, loses next to nothing to cancellation and has converged to rounding after 20 terms (`1.25²⁰/20! = 4e-17`).
-//! Eigenvectors are not used: near critical damping they are nearly parallel. The force is two more components that turn with
-//! `ωt`, so resonance is no special case. Four steps are made at once, with the powers of the same matrix, and every operation
+//! scaling, loses almost nothing to cancellation and has converged to rounding after 20 terms (`1.25²⁰/20! = 4e-17`).
+//! Eigenvectors are not used: near critical damping they are nearly parallel. The force is two more components that rotate by
+//! `ωt`, so resonance is no special case. Four steps are computed at once, with the powers of the same matrix, and every operation
 //! is one vector instruction.
 
 use crate::budget::Pace;
@@ -11,7 +11,7 @@ use crate::error::SolverError;
 use crate::motion::lanes::{LANES, each};
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::system::Linear;
-use retune_model::Drive;
+use retune_model::Excitation;
 use wide::f64x4;
 
 /// Length of a step times the rate of the flow. Longer steps are fewer, but bounds over them are looser.
@@ -20,7 +20,7 @@ const STEP: f64 = 1.25;
 /// The moments after 1, 2, … [`LANES`] whole steps, component by component.
 pub struct Stride<const N: usize> {
     /// `[P cos ωt, P sin ωt]`, N.
-    pub drive: [f64x4; 2],
+    pub excitation: [f64x4; 2],
     /// States.
     pub y: [f64x4; N],
 }
@@ -29,13 +29,13 @@ pub struct Stride<const N: usize> {
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
     step: f64,
-    /// Columns of `Φ`, and of its powers: `phi[j][i]` has what component `j` makes of component `i` after each of the steps.
+    /// Columns of `Φ` and of its powers: `phi[j][i]` is the effect of component `j` on component `i` after each of the steps.
     phi: [[f64x4; N]; N],
     /// The same for the two components of the force.
     psi: [[f64x4; N]; 2],
     /// Cosine and sine of the angles by which the force has turned.
     turn: [f64x4; 2],
-    /// Series of the cosine and the sine by which the force turns.
+    /// Series of the cosine and the sine of the angle by which the force turns.
     rotation: [Polynomial<BLOCKS>; 2],
     /// The series of which `Φ` and `Ψ` are the values at the end of the step.
     free: [Expansion<N>; N],
@@ -52,7 +52,7 @@ impl<const N: usize> Flow<N> {
         let step = longest.min(STEP / linear.rate);
         let unit = |i: usize| -> [f64; N] { std::array::from_fn(|j| f64::from(i == j)) };
         let free = std::array::from_fn(|j| series(&linear, [0.0; 2], unit(j)));
-        let forced = [[1.0, 0.0], [0.0, 1.0]].map(|drive| series(&linear, drive, [0.0; N]));
+        let forced = [[1.0, 0.0], [0.0, 1.0]].map(|excitation| series(&linear, excitation, [0.0; N]));
         let mut coefficients = [[0.0; 2]; 4 * BLOCKS];
         coefficients[0] = [1.0, 0.0];
         for k in 1..coefficients.len() {
@@ -76,14 +76,14 @@ impl<const N: usize> Flow<N> {
         let mut columns: [([f64; 2], [f64; N]); N] = std::array::from_fn(|j| ([0.0; 2], unit(j)));
         let mut forces = [([1.0, 0.0], [0.0; N]), ([0.0, 1.0], [0.0; N])];
         for lane in 0..LANES {
-            for (drive, y) in columns.iter_mut().chain(&mut forces) {
+            for (excitation, y) in columns.iter_mut().chain(&mut forces) {
                 let mut next = [0.0; N];
-                for (column, weight) in psi.iter().zip(&*drive).chain(phi.iter().zip(&*y)) {
+                for (column, weight) in psi.iter().zip(&*excitation).chain(phi.iter().zip(&*y)) {
                     for i in 0..N {
                         next[i] += column[i] * weight;
                     }
                 }
-                (*drive, *y) = (turned(*drive, turn), next);
+                (*excitation, *y) = (turned(*excitation, turn), next);
             }
             for i in 0..N {
                 for j in 0..N {
@@ -113,12 +113,12 @@ impl<const N: usize> Flow<N> {
         if to <= t || to + self.step > to { Ok(()) } else { Err(self.too_fast(to)) }
     }
 
-    /// A step is lost to rounding at `t` (s).
+    /// The error of a step that is lost to rounding at `t` (s).
     pub fn too_fast(&self, t: f64) -> SolverError {
         SolverError::TooFast { t, h: self.step, remedy: self.pace().remedy(t, self.step) }
     }
 
-    /// How fast it goes on.
+    /// How the flow chooses its steps.
     pub fn pace(&self) -> Pace {
         Pace::Flight { step: self.step, fastest: self.linear.fastest }
     }
@@ -146,9 +146,9 @@ impl<const N: usize> Flow<N> {
 
     /// The moments after the next whole steps.
     #[inline(always)]
-    pub fn stride(&self, drive: Drive, y: &[f64; N]) -> Stride<N> {
+    pub fn stride(&self, excitation: Excitation, y: &[f64; N]) -> Stride<N> {
         let mut next = self.linear.origin.map(f64x4::splat);
-        for (column, force) in self.psi.iter().zip(drive) {
+        for (column, force) in self.psi.iter().zip(excitation) {
             for i in 0..N {
                 next[i] += column[i] * force;
             }
@@ -159,24 +159,24 @@ impl<const N: usize> Flow<N> {
                 next[i] += column[i] * deviation;
             }
         }
-        let ([c, s], [cos, sin]) = (drive, self.turn);
-        Stride { drive: [cos * c - sin * s, cos * s + sin * c], y: next }
+        let ([c, s], [cos, sin]) = (excitation, self.turn);
+        Stride { excitation: [cos * c - sin * s, cos * s + sin * c], y: next }
     }
 
     /// The force `s` seconds later, `0 <= s <= step`.
     #[inline(always)]
-    pub fn drive_after(&self, drive: Drive, s: f64) -> Drive {
-        turned(drive, self.rotation.each_ref().map(|part| part.at(s)))
+    pub fn excitation_after(&self, excitation: Excitation, s: f64) -> Excitation {
+        turned(excitation, self.rotation.each_ref().map(|part| part.at(s)))
     }
 
     /// The motion from `y` over the next step.
     #[inline(always)]
-    pub fn expand<const B: usize>(&self, drive: Drive, y: &[f64; N]) -> Expansion<N, B> {
+    pub fn expand<const B: usize>(&self, excitation: Excitation, y: &[f64; N]) -> Expansion<N, B> {
         let deviation: [f64; N] = each(|j| y[j] - self.linear.origin[j]);
         Expansion(std::array::from_fn(|i| {
             let mut sum = [f64x4::ZERO; B];
             for b in 0..B {
-                for (series, force) in self.forced.iter().zip(drive) {
+                for (series, force) in self.forced.iter().zip(excitation) {
                     sum[b] += series.0[i].0[b] * force;
                 }
                 for (series, deviation) in self.free.iter().zip(deviation) {
@@ -189,14 +189,18 @@ impl<const N: usize> Flow<N> {
 }
 
 /// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`.
-fn series<const N: usize>(linear: &Linear<N>, mut drive: Drive, deviation: [f64; N]) -> Expansion<N> {
+fn series<const N: usize>(
+    linear: &Linear<N>,
+    mut excitation: Excitation,
+    deviation: [f64; N],
+) -> Expansion<N> {
     let Linear { columns, input, frequency, .. } = linear;
     let mut coefficients = [deviation; 4 * BLOCKS];
     for k in 1..coefficients.len() {
         let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
         let mut next = [0.0; N];
         for i in 0..N {
-            next[i] = input[i] * drive[0];
+            next[i] = input[i] * excitation[0];
         }
         for (column, c) in columns.iter().zip(previous) {
             for i in 0..N {
@@ -204,7 +208,7 @@ fn series<const N: usize>(linear: &Linear<N>, mut drive: Drive, deviation: [f64;
             }
         }
         coefficients[k] = next.map(|c| c * scale);
-        drive = [-frequency * scale * drive[1], frequency * scale * drive[0]];
+        excitation = [-frequency * scale * excitation[1], frequency * scale * excitation[0]];
     }
     Expansion(std::array::from_fn(|i| Polynomial::new(&coefficients.map(|c| c[i]))))
 }
@@ -219,6 +223,6 @@ impl<const N: usize, const B: usize> Expansion<N, B> {
 
 /// `[f cos, f sin]` of a phase, turned by the angle whose cosine and sine are given.
 #[inline(always)]
-fn turned([c, s]: Drive, [cos, sin]: [f64; 2]) -> Drive {
+fn turned([c, s]: Excitation, [cos, sin]: [f64; 2]) -> Excitation {
     [c * cos - s * sin, s * cos + c * sin]
 }

@@ -37,7 +37,7 @@ pub fn opening_floor([_, b1, b2, b3]: [f64x4; 4]) -> f64x4 {
 /// Most halvings of a step in the search for a contact. Some tens are common, and a thousand are many.
 const HALVINGS: u32 = 100_000;
 
-/// Rounding or an overflow leaves nothing to find a contact by.
+/// The search for a contact has lost all digits to rounding or overflow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lost;
 
@@ -46,7 +46,7 @@ pub struct Lost;
 /// `Some(0.0)` means that the gap is closed at the start and closing. A gap of zero that opens is in flight.
 ///
 /// # Errors
-/// [`Lost`]: the coefficients are beyond floating-point numbers, or so near zero all the way that no bound can tell.
+/// [`Lost`]: the coefficients are not finite, or the gap is so close to zero throughout that no bound decides.
 pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Result<Option<f64>, Lost> {
     // At s = 0 the damper may just have left the wall (or rest on it): the root there is divided out.
     for _ in 0..4 * B {
@@ -80,8 +80,8 @@ struct Search<F> {
 }
 
 impl<F: Fn(f64) -> [f64; 2]> Search<F> {
-    /// Left half first, so that what is found is the first; an interval ends the search when it is certified open, when it holds
-    /// one simple crossing, or when it is too short to matter.
+    /// Left half first, so that the first crossing is found first. An interval ends the search when it is certified open, when it
+    /// holds one simple crossing, or when it is too short to matter.
     fn search(
         &mut self,
         (a, left): (f64, [f64; 2]),
@@ -100,7 +100,7 @@ impl<F: Fn(f64) -> [f64; 2]> Search<F> {
         }
         let mid = 0.5 * (a + b);
         if h < self.shortest || mid <= a || mid >= b {
-            return Ok((right[0] < 0.0).then_some(b)); // else it touches to rounding, with no force
+            return Ok((right[0] < 0.0).then_some(b)); // otherwise it touches to rounding, without force
         }
         self.halvings = self.halvings.checked_sub(1).ok_or(Lost)?;
         let centre = (self.at)(mid);
@@ -131,7 +131,7 @@ fn root(
         let inside = (a..=b).contains(&newton);
         let next = if inside { newton } else { 0.5 * (a + b) };
         let step = (next - s).abs();
-        // Each step is the square of the one before times a constant: so will the next be, which is left undone if too small.
+        // Convergence is quadratic: the next step is left out if its predicted size is below rounding.
         if inside && step.powi(3) <= f64::EPSILON * s * before * before || next == s {
             return next;
         }
@@ -197,13 +197,13 @@ mod tests {
         assert!((back / 1e-12 - 1.0).abs() < 1e-12, "{back}");
     }
 
-    /// Was searched for ever: a bound that is no number tells nothing of any half, however short.
+    /// Once searched without end: a bound that is NaN decides nothing about any half, however short.
     #[test]
     fn exact_a_gap_beyond_numbers_or_a_search_without_end_is_said_to_be_lost() {
         for beyond in [f64::INFINITY, f64::NAN, 1e308] {
             assert_eq!(first_contact(Polynomial::<2>::new(&[1.0, -1.0, 0.0, 0.0, beyond]), 1.0), Err(Lost));
         }
-        // 0 all the way, with a bound that does not know it.
+        // Zero throughout, with a bound that allows for more.
         let mut search = Search { at: |_| [0.0, 0.0], fourth: 1.0, shortest: 1e-15, halvings: HALVINGS };
         assert_eq!(search.search((0.0, [0.0; 2]), (1.0, [0.0; 2])), Err(Lost));
     }

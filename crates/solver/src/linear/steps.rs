@@ -1,4 +1,4 @@
-//! Whole steps of an exact flow, a few of them side by side, as they are handed to observers.
+//! Steps of the exact flow, several of them side by side, as they are handed to observers.
 
 use super::flow::{Expansion, Flow, Stride};
 use crate::motion::form::{Form, QUINTIC};
@@ -31,10 +31,10 @@ impl<'a, const N: usize> Step<'a, N> {
     /// The motion over the step.
     fn expansion(&self) -> &Expansion<N> {
         let from = &self.ends[0];
-        self.expansion.get_or_init(|| self.flow.expand(from.drive, &from.y))
+        self.expansion.get_or_init(|| self.flow.expand(from.excitation, &from.y))
     }
 
-    /// Its last moment, to be put right where more is known of it than arithmetic tells.
+    /// Its last moment, to be corrected where it is known better than by arithmetic (at a wall, at the end of the run).
     pub fn end(&mut self) -> &mut Knot<N> {
         &mut self.ends[1]
     }
@@ -56,7 +56,7 @@ impl<const N: usize> Segment<N> for Step<'_, N> {
     fn in_flight(&self) -> bool {
         true
     }
-    /// By the energy of the motion; sharply, by its Taylor polynomial over the step.
+    /// From the energy of the motion; the sharp bound is from its Taylor polynomial over the step.
     fn quintic_error(&self, form: &Form<N>, _ends: [&Knot<N>; 2], h: f64, sharp: bool) -> Option<f64> {
         Some(if sharp {
             form.quintic_error(&self.expansion().0, self.length) * (h / self.length).powi(6)
@@ -68,7 +68,12 @@ impl<const N: usize> Segment<N> for Step<'_, N> {
 
 /// The moment `s` seconds after `from`.
 fn moment<const N: usize>(flow: &Flow<N>, from: &Knot<N>, motion: &Expansion<N>, s: f64) -> Knot<N> {
-    Knot { t: from.t + s, drive: flow.drive_after(from.drive, s), y: motion.at(s), clock: [1.0, 0.0] }
+    Knot {
+        t: from.t + s,
+        excitation: flow.excitation_after(from.excitation, s),
+        y: motion.at(s),
+        clock: [1.0, 0.0],
+    }
 }
 
 /// Up to [`LANES`] whole steps.
@@ -108,11 +113,11 @@ impl StepClock {
 }
 
 impl<'a, const N: usize> Steps<'a, N> {
-    /// As many steps as there are lanes, from a moment on, at which `clock` stands; `energy` bounds the energy norm (√J) of the
-    /// motion in all of them.
+    /// The next [`LANES`] steps from the moment `from`, the time of `clock`; `energy` bounds the energy norm (√J) of the motion in
+    /// all of them.
     #[inline(always)]
     pub fn new(flow: &'a Flow<N>, from: Knot<N>, clock: StepClock, energy: f64) -> Self {
-        Self { flow, clock, from, stride: flow.stride(from.drive, &from.y), count: LANES, energy }
+        Self { flow, clock, from, stride: flow.stride(from.excitation, &from.y), count: LANES, energy }
     }
 
     /// Keeps the first `count` of them.
@@ -157,7 +162,7 @@ impl<'a, const N: usize> Steps<'a, N> {
             None => self.from,
             Some(lane) => Knot {
                 t: self.time(steps),
-                drive: self.stride.drive.map(|component| component.to_array()[lane]),
+                excitation: self.stride.excitation.map(|component| component.to_array()[lane]),
                 y: self.stride.y.map(|component| component.to_array()[lane]),
                 clock: [1.0, 0.0],
             },

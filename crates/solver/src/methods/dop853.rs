@@ -17,7 +17,7 @@ pub struct Step<const L: usize> {
     pub error3: [f64; L],
 }
 
-/// Evaluations that one step makes beside the one at its start, which the caller hands over.
+/// Evaluations in one step, without the one at its start, which the caller supplies.
 pub const EVALUATIONS: u64 = 11;
 
 /// Order of the method.
@@ -53,7 +53,7 @@ pub fn step<const L: usize>(
     stages(|_, y| f(y), y, k1, h).0
 }
 
-/// One step of `y' = f(c, y)`, where `c` is the share of the step that has passed, with the stages `k6 … k12`.
+/// One step of `y' = f(c, y)`, where `c` is the elapsed share of the step, with the stages `k6 … k12`.
 #[inline(always)]
 #[rustfmt::skip]
 fn stages<const L: usize>(
@@ -93,7 +93,7 @@ fn stages<const L: usize>(
 impl<const L: usize> Step<L> {
     /// DOP853's blend of its two estimates: `|h| e5² / √(n (e5² + 0.01 e3²))`, with `e` the scaled Euclidean norms.
     ///
-    /// `controlled` lists the components that count, each with the reciprocal of its tolerance; the step is good where the
+    /// `controlled` lists the components that count, each with the reciprocal of its tolerance; the step is accepted if the
     /// result is at most 1. NaN where the step is not finite.
     #[inline(always)]
     pub fn error<const M: usize>(&self, h: f64, controlled: [(usize, f64); M]) -> f64 {

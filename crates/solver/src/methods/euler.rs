@@ -1,5 +1,5 @@
-//! Semi-implicit (symplectic) Euler at a fixed step: the velocities first, then the positions with the new velocities. What
-//! game physics engines use.
+//! Semi-implicit (symplectic) Euler at a fixed step: the velocities first, then the positions with the new velocities, as game
+//! physics engines do.
 //!
 //! Hairer, Lubich & Wanner, Geometric Numerical Integration, 2nd ed. 2006, I.1.2 and VI.3. Order 1, one evaluation, no error
 //! estimate. States alternate position and velocity, `[x1, v1, x2, v2]`. Between steps the motion is a straight line.

@@ -2,7 +2,7 @@
 
 use super::step::{Attempt, OneStep};
 use crate::error::SolverError;
-use crate::linear::gap::first_contact;
+use crate::linear::gap::{Lost, first_contact};
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::Polynomial;
 use crate::response::Work;
@@ -29,20 +29,20 @@ pub struct Start<'a, S, const N: usize> {
 impl<S: System<N>, const N: usize> Start<'_, S, N> {
     /// Shortens a step to the first touch-down or lift-off in it, if there is one.
     ///
-    /// The dense output says which wall and about when (double crossings inside the step included); the step itself, taken
-    /// again, says exactly: a secant iteration on its length.
+    /// The dense output gives the wall and an approximate time (double crossings inside the step included); a secant iteration on
+    /// the length of the step, taken again each time, gives the exact one.
     pub fn located<M: OneStep<N>>(&self, h: f64, attempt: Attempt<N>, work: &mut Work) -> Located<N> {
         let mut first: Option<(f64, Side)> = None;
         for side in Side::BOTH {
             if self.contact.is_none_or(|touching| touching == side) {
                 let found = first_contact(self.open_polynomial(side, h, &attempt), 1.0);
-                let found = found.map_err(|_| SolverError::NonFinite { t: self.now.t })?;
+                let found = found.map_err(|Lost| SolverError::NonFinite { t: self.now.t })?;
                 first = found.into_iter().map(|s| (s, side)).chain(first).min_by(|a, b| a.0.total_cmp(&b.0));
             }
         }
         let Some((s, side)) = first else { return Ok((h, attempt, None)) };
         let (system, sign) = (self.system, self.open_sign(side));
-        let opening = |y: &[f64; N]| sign * system.rapprochement(y)[side as usize];
+        let opening = |y: &[f64; N]| sign * system.indentation(y)[side as usize];
         let Knot { t, y, .. } = *self.now;
         // Both brackets of the secant: the first guess, and its neighbour.
         let shortest = 16.0 * f64::EPSILON * t.max(h);
@@ -69,20 +69,20 @@ impl<S: System<N>, const N: usize> Start<'_, S, N> {
             }
             length = next;
         }
-        // None where the equations of an implicit step have no solution: only numbers that are no longer finite do that.
+        // None where the equations of an implicit step have no solution, which takes numbers that are not finite.
         let (length, shorter) = best.ok_or(SolverError::NonFinite { t })?;
         Ok((length, shorter, Some(side)))
     }
 
-    /// `+1` where a contact ends when the rapprochement falls through zero, `-1` where one begins when it rises.
+    /// `+1` where a contact ends when the indentation falls through zero, `-1` where one begins when it rises.
     fn open_sign(&self, side: Side) -> f64 {
         if self.contact == Some(side) { 1.0 } else { -1.0 }
     }
 
-    /// What keeps the present phase going, as a polynomial over the step: the gap in flight, the rapprochement in contact.
+    /// The quantity whose zero ends the present phase, as a polynomial over the step: the gap in flight, the indentation in contact.
     fn open_polynomial(&self, side: Side, h: f64, attempt: &Attempt<N>) -> Polynomial<2> {
         let (i, sign) = (side as usize, self.open_sign(side));
-        let z = |y: &[f64; N]| sign * self.system.rapprochement(y)[i];
+        let z = |y: &[f64; N]| sign * self.system.indentation(y)[i];
         let origin = z(&[0.0; N]);
         let mut p = [0.0; 8];
         p[0] = z(&self.now.y).max(0.0);
@@ -90,7 +90,7 @@ impl<S: System<N>, const N: usize> Start<'_, S, N> {
             p[0] = 0.0;
         }
         for (c, dense) in p[1..].iter_mut().zip(&attempt.dense) {
-            *c = h * (z(dense) - origin); // the rapprochement is affine in the state
+            *c = h * (z(dense) - origin); // the indentation is affine in the state
         }
         Polynomial::new(&p)
     }

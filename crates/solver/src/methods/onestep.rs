@@ -23,7 +23,7 @@ pub struct Run<'a, S, const N: usize> {
     h: Option<f64>,
     contact: Option<Side>,
     leaving: bool,
-    /// The walls that the damper has lain against since the start: it has not struck them.
+    /// The walls on which the damper has rested since the start: these contacts are no touch-downs.
     resting: [bool; 2],
     budget: Budget,
     /// Work done so far.
@@ -33,8 +33,8 @@ pub struct Run<'a, S, const N: usize> {
 impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
     /// A run from `y` at time `t` (s); no step will be longer than `longest` (s).
     pub fn new(system: &'a S, settings: &Settings, t: f64, y: [f64; N], longest: f64) -> Self {
-        let now = Knot { t, drive: system.drive(t), y, clock: [1.0, 0.0] };
-        let z = system.rapprochement(&y);
+        let now = Knot { t, excitation: system.excitation(t), y, clock: [1.0, 0.0] };
+        let z = system.indentation(&y);
         Self {
             system,
             settings: *settings,
@@ -78,8 +78,12 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
                 Contacts::Stepped => (h, attempt, None),
             };
             let end_time = if event.is_none() && h >= to - t { to } else { t + h };
-            let end =
-                Knot { t: end_time, drive: self.system.drive(end_time), y: attempt.y, clock: [1.0, 0.0] };
+            let end = Knot {
+                t: end_time,
+                excitation: self.system.excitation(end_time),
+                y: attempt.y,
+                clock: [1.0, 0.0],
+            };
             observer.segment(&Piece { system: self.system, ends: [self.now, end], h, dense: attempt.dense });
             (self.now, self.slope) = (end, attempt.slope);
             self.follow_contact(event, observer);
@@ -87,10 +91,10 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         Ok(())
     }
 
-    /// Keeps account of touch-downs: at an event, or by what can be seen at the ends of steps.
+    /// Keeps track of touch-downs: at events, or from the states at the ends of steps.
     fn follow_contact(&mut self, event: Option<Side>, observer: &mut impl Observer<N>) {
         let before = self.contact;
-        let z = self.system.rapprochement(&self.now.y);
+        let z = self.system.indentation(&self.now.y);
         self.leaving = event.is_some();
         if self.settings.contacts == Contacts::Located {
             if let Some(side) = event {
@@ -140,7 +144,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             }
             self.work.rejected += 1;
             if self.settings.method.has_fixed_step() {
-                return Err(SolverError::Unstable { t }); // all that such a method can notice
+                return Err(SolverError::Unstable { t }); // the only fault that a method without error estimate notices
             }
             if h <= shortest {
                 let finite = y.iter().all(|v| v.is_finite());

@@ -27,7 +27,7 @@ impl<S: System<N>, const N: usize> Segment<N> for Piece<'_, S, N> {
             from.y[i] + theta * self.dense.iter().rev().fold(0.0, |sum, p| sum * s + p[i])
         });
         let t = from.t + theta;
-        Knot { t, drive: self.system.drive(t), y, clock: [1.0, 0.0] }
+        Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] }
     }
     fn at_time(&self, t: f64) -> Knot<N> {
         Knot { t, ..self.at(t - self.ends[0].t) }

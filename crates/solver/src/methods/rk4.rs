@@ -1,6 +1,6 @@
 //! The classical Runge–Kutta method (W. Kutta, Z. Math. Phys. 46, 1901) at a fixed step, with cubic Hermite output.
 //!
-//! Order 4, four stages, no error estimate: nothing tells that a step was too long.
+//! Order 4, four stages, no error estimate: a step that is too long goes unnoticed.
 
 use super::step::{Attempt, OneStep, Tolerance, hermite, unknown_error};
 use crate::system::System;

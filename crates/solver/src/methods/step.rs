@@ -2,7 +2,7 @@
 
 use crate::system::System;
 
-/// What a method makes of one step.
+/// The result of one step of a method.
 pub struct Attempt<const N: usize> {
     /// The solution at the end of the step.
     pub y: [f64; N],

@@ -1,4 +1,4 @@
-//! What a run is watched for, and bounds on how fast it can change: of these the search for a largest value is made (`peak`).
+//! Quantities as polynomials in the state, and bounds on their derivatives: the search for a largest value rests on them.
 
 use super::polynomial::{BLOCKS, Polynomial};
 use crate::system::LinearSystem;
@@ -20,7 +20,7 @@ pub struct Form<const N: usize> {
 
 /// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
 ///
-/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of what the force can add.
+/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of the terms of the force.
 pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
     system: &S,
     row: [f64; N],
@@ -38,7 +38,7 @@ pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
 
 /// P, N.
 fn amplitude<S: LinearSystem<N>, const N: usize>(system: &S) -> f64 {
-    let [cos, sin] = system.drive(0.0);
+    let [cos, sin] = system.excitation(0.0);
     cos.hypot(sin)
 }
 
@@ -48,7 +48,7 @@ const TERMS: usize = 4 * BLOCKS;
 /// Binomial coefficients `5! / k! (5 - k)!`.
 const FIFTH: [f64; 6] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
 
-/// A product of bounds; what has no weight adds nothing, however large it may be.
+/// A product of bounds: zero if one factor is zero, even if the other is infinite.
 fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
@@ -100,7 +100,7 @@ impl<const N: usize> Form<N> {
         if bound.is_nan() { f64::INFINITY } else { bound }
     }
 
-    /// How large the terms are whose sum it is: it is rounded at their size.
+    /// The sum of the sizes of its terms, which sets its rounding error.
     pub fn size(&self, y: &[f64; N]) -> f64 {
         let size = |row: &[f64; N]| {
             row.iter()
@@ -113,8 +113,8 @@ impl<const N: usize> Form<N> {
         size(&self.linear) + squares.sum::<f64>()
     }
 
-    /// Over `length` seconds on which the components of the state are these polynomials in time: how far the quantity leaves the
-    /// quintic that meets it, its slope and its curvature at both ends, at most (see `peak`).
+    /// A bound on how far the quantity leaves the quintic that meets it, its slope and its curvature at both ends, over `length`
+    /// seconds on which the components of the state are these polynomials in time.
     ///
     /// The quantity is itself a polynomial there, `Σ_j q_j τʲ` with `τ = t / length`; its sixth derivative is at most
     /// `Σ_j |q_j| j! / (j - 6)!`, and `j! / (j - 6)! 46080` is the binomial coefficient `j` over 6, over 64.

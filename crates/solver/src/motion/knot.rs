@@ -1,6 +1,6 @@
 //! A moment of the motion.
 
-use retune_model::Drive;
+use retune_model::Excitation;
 
 /// A moment of the motion.
 #[derive(Clone, Copy, Debug)]
@@ -8,9 +8,9 @@ pub struct Knot<const N: usize> {
     /// Time, s.
     pub t: f64,
     /// `[P cos ωt, P sin ωt]`, N.
-    pub drive: Drive,
+    pub excitation: Excitation,
     /// State.
     pub y: [f64; N],
-    /// `[dt/dθ, d²t/dθ²]`: how time runs in the coordinate in which the piece is smooth. `[1, 0]` where that is time itself.
+    /// `[dt/dθ, d²t/dθ²]`, the rate of time in the coordinate in which the segment is smooth; `[1, 0]` where that is time itself.
     pub clock: [f64; 2],
 }

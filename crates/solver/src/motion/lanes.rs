@@ -5,7 +5,7 @@ use wide::f64x4;
 /// Flight steps that are computed side by side.
 pub const LANES: usize = 4;
 
-/// The lanes moved on by one, `first` before them.
+/// The lanes shifted by one, with `first` in front.
 #[inline(always)]
 pub fn shifted(first: f64, lanes: f64x4) -> f64x4 {
     let [a, b, c, _] = lanes.to_array();

@@ -1,8 +1,8 @@
 //! The pieces that every motion is made of.
 //!
-//! A method hands its motion over as smooth segments between two moments, and whoever looks at them needs bounds on how fast a
-//! quantity can change there. Nothing in this room knows a method or an observer. Read `knot`, then `segment`, then `form`;
-//! `polynomial` and `lanes` hold the arithmetic.
+//! A method hands its motion over as smooth segments between two moments, and observers need bounds on how fast a quantity can change
+//! on them. No file here knows a method or an observer. Read `knot`, then `segment`, then `form`; `polynomial` and `lanes` hold the
+//! arithmetic.
 
 pub mod form;
 pub mod knot;

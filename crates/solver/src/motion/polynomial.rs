@@ -12,6 +12,7 @@ pub struct Polynomial<const B: usize>(pub [f64x4; B]);
 impl<const B: usize> Polynomial<B> {
     /// The polynomial with these coefficients, that of 1 first; no more than `4 B`.
     pub fn new(coefficients: &[f64]) -> Self {
+        debug_assert!(coefficients.len() <= 4 * B, "a coefficient would be lost");
         let coefficient = |k: usize| coefficients.get(k).copied().unwrap_or(0.0);
         Self(std::array::from_fn(|b| f64x4::new(std::array::from_fn(|lane| coefficient(4 * b + lane)))))
     }
@@ -53,7 +54,7 @@ impl<const B: usize> Polynomial<B> {
         self.shifted(|_| f64x4::ONE)
     }
 
-    /// Every coefficient takes the place of the one before it, times what `factors` has for the block of that place.
+    /// Every coefficient moves to the place of the one before it, multiplied by the factors of the block of that place.
     #[inline(always)]
     fn shifted(&self, factors: impl Fn(usize) -> f64x4) -> Self {
         Self(std::array::from_fn(|b| {

@@ -58,7 +58,7 @@ pub trait Observer<const N: usize> {
     }
 }
 
-/// Sees nothing: for the transient before a window.
+/// The observer that sees nothing: for the transient before a window.
 pub struct Unobserved;
 
 impl<const N: usize> Observer<N> for Unobserved {

@@ -3,39 +3,39 @@
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
-use retune_model::{Bare, Coupled, Drive};
+use retune_model::{Bare, Coupled, Excitation};
 use wide::f64x4;
 
 /// A quantity that depends on the force and the state.
 pub trait Quantity<const N: usize> {
     /// Its value with its first two time derivatives. The value itself must depend on the state alone: between the ends of a
-    /// [`Path`](crate::observe::Path) it is asked for without the force.
-    fn rates(&self, drive: Drive, y: &[f64; N]) -> [f64; 3];
-    /// The same at moments of flight side by side, where no wall pushes even if rounding has left the damper inside one.
+    /// [`Path`](crate::observe::Path) it is evaluated without the force.
+    fn rates(&self, excitation: Excitation, y: &[f64; N]) -> [f64; 3];
+    /// The same at moments of flight side by side, without contact forces even if rounding has left the damper inside a wall.
     #[inline(always)]
-    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 3] {
+    fn rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 3] {
         let mut rates = [f64x4::ZERO; 3];
         for lane in 0..LANES {
-            let at = self.rates(drive.map(|c| c.to_array()[lane]), &y.map(|c| c.to_array()[lane]));
+            let at = self.rates(excitation.map(|c| c.to_array()[lane]), &y.map(|c| c.to_array()[lane]));
             for (all, one) in rates.iter_mut().zip(at) {
                 all.as_mut_array()[lane] = one;
             }
         }
         rates
     }
-    /// What it is made of.
+    /// The quantity as a polynomial in the state, from which its bounds follow.
     fn form(&self) -> &Form<N>;
 }
 
 impl<const N: usize> Knot<N> {
-    /// A quantity with its first two time derivatives at this moment, of flight or not.
+    /// A quantity with its first two time derivatives at this moment; `in_flight` as in [`Segment::in_flight`].
     #[inline(always)]
     pub fn rates(&self, quantity: &impl Quantity<N>, in_flight: bool) -> [f64; 3] {
         if in_flight {
-            let (drive, y) = (self.drive.map(f64x4::splat), self.y.map(f64x4::splat));
-            quantity.rates_in_flight(&drive, &y).map(|lanes| lanes.to_array()[0])
+            let (excitation, y) = (self.excitation.map(f64x4::splat), self.y.map(f64x4::splat));
+            quantity.rates_in_flight(&excitation, &y).map(|lanes| lanes.to_array()[0])
         } else {
-            quantity.rates(self.drive, &self.y)
+            quantity.rates(self.excitation, &self.y)
         }
     }
 }
@@ -55,8 +55,8 @@ impl<'a> BareEnergy<'a> {
 
 impl Quantity<2> for BareEnergy<'_> {
     #[inline(always)]
-    fn rates(&self, drive: Drive, y: &[f64; 2]) -> [f64; 3] {
-        self.system.primary_energy_rates(drive, y)
+    fn rates(&self, excitation: Excitation, y: &[f64; 2]) -> [f64; 3] {
+        self.system.primary_energy_rates(excitation, y)
     }
     fn form(&self) -> &Form<2> {
         &self.form
@@ -78,12 +78,12 @@ impl<'a> PrimaryEnergy<'a> {
 
 impl Quantity<4> for PrimaryEnergy<'_> {
     #[inline(always)]
-    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        self.system.primary_energy_rates(drive, y)
+    fn rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
+        self.system.primary_energy_rates(excitation, y)
     }
     #[inline(always)]
-    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.system.primary_energy_rates_in_flight(drive, y)
+    fn rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.system.primary_energy_rates_in_flight(excitation, y)
     }
     fn form(&self) -> &Form<4> {
         &self.form
@@ -105,12 +105,12 @@ impl<'a> DamperEnergy<'a> {
 
 impl Quantity<4> for DamperEnergy<'_> {
     #[inline(always)]
-    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        self.system.damper_energy_rates(drive, y)
+    fn rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
+        self.system.damper_energy_rates(excitation, y)
     }
     #[inline(always)]
-    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.system.damper_energy_rates_in_flight(drive, y)
+    fn rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.system.damper_energy_rates_in_flight(excitation, y)
     }
     fn form(&self) -> &Form<4> {
         &self.form
@@ -134,12 +134,12 @@ impl<'a> RelativePosition<'a> {
 
 impl Quantity<4> for RelativePosition<'_> {
     #[inline(always)]
-    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        self.system.relative_position_rates(drive, y).map(|rate| self.sign * rate)
+    fn rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
+        self.system.relative_position_rates(excitation, y).map(|rate| self.sign * rate)
     }
     #[inline(always)]
-    fn rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.system.relative_position_rates_in_flight(drive, y).map(|rate| rate * self.sign)
+    fn rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.system.relative_position_rates_in_flight(excitation, y).map(|rate| rate * self.sign)
     }
     fn form(&self) -> &Form<4> {
         &self.form

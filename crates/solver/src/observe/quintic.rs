@@ -16,7 +16,7 @@ pub fn quintic(h: f64, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
     [a[0], inner_a, deep_a, deep_b, inner_b, b[0]]
 }
 
-/// A bound on what leaves the quintic by at most `remainder`: the error has three zeros at each end, so it is at most
+/// An upper bound of a quantity that leaves its quintic by at most `remainder`: the error has three zeros at each end, so it is at most
 /// `64 remainder τ³ (1 - τ)³`, and `τ³ (1 - τ)³` is a twentieth of the middle Bernstein polynomial of degree six. The other
 /// coefficients of that degree are means of these six.
 #[inline(always)]
@@ -25,17 +25,17 @@ pub fn highest(c: [f64x4; 6], remainder: f64x4) -> f64x4 {
     c.into_iter().fold(middle, f64x4::fast_max)
 }
 
-/// What a quantity can do on a stretch.
+/// The shape of a quantity on a stretch.
 pub enum Shape {
     /// Its largest value is at an end.
     EndsAreLargest,
     /// It is concave, and largest inside.
     OneMaximum,
-    /// The bounds do not tell.
+    /// The bounds do not decide.
     Unknown,
 }
 
-/// The shape of what leaves the quintic with these coefficients by at most `remainder`: its slope leaves the quintic's by at most
+/// The shape of a quantity that leaves the quintic with these coefficients by at most `remainder`: its slope leaves the quintic's by at most
 /// `46080 √5/30000 remainder / h`, its curvature by at most `24 remainder / h²`; the coefficients of slope and curvature
 /// are 5 and 20 times the first and second differences of these.
 pub fn shape(c: [f64; 6], remainder: f64) -> Shape {
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use crate::motion::form::QUINTIC;
 
-    /// Value, slope and curvature at `t` of what has these Bernstein coefficients of degree five on `[0, 1]`.
+    /// Value, slope and curvature at `t` of the quintic with these Bernstein coefficients on `[0, 1]`.
     fn at(coefficients: [f64; 6], t: f64) -> [f64; 3] {
         let casteljau = |mut c: Vec<f64>| {
             while c.len() > 1 {
@@ -133,7 +133,7 @@ mod tests {
         for (found, known) in largest.into_iter().zip(known) {
             assert!((found / known - 1.0).abs() < 2e-3, "{found:e} {known:e}");
         }
-        // What `shape` uses, relative to the first and second differences of the coefficients.
+        // The constants of `shape`, relative to the first and second differences of the coefficients.
         assert!(0.687 * QUINTIC >= known[1] / 5.0 && 0.687 * QUINTIC < 1.001 * known[1] / 5.0);
         assert!((1.2 * QUINTIC / (known[2] / 20.0) - 1.0).abs() < 1e-12);
     }

@@ -30,7 +30,7 @@ impl<Q> RunningMaximum<Q> {
         self.search.record
     }
 
-    /// By how much a value may exceed the record because a search ended before its bounds could tell; 0 where the record is proven.
+    /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is proven.
     pub fn doubt(&self) -> f64 {
         self.search.doubt()
     }
@@ -60,8 +60,8 @@ where
         self.search.begin(segment, &from, &to, remainder);
     }
 
-    /// Looks only between knots where the record could be broken: what has a second derivative of at most `m` rises above the
-    /// larger of two values `t` seconds apart by at most `m t² / 8`.
+    /// Searches only between knots where the record could be broken: a quantity whose second derivative is at most `m` rises above
+    /// the larger of two values `t` seconds apart by at most `m t² / 8`.
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
         let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
@@ -89,7 +89,7 @@ where
             Some((t, true, rates)) if t == from.t => rates,
             _ => from.rates(&self.search.quantity, true),
         };
-        let ends = self.search.quantity.rates_in_flight(&to.drive, &to.y);
+        let ends = self.search.quantity.rates_in_flight(&to.excitation, &to.y);
         let begins = [0, 1, 2].map(|order| shifted(first[order], ends[order]));
         let h = steps.length();
         let sixth = self.search.quantity.form().sixth_in_flight(steps.energy());

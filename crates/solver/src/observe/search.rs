@@ -20,22 +20,23 @@ pub struct Search<Q> {
     halvings: u32,
     /// Whether its sharp bound is in use.
     sharp: bool,
-    /// What the largest value may be where a search ended before its bounds could tell.
+    /// A bound on the largest value where a search ended before its bounds could decide.
     undecided: f64,
 }
 
-/// A rule of thumb where derivatives have no known bound (the interpolants of general methods): `R` over what the quantity varies by at both
-/// ends, `h |slope| + h² |curvature|`. One that varies at the rate `2/h` leaves its quintic by `2⁶ / 46080 = 1.4e-3` of its amplitude.
+/// An assumption for motions without a known bound (the interpolants of general methods): `R` relative to the variation at both ends,
+/// `h |slope| + h² |curvature|`. A quantity that oscillates at the rate `2/h` leaves its quintic by `2⁶ / 46080 = 1.4e-3` of its
+/// amplitude.
 const ASSUMED: f64 = 2e-3;
 
-/// Rounding errors that a value may have, over `ε` times the sizes of its terms: no search is made for less.
+/// Rounding error of a value, relative to `ε` times the sizes of its terms: the search ignores smaller gains.
 const ROUNDING: f64 = 8.0;
 
-/// Most halvings in a segment. Two or three are common, and 20 are many; only where parameters are so far apart that slopes are
-/// lost in rounding there is no end of them.
+/// Most halvings in a segment. Two or three are common, and 20 are many; they would not end only where parameters are so many
+/// orders of magnitude apart that slopes are lost in rounding.
 const HALVINGS: u32 = 64;
 
-/// Halvings from which on a search is a long one.
+/// Halvings after which a search asks for the sharp bound.
 const SHARP: u32 = 3;
 
 impl<Q> Search<Q> {
@@ -50,8 +51,8 @@ impl<Q> Search<Q> {
         }
     }
 
-    /// By how much a value may exceed the record because a search ended before its bounds could tell; 0 where the record is proven.
-    /// What is left of such a search is climbed where its slopes say that there is a maximum.
+    /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is
+    /// proven. The rest of such a search is climbed where its slopes show a maximum.
     pub fn doubt(&self) -> f64 {
         (self.undecided - self.record.value).max(0.0)
     }
@@ -101,7 +102,7 @@ impl<Q> Search<Q> {
     {
         let coefficients = quintic(b.0 - a.0, a.2.map(f64x4::splat), b.2.map(f64x4::splat));
         let highest = highest(coefficients, f64x4::splat(remainder)).to_array()[0];
-        // A bound that is no number drops nothing.
+        // A bound that is NaN drops nothing.
         if highest <= self.record.value {
             return;
         }
@@ -112,8 +113,8 @@ impl<Q> Search<Q> {
         }
     }
 
-    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder, unless the segment can only
-    /// tell for shorter stretches; a search that goes on asks for a sharper bound.
+    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder; a long search, or
+    /// one without a finite bound, asks for a sharper one first.
     fn halve<const N: usize>(
         &mut self,
         segment: &impl Segment<N>,
@@ -184,8 +185,8 @@ impl<Q> Search<Q> {
     }
 
     /// The only maximum between two places, where the quantity is concave: Newton's method on the slope, kept inside by bisection.
-    /// The quantity is flat there: an error δ of its place costs δ², and that is put right by the parabola,
-    /// `slope² / 2|curvature|` more, which leaves an error of order δ³.
+    /// The quantity is flat there: an error δ of the place costs δ², which the parabola corrects by `slope² / 2|curvature|`, so that
+    /// an error of order δ³ is left.
     fn climb<const N: usize>(&mut self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>)
     where
         Q: Quantity<N>,
@@ -204,7 +205,7 @@ impl<Q> Search<Q> {
             let step = -slope / curvature;
             let gain = 0.5 * slope * step;
             if curvature < 0.0 && gain <= 1e-10 * value.abs() {
-                // Where the quantity is all but level, the parabola's top may lie far outside the bracket.
+                // Where the quantity is almost level, the vertex of the parabola may lie far outside the bracket.
                 let way = step.max(lower - theta).min(upper - theta);
                 return self.note(value + gain, t + way * (rate + 0.5 * way * rate_slope));
             }

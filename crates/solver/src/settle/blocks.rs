@@ -10,30 +10,29 @@ use crate::settings::Settings;
 use retune_model::Coupled;
 use std::f64::consts::TAU;
 
-/// The extremes of one block after the other, until the motion has settled. A piece of the motion belongs to the block that it
-/// begins in.
+/// The extremes of one block after another, until the motion has settled. A segment belongs to the block in which it begins.
 pub struct Blocks<'a> {
     system: &'a Coupled,
     /// The question put to each block.
     ask: Ask,
     /// Of the force, s.
     period: f64,
-    /// How many of them a block has.
+    /// Periods in a block.
     periods: u32,
-    /// When the first block begins that counts though the motion has not settled, s.
+    /// Blocks that begin at this time or later count even if the motion does not settle, s.
     from: f64,
-    /// The first block whose stroke and force count ends after this, s; `None` where they are not asked for.
+    /// Stroke and force count for blocks that end after this time, s; `None` if they are not asked for.
     walls_from: Option<f64>,
     section: PoincareSection,
     recurrence: Recurrence<'a>,
     now: Maxima<'a>,
     /// Blocks that are finished.
     done: u32,
-    /// Largest stroke and force of those that count.
+    /// Largest stroke and force of the blocks that count.
     walls: [f64; 2],
     /// The last block of a motion that has settled.
     settled: Option<Extremes>,
-    /// Of a motion that does not settle; and whether these blocks count.
+    /// The extremes while the motion has not settled, and whether they are those of blocks that count.
     unsettled: Option<(Extremes, bool)>,
 }
 

@@ -1,5 +1,4 @@
-//! Settled motions: a run is followed until its state returns after some periods of the force, and what is left of its drift is
-//! small.
+//! Settled motions: a run is followed until its state returns after some periods of the force, with only a small drift left.
 
 //!
 //! Read [`settled`], then `blocks` (the run in blocks of some periods), `section` (its states once per period) and `recurrence`
@@ -26,9 +25,10 @@ use retune_model::{Bare, Coupled, Scene};
 /// The largest E1 once the motion has settled: over the last of the first blocks, counted from t = 0, that agree as `settle`
 /// says. A scene whose damper provably stays off both walls is answered in closed form.
 ///
-/// Stroke and force are the largest from the block on in which [`Ask::walls`] lies; those of the settled motion count in any case.
+/// Stroke and force are the largest from the block that contains the time [`Ask::walls`] on; those of the settled motion always
+/// count.
 ///
-/// A motion that has not settled by the end of `window` is told by [`Extremes::settled`]; its E1max is then that of all blocks
+/// [`Extremes::settled`] is false for a motion that has not settled by the end of `window`; its E1max is then that of all blocks
 /// that begin in the window (of the last block, if none does).
 ///
 /// [`Ask::cutoff`] is not used: a motion may leave a large energy behind and settle at a small one.

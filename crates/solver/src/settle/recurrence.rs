@@ -13,8 +13,8 @@ pub struct Settle {
     pub periods: u32,
     /// How many blocks in a row must agree, at least 2.
     pub blocks: u32,
-    /// The most by which the state may still change, as a share of its size: the change from return to return in the last block,
-    /// and all that will follow if it keeps falling as it fell from block to block.
+    /// The largest change of the state that may remain, as a share of its size: the change from return to return in the last block,
+    /// and the sum of all later changes if they keep falling at the rate seen from block to block.
     pub tolerance: f64,
 }
 
@@ -24,17 +24,17 @@ impl Default for Settle {
     }
 }
 
-/// Whether states return.
+/// The test whether states return.
 pub struct Recurrence<'a> {
     system: &'a Coupled,
     settle: Settle,
-    /// The most returns that a change is taken to go on for, however slowly it falls.
+    /// The number of returns over which a change is summed at most, however slowly it falls.
     most_returns: f64,
 }
 
 impl<'a> Recurrence<'a> {
-    /// As `settle` says. Changes below a thousandth of its tolerance, or below what a solver of these settings makes of a motion that
-    /// repeats, are not told from none.
+    /// A test by `settle`. Changes below a thousandth of its tolerance, or below the solver's own error at these settings, are
+    /// taken as zero.
     pub fn new(system: &'a Coupled, settle: Settle, settings: &Settings) -> Self {
         const SLOWEST: f64 = 1e3;
         const NOISE: f64 = 100.0;
@@ -59,7 +59,7 @@ impl<'a> Recurrence<'a> {
         let periods = periods as usize;
         let change = |i: usize| self.change(&states[i], &states[i - lag], size);
         let small = |change: f64| change <= tolerance;
-        // The latest change tells at once of most that do not return.
+        // The latest change rules out most states that do not return.
         if !small(change(states.len() - 1)) {
             return false;
         }
@@ -70,7 +70,7 @@ impl<'a> Recurrence<'a> {
             if !small(now) {
                 return false;
             }
-            falls = falls.max(now / largest); // NaN of the first
+            falls = falls.max(now / largest); // NaN for the first, which `max` ignores
             largest = now;
         }
         let share = falls.powf(lag as f64 / periods as f64);
@@ -85,7 +85,7 @@ impl<'a> Recurrence<'a> {
         [self.system.bare().primary_energy(x1, v1), (x2 - x1).powi(2) + ((v2 - v1) / omega).powi(2)]
     }
 
-    /// The sizes of both parts of a motion. Where one body moves a million times less than the other it is not looked at as closely.
+    /// The sizes of both parts of a motion. A body that moves a million times less than the other is compared less closely.
     fn size(&self, states: &[[f64; 4]]) -> [f64; 2] {
         const LEAST: f64 = 1e-6;
         let omega = self.system.bare().frequency();

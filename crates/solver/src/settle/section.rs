@@ -5,10 +5,10 @@ use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Path};
 use std::collections::VecDeque;
 
-/// The states at whole periods of the force, of the last blocks.
+/// The latest states at whole periods of the force.
 pub struct PoincareSection {
     period: f64,
-    /// Periods that are over.
+    /// Periods that have passed.
     count: f64,
     most: usize,
     states: VecDeque<[f64; 4]>,
@@ -25,7 +25,7 @@ impl PoincareSection {
         self.states.make_contiguous()
     }
 
-    /// The next moment to keep, s.
+    /// The next time at which a state is kept, s.
     fn next(&self) -> f64 {
         (self.count + 1.0) * self.period
     }

@@ -1,4 +1,4 @@
-//! A whole contact at once: a collocation of the contact force on the few nodes of a [`Rule`].
+//! A whole contact at once: a collocation of the contact force on the few nodes of a [`Rule`](rule::Rule).
 //!
 //! Between the bodies acts `F = K f`, `f = z^(3/2)`; everything else is linear. So the motion is the free one, which the contact
 //! would interrupt, and what the force adds to it. With `A` the linear part and `b` what a unit of `f` adds to `y'`,
@@ -9,9 +9,9 @@
 //! ```
 //!
 //! The second line is a Volterra equation for `z` alone. A contact is short beside the linear motion, so a few terms are
-//! exact; and it is nearly the undisturbed Hertz collision, so Newton's iteration needs no inverse Jacobians but those computed
-//! once for all (see `rule::newton`). A contact that is not of this kind is declined, and integrated step by step (see
-//! `contact`).
+//! exact to rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that
+//! are computed once a program (see `newton`). A contact that is not of this kind is declined, and integrated step by step (see
+//! `regularised`).
 //!
 //! Read `undisturbed` (the collision that all are close to), `nodes` and `rule` (integrals of its force on few nodes), `response`
 //! (`A^k b` and `g_k`), `newton` and `solve` (the iteration), then `motion` (the motion that observers see).

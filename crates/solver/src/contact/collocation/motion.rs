@@ -20,7 +20,7 @@ pub(super) struct Collision<'a, const N: usize, const M: usize> {
     pub(super) free: &'a Expansion<4, FREE>,
     pub(super) free_terms: usize,
     pub(super) terms: usize,
-    /// Moments of the force at the nodes and at lift-off, and what makes impulses (N·s, over `K`) of them.
+    /// Moments of the force at the nodes and at lift-off, and the factor to impulses (N·s, over `K`).
     pub(super) moments: &'a [Nodes<M>; MOMENTS],
     pub(super) last: &'a [f64; MOMENTS],
     pub(super) scale: f64,
@@ -63,7 +63,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         nodes
     }
 
-    /// The state at one node: what [`Self::component`] has for it, to the last bit.
+    /// The state at one node, equal to [`Self::component`] to the last bit.
     fn state(&self, i: usize) -> [f64; 4] {
         let time = node(&self.rule.times, i) * self.duration;
         each(|c| {
@@ -112,7 +112,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         };
         Knot {
             t: self.touch.t + elapsed,
-            drive: self.flow.drive_after(self.touch.drive, elapsed),
+            excitation: self.flow.excitation_after(self.touch.excitation, elapsed),
             y,
             clock: [root, 0.5 * self.of.side.sign() * (y[3] - y[1])],
         }
@@ -127,7 +127,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     #[inline(always)]
     fn states(&self, mut visit: impl FnMut(f64, &[f64; 4])) {
         visit(0.0, &self.touch.y);
-        // Written out, what a visitor does not look at is not computed.
+        // Written out, so that the compiler drops the components that a visitor does not use.
         let [x1, v1] = [self.component(0), self.component(1)];
         let [x2, v2] = [self.component(2), self.component(3)];
         for i in 0..N {
@@ -139,7 +139,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
 
     #[inline(always)]
     fn second_derivative(&self, form: &Form<4>) -> f64 {
-        let touch = self.of.equations.compress(&self.touch.y);
+        let touch = self.of.equations.regularise(&self.touch.y);
         let growth = self.of.equations.growth_over_contact(
             &touch,
             self.depth.sqrt(),
@@ -149,13 +149,13 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         growth.map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, 2)) // 2! of a Taylor coefficient
     }
 
-    /// A piece between two knots is followed by steps from the first of them.
+    /// The segment between two knots is integrated from the first of them.
     fn show(&self, piece: usize, observer: &mut impl Observer<4>) {
         let ends = [self.knot(piece), self.knot(piece + 1)];
-        let mut from = self.of.equations.compress(&ends[0].y);
+        let mut from = self.of.equations.regularise(&ends[0].y);
         from[0] = ends[0].clock[0];
         let mut equations = self.of.equations;
-        equations.set_drive(0.0, ends[0].drive);
+        equations.set_excitation(0.0, ends[0].excitation);
         let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
         let length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));
         let derivative = equations.derivative(&from);

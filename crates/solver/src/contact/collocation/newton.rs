@@ -1,15 +1,14 @@
-//! Newton's iteration for collisions that are nearly undisturbed, with inverse Jacobians computed once for all.
+//! Newton's iteration for collisions that are nearly undisturbed, with inverse Jacobians computed once a program.
 //!
 //! The unknowns are the depths `ζ` at the nodes and the duration `σ` in units of the undisturbed collision's, the residuals those
-//! of the motion at the nodes and at the end. What disturbs a collision most are a steady acceleration `α` and a drag `β`,
+//! of the motion at the nodes and at the end. The two perturbations that matter most are a steady acceleration `α` and a drag `β`,
 //!
 //! ```text
 //! ζ'' = -Λ ζ^(3/2) + α - β ζ'
 //! ```
 //!
-//! and the first change that the iteration makes tells how much there is of each. What they do to second order is then added to
-//! that change, and the inverse Jacobian moved by as much as they move it to first order: instead of a digit and a half a turn the
-//! iteration gains three.
+//! and the first change of the iteration gives the amount of each. Their second-order correction is then added to that change, and
+//! the inverse Jacobian corrected for them to first order: instead of one and a half digits an iteration gains three.
 
 use super::nodes::{MOMENTS, Nodes, dot, packed, product};
 use super::undisturbed::{DURATION, STIFFNESS};
@@ -53,16 +52,16 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
 /// Inverse Jacobian at the undisturbed collision, and how disturbances move it.
 pub struct Newton<const N: usize, const M: usize> {
     undisturbed: Bordered<N, M>,
-    causes: [Cause<N, M>; 2],
-    /// What the shares add to depths and duration to second order: for the square of the first, of the second, and their product.
-    bends: [Extended<M>; 3],
+    perturbations: [Perturbation<N, M>; 2],
+    /// Second-order corrections of depths and duration: for the square of the first perturbation, of the second, and their product.
+    second_order: [Extended<M>; 3],
 }
 
-struct Cause<const N: usize, const M: usize> {
-    /// The row whose product with the first change tells the share of this cause.
+struct Perturbation<const N: usize, const M: usize> {
+    /// The row whose product with the first change is the amount of this perturbation.
     row: Extended<M>,
-    /// What a unit of it adds to the inverse Jacobian.
-    tilt: Bordered<N, M>,
+    /// The change of the inverse Jacobian by a unit of it.
+    correction: Bordered<N, M>,
 }
 
 /// Disturbances small enough to be linear.
@@ -125,37 +124,37 @@ impl<const N: usize, const M: usize> Newton<N, M> {
             (unknowns, inverse)
         };
         let (start, undisturbed) = solution(0.0, 0.0);
-        // What the first turn changes, what it leaves to be changed, and the inverse Jacobian in the end.
+        // The change left after the first iteration, the change in it, and the converged inverse Jacobian.
         let with = |a: f64, b: f64| {
             let (alpha, beta) = (a * ACCELERATION, b * DRAG);
             let change = -&undisturbed * equations(alpha, beta, &start).0;
             let (unknowns, inverse) = solution(alpha, beta);
             (unknowns - &start - &change, change, inverse)
         };
-        // Each cause and its opposite, and both causes together: first and second differences.
+        // Each perturbation and its opposite, and both perturbations together: first and second differences.
         let pairs = [[with(1.0, 0.0), with(-1.0, 0.0)], [with(0.0, 1.0), with(0.0, -1.0)]];
         let changes = DMatrix::from_columns(&pairs.each_ref().map(|[more, less]| (&more.1 - &less.1) / 2.0));
         let [first, second] = pairs.each_ref().map(|[more, less]| (&more.0 + &less.0) / 2.0);
         let both = with(1.0, 1.0).0 - &first - &second;
         // Least squares: (CᵀC)⁻¹ Cᵀ; a change is what is subtracted.
-        let normal = (changes.transpose() * &changes).try_inverse().expect("the two causes differ");
+        let normal = (changes.transpose() * &changes).try_inverse().expect("the two perturbations differ");
         let rows = -(normal * changes.transpose());
-        let cause = |c: usize| Cause {
+        let perturbation = |c: usize| Perturbation {
             row: extended::<N, M>(|i| rows[(c, i)]),
-            tilt: Bordered::new(&((&pairs[c][0].2 - &pairs[c][1].2) / 2.0)),
+            correction: Bordered::new(&((&pairs[c][0].2 - &pairs[c][1].2) / 2.0)),
         };
         Self {
             undisturbed: Bordered::new(&undisturbed),
-            causes: [cause(0), cause(1)],
-            bends: [first, second, both].map(|bend| extended::<N, M>(|i| bend[i])),
+            perturbations: [perturbation(0), perturbation(1)],
+            second_order: [first, second, both].map(|bend| extended::<N, M>(|i| bend[i])),
         }
     }
 
-    /// What these shares of the causes add to the depths and to the duration to second order.
+    /// The second-order correction of depths and duration for these amounts of the perturbations.
     #[inline(always)]
-    pub fn bend(&self, [a, b]: [f64; 2]) -> Extended<M> {
+    pub fn second_order(&self, [a, b]: [f64; 2]) -> Extended<M> {
         let (mut depths, mut duration) = ([f64x4::ZERO; M], 0.0);
-        for ((bend, last), weight) in self.bends.iter().zip([a * a, b * b, a * b]) {
+        for ((bend, last), weight) in self.second_order.iter().zip([a * a, b * b, a * b]) {
             for i in 0..M {
                 depths[i] += bend[i] * weight;
             }
@@ -164,22 +163,24 @@ impl<const N: usize, const M: usize> Newton<N, M> {
         (depths, duration)
     }
 
-    /// How much there is of each cause, from the first change at the nodes and of the duration.
+    /// The amount of each perturbation, from the first change at the nodes and of the duration.
     #[inline(always)]
     pub fn shares(&self, change: &Nodes<M>, lengthening: f64) -> [f64; 2] {
-        let share = |Cause { row: (row, last), .. }: &Cause<N, M>| dot(row, change) + last * lengthening;
-        self.causes.each_ref().map(share)
+        let share = |Perturbation { row: (row, last), .. }: &Perturbation<N, M>| {
+            dot(row, change) + last * lengthening
+        };
+        self.perturbations.each_ref().map(share)
     }
 
-    /// The change that Newton's iteration makes: the inverse Jacobian for these shares of the causes times the residuals.
+    /// The change in one Newton iteration: the inverse Jacobian for these amounts of the perturbations times the residuals.
     #[inline(always)]
     pub fn change(&self, shares: [f64; 2], residual: &Nodes<M>, last: f64) -> Extended<M> {
         let (mut change, mut lengthening) = self.undisturbed.times((residual, last));
         if shares != [0.0; 2] {
-            for (cause, share) in self.causes.iter().zip(shares) {
-                let (tilt, end) = cause.tilt.times((residual, last));
+            for (perturbation, share) in self.perturbations.iter().zip(shares) {
+                let (correction, end) = perturbation.correction.times((residual, last));
                 for i in 0..M {
-                    change[i] += tilt[i] * share;
+                    change[i] += correction[i] * share;
                 }
                 lengthening += share * end;
             }

@@ -2,12 +2,12 @@
 
 use super::nodes::MOMENTS;
 use crate::linear::flow::Flow;
-use retune_model::{Compression, Coupled, Side};
+use retune_model::{Coupled, RegularisedContact, Side};
 
-/// How contacts with one wall begin and how their force moves the system.
+/// The numbers of all contacts with one wall.
 pub struct Collisions {
     /// The regularised equations.
-    pub equations: Compression,
+    pub equations: RegularisedContact,
     /// The wall.
     pub side: Side,
     /// Its position relative to the structure, m.
@@ -58,8 +58,8 @@ impl Collisions {
                 0.0
             }
         });
-        let equations = system.compression(side);
-        let [cos, sin] = system.drive(0.0);
+        let equations = system.regularised_contact(side);
+        let [cos, sin] = system.excitation(0.0);
         let amplitude = cos.hypot(sin);
         Self { equations, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
     }

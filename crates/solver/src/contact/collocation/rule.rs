@@ -21,7 +21,7 @@ pub struct Rule<const N: usize, const M: usize> {
     pub rates: Nodes<M>,
     /// Depths of the undisturbed collision at the nodes.
     pub depths: Nodes<M>,
-    /// `moments[k][j]` at node `i`: what the force at node `j` adds to `∫₀^τ (τ - s)^k / k! f(s) ds` there.
+    /// `moments[k][j]` at node `i`: the contribution of the force at node `j` to `∫₀^τ (τ - s)^k / k! f(s) ds` there.
     pub moments: [[Nodes<M>; N]; MOMENTS],
     /// The same at the end of the contact, `τ = 1`, for each `j`.
     pub last: [Nodes<M>; MOMENTS],
@@ -29,7 +29,7 @@ pub struct Rule<const N: usize, const M: usize> {
     pub undisturbed: [Nodes<M>; MOMENTS],
     /// The same at the end.
     pub undisturbed_last: [f64; MOMENTS],
-    /// `running[j]` at node `i`: what the value at node `j` of a smooth `g` adds to `∫₀^u g du` there.
+    /// `running[j]` at node `i`: the contribution of the value at node `j` of a smooth `g` to `∫₀^u g du` there.
     pub running: [Nodes<M>; N],
     /// The same at `u = 1`, for each `j`.
     pub whole: Nodes<M>,

@@ -18,11 +18,11 @@ static RULES: LazyLock<(Rule<8, 2>, Rule<12, 3>, Rule<16, 4>)> =
 
 /// The error of the end of a contact over `tail^1.25`, for each rule, where the tail of its force's expansion is the root of the
 /// sum of squares of the two highest coefficients. Calibrated on contacts drawn at random; the test
-/// `reference_contacts_at_once_agree_with_contacts_step_by_step` holds what follows from it.
+/// `reference_contacts_at_once_agree_with_contacts_step_by_step` checks the resulting errors.
 const TAIL: [f64; 3] = [1.8e-3, 3.5e-4, 2.9e-4];
 
-/// Most turns of the iteration; one that has not converged by then gains too little a turn.
-const TURNS: u32 = 16;
+/// Most iterations: one that has not converged by then converges too slowly.
+const MAX_ITERATIONS: u32 = 16;
 
 impl Collisions {
     /// Computes the contact that begins at `touch` and shows it to the observer, if it is nearly an undisturbed collision
@@ -36,8 +36,8 @@ impl Collisions {
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
         let (few, some, many) = &*RULES;
-        // From these tolerances on, common contacts pass the test of the rule, and their insides, for which quadrature by Gauss gains
-        // nothing, are accurate enough for the energy of the much heavier structure.
+        // At these tolerances common contacts pass the error estimate of the rule. Inside a contact Gauss's nodes gain nothing, but the
+        // motion there is still accurate enough for the energy of the much heavier structure.
         if self.rtol >= 1e-7
             && let Some(end) = self.solve(few, flow, &touch, to, observer)
         {
@@ -69,7 +69,7 @@ impl Collisions {
         }
         let terms = self.longest.iter().position(|&longest| undisturbed < longest)?;
         let free_terms = terms + 4; // their error is about the square of the response's
-        let free = flow.expand::<FREE>(touch.drive, &touch.y);
+        let free = flow.expand::<FREE>(touch.excitation, &touch.y);
         // z_free / depth, without the constant term, which is zero.
         let [x1, _, x2, _] = free.0;
         let to_depth = self.side.sign() / depth;
@@ -77,7 +77,7 @@ impl Collisions {
         let (mut depths, mut stretch) = (rule.depths, 1.0);
         let (mut moments, mut last) = (rule.undisturbed, rule.undisturbed_last);
         let mut shares = [0.0; 2];
-        let (mut before, mut turns): (f64, u32) = (1.0, 0);
+        let (mut before, mut iterations): (f64, u32) = (1.0, 0);
         let force = loop {
             let duration = stretch * undisturbed;
             let (mut pushed, mut pushed_last) = ([f64x4::ZERO; M], 0.0);
@@ -99,17 +99,17 @@ impl Collisions {
                 depths[i] -= change[i];
             }
             stretch -= lengthening;
-            turns += 1;
+            iterations += 1;
             let largest = change.iter().fold(f64x4::splat(lengthening).abs(), |size, c| size.max(c.abs()));
             let size = largest.to_array().into_iter().fold(0.0, f64::max);
-            // Each turn gains about as much as the last: what is left is some `size² / before`.
+            // Each iteration gains about as much as the last: an error of about `size² / before` is left.
             let settled = size * size <= 0.3 * self.rtol * before;
-            if size.is_nan() || size >= 0.5 * before || turns == TURNS {
+            if size.is_nan() || size >= 0.5 * before || iterations == MAX_ITERATIONS {
                 return None;
             }
-            if turns == 1 {
+            if iterations == 1 {
                 shares = rule.newton.shares(&change, lengthening);
-                let (bend, longer) = rule.newton.bend(shares);
+                let (bend, longer) = rule.newton.second_order(shares);
                 for i in 0..M {
                     depths[i] += bend[i];
                 }
@@ -149,8 +149,8 @@ impl Collisions {
         };
         collision.end = collision.lift_off();
         observer.path(&collision);
-        let drive = flow.drive_after(touch.drive, duration);
-        let end = Knot { t: touch.t + duration, drive, y: collision.end, clock: [1.0, 0.0] };
-        Some((end, u64::from(turns) * N as u64))
+        let excitation = flow.excitation_after(touch.excitation, duration);
+        let end = Knot { t: touch.t + duration, excitation, y: collision.end, clock: [1.0, 0.0] };
+        Some((end, u64::from(iterations) * N as u64))
     }
 }

@@ -42,12 +42,12 @@ fn contact(draw: &mut Draw) -> (Coupled, Side, Knot<4>) {
     let speed = 10f64.powf(draw.between(-1.5, 0.5));
     let (x1, v1, t) = (draw.between(-0.2, 0.2), draw.between(-1.2, 1.2), draw.between(0.0, 1.0));
     let y = [x1, v1, x1 + system.wall(side), v1 + side.sign() * speed];
-    (system, side, Knot { t, drive: system.drive(t), y, clock: [1.0, 0.0] })
+    (system, side, Knot { t, excitation: system.excitation(t), y, clock: [1.0, 0.0] })
 }
 
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
-    let equations = system.compression(side);
-    let pressed = equations.compress(&touch.y);
+    let equations = system.regularised_contact(side);
+    let pressed = equations.regularise(&touch.y);
     let budget = Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]);
     let (limits, mut work) = ((1e-13, budget), Work::default());
     match integrate(equations, touch, pressed, 1e9, limits, &mut work, &mut Unobserved) {
@@ -108,8 +108,8 @@ impl Observer<4> for Find {
 impl Observer<4> for Compare<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.pieces += 1;
-        let equations = self.system.compression(self.side);
-        let pressed = equations.compress(&self.touch.y);
+        let equations = self.system.regularised_contact(self.side);
+        let pressed = equations.regularise(&self.touch.y);
         for seen in
             [*segment.ends()[0], segment.at(0.4 * segment.length()), segment.at(0.999 * segment.length())]
         {
@@ -130,7 +130,7 @@ fn reference_the_inside_of_a_contact_is_what_stepping_finds() {
     let flow = Flow::new(LinearSystem::linear(&system), 1.0);
     for side in Side::BOTH {
         let y = [0.1, -0.4, 0.1 + system.wall(side), -0.4 + side.sign() * 0.9];
-        let touch = Knot { t: 0.3, drive: system.drive(0.3), y, clock: [1.0, 0.0] };
+        let touch = Knot { t: 0.3, excitation: system.excitation(0.3), y, clock: [1.0, 0.0] };
         let collisions = Collisions::new(&system, side, &flow, 1e-10);
         let mut compare = Compare { system: &system, side, touch, worst: 0.0, pieces: 0 };
         collisions.collide(&flow, touch, 1e9, &mut compare).expect("an ordinary contact");
@@ -144,8 +144,12 @@ fn exact_what_is_no_collision_is_declined() {
     let system = SSVI.coupled();
     let flow = Flow::new(LinearSystem::linear(&system), 1.0);
     let collisions = Collisions::new(&system, Side::Primary, &flow, 1e-8);
-    let at =
-        |speed: f64| Knot { t: 0.0, drive: system.drive(0.0), y: [0.0, speed, 0.0, 0.0], clock: [1.0, 0.0] };
+    let at = |speed: f64| Knot {
+        t: 0.0,
+        excitation: system.excitation(0.0),
+        y: [0.0, speed, 0.0, 0.0],
+        clock: [1.0, 0.0],
+    };
     let taken = |speed: f64, to: f64| collisions.collide(&flow, at(speed), to, &mut Unobserved).is_some();
     assert!(taken(1.0, 1.0), "an ordinary contact");
     for speed in [0.0, -1.0, 1e-9, f64::NAN, f64::INFINITY] {

@@ -24,11 +24,11 @@ pub fn undisturbed_force() -> impl Fn(f64) -> f64 {
     const NODES: usize = 40;
     let ends = |u: f64| (u * (1.0 - u)).powi(3);
     let (nodes, _) = gauss(NODES, 0);
-    // In units of Z and Z/w the regularised collision is q' = w/2, w' = -(5/4) q⁴, t' = q (see `retune_model::Compression`).
+    // In units of Z and Z/w the regularised collision is q' = w/2, w' = -(5/4) q⁴, t' = q (see `retune_model::RegularisedContact`).
     let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4), q];
     let advance = |y: &[f64; 3], h: f64| dop853::step(slope, y, &slope(y), h).y;
     let mut y = [0.0, 1.0, 0.0];
-    // It is the same backwards: what leaves is the mirror image of what came.
+    // The collision is symmetric in time.
     let mut values: Vec<f64> = nodes[..NODES / 2]
         .iter()
         .map(|&u| {

@@ -8,43 +8,43 @@ use crate::methods::dop853::{self, EVALUATIONS};
 use crate::motion::knot::Knot;
 use crate::observe::observer::Observer;
 use crate::response::Work;
-use retune_model::{Compressed, Compression};
+use retune_model::{RegularisedContact, RegularisedState};
 
 /// How a contact ended.
 pub enum End {
     /// The damper left the wall.
     LiftOff(Knot<4>),
-    /// The run ended, or the observer had seen enough, with the damper still pressed in.
-    Pressed(Knot<4>),
+    /// The run ended, or the observer was satisfied, while the damper was in contact.
+    InContact(Knot<4>),
 }
 
 /// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
 ///
-/// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a long press, to
-/// those of late.
+/// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a sustained contact,
+/// relative to the recent ones.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
 #[inline(always)]
 pub fn integrate(
-    mut equations: Compression,
+    mut equations: RegularisedContact,
     from: &Knot<4>,
-    mut y: Compressed,
+    mut y: RegularisedState,
     to: f64,
     (rtol, budget): (f64, Budget),
     work: &mut Work,
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
     let touch_down = from.t;
-    equations.set_drive(y[TIME], from.drive);
+    equations.set_excitation(y[TIME], from.excitation);
     let mut plan = Plan::new(&equations, &y, rtol);
     let shortest = plan.h * 1e-12;
     let mut start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
     loop {
         // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
-        equations.set_drive(y[TIME], start.drive);
-        let reach = Compression::TURN / (equations.frequency() * plan.q);
-        // A step aimed at the wall if it is near enough; the aim need not be good (see `reach_wall`).
+        equations.set_excitation(y[TIME], start.excitation);
+        let reach = RegularisedContact::TURN / (equations.frequency() * plan.q);
+        // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
         let unhindered = plan.step(&y);
         let planned = unhindered.min(reach);
         let left = if y[W] < 0.0 { equations.theta_to_wall(&y) } else { f64::INFINITY };
@@ -57,19 +57,19 @@ pub fn integrate(
         let shortened = (h / unhindered).min(1.0);
         let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
         let wall = if lifting { reach_wall(&equations, &tried.y, &plan, rtol, work) } else { None };
-        // Where a step ends that goes on to the wall: it is the last piece, and may hardly be longer than the one tried.
-        let to_wall = |wall: &Compressed| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
+        // The length of the last step if it goes on to the wall: it may hardly be longer than the one tried.
+        let to_wall = |wall: &RegularisedState| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
         let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
-        // Past the wall there is no contact: a step must end where the wall can be reached from. Nor may it outrun the force.
+        // Beyond the wall there is no contact: a step must end where the wall can be reached. Nor may it outrun the force.
         let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
-        let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * Compression::TURN;
+        let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * RegularisedContact::TURN;
         if error.is_nan() || error > 1.0 || lost {
             work.rejected += 1;
             plan.refuse(if lost { f64::INFINITY } else { error }, shortened, &y);
             if !y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t });
             }
-            // Steps that are tried are work as well.
+            // Rejected steps count as work too.
             budget.check(work.steps + work.rejected, t)?;
             if plan.h < shortest {
                 return Err(SolverError::Contact { t });
@@ -102,7 +102,7 @@ pub fn integrate(
         };
         observer.segment(&piece);
         if over || observer.satisfied() {
-            return Ok(End::Pressed(end));
+            return Ok(End::InContact(end));
         }
         if wall.is_some() {
             return Ok(End::LiftOff(end));
@@ -116,26 +116,26 @@ pub fn integrate(
 
 /// The state at the wall, `q = 0`, from one near it on either side (past lift-off the polynomial equations still hold), with
 /// `q` as the independent variable: one step of the classical Runge–Kutta method if the speed and the force hardly change on
-/// the way, else one of DOP853; none where that is not good enough, for the damper leaves too slowly.
+/// the way, else one of DOP853; `None` where that is too inaccurate because the damper leaves too slowly.
 fn reach_wall(
-    equations: &Compression,
-    y: &Compressed,
+    equations: &RegularisedContact,
+    y: &RegularisedState,
     plan: &Plan,
     rtol: f64,
     work: &mut Work,
-) -> Option<Compressed> {
-    let by_q = |y: &Compressed| {
+) -> Option<RegularisedState> {
+    let by_q = |y: &RegularisedState| {
         let slope = equations.derivative(y);
         slope.map(|s| s / slope[Q])
     };
     let (k1, h) = (by_q(y), -y[Q]);
     let (z, speed) = (h * h, y[W].abs());
-    // What each force by itself changes the speed by: their sum may be small by chance.
+    // The change of speed by each force alone: their sum may be small by chance.
     let pull = equations.mass_ratio() * equations.size_of_terms(y);
     let change = z * (pull / speed + equations.frequency());
     let mut end = if change < 1e-3 * speed {
         work.evaluations += 4;
-        let along = |k: &Compressed, h: f64| std::array::from_fn::<f64, 5, _>(|i| y[i] + h * k[i]);
+        let along = |k: &RegularisedState, h: f64| std::array::from_fn::<f64, 5, _>(|i| y[i] + h * k[i]);
         let k2 = by_q(&along(&k1, 0.5 * h));
         let k3 = by_q(&along(&k2, 0.5 * h));
         let k4 = by_q(&along(&k3, h));

@@ -1,4 +1,4 @@
-//! One contact, from touch-down to lift-off, in regularised time (equations: `retune_model::Compression`).
+//! One contact, from touch-down to lift-off, in regularised time (equations: `retune_model::RegularisedContact`).
 //!
 //! The equations are polynomial there, so DOP853 keeps its order through both ends of the contact. Steps are planned from the
 //! undisturbed Hertz collision, whose shape is the same for every speed, and the error estimate checks each. Lift-off is a

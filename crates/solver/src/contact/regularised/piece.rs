@@ -4,7 +4,7 @@ use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use retune_model::{Compressed, Compression, ORDERS};
+use retune_model::{ORDERS, RegularisedContact, RegularisedState};
 
 // Components of a regularised state.
 pub const Q: usize = 0;
@@ -14,12 +14,12 @@ pub const TIME: usize = 4;
 
 /// A piece of a contact. Its interior is reached by steps from its start, shorter than those that would reach its end.
 pub struct Piece<'a> {
-    pub equations: &'a Compression,
+    pub equations: &'a RegularisedContact,
     /// Time from which the regularised state counts, s.
     pub touch_down: f64,
-    pub from: &'a Compressed,
+    pub from: &'a RegularisedState,
     /// Derivative there.
-    pub slope: &'a Compressed,
+    pub slope: &'a RegularisedState,
     /// Length in θ.
     pub length: f64,
     /// Steps in which it is reached.
@@ -28,18 +28,23 @@ pub struct Piece<'a> {
 }
 
 /// The moment of a regularised state.
-pub fn knot(equations: &Compression, touch_down: f64, y: &Compressed) -> Knot<4> {
+pub fn knot(equations: &RegularisedContact, touch_down: f64, y: &RegularisedState) -> Knot<4> {
     Knot {
         t: touch_down + y[TIME],
-        drive: equations.drive(y),
-        y: equations.expand(y),
+        excitation: equations.excitation(y),
+        y: equations.physical(y),
         clock: [y[Q], 0.5 * y[W]],
     }
 }
 
 /// One step of DOP853 from `y`, with the derivative `slope` there.
 #[inline(always)]
-pub fn step(equations: &Compression, y: &Compressed, slope: &Compressed, h: f64) -> Step<5> {
+pub fn step(
+    equations: &RegularisedContact,
+    y: &RegularisedState,
+    slope: &RegularisedState,
+    h: f64,
+) -> Step<5> {
     dop853::step(|y| equations.derivative(y), y, slope, h)
 }
 
@@ -58,9 +63,9 @@ impl Segment<4> for Piece<'_> {
         Knot { t, ..knot(self.equations, self.touch_down, &y) }
     }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
-        // `q` is on the clock: in the state it has lost digits.
+        // `q` is taken from the clock, because it has lost digits in the state.
         let [from, to] = ends.map(|knot| {
-            let [_, w, x1, v1, _] = self.equations.compress(&knot.y);
+            let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
             [knot.clock[0], w, x1, v1, 0.0]
         });
         let growth = self.equations.growth(h, &from, &to);
@@ -69,7 +74,7 @@ impl Segment<4> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    fn advance(&self, theta: f64) -> Compressed {
+    fn advance(&self, theta: f64) -> RegularisedState {
         let h = theta / f64::from(self.steps);
         let mut y = step(self.equations, self.from, self.slope, h).y;
         for _ in 1..self.steps {
@@ -81,7 +86,11 @@ impl Piece<'_> {
 
 /// The `θ` and the state when `elapsed` seconds have passed since touch-down, within a piece of `length`: time grows with
 /// θ, so Newton's iteration kept inside by bisection finds it.
-pub fn at_elapsed(advance: impl Fn(f64) -> Compressed, length: f64, elapsed: f64) -> (f64, Compressed) {
+pub fn at_elapsed(
+    advance: impl Fn(f64) -> RegularisedState,
+    length: f64,
+    elapsed: f64,
+) -> (f64, RegularisedState) {
     let (mut lower, mut upper, mut theta) = (0.0, length, 0.5 * length);
     let mut y = advance(theta);
     for _ in 0..100 {

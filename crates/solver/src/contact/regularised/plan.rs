@@ -1,15 +1,15 @@
-//! How long the steps of a contact may be, and what their errors are measured against.
+//! The lengths of the steps of a contact, and the scales of their errors.
 
 use super::piece::{Q, V1, W};
 use crate::methods::dop853::Step;
-use retune_model::{Compressed, Compression};
+use retune_model::{RegularisedContact, RegularisedState};
 
 /// The natural sizes of a contact, and the steps planned for it.
 pub struct Plan {
-    /// Largest `q` (√m) and speed (m/s) expected or, lately, seen: errors are measured against them.
+    /// Largest `q` (√m) and speed (m/s), expected or recently seen: errors are measured against them.
     pub q: f64,
     w: f64,
-    /// The speed below which `rtol` asks for more than rounding leaves.
+    /// The speed below which `rtol` asks for more digits than rounding leaves.
     rounding: f64,
     /// `(1/m1 + 1/m2) m1`: errors in `v1` are measured against `w` over this.
     mass_ratio: f64,
@@ -19,19 +19,19 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The step at the deepest point that an error of 1e-9 allows, in units of `2 q_max / w`: where the error estimate of
-    /// DOP853 on the undisturbed collision puts it.
+    /// The step at the deepest point for an error of 1e-9, in units of `2 q_max / w`, by the error estimate of DOP853 on the
+    /// undisturbed collision.
     const DEEPEST: f64 = 0.118;
 
-    /// Share of the sizes seen that is left after a step of a long press.
+    /// Factor by which the remembered scales fall with each step of a sustained contact.
     const FORGET: f64 = 0.8;
 
-    /// Steps of a collision; a contact with more is a long press, and its steps follow the error estimate alone.
+    /// Most steps of a collision; a contact with more is a sustained contact, whose steps follow the error estimate alone.
     const COLLISION: u32 = 40;
 
     /// The plan of a contact that begins at `y`, each step of it to `rtol` of its sizes.
-    pub fn new(equations: &Compression, y: &Compressed, rtol: f64) -> Self {
-        // A contact that begins pressed in is as long as the collision that would reach as deep.
+    pub fn new(equations: &RegularisedContact, y: &RegularisedState, rtol: f64) -> Self {
+        // A contact that begins at an indentation lasts as long as the collision that would reach this indentation.
         let w = y[W].abs().max(equations.speed_at_depth(y[Q]));
         let q = equations.greatest_depth(w);
         let h = Self::DEEPEST * (rtol / 1e-9).powf(1.0 / 8.0) * 2.0 * q / w;
@@ -42,14 +42,14 @@ impl Plan {
         plan
     }
 
-    /// Sees what rounding leaves of a speed in so many seconds; the weights of the error estimate add up to about 50.
-    fn round(&mut self, equations: &Compression, y: &Compressed, seconds: f64, rtol: f64) {
+    /// Estimates the rounding error of a speed over so many seconds; the weights of the error estimate add up to about 50.
+    fn round(&mut self, equations: &RegularisedContact, y: &RegularisedState, seconds: f64, rtol: f64) {
         self.rounding = 50.0 * f64::EPSILON * equations.size_of_terms(y) * seconds * self.mass_ratio / rtol;
     }
 
     /// The step from a state, s/√m: the nearest singularity of a collision lies above its deepest point, so steps may be longer
     /// towards the wall, about twice as long at the wall itself.
-    pub fn step(&self, y: &Compressed) -> f64 {
+    pub fn step(&self, y: &RegularisedState) -> f64 {
         let height = 1.0 - (y[Q] / self.q).min(1.0);
         let farther = if y[W] > 0.0 { height.powi(3) } else { height * height };
         self.h * (1.0 + 1.1 * farther)
@@ -63,15 +63,15 @@ impl Plan {
         step.error(h, [(Q, q), (W, w), (V1, w * self.mass_ratio)])
     }
 
-    /// Learns from a step that had this error. Within a collision the plan knows better than a single estimate. In a long press
-    /// time goes by as the present `q` says, however deep it was before. The step was `shortened` to this share of the planned one,
-    /// and took so many seconds.
+    /// Adapts to a step that had this error. Within a collision the plan is better than a single estimate; in a sustained contact the
+    /// time scale follows the present `q`, however deep the contact was before. The step was `shortened` to this share of the planned
+    /// one, and took so many seconds.
     pub fn adapt(
         &mut self,
-        equations: &Compression,
+        equations: &RegularisedContact,
         error: f64,
         (shortened, seconds): (f64, f64),
-        y: &Compressed,
+        y: &RegularisedState,
         rtol: f64,
     ) {
         self.taken += 1;
@@ -85,9 +85,9 @@ impl Plan {
         self.w = self.w.max(y[W].abs());
     }
 
-    /// Learns from a step that was refused, `shortened` as in [`Self::adapt`]: a collision that other forces rule does not reach as deep as one that is left
-    /// to itself.
-    pub fn refuse(&mut self, error: f64, shortened: f64, y: &Compressed) {
+    /// Adapts to a step that was refused, `shortened` as in [`Self::adapt`]: a collision dominated by forces other than Hertz's stays
+    /// shallower than an undisturbed one.
+    pub fn refuse(&mut self, error: f64, shortened: f64, y: &RegularisedState) {
         let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
         self.h *= factor * shortened;
         let expected = self.q;
