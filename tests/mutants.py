@@ -17,7 +17,7 @@ CRATES = {
     "retune-model": (["crates/model/src/*"], ["--tests"]),
     "retune-solver": (["crates/solver/src/*"], [
         "--test extremes --test reference --test work",
-        "--lib --test allocation --test bounds --test exact --test extreme_values --test general_methods --test invariant --test order --test paper --test peak --test settled --test trajectory",
+        "--lib --test allocation --test bounds --test exact --test extreme_values --test general_methods --test invariant --test observers --test order --test paper --test running_maximum --test settled --test trajectory",
         "--test any_scene --test edge --test hunt"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
     "retune": (["crates/retune/src/results*"], ["--bins", "--tests"]),
@@ -130,7 +130,7 @@ def main():
     asked.add_argument("--seed", type=int, default=13)
     asked.add_argument("--mutants", type=int, default=DRAWN, help="how many are drawn")
     asked.add_argument("--package", choices=CRATES, action="append", help="only those of this crate")
-    asked.add_argument("--file", action="append", help="only those of files that match, for instance crates/solver/src/rule*")
+    asked.add_argument("--file", action="append", help="only those of files that match, for instance crates/solver/src/contact*")
     asked.add_argument("--missed", action="store_true", help="only those that were missed so far")
     asked.add_argument("--list", action="store_true", help="only say what is drawn and what is known of it")
     asked = asked.parse_args()

@@ -3,7 +3,7 @@
 use crate::parameter::{Error, Parameter};
 use rayon::prelude::*;
 use retune_model::{Coupled, Scene, Side};
-use retune_solver::observe::{Observer, Path, Peak, PrimaryEnergy, Segment, Unobserved};
+use retune_solver::observe::{Observer, Path, PrimaryEnergy, RunningMaximum, Segment, Unobserved};
 use retune_solver::steps::Steps;
 use retune_solver::{Follower, Motion, Phase, Settings, SolverError};
 use std::f64::consts::TAU;
@@ -77,7 +77,7 @@ impl Observer<4> for Touches {
 }
 
 struct Watch<'a> {
-    peak: Peak<PrimaryEnergy<'a>>,
+    peak: RunningMaximum<PrimaryEnergy<'a>>,
     touches: Touches,
 }
 
@@ -134,8 +134,10 @@ fn orbit(
     let mut samples = Vec::with_capacity(periods.record);
     let (mut e1_max, mut impacts) = (0.0_f64, [0; 2]);
     for _ in 0..periods.record {
-        let mut watch =
-            Watch { peak: Peak::new(PrimaryEnergy::new(system), f64::INFINITY), touches: Touches::default() };
+        let mut watch = Watch {
+            peak: RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY),
+            touches: Touches::default(),
+        };
         motion = strobe.next(motion, &mut watch)?;
         samples.push(motion.y);
         e1_max = e1_max.max(watch.peak.record().value);

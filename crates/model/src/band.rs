@@ -1,21 +1,20 @@
-//! The largest steady response over a band of frequencies, in closed form: no narrow peak can hide between samples, for there
-//! are none.
+//! The largest steady response over a band of frequencies, in closed form: without samples no narrow peak can hide between them.
 //!
 //! With `u = ω²` the square of an amplitude is `V / M`, two polynomials in `u`, so it is largest at an end of the band or where
 //! the sign of `W = V' M - V M'` (of degree 6 at most) falls through zero. The band is cut wherever a factor of `V` or `M` is zero
 //! (`band/factors.rs`), so on a piece all factors keep their signs. Then `V`, `M` and the terms of their slopes, in the Bernstein basis,
 //! are made of sums and products without a difference: each is known to some 20 roundings of its own size, however small.
 //! The computed `W` is off by at most `γ (|V'| M + V |M'|)`, slopes taken term by term, `γ` about 1e-14, and its roots are isolated
-//! with certainty (`band/roots.rs`). A place that is missed by a wrong sign of `W` is higher by a factor of `exp(γ ∫ |V'|/V + |M'|/M)`
-//! at most, and the integral is a few times the logarithm of how much `V` and `M` vary: 1e-11 is never reached. So the value is found
-//! to rounding with as little damping as there may be: a peak whose width is 1e-14 of its frequency has its full height, though no
-//! floating-point number is a frequency that near to it.
+//! with certainty (`band/roots.rs`). A maximum that is missed by a wrong sign of `W` is higher by a factor of at most
+//! `exp(γ ∫ |V'|/V + |M'|/M)`, and the integral is a few times the logarithm of the range of `V` and `M`: 1e-11 is never reached. So
+//! the value is exact to rounding for any damping, however small: a peak whose width is 1e-14 of its frequency has its full height,
+//! although no floating-point frequency lies that close to it.
 
 mod factors;
 mod roots;
 
 use crate::{Bare, Coupled};
-use factors::{Factors, Numerator, Piece, Point};
+use factors::{Factors, Numerator, ON_RESONANCE, Piece, Point};
 
 /// A largest value over a band, and where it is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +36,6 @@ impl Worst {
     }
 }
 
-/// Roundings within which an end of a band lies on a natural frequency.
-const ON_IT: f64 = 8.0 * f64::EPSILON;
-
 impl Bare {
     /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`. Infinite at the
     /// resonance of an undamped structure, also where the band ends on it to 8 roundings.
@@ -54,7 +50,7 @@ impl Bare {
         let below = 0.5 * rate * rate;
         for (u, below) in [(natural, 0.0), (natural - below, below)] {
             let omega = u.max(0.0).sqrt();
-            if from * (1.0 - ON_IT) <= omega && omega <= to * (1.0 + ON_IT) {
+            if from * (1.0 - ON_RESONANCE) <= omega && omega <= to * (1.0 + ON_RESONANCE) {
                 let amplitude = self.p / (self.m1 * below.hypot(omega * rate));
                 worst.note(omega.clamp(from, to.max(from)), 0.5 * amplitude * amplitude * self.k1);
             }
@@ -101,7 +97,7 @@ impl Coupled {
     }
 }
 
-/// What is looked for, as a multiple of the square root of `V / M`, or of `V / M` itself.
+/// The quantity to be maximised, a multiple of `V / M` or of its square root.
 #[derive(Clone, Copy)]
 enum Quantity {
     Energy,
@@ -172,8 +168,13 @@ impl Search<'_> {
         let amplitude = p / (m1 * self.factors.unit);
         match (self.quantity, numerator) {
             (Quantity::Energy, Numerator::Damper) => 0.5 * k1 * amplitude * amplitude * ratio,
-            (Quantity::Energy, _) => 0.5 * m1 * self.factors.unit * amplitude * amplitude * ratio,
-            _ => amplitude * ratio.sqrt(),
+            (Quantity::Energy, Numerator::DamperBySquare) => {
+                0.5 * m1 * self.factors.unit * amplitude * amplitude * ratio
+            }
+            (Quantity::Energy, Numerator::Square) => {
+                unreachable!("the energy is the structure's (see `numerator`)")
+            }
+            (Quantity::Displacement | Quantity::Stroke, _) => amplitude * ratio.sqrt(),
         }
     }
 }

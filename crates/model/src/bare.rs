@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{Drive, Forcing, Primary};
+use crate::{Excitation, Forcing, Primary};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -27,7 +27,7 @@ impl Bare {
         }
     }
 
-    /// The same under the force `P cos(ωt + φ)`, φ in rad. Its time begins at 0 as ever.
+    /// The same under the force `P cos(ωt + φ)`, φ in rad. Time still begins at 0.
     #[must_use]
     pub fn with_phase(self, phase: f64) -> Self {
         Self { phase, ..self }
@@ -39,7 +39,7 @@ impl Bare {
     }
 
     /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
-    pub fn drive(&self, t: f64) -> Drive {
+    pub fn excitation(&self, t: f64) -> Excitation {
         let (sin, cos) = (self.omega * t + self.phase).sin_cos();
         [self.p * cos, self.p * sin]
     }
@@ -55,7 +55,7 @@ impl Bare {
     }
 
     /// Equation (1) without a damper: `[v1, a1]`, m/s and m/s².
-    pub fn derivative(&self, [cos, _]: Drive, &[x1, v1]: &[f64; 2]) -> [f64; 2] {
+    pub fn derivative(&self, [cos, _]: Excitation, &[x1, v1]: &[f64; 2]) -> [f64; 2] {
         [v1, (cos - self.c1 * v1 - self.k1 * x1) / self.m1]
     }
 
@@ -65,8 +65,8 @@ impl Bare {
         (a, [0.0, 1.0 / self.m1])
     }
 
-    /// `∂y'/∂t`, which only the force makes.
-    pub fn time_derivative(&self, [_, sin]: Drive) -> [f64; 2] {
+    /// `∂y'/∂t`, which is due to the force alone.
+    pub fn time_derivative(&self, [_, sin]: Excitation) -> [f64; 2] {
         [0.0, -self.omega * sin / self.m1]
     }
 
@@ -76,7 +76,7 @@ impl Bare {
         self.omega.max((self.k1 / self.m1).sqrt() + self.c1 / self.m1)
     }
 
-    /// What makes the most of [`Self::rate`], by the names of a study.
+    /// The largest contribution to [`Self::rate`], in the symbols of a study file.
     pub fn fastest(&self) -> &'static str {
         largest([(self.omega, "omega"), ((self.k1 / self.m1).sqrt(), "k1/m1"), (self.c1 / self.m1, "c1/m1")])
     }
@@ -92,20 +92,21 @@ impl Bare {
         [self.m1, self.k1]
     }
 
-    /// The largest `|row · y|` over all states of `√(2 E1) = 1` (the dual norm); infinite if `row` weighs a position that no
-    /// spring holds.
+    /// The largest `|row · y|` over all states of `√(2 E1) = 1` (the dual norm); infinite if `row` weights a position without a
+    /// spring.
     pub fn dual_energy_norm(&self, &[x1, v1]: &[f64; 2]) -> f64 {
         let part = |weight: f64, scale: f64| if weight == 0.0 { 0.0 } else { weight * weight / scale };
         (part(x1, self.k1) + part(v1, self.m1)).sqrt()
     }
 
-    /// Largest growth of `√(2E)`, `P / √m1`, √J/s, with `E` the mechanical energy of the structure and of whatever hangs on it: the
-    /// power of the force is at most `P |v1| <= P √(2E / m1)`, and all else only takes energy.
+    /// Largest growth of `√(2E)`, `P / √m1`, √J/s, with `E` the mechanical energy of the structure and of the damper: the power of
+    /// the force is at most `P |v1| <= P √(2E / m1)`, and everything else only dissipates energy.
     pub fn energy_norm_growth(&self) -> f64 {
         self.p / self.m1.sqrt()
     }
 
-    /// The most energy that the force can give from rest on in `t` seconds, J: `(P t)² / (2 m1)`, see [`Self::energy_norm_growth`].
+    /// The energy bound: the most energy that the force can supply within `t` seconds from rest, J, `(P t)² / (2 m1)`; see
+    /// [`Self::energy_norm_growth`].
     pub fn most_energy(&self, t: f64) -> f64 {
         0.5 * (self.energy_norm_growth() * t).powi(2)
     }
@@ -121,14 +122,22 @@ impl Bare {
     /// With `G` the sum of all forces on the PS but its spring, `dE1/dt = v1 (m1 a1 + k1 x1) = v1 G` and
     /// `d²E1/dt² = a1 G + v1 dG/dt`; here `G = P cos ωt - c1 v1`.
     #[inline]
-    pub fn primary_energy_rates(&self, [cos, sin]: Drive, &[x1, v1]: &[f64; 2]) -> [f64; 3] {
+    pub fn primary_energy_rates(&self, [cos, sin]: Excitation, &[x1, v1]: &[f64; 2]) -> [f64; 3] {
         let g = cos - self.c1 * v1;
         let a1 = (g - self.k1 * x1) / self.m1;
         let g_rate = -self.omega * sin - self.c1 * a1;
         [self.primary_energy(x1, v1), v1 * g, a1 * g + v1 * g_rate]
     }
 }
+
 /// The name of the largest number.
 pub(crate) fn largest<const N: usize>(terms: [(f64, &'static str); N]) -> &'static str {
-    terms.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or("", |(_, name)| name)
+    const { assert!(N > 0, "there is a largest number") };
+    let mut largest = terms[0];
+    for term in terms {
+        if term.0.total_cmp(&largest.0).is_ge() {
+            largest = term;
+        }
+    }
+    largest.1
 }

@@ -3,7 +3,7 @@
 mod energies;
 
 use crate::bare::largest;
-use crate::{Bare, Damper, Drive, Forcing, Primary, hertz_force, hertz_force_slope};
+use crate::{Bare, Damper, Excitation, Forcing, Primary, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
 
 /// The two walls of the cavity.
@@ -54,7 +54,7 @@ impl Coupled {
         }
     }
 
-    /// The same under the force `P cos(ωt + φ)`, φ in rad. Its time begins at 0 as ever.
+    /// The same under the force `P cos(ωt + φ)`, φ in rad. Time still begins at 0.
     #[must_use]
     pub fn with_phase(self, phase: f64) -> Self {
         Self { bare: self.bare.with_phase(phase), ..self }
@@ -66,8 +66,8 @@ impl Coupled {
     }
 
     /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
-    pub fn drive(&self, t: f64) -> Drive {
-        self.bare.drive(t)
+    pub fn excitation(&self, t: f64) -> Excitation {
+        self.bare.excitation(t)
     }
 
     /// The paper's initial state, `[0, 0, D, 0]`.
@@ -93,14 +93,14 @@ impl Coupled {
         self.hertz[side as usize]
     }
 
-    /// `1/m1 + 1/m2`, 1/kg: how a force between the two bodies accelerates them apart.
+    /// `1/m1 + 1/m2`, 1/kg: the relative acceleration of the two bodies per unit of force between them.
     pub fn inverse_effective_mass(&self) -> f64 {
         1.0 / self.bare.m1 + 1.0 / self.m2
     }
 
-    /// Rapprochements `[z1, z2]`, m: positive where the damper presses into the structure, into the obstacle.
+    /// Indentations `[z1, z2]`, m: positive where the damper is in contact with the structure, with the obstacle.
     #[inline]
-    pub fn rapprochement(&self, y: &[f64; 4]) -> [f64; 2] {
+    pub fn indentation(&self, y: &[f64; 4]) -> [f64; 2] {
         let r = y[2] - y[0];
         [-r, r - self.span]
     }
@@ -108,20 +108,25 @@ impl Coupled {
     /// Contact forces `[F_con(z1), F_con(z2)]`, N, none negative.
     #[inline]
     pub fn contact_forces(&self, y: &[f64; 4]) -> [f64; 2] {
-        let [z1, z2] = self.rapprochement(y);
+        let [z1, z2] = self.indentation(y);
         [hertz_force(self.hertz[0], z1), hertz_force(self.hertz[1], z2)]
     }
 
     /// Equation (1): `[v1, a1, v2, a2]`.
     #[inline]
-    pub fn derivative(&self, drive: Drive, y: &[f64; 4]) -> [f64; 4] {
+    pub fn derivative(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 4] {
         let [f1, f2] = self.contact_forces(y);
-        self.derivative_under(drive, y, f1 - f2)
+        self.derivative_under(excitation, y, f1 - f2)
     }
 
     /// Equation (1) under a given net contact force on the damper, `contact = F_con(z1) - F_con(z2)`, N.
     #[inline]
-    pub fn derivative_under(&self, [cos, _]: Drive, &[x1, v1, x2, v2]: &[f64; 4], contact: f64) -> [f64; 4] {
+    pub fn derivative_under(
+        &self,
+        [cos, _]: Excitation,
+        &[x1, v1, x2, v2]: &[f64; 4],
+        contact: f64,
+    ) -> [f64; 4] {
         let Bare { m1, c1, k1, .. } = self.bare;
         let on_damper = contact - self.c2 * (v2 - v1) - self.k2 * (x2 - x1 - self.d);
         [v1, (cos - c1 * v1 - k1 * x1 - on_damper) / m1, v2, on_damper / self.m2]
@@ -140,7 +145,7 @@ impl Coupled {
         omega.max((k1 / m1 + self.k2 * inverse_m).sqrt() + c1 / m1 + self.c2 * inverse_m)
     }
 
-    /// What makes the most of [`Self::rate`], by the names of a study.
+    /// The largest contribution to [`Self::rate`], in the symbols of a study file.
     pub fn fastest(&self) -> &'static str {
         let Bare { m1, c1, k1, omega, .. } = self.bare;
         let (m2, c2, k2) = (self.m2, self.c2, self.k2);
@@ -155,8 +160,8 @@ impl Coupled {
         ])
     }
 
-    /// `√(2E)` of a state, √J, with `E` the mechanical energy of the linear part (no contact). Between contacts dampers only
-    /// take energy, so it grows by at most `P / √m1` a second.
+    /// `√(2E)` of a state, √J, with `E` the mechanical energy of the linear part (no contact). Between contacts damping only
+    /// dissipates energy, so it grows by at most `P / √m1` a second.
     pub fn energy_norm(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> f64 {
         let stretch = x2 - x1 - self.d;
         (2.0 * self.bare.primary_energy(x1, v1) + self.m2 * v2 * v2 + self.k2 * stretch * stretch).sqrt()
@@ -167,8 +172,8 @@ impl Coupled {
         self.bare.energy_norm_growth()
     }
 
-    /// The largest `|row · (y - y0)|` over all states of energy norm 1 (the dual norm); infinite if `row` weighs a coordinate
-    /// that no spring holds.
+    /// The largest `|row · (y - y0)|` over all states of energy norm 1 (the dual norm); infinite if `row` weights a coordinate
+    /// without a spring.
     pub fn dual_energy_norm(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> f64 {
         // In the coordinates x1, v1, stretch, v2 the energy is a sum of squares.
         let part = |weight: f64, scale: f64| if weight == 0.0 { 0.0 } else { weight * weight / scale };
@@ -178,11 +183,11 @@ impl Coupled {
 
     /// Jacobian `∂y'/∂y` of equation (1), contacts included.
     pub fn jacobian(&self, y: &[f64; 4]) -> SMatrix<f64, 4, 4> {
-        let [z1, z2] = self.rapprochement(y);
+        let [z1, z2] = self.indentation(y);
         self.jacobian_with(hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2))
     }
 
-    /// Both contact forces fall with the distance they push back, so `∂(F1 - F2)/∂(x2 - x1) = -slope`.
+    /// Both contact forces act against the indentation, so `∂(F1 - F2)/∂(x2 - x1) = -slope`.
     fn jacobian_with(&self, slope: f64) -> SMatrix<f64, 4, 4> {
         let Bare { m1, c1, k1, .. } = self.bare;
         let (k, c) = (self.k2 + slope, self.c2);
@@ -196,8 +201,8 @@ impl Coupled {
         SMatrix::<f64, 4, 4>::from_row_slice(&rows)
     }
 
-    /// `∂y'/∂t` of equation (1), which only the force makes.
-    pub fn time_derivative(&self, [_, sin]: Drive) -> [f64; 4] {
+    /// `∂y'/∂t` of equation (1), which is due to the force alone.
+    pub fn time_derivative(&self, [_, sin]: Excitation) -> [f64; 4] {
         [0.0, -self.bare.omega * sin / self.bare.m1, 0.0, 0.0]
     }
 

@@ -1,4 +1,4 @@
-//! Hertz's quasi-static contact law: force against rapprochement, `F = K z^(3/2)` for `z > 0`.
+//! Hertz's quasi-static contact law: force against indentation, `F = K z^(3/2)` for `z > 0`.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ pub fn hertz_stiffness(q: f64, radius: f64, surfaces: [(f64, f64); 2]) -> f64 {
     4.0 / 3.0 * q / ((delta(surfaces[0]) + delta(surfaces[1])) * curvature.sqrt())
 }
 
-/// Contact force `H(z) K z^(3/2)`, N; `z` (m) is the rapprochement, zero or negative where the bodies do not touch.
+/// Contact force `H(z) K z^(3/2)`, N; `z` (m) is the indentation, zero or negative where the bodies do not touch.
 #[inline]
 pub fn hertz_force(stiffness: f64, z: f64) -> f64 {
     if z > 0.0 { stiffness * z * z.sqrt() } else { 0.0 }

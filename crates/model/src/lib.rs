@@ -1,26 +1,60 @@
-//! What is true of a damper on a forced oscillator: one copy of each formula of the paper, beside its equation number.
+//! The physics of a damper on a forced oscillator: one copy of each formula of the paper, beside its equation number.
 //!
-//! A heavy *primary structure* (PS; `m1, c1, k1`) is driven by `F(t) = P cos ωt`. A light damper (`m2, c2, k2`) moves in a
+//! A heavy *primary structure* (PS; `m1, c1, k1`) is excited by `F(t) = P cos ωt`. A light damper (`m2, c2, k2`) moves in a
 //! cavity of the PS: it touches the PS where `x2 - x1 <= 0` and the obstacle (the cavity's far wall, which moves with the
 //! PS) where `x2 - x1 >= D + C`. Its spring is at rest at `x2 - x1 = D`.
+//!
+//! [`Scene`] holds the parameters, whose types admit no value out of range. [`Bare`] and [`Coupled`] are equation (1) without and
+//! with a damper: derivatives, energies and their rates, the closed-form steady response ([`Steady`]) and its largest value over a
+//! band of frequencies ([`Worst`]). [`RegularisedContact`] is equation (1) during one contact, without the kink of Hertz's law.
+//!
+//! ```
+//! use retune_model::{Coupled, Scene, Side};
+//!
+//! // The SSVI of the paper's Table 2, in the symbols of the paper and SI units.
+//! let scene: Scene = serde_json::from_str(
+//!     r#"{
+//!         "primary": { "m1": 1000, "c1": 452, "k1": 39500 },
+//!         "forcing": { "P": 800, "omega": 6.28 },
+//!         "damper": {
+//!             "m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36,
+//!             "contact": {
+//!                 "R": 2, "q": 0.318,
+//!                 "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4,
+//!                 "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4
+//!             }
+//!         }
+//!     }"#,
+//! )?;
+//! let system = Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper"));
+//! // Without contact the damper would swing farther than D: it touches the structure.
+//! assert!(system.steady(6.28).stroke() > system.rest_distance());
+//! // 1 mm inside the structure it is pushed away from it.
+//! let [f1, f2] = system.contact_forces(&[0.0, 0.0, system.wall(Side::Primary) - 1e-3, 0.0]);
+//! assert!(f1 > 0.0 && f2 == 0.0);
+//! # Ok::<(), serde_json::Error>(())
+//! ```
 //!
 //! This crate never steps in time, reads files, starts threads or prints. All quantities are in SI units.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod band;
 mod bare;
-mod compression;
 mod coupled;
+mod excitation;
 mod hertz;
+mod regularised;
 mod scene;
 mod steady;
 mod value;
 
 pub use band::Worst;
 pub use bare::Bare;
-pub use compression::{Compressed, Compression, Growth, ORDERS};
 pub use coupled::{Coupled, Side};
+pub use excitation::Excitation;
 pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
+pub use regularised::bounds::{Growth, ORDERS};
+pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Contact, Damper, Forcing, Primary, Scene};
 pub use steady::Steady;
 pub use value::{NonNegative, OutOfRange, PoissonRatio, Positive};
@@ -32,9 +66,3 @@ pub fn energy_ratios(e1_max: f64, e2_max: f64) -> [f64; 2] {
     let total = e1_max + e2_max;
     [e1_max / total, e2_max / total]
 }
-
-/// The harmonic force and its quarter-turn: `[P cos(ωt + φ), P sin(ωt + φ)]`, N.
-///
-/// Every formula below takes this pair instead of `t`, so that a caller who steps in time may turn it by a rotation instead
-/// of calling `cos` at every step.
-pub type Drive = [f64; 2];

@@ -1,4 +1,4 @@
-//! Numbers that cannot be wrong: a type per range, checked once, when the value enters the program.
+//! Numbers within their range: one type for each range, checked once, when the value enters the program.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct OutOfRange {
     /// The refused value.
     pub value: f64,
-    /// What the type allows, in words.
+    /// The values that the type allows, in words.
     pub allowed: &'static str,
 }
 

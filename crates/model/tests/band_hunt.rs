@@ -11,7 +11,7 @@ use retune_model::Worst;
 use scenes::{Numbers, Spread, TMD};
 use twofold::Twofold;
 
-/// What is compared.
+/// The compared quantities.
 #[derive(Clone, Copy, Debug)]
 enum Quantity {
     Energy,

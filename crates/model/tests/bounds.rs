@@ -2,7 +2,7 @@
 
 mod scenes;
 
-use retune_model::{Compressed, Compression, Coupled, Side};
+use retune_model::{Coupled, RegularisedContact, RegularisedState, Side};
 use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED};
 
 const T: f64 = 1.21;
@@ -58,8 +58,8 @@ fn exact_bounds_on_a_piece_are_the_series_with_every_term_by_its_size() {
     for numbers in [SSVI, ROW1, TWO_SIDED, driven] {
         let system = numbers.coupled();
         for side in Side::BOTH {
-            let mut equations = system.compression(side);
-            equations.set_drive(0.0, system.drive(T));
+            let mut equations = system.regularised_contact(side);
+            equations.set_excitation(0.0, system.excitation(T));
             let [q, w, x, v] = [0.05, 0.8, 0.1, 0.6].map(|size| size * spread.logarithmic(0.3, 1.0));
             let state = [q, -w, x, -v, 0.0];
             let expected = picard(&numbers, &system, side, [q, w, x, v]);
@@ -86,7 +86,7 @@ fn exact_bounds_over_a_contact_add_up_every_cause() {
     for numbers in [SSVI, ROW1, TWO_SIDED, strong] {
         let system = numbers.coupled();
         for side in Side::BOTH {
-            let equations = system.compression(side);
+            let equations = system.regularised_contact(side);
             let Numbers { m1, c1, k1, k2, c2, p, omega, .. } = numbers;
             let (w0, x1, v1, duration): (f64, f64, f64, f64) = (0.7, 0.04, 0.3, 1e-3);
             let q0 = equations.greatest_depth(w0);
@@ -128,8 +128,9 @@ fn exact_bounds_over_a_contact_add_up_every_cause() {
 }
 
 /// One step of the classical Runge–Kutta method in `θ`.
-fn advance(equations: &Compression, y: &Compressed, h: f64) -> Compressed {
-    let along = |k: &Compressed, h: f64| -> Compressed { std::array::from_fn(|i| y[i] + h * k[i]) };
+fn advance(equations: &RegularisedContact, y: &RegularisedState, h: f64) -> RegularisedState {
+    let along =
+        |k: &RegularisedState, h: f64| -> RegularisedState { std::array::from_fn(|i| y[i] + h * k[i]) };
     let a = equations.derivative(y);
     let b = equations.derivative(&along(&a, 0.5 * h));
     let c = equations.derivative(&along(&b, 0.5 * h));
@@ -151,8 +152,8 @@ fn invariant_no_contact_leaves_its_bounds() {
             ..SSVI
         };
         let (system, side) = (numbers.coupled(), Side::BOTH[usize::from(spread.unit() < 0.5)]);
-        let mut equations = system.compression(side);
-        equations.set_drive(0.0, system.drive(T));
+        let mut equations = system.regularised_contact(side);
+        equations.set_excitation(0.0, system.excitation(T));
         let speed = spread.logarithmic(0.05, 2.0);
         let touch = [0.0, speed, 0.1 * spread.signed(), 0.6 * spread.signed(), 0.0];
         let depth = equations.greatest_depth(speed);
@@ -168,7 +169,7 @@ fn invariant_no_contact_leaves_its_bounds() {
         bounded += 1;
         let beyond = side.sign() * (system.wall(side) - numbers.d);
         let accelerations =
-            |y: &Compressed| (equations.derivative(y)[3] / y[0].max(1e-300), equations.acceleration(y));
+            |y: &RegularisedState| (equations.derivative(y)[3] / y[0].max(1e-300), equations.acceleration(y));
         for pair in states[1..].windows(2) {
             let [q, w, x1, v1, t] = pair[0];
             let [(a, rate), (next_a, next_rate)] = [accelerations(&pair[0]), accelerations(&pair[1])];
@@ -190,7 +191,7 @@ fn invariant_no_contact_leaves_its_bounds() {
 /// A force too strong for the argument is told, and so is one that is no number.
 #[test]
 fn contract_no_bound_is_given_where_none_is_proven() {
-    let equations = SSVI.coupled().compression(Side::Primary);
+    let equations = SSVI.coupled().regularised_contact(Side::Primary);
     let touch = [0.0, 0.7, 0.0, 0.0, 0.0];
     let depth = equations.greatest_depth(0.7);
     for amplitude in [1e9, 1e12, f64::NAN] {

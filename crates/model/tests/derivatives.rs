@@ -7,7 +7,7 @@ use scenes::{ROW1, SSVI, Spread, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
 
-/// Spacing of the differences, small beside a rapprochement of millimetres.
+/// Spacing of the differences, small beside a indentation of millimetres.
 const H: f64 = 3e-5;
 
 /// Random states: in flight, pressed into the structure, pressed into the obstacle.
@@ -39,12 +39,12 @@ fn assert_close(found: f64, expected: f64, size: f64, tolerance: f64, what: &str
 fn exact_jacobian_is_the_derivative_of_equation_1() {
     for numbers in [SSVI, ROW1, TWO_SIDED] {
         let system = numbers.coupled();
-        let drive = system.drive(T);
+        let excitation = system.excitation(T);
         for y in states(&system) {
             let jacobian = system.jacobian(&y);
             for j in 0..4 {
                 let unit: [f64; 4] = std::array::from_fn(|i| f64::from(i == j));
-                let column = slope(H, |s| system.derivative(drive, &along(&y, &unit, s)));
+                let column = slope(H, |s| system.derivative(excitation, &along(&y, &unit, s)));
                 for i in 0..4 {
                     let size = jacobian.row(i).amax();
                     assert_close(column[i], jacobian[(i, j)], size, 1e-7, &format!("J[{i}][{j}] at {y:?}"));
@@ -60,18 +60,24 @@ fn exact_linear_part_is_the_jacobian_in_flight() {
     let (a, b) = system.linear_part();
     let y = [0.02, -0.3, 0.11, 0.4];
     assert_eq!(a, system.jacobian(&y));
-    let drive = system.drive(T);
+    let excitation = system.excitation(T);
     let deviation = nalgebra::SVector::from(y) - nalgebra::SVector::from(system.rest());
-    let expected = system.derivative(drive, &y);
+    let expected = system.derivative(excitation, &y);
     for i in 0..4 {
-        assert_close((a * deviation)[i] + b[i] * drive[0], expected[i], 10.0, 1e-15, "A y + b P cos ωt");
+        assert_close((a * deviation)[i] + b[i] * excitation[0], expected[i], 10.0, 1e-15, "A y + b P cos ωt");
     }
 
     let bare = SSVI.bare();
     let (a, b) = bare.linear_part();
-    let (y, drive) = ([0.02, -0.3], bare.drive(T));
-    for (i, expected) in bare.derivative(drive, &y).into_iter().enumerate() {
-        assert_close((a * nalgebra::SVector::from(y))[i] + b[i] * drive[0], expected, 1.0, 1e-15, "bare");
+    let (y, excitation) = ([0.02, -0.3], bare.excitation(T));
+    for (i, expected) in bare.derivative(excitation, &y).into_iter().enumerate() {
+        assert_close(
+            (a * nalgebra::SVector::from(y))[i] + b[i] * excitation[0],
+            expected,
+            1.0,
+            1e-15,
+            "bare",
+        );
     }
 }
 
@@ -79,11 +85,11 @@ fn exact_linear_part_is_the_jacobian_in_flight() {
 fn exact_time_derivative_of_equation_1() {
     let (system, bare) = (SSVI.coupled(), SSVI.bare());
     let y = [0.02, -0.3, 0.11, 0.4];
-    let found = system.time_derivative(system.drive(T));
-    let expected = slope(1e-3, |s| system.derivative(system.drive(T + s), &y));
+    let found = system.time_derivative(system.excitation(T));
+    let expected = slope(1e-3, |s| system.derivative(system.excitation(T + s), &y));
     (0..4).for_each(|i| assert_close(found[i], expected[i], 5.0, 1e-12, "coupled"));
-    let found = bare.time_derivative(bare.drive(T));
-    let expected = slope(1e-3, |s| bare.derivative(bare.drive(T + s), &[y[0], y[1]]));
+    let found = bare.time_derivative(bare.excitation(T));
+    let expected = slope(1e-3, |s| bare.derivative(bare.excitation(T + s), &[y[0], y[1]]));
     (0..2).for_each(|i| assert_close(found[i], expected[i], 5.0, 1e-12, "bare"));
 }
 
@@ -92,13 +98,13 @@ fn exact_time_derivative_of_equation_1() {
 fn invariant_energy_balance() {
     for numbers in [SSVI, ROW1, TWO_SIDED] {
         let system = numbers.coupled();
-        let drive = system.drive(T);
+        let excitation = system.excitation(T);
         for y in states(&system) {
-            let f = system.derivative(drive, &y);
+            let f = system.derivative(excitation, &y);
             let h = H / f[3].abs().max(f[1].abs()).max(3.0); // velocities differ by H, positions by less
             let [rate] = slope(h, |s| [system.total_energy(&along(&y, &f, s))]);
             let [_, v1, _, v2] = y;
-            let power = drive[0] * v1 - numbers.c1 * v1 * v1 - numbers.c2 * (v2 - v1) * (v2 - v1);
+            let power = excitation[0] * v1 - numbers.c1 * v1 * v1 - numbers.c2 * (v2 - v1) * (v2 - v1);
             let size = numbers.m2 * (f[3] * v2).abs() + numbers.m1 * (f[1] * v1).abs() + power.abs();
             assert_close(rate, power, size, 1e-7, &format!("dE/dt at {y:?}"));
         }
@@ -108,10 +114,10 @@ fn invariant_energy_balance() {
 /// `[value, rate, rate of rate]` along the flow.
 fn assert_rates(system: &Coupled, name: &str, rates: impl Fn([f64; 2], &[f64; 4]) -> [f64; 3]) {
     for y in states(system) {
-        let f = system.derivative(system.drive(T), &y);
+        let f = system.derivative(system.excitation(T), &y);
         let h = H / f[3].abs().max(f[1].abs()).max(3.0);
-        let differences = slope(h, |s| rates(system.drive(T + s), &along(&y, &f, s)));
-        let [value, first, second] = rates(system.drive(T), &y);
+        let differences = slope(h, |s| rates(system.excitation(T + s), &along(&y, &f, s)));
+        let [value, first, second] = rates(system.excitation(T), &y);
         assert_close(first, differences[0], first.abs() + value.abs(), 1e-7, &format!("d{name}/dt at {y:?}"));
         assert_close(
             second,
@@ -127,9 +133,9 @@ fn assert_rates(system: &Coupled, name: &str, rates: impl Fn([f64; 2], &[f64; 4]
 fn exact_rates_of_the_observed_quantities() {
     for numbers in [SSVI, ROW1, TWO_SIDED] {
         let system = numbers.coupled();
-        assert_rates(&system, "E1", |drive, y| system.primary_energy_rates(drive, y));
-        assert_rates(&system, "E2", |drive, y| system.damper_energy_rates(drive, y));
-        assert_rates(&system, "r", |drive, y| system.relative_position_rates(drive, y));
+        assert_rates(&system, "E1", |excitation, y| system.primary_energy_rates(excitation, y));
+        assert_rates(&system, "E2", |excitation, y| system.damper_energy_rates(excitation, y));
+        assert_rates(&system, "r", |excitation, y| system.relative_position_rates(excitation, y));
     }
 }
 
@@ -137,9 +143,9 @@ fn exact_rates_of_the_observed_quantities() {
 fn exact_rates_of_the_bare_energy() {
     let bare = SSVI.bare();
     let y = [0.05, 0.4];
-    let f = bare.derivative(bare.drive(T), &y);
+    let f = bare.derivative(bare.excitation(T), &y);
     let rates =
-        |s: f64| bare.primary_energy_rates(bare.drive(T + s), &std::array::from_fn(|i| y[i] + s * f[i]));
+        |s: f64| bare.primary_energy_rates(bare.excitation(T + s), &std::array::from_fn(|i| y[i] + s * f[i]));
     let (found, differences) = (rates(0.0), slope(1e-3, rates));
     assert_close(found[0], 0.5 * (1000.0 * 0.16 + 3.95e4 * 0.0025), 1.0, 1e-12, "E1");
     assert_close(found[1], differences[0], found[1].abs(), 1e-10, "dE1/dt");

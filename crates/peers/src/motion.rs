@@ -52,16 +52,16 @@ impl Equations {
             "does not end: {MOST_EVALUATIONS} evaluations, at t = {t} s"
         );
         let Some(coupled) = &self.coupled else {
-            let [v, a] = self.bare.derivative(self.bare.drive(t), &[y[0], y[1]]);
+            let [v, a] = self.bare.derivative(self.bare.excitation(t), &[y[0], y[1]]);
             return [v, a, 0.0, 0.0];
         };
-        let drive = coupled.drive(t);
+        let excitation = coupled.excitation(t);
         match self.acting {
-            Acting::Any => coupled.derivative(drive, y),
-            Acting::None => coupled.derivative_under(drive, y, 0.0),
+            Acting::Any => coupled.derivative(excitation, y),
+            Acting::None => coupled.derivative_under(excitation, y, 0.0),
             Acting::Only(side) => {
-                let z = coupled.rapprochement(y)[side as usize];
-                coupled.derivative_under(drive, y, -side.sign() * hertz_force(coupled.hertz(side), z))
+                let z = coupled.indentation(y)[side as usize];
+                coupled.derivative_under(excitation, y, -side.sign() * hertz_force(coupled.hertz(side), z))
             }
         }
     }
@@ -82,7 +82,7 @@ impl Equations {
     /// What keeps the phase going: an event is a fall of one of these through zero.
     pub fn open(&self, y: &[f64; 4]) -> [f64; 2] {
         let Some(coupled) = &self.coupled else { return [1.0; 2] };
-        let z = coupled.rapprochement(y);
+        let z = coupled.indentation(y);
         match self.acting {
             Acting::Any => [1.0; 2],
             Acting::None => [-z[0], -z[1]],
@@ -110,14 +110,14 @@ impl Equations {
     /// `[E1, dE1/dt, d²E1/dt²]`.
     fn energy(&self, t: f64, y: &[f64; 4]) -> [f64; 3] {
         match &self.coupled {
-            Some(coupled) => coupled.primary_energy_rates(coupled.drive(t), y),
-            None => self.bare.primary_energy_rates(self.bare.drive(t), &[y[0], y[1]]),
+            Some(coupled) => coupled.primary_energy_rates(coupled.excitation(t), y),
+            None => self.bare.primary_energy_rates(self.bare.excitation(t), &[y[0], y[1]]),
         }
     }
 
     /// The walls that a state presses into.
     fn pressed(&self, y: &[f64; 4]) -> [bool; 2] {
-        self.coupled.map_or([false; 2], |c| c.rapprochement(y).map(|z| z > 0.0))
+        self.coupled.map_or([false; 2], |c| c.indentation(y).map(|z| z > 0.0))
     }
 }
 

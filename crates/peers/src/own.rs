@@ -3,14 +3,8 @@
 use crate::record::Found;
 use crate::scenes::Case;
 use retune_model::Coupled;
-use retune_solver::dop853::Dop853;
-use retune_solver::euler::Euler;
+use retune_solver::methods::{Dop853, Euler, Ode23, Ode23s, Ode45, Rk4, Run};
 use retune_solver::observe::Observer;
-use retune_solver::ode23::Ode23;
-use retune_solver::ode23s::Ode23s;
-use retune_solver::ode45::Ode45;
-use retune_solver::onestep::Run;
-use retune_solver::rk4::Rk4;
 use retune_solver::{
     Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError, Window, e1_max, simulate, touch_downs,
 };

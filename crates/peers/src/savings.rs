@@ -3,7 +3,7 @@
 use crate::own::shortest_of;
 use crate::scenes::{Case, Numbers, SSVI, TMD, scene};
 use retune_model::{Coupled, OutOfRange, Scene};
-use retune_solver::observe::{Peak, PrimaryEnergy, Unobserved};
+use retune_solver::observe::{PrimaryEnergy, RunningMaximum, Unobserved};
 use retune_solver::{Hybrid, Motion, Phase, SceneKind, Settings, Window, e1_max, simulate};
 use std::error::Error;
 
@@ -49,7 +49,7 @@ pub fn savings(cases: &[Case]) -> Result<Vec<Saving>, Box<dyn Error>> {
         let damper = scene.damper.or(free.damper).ok_or("no damper")?;
         let full = || {
             let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
-            let mut peak = Peak::new(PrimaryEnergy::new(&system), f64::INFINITY);
+            let mut peak = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
             let start = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
             let mut hybrid = Hybrid::new(&system, settings.rtol, window.to, settings.max_steps);
             let begin = if window.from > 0.0 {

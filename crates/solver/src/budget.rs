@@ -1,60 +1,34 @@
 //! How many steps a run may take.
 
-use crate::settings::SolverError;
-use std::fmt;
+use crate::error::{Remedy, SolverError};
 
-/// Steps after which a run is asked whether it gets anywhere.
+/// Steps after which the progress of a run is checked.
 const LOOK: u64 = 1 << 18;
 
-/// So few steps tell nothing of a run: a limit below is to be raised.
+/// With fewer steps than this the rate of a run is unknown: the remedy is a higher limit.
 const FEW: u64 = 1000;
 
-/// A run that would take more than so many times the steps it may take is hopeless. Less could be a burst of contacts after which
-/// the motion calms down.
+/// A run that would need more than this many times its limit is given up. Less may be a burst of contacts that ends.
 const HOPELESS: f64 = 100.0;
 
-/// The one thing that helps a run that cannot end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remedy {
-    /// It is the length of the run, and no step, that is out of all proportion.
-    ShorterRun,
-    /// Flight steps follow from what is fastest: ω, or a stiffness or a damping over a mass, by the names of a study.
-    Slower(&'static str),
-    /// Contacts take the steps.
-    LessForce,
-    /// Another method takes more steps than the hybrid, which also tells the cause if it cannot finish either.
-    Hybrid,
-}
-
-impl fmt::Display for Remedy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Remedy::ShorterRun => write!(f, "shorten T"),
-            Remedy::Slower(fastest) => write!(f, "lower {fastest}, which makes the motion this fast"),
-            Remedy::LessForce => write!(f, "lower P: nearly all steps are those of contacts"),
-            Remedy::Hybrid => write!(f, "choose the hybrid solver"),
-        }
-    }
-}
-
-/// What sets the steps of a run.
+/// How a run chooses its steps.
 #[derive(Clone, Copy, Debug)]
 pub enum Pace {
-    /// Exact flights: each step takes so many seconds, because of what is fastest. Steps beyond these are those of contacts.
+    /// Exact flight: steps of fixed length, set by the fastest rate of the system. All further steps are those of contacts.
     Flight {
         /// Length of a step, s.
         step: f64,
-        /// What sets it, by the names of a study.
+        /// The rate that sets it, in the symbols of a study file.
         fastest: &'static str,
     },
-    /// Whatever a general method chooses.
+    /// The error estimate of a general method.
     Steps,
 }
 
 impl Pace {
-    /// What helps a run to time `to` (s) that takes steps of `mean` seconds.
+    /// The remedy for a run to time `to` (s) that takes steps of `mean` seconds.
     ///
-    /// One of the two is out of proportion: the one that is more orders of magnitude from a second.
+    /// Either the run is too long or its step too short: whichever is more orders of magnitude away from a second.
     pub fn remedy(self, to: f64, mean: f64) -> Remedy {
         match self {
             _ if to * mean > 1.0 => Remedy::ShorterRun,
@@ -65,11 +39,11 @@ impl Pace {
     }
 }
 
-/// The steps that a stretch of a run may take, and how far they must bring it.
+/// The number of steps that a stretch of a run may take, and the progress that they must make.
 ///
-/// Which runs are too long cannot be told beforehand: the steps of a damper that bounces follow from the motion. So a run is
-/// refused when it has taken all its steps, and after 262,144 already if at its rate it would need a hundred times as many as it
-/// may take (or a hundred times 262,144, if it may take fewer). Raising `max_steps` raises both.
+/// The number of steps that a bouncing damper needs is not known beforehand. So a run is refused once it has used up its steps, and
+/// after 262,144 steps if at its present rate it would need a hundred times its limit (or a hundred times 262,144, if the limit is
+/// lower). Raising `max_steps` raises both.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     pace: Pace,
@@ -86,7 +60,7 @@ impl Budget {
         Self { pace, limit, begun, span }
     }
 
-    /// Looks at a run that has come to `t` (s) in so many steps.
+    /// Checks a run that has reached `t` (s) after `steps` steps.
     ///
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`].
@@ -146,7 +120,7 @@ mod tests {
         assert_eq!(FLIGHT.remedy(100.0, 0.0), Remedy::LessForce);
     }
 
-    /// A stretch is asked whether it gets anywhere by its own steps: those before it do not hurry it.
+    /// The progress of a stretch is judged by its own steps, not by those before it.
     #[test]
     fn exact_a_budget_counts_the_steps_of_its_stretch() {
         let budget = Budget::new(FLIGHT, 1_000_000, 200_000, [10.0, 20.0]);
@@ -157,7 +131,7 @@ mod tests {
         assert!(budget.check(500_000, 10.0 + 10.0 / 334.0).is_err());
     }
 
-    /// A limit that is too low for any run is to be raised.
+    /// A limit that is too low for any run leads to `TooManySteps`, which advises a higher one.
     #[test]
     fn exact_few_steps_tell_nothing_of_a_run() {
         let budget = Budget::new(FLIGHT, 3, 0, [0.0, 100.0]);

@@ -1,7 +1,7 @@
-//! What a solver needs to know of a system. The only file here that meets the model's equations by name.
+//! The solver's view of a system: right-hand side, linear part, energy norm. Only this file knows the model's equations.
 
 use nalgebra::{Complex, SMatrix};
-use retune_model::{Bare, Coupled, Drive};
+use retune_model::{Bare, Coupled, Excitation};
 
 /// A first-order system `y' = f(t, y)` of `N` equations that general-purpose methods can integrate.
 pub trait System<const N: usize> {
@@ -11,12 +11,12 @@ pub trait System<const N: usize> {
     fn jacobian(&self, t: f64, y: &[f64; N]) -> SMatrix<f64, N, N>;
     /// `∂f/∂t`.
     fn time_derivative(&self, t: f64, y: &[f64; N]) -> [f64; N];
-    /// The force on the system at `t`, handed on to observers with every state.
-    fn drive(&self, _t: f64) -> Drive {
+    /// The force on the system at `t`, which observers receive with every state.
+    fn excitation(&self, _t: f64) -> Excitation {
         [0.0; 2]
     }
-    /// How far the system has pressed into each wall: a contact begins and ends where a component crosses zero.
-    fn rapprochement(&self, _y: &[f64; N]) -> [f64; 2] {
+    /// The indentation of each wall: a contact begins and ends where a component crosses zero.
+    fn indentation(&self, _y: &[f64; N]) -> [f64; 2] {
         [-1.0; 2]
     }
 }
@@ -48,7 +48,7 @@ pub struct Linear<const N: usize> {
     pub frequency: f64,
     /// A bound on the norm of `A` in the energy norm and on ω, 1/s: the flow has no shorter time scale than its inverse.
     pub rate: f64,
-    /// What makes the most of it, by the names of a study.
+    /// Its largest contribution, in the symbols of a study file.
     pub fastest: &'static str,
 }
 
@@ -58,34 +58,34 @@ fn columns<const N: usize>(a: &SMatrix<f64, N, N>) -> [[f64; N]; N] {
 
 impl System<2> for Bare {
     fn derivative(&self, t: f64, y: &[f64; 2]) -> [f64; 2] {
-        Bare::derivative(self, Bare::drive(self, t), y)
+        Bare::derivative(self, Bare::excitation(self, t), y)
     }
     fn jacobian(&self, _t: f64, _y: &[f64; 2]) -> SMatrix<f64, 2, 2> {
         self.linear_part().0
     }
     fn time_derivative(&self, t: f64, _y: &[f64; 2]) -> [f64; 2] {
-        Bare::time_derivative(self, Bare::drive(self, t))
+        Bare::time_derivative(self, Bare::excitation(self, t))
     }
-    fn drive(&self, t: f64) -> Drive {
-        Bare::drive(self, t)
+    fn excitation(&self, t: f64) -> Excitation {
+        Bare::excitation(self, t)
     }
 }
 
 impl System<4> for Coupled {
     fn derivative(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
-        Coupled::derivative(self, Coupled::drive(self, t), y)
+        Coupled::derivative(self, Coupled::excitation(self, t), y)
     }
     fn jacobian(&self, _t: f64, y: &[f64; 4]) -> SMatrix<f64, 4, 4> {
         Coupled::jacobian(self, y)
     }
     fn time_derivative(&self, t: f64, _y: &[f64; 4]) -> [f64; 4] {
-        Coupled::time_derivative(self, Coupled::drive(self, t))
+        Coupled::time_derivative(self, Coupled::excitation(self, t))
     }
-    fn drive(&self, t: f64) -> Drive {
-        Coupled::drive(self, t)
+    fn excitation(&self, t: f64) -> Excitation {
+        Coupled::excitation(self, t)
     }
-    fn rapprochement(&self, y: &[f64; 4]) -> [f64; 2] {
-        Coupled::rapprochement(self, y)
+    fn indentation(&self, y: &[f64; 4]) -> [f64; 2] {
+        Coupled::indentation(self, y)
     }
 }
 

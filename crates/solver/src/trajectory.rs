@@ -1,8 +1,11 @@
 //! A motion as rows: at equal intervals, and at the moments that lie between them.
 
-use crate::follow::{follow_bare, follow_coupled};
-use crate::observe::{Knot, Observer, Segment, Unobserved};
-use crate::settings::{Settings, SolverError, Window};
+use crate::error::SolverError;
+use crate::motion::knot::Knot;
+use crate::motion::segment::Segment;
+use crate::observe::observer::{Observer, Unobserved};
+use crate::run::{follow_bare, follow_coupled};
+use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Scene, Side};
 
 /// Why a moment of the motion is recorded.
@@ -12,7 +15,7 @@ pub enum Moment {
     Grid,
     /// The damper touches a wall.
     TouchDown,
-    /// The force of a contact is at a maximum: a contact of some milliseconds has one, a long press may have several.
+    /// The force of a contact is at a maximum: a contact of some milliseconds has one, a sustained contact may have several.
     ForceMax,
     /// The damper leaves a wall.
     LiftOff,
@@ -50,7 +53,7 @@ pub struct Sample {
     pub moment: Moment,
 }
 
-/// What is recorded of the motion in a window.
+/// The moments to record within a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rows {
     /// Time between two moments of [`Moment::Grid`], s.
@@ -69,8 +72,8 @@ impl Rows {
 /// Visits the motion in the order of time at `window.from + k interval` (s) for `k = 0, 1, …` up to the end of the window and, if
 /// they are asked for, at the other moments of [`Moment`].
 ///
-/// Touch-downs and lift-offs are those that the method locates; one that steps over them tells of them at the end of its step.
-/// Maxima are located to rounding on the motion of the method, which is looked at four times a step.
+/// Touch-downs and lift-offs are those that the method locates; a method that steps over them reports them at the end of its step.
+/// Maxima are located to rounding on the motion of the method, which is sampled four times a step.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached; samples before that have been visited.
@@ -96,12 +99,12 @@ pub fn trajectory(
     Ok(())
 }
 
-/// What is recorded of a system.
+/// The recorded quantities of a system.
 trait Recorded<const N: usize> {
     fn sample(&self, knot: &Knot<N>, moment: Moment) -> Sample;
     /// dE1/dt, W.
     fn power(&self, knot: &Knot<N>) -> f64;
-    /// How deep the damper is in a wall, m, and how fast it goes deeper, m/s.
+    /// The indentation of a wall, m, and its rate, m/s.
     fn depth(&self, knot: &Knot<N>, side: Side) -> [f64; 2];
 }
 
@@ -112,7 +115,7 @@ impl Recorded<2> for Bare {
         Sample { t: knot.t, state: [x1, v1, 0.0, 0.0], e1, e2: 0.0, forces: [0.0; 2], moment }
     }
     fn power(&self, knot: &Knot<2>) -> f64 {
-        self.primary_energy_rates(knot.drive, &knot.y)[1]
+        self.primary_energy_rates(knot.excitation, &knot.y)[1]
     }
     fn depth(&self, _knot: &Knot<2>, _side: Side) -> [f64; 2] {
         [f64::NEG_INFINITY, 0.0]
@@ -125,16 +128,16 @@ impl Recorded<4> for Coupled {
             t: knot.t,
             state: knot.y,
             e1: self.bare().primary_energy(knot.y[0], knot.y[1]),
-            e2: self.damper_energy_rates(knot.drive, &knot.y)[0],
+            e2: self.damper_energy_rates(knot.excitation, &knot.y)[0],
             forces: self.contact_forces(&knot.y),
             moment,
         }
     }
     fn power(&self, knot: &Knot<4>) -> f64 {
-        self.primary_energy_rates(knot.drive, &knot.y)[1]
+        self.primary_energy_rates(knot.excitation, &knot.y)[1]
     }
     fn depth(&self, knot: &Knot<4>, side: Side) -> [f64; 2] {
-        [self.rapprochement(&knot.y)[side as usize], side.sign() * (knot.y[3] - knot.y[1])]
+        [self.indentation(&knot.y)[side as usize], side.sign() * (knot.y[3] - knot.y[1])]
     }
 }
 
@@ -146,11 +149,11 @@ struct Recorder<'a, S, const N: usize> {
     visit: &'a mut dyn FnMut(&Sample),
     /// The end of the last piece.
     last: Option<Knot<N>>,
-    /// The wall that the damper is pressed into, and the deepest that it has been.
+    /// The wall in contact, and the largest indentation of this contact.
     pressed: Option<(Side, f64)>,
 }
 
-/// Share of the greatest depth of a contact that is none any more.
+/// Share of the largest indentation below which a contact has ended.
 const LEFT: f64 = 1e-9;
 
 impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
@@ -183,7 +186,7 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             }
         };
         maxima(&|knot| self.system.power(knot), Moment::EnergyMax);
-        // A damper that rests on a wall from the start is pressed into it without a touch-down.
+        // A damper that rests on a wall from the start is in contact without a touch-down.
         let depth = |side: Side| knots.map(|knot| self.system.depth(&knot, side)[0]);
         let deepest = |side: Side| depth(side).into_iter().fold(0.0, f64::max);
         let pressed = self
@@ -191,7 +194,7 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             .or_else(|| Side::BOTH.into_iter().find(|&side| deepest(side) > 1e-12).map(|side| (side, 0.0)));
         if let Some((side, before)) = pressed {
             maxima(&|knot| self.system.depth(knot, side)[1], Moment::ForceMax);
-            // Not what arithmetic leaves of a depth of zero.
+            // Rounding makes no contact.
             moments.retain(|(knot, moment)| {
                 *moment != Moment::ForceMax || self.system.depth(knot, side)[0] > 0.0
             });

@@ -40,7 +40,7 @@ proptest! {
         Anything::new(&draws).check();
     }
 
-    /// What is written is read again to the last bit.
+    /// A scene that is written and read again is the same to the last bit.
     #[test]
     fn invariant_any_scene_is_read_as_it_was_written(draws in draws(1.0)) {
         let scene = Anything::new(&draws).scene;
@@ -87,7 +87,7 @@ fn apart(a: f64, b: f64) -> f64 {
 fn reference_contacts_that_other_forces_rule_agree_with_dop853() {
     let base = Numbers { p: 1.0, ..SSVI };
     for numbers in [
-        // A light structure with a strong dashpot drags a heavy damper: a press that fades for seconds.
+        // A light structure with a strong dashpot drags a heavy damper: a sustained contact that takes seconds to end.
         Numbers {
             m1: 442.5,
             c1: 4.761e5,
@@ -212,7 +212,7 @@ fn regress_an_infinite_energy_is_an_error() {
     assert!(matches!(found, Err(SolverError::Unstable { t }) if t <= window.to), "{found:?}");
 }
 
-/// Found by the fuzzer: a damper that rests on a wall at t = 0 and is pressed was called linear, for it never touches down.
+/// Found by the fuzzer: a damper that rests on a wall at t = 0 and is in contact was called linear, because it never touches down.
 #[test]
 fn regress_a_damper_that_rests_on_a_wall_is_in_contact() {
     let scene = Numbers { d: 0.0, ..SSVI }.scene();

@@ -46,7 +46,7 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
         for step in 1..8 {
             let s = f64::from(step) / 8.0;
             let knot = segment.at(from + s * (to - from));
-            let value = self.quantity.rates(knot.drive, &knot.y)[0];
+            let value = self.quantity.rates(knot.excitation, &knot.y)[0];
             let error = (value - quintic(to - from, a, b, s)).abs();
             // A contact's interior is as exact as its steps.
             let rounding = if kind == 1 { 1e-10 } else { 1e-12 } * size + 1e-20;
@@ -56,7 +56,7 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
                     self.used[kind] = self.used[kind].max(error / bound);
                 }
             }
-            let [_, _, curvature] = self.quantity.rates(knot.drive, &knot.y);
+            let [_, _, curvature] = self.quantity.rates(knot.excitation, &knot.y);
             assert!(curvature.abs() <= self.second * (1.0 + 1e-9), "{curvature:e} {:e}", self.second);
         }
     }

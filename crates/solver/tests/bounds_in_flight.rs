@@ -16,7 +16,7 @@ struct Errors<Q> {
 
 impl<Q: Quantity<4>> Observer<4> for Errors<Q> {
     fn segment(&mut self, segment: &impl Segment<4>) {
-        // What the bounds of contacts rest on is tested where it is made (`retune_model::Compression::growth`).
+        // The bounds in contacts are tested beside their definition (`retune_model::RegularisedContact::growth`).
         if !segment.in_flight() {
             return;
         }

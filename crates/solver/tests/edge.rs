@@ -6,8 +6,8 @@ mod problems;
 use problems::linear::Joined;
 use problems::scenes::{Numbers, SSVI, TMD, TWO_SIDED};
 use problems::{Watch, assert_close, assert_states};
-use retune_model::{Coupled, Drive, Side};
-use retune_solver::observe::{DamperEnergy, Form, Peak, PrimaryEnergy, Quantity, RelativePosition};
+use retune_model::{Coupled, Excitation, Side};
+use retune_solver::observe::{DamperEnergy, Form, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum};
 use retune_solver::{
     Hybrid, Method, Motion, Phase, Response, Rows, SceneKind, Settings, SolverError, Window, e1_max,
     simulate, trajectory,
@@ -56,7 +56,7 @@ fn assert_agrees(numbers: &Numbers, to: f64, tolerance: f64) -> Response {
 /// The least `x2 - x1` of a run whose walls are out of reach, less `D`, and when.
 fn farthest_inward(numbers: &Numbers, to: f64) -> (f64, f64) {
     let system = Numbers { d: 100.0, c: 100.0, ..*numbers }.coupled();
-    let mut peak = Peak::new(RelativePosition::new(&system, -1.0), f64::INFINITY);
+    let mut peak = RunningMaximum::new(RelativePosition::new(&system, -1.0), f64::INFINITY);
     let mut hybrid = Hybrid::new(&system, 1e-12, to, 1_000_000);
     let begin = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     hybrid.propagate(begin, to, &mut peak).expect("a run");
@@ -75,7 +75,7 @@ fn exact_grazes_by_shooting_on_the_distance() {
     let state = linear.after(0.0, [0.0, 0.0, numbers.d, 0.0], at);
     let turn = {
         let shifted = [state[0], state[1], state[2] - numbers.d + reach, state[3]];
-        system.relative_position_rates(system.drive(at), &shifted)[2]
+        system.relative_position_rates(system.excitation(at), &shifted)[2]
     };
     assert!(turn > 1.0, "{turn}");
     for speed in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
@@ -139,7 +139,7 @@ fn exact_resting_on_a_wall() {
         Numbers { d: 0.0, c: 0.0, ..soft },
         Numbers { d: 0.1, c: 0.0, ..soft },
         Numbers { d: 0.0, c: 1e-9, ..soft },
-        // Pressed on for a long time: a soft contact and a strong push.
+        // A sustained contact: a soft wall and a strong push.
         Numbers { d: 0.0, c: 5.0, r: 1e-10, ..soft },
         Numbers { d: 0.0, c: 5.0, k2: 6000.0, c2: 2000.0, ..soft },
     ] {
@@ -380,9 +380,9 @@ fn exact_wild_parameters_never_give_nonsense() {
 struct Counted<'a, Q>(Q, &'a std::cell::Cell<u64>);
 
 impl<Q: Quantity<4>> Quantity<4> for Counted<'_, Q> {
-    fn rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
+    fn rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
         self.1.set(self.1.get() + 1);
-        self.0.rates(drive, y)
+        self.0.rates(excitation, y)
     }
     fn form(&self) -> &Form<4> {
         self.0.form()
@@ -391,7 +391,7 @@ impl<Q: Quantity<4>> Quantity<4> for Counted<'_, Q> {
 
 fn assert_few_looks(system: &Coupled, quantity: impl Quantity<4>) {
     let looks = std::cell::Cell::new(0_u64);
-    let mut peak = Peak::new(Counted(quantity, &looks), f64::INFINITY);
+    let mut peak = RunningMaximum::new(Counted(quantity, &looks), f64::INFINITY);
     let mut hybrid = Hybrid::new(system, 1e-10, 3.0, 100_000);
     let begin = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     hybrid.propagate(begin, 3.0, &mut peak).expect("a run");

@@ -2,11 +2,8 @@
 
 use nalgebra::SMatrix;
 use retune_model::{Contact, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary, Scene};
-use retune_solver::onestep::{Attempt, OneStep};
-use retune_solver::{
-    Contacts, Method, Response, Settings, SolverError, System, Window, dop853::Dop853, euler::Euler, ode23,
-    ode23::Ode23, rk4::Rk4, simulate,
-};
+use retune_solver::methods::{Attempt, Dop853, Euler, Ode23, OneStep, Rk4, ode23};
+use retune_solver::{Contacts, Method, Response, Settings, SolverError, System, Window, simulate};
 
 /// `x'' = -x (x² + v²) + sin 3t (x - cos t)`, solved by `x = cos t`: not linear, not autonomous.
 struct Circle;

@@ -9,9 +9,9 @@ mod problems;
 use problems::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
 use retune_solver::observe::{
-    DamperEnergy, Knot, Observer, Path, Peak, PrimaryEnergy, Quantity, RelativePosition, Segment, Unobserved,
+    DamperEnergy, Knot, Observer, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum, Segment,
+    Unobserved,
 };
-use retune_solver::steps::Steps;
 use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
 
 /// A scene of an engineer's: every number within its range, some of them at its ends.
@@ -64,7 +64,7 @@ impl<Q: Quantity<4>> Everywhere<Q> {
         Self { quantity, looks: 24, largest: f64::NEG_INFINITY }
     }
     fn slope(&mut self, knot: &Knot<4>) -> f64 {
-        let [value, slope, _] = self.quantity.rates(knot.drive, &knot.y);
+        let [value, slope, _] = self.quantity.rates(knot.excitation, &knot.y);
         self.largest = self.largest.max(value);
         slope
     }
@@ -91,111 +91,53 @@ impl<Q: Quantity<4>> Observer<4> for Everywhere<Q> {
     }
 }
 
-/// What a search may miss, relative to the largest value: no more than the contacts of a run at rtol 1e-6 are inexact by.
+/// The most that a search may miss, relative to the largest value: the error of the contacts in a run at rtol 1e-6.
 const ALLOWED: f64 = 1e-9;
 
 /// A fast search and a slow one, side by side.
-struct Pair<A, B>(Peak<A>, Everywhere<B>);
+type Pair<Q> = (RunningMaximum<Q>, Everywhere<Q>);
 
-impl<A: Quantity<4>, B: Quantity<4>> Pair<A, B> {
-    fn new(fast: A, slow: B) -> Self {
-        Self(Peak::new(fast, f64::INFINITY), Everywhere::new(slow))
-    }
-    /// What the search missed, relative to the largest value; infinite if the search could not prove its record.
-    fn missed(&self, size: f64) -> f64 {
-        let found = self.0.record().value;
-        let missed = self.1.largest - found;
-        if self.0.doubt() > ALLOWED * size {
-            f64::INFINITY
-        } else if missed <= 0.0 {
-            0.0
-        } else {
-            missed / size
-        }
-    }
+fn pair<Q: Quantity<4>>(quantity: impl Fn() -> Q) -> Pair<Q> {
+    (RunningMaximum::new(quantity(), f64::INFINITY), Everywhere::new(quantity()))
 }
 
-impl<A: Quantity<4>, B: Quantity<4>> Observer<4> for Pair<A, B> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        self.0.segment(segment);
-        self.1.segment(segment);
-    }
-    fn path(&mut self, path: &impl Path<4>) {
-        self.0.path(path);
-        self.1.path(path);
-    }
-    fn steps(&mut self, steps: &Steps<'_, 4>) {
-        self.0.steps(steps);
-        self.1.steps(steps);
+/// The gain that the search missed, relative to the largest value; infinite if the search could not prove its record.
+fn missed<Q: Quantity<4>>((search, everywhere): &Pair<Q>, size: f64) -> f64 {
+    let missed = everywhere.largest - search.record().value;
+    if search.doubt() > ALLOWED * size {
+        f64::INFINITY
+    } else if missed <= 0.0 {
+        0.0
+    } else {
+        missed / size
     }
 }
 
 /// Counts the pieces of contacts.
 #[derive(Default)]
-struct Contacts {
-    pieces: u64,
-    touches: u64,
-}
+struct ContactPieces(u64);
 
-impl Observer<4> for Contacts {
+impl Observer<4> for ContactPieces {
     fn segment(&mut self, segment: &impl Segment<4>) {
-        self.pieces += u64::from(segment.ends()[0].clock != [1.0, 0.0]);
-    }
-    fn steps(&mut self, _steps: &Steps<'_, 4>) {}
-    fn touch_down(&mut self, _t: f64, _side: retune_model::Side) {
-        self.touches += 1;
+        self.0 += u64::from(segment.ends()[0].clock != [1.0, 0.0]);
     }
 }
 
-struct All<'a>(
-    Pair<PrimaryEnergy<'a>, PrimaryEnergy<'a>>,
-    Pair<DamperEnergy<'a>, DamperEnergy<'a>>,
-    [Pair<RelativePosition<'a>, RelativePosition<'a>>; 2],
-    Contacts,
-);
-
-impl Observer<4> for All<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        self.0.segment(segment);
-        self.1.segment(segment);
-        self.2.iter_mut().for_each(|pair| pair.segment(segment));
-        self.3.segment(segment);
-    }
-    fn path(&mut self, path: &impl Path<4>) {
-        self.0.path(path);
-        self.1.path(path);
-        self.2.iter_mut().for_each(|pair| pair.path(path));
-        self.3.path(path);
-    }
-    fn steps(&mut self, steps: &Steps<'_, 4>) {
-        self.0.steps(steps);
-        self.1.steps(steps);
-        self.2.iter_mut().for_each(|pair| pair.steps(steps));
-    }
-    fn touch_down(&mut self, t: f64, side: retune_model::Side) {
-        self.3.touch_down(t, side);
-    }
-}
-
-/// What a scene's paired search found: what was missed of E1, E2 and both ends of the relative displacement, and contact pieces.
+/// The gains that the search missed in a scene, of E1, E2 and both ends of the relative displacement, and the number of contact pieces.
 fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 4], u64), SolverError> {
     let system = numbers.coupled();
-    let side =
-        |sign: f64| Pair::new(RelativePosition::new(&system, sign), RelativePosition::new(&system, sign));
-    let mut all = All(
-        Pair::new(PrimaryEnergy::new(&system), PrimaryEnergy::new(&system)),
-        Pair::new(DamperEnergy::new(&system), DamperEnergy::new(&system)),
-        [side(1.0), side(-1.0)],
-        Contacts::default(),
-    );
+    let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
+    let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
+    let mut all = (energies, (sides, ContactPieces::default()));
     let mut hybrid = Hybrid::new(&system, rtol, 20.0, 20_000_000);
     let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     let middle = if from > 0.0 { hybrid.propagate(rest, from, &mut Unobserved)? } else { rest };
     hybrid.propagate(middle, 20.0, &mut all)?;
-    let All(e1, e2, [far, near], contacts) = all;
+    let ((e1, e2), ([far, near], ContactPieces(pieces))) = all;
     let reach = far.1.largest.abs().max(near.1.largest.abs());
-    let missed = [e1.missed(e1.1.largest), e2.missed(e2.1.largest), far.missed(reach), near.missed(reach)];
-    Ok((missed, contacts.pieces))
+    let found =
+        [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest), missed(&far, reach), missed(&near, reach)];
+    Ok((found, pieces))
 }
 
 /// A difference relative to a size; infinite for what is no number.

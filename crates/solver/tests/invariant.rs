@@ -1,4 +1,4 @@
-//! What a motion must keep through hundreds of impacts: energy, momentum, and its symmetries.
+//! The invariants of a motion through hundreds of impacts: energy, momentum, and its symmetries.
 
 mod problems;
 
@@ -98,7 +98,7 @@ fn invariant_a_motion_may_be_cut_anywhere() {
             let (end, touches) = follow(&system, now, to, |_| {});
             assert_eq!(end.t, to);
             (0..2).for_each(|side| counted[side] += touches[side]);
-            pressed += u32::from(matches!(end.phase, Phase::Pressed(_)));
+            pressed += u32::from(matches!(end.phase, Phase::InContact(_)));
             now = end;
         }
         assert!(pressed > 0, "some cuts lie inside contacts");

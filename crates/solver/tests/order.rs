@@ -4,10 +4,8 @@ mod problems;
 
 use problems::smooth::{Decaying, Problem, Scalar, Turning, WrongJacobian};
 use problems::trees;
-use retune_solver::ode23s::Ode23s;
-use retune_solver::ode45::{self, Ode45};
-use retune_solver::onestep::{Attempt, OneStep};
-use retune_solver::{System, dop853};
+use retune_solver::System;
+use retune_solver::methods::{Attempt, Ode23s, Ode45, OneStep, dop853, ode45};
 use std::cell::{Cell, RefCell};
 
 type Complex = nalgebra::Complex<f64>;

@@ -74,7 +74,7 @@ fn invariant_what_has_settled_stays() {
     assert!(2 * looked_at > scenes && off == [0; 3], "{looked_at} {off:?}");
 }
 
-/// Its E1max has settled long before it has crept to the wall that it then presses.
+/// Its E1max has settled long before the damper has crept to the wall.
 #[test]
 fn contract_a_damper_that_creeps_has_not_settled() {
     let numbers = Numbers {

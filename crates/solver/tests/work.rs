@@ -4,9 +4,7 @@
 mod problems;
 
 use problems::scenes::{SSVI, TMD};
-use retune_solver::ode23s::Ode23s;
-use retune_solver::ode45::Ode45;
-use retune_solver::onestep::{OneStep, Tolerance};
+use retune_solver::methods::{Ode23s, Ode45, OneStep, Tolerance};
 use retune_solver::{Contacts, Method, Settings, System, Window, Work, simulate};
 
 /// The first step from a state: MATLAB's `ode45` and `ode23s`, formula by formula, of numbers that are easily followed by hand.

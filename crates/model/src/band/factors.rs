@@ -1,13 +1,15 @@
-//! The factors of the steady response, by how far a frequency is from where they are zero.
+//! The factors of the steady response, expressed by the distances of a frequency from their zeros.
 //!
 //! In `u = ω²` over a unit: `|X1|² = (P/m1)² N / M` and `|X2 - X1|² = (P/m1)² u² / M` with
 //! `N = (u - u_d)² + u (c2/m2)²` and `M = (u - u_1)² (u - u_2)² + u ℓ² (u - u_z)²`. `u_1 <= u_2` are the natural frequencies (of the real
 //! part of the determinant), `u_d = k2/m2` that of the damper alone and `u_p = k1/m1` that of the structure; `u_z` is where the
 //! imaginary part is zero, and `ℓ = c1/m1 + c2/m2 + c2/m1`. `u_d`, `u_p` and `u_z` lie between `u_1` and `u_2`.
 
-use super::ON_IT;
 use super::roots::{product, sum, times};
 use crate::{Bare, Coupled};
+
+/// Roundings within which an end of a band lies on a natural frequency.
+pub const ON_RESONANCE: f64 = 8.0 * f64::EPSILON;
 
 /// A place on the axis of `u`: `u`, `u - u_1` and `u - u_2`, of which the smaller difference is accurate however small it is.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +89,7 @@ impl Factors {
         let u = omega * omega / self.unit;
         let past = |natural: &Point| u - natural.u;
         for natural in [self.lower, self.upper] {
-            if past(&natural).abs() <= 2.0 * ON_IT * u {
+            if past(&natural).abs() <= 2.0 * ON_RESONANCE * u {
                 return natural;
             }
         }

@@ -1,56 +1,65 @@
 //! Energies, momentum and relative displacement of the coupled system, with the rates at which they change.
 
 use super::Coupled;
-use crate::{Bare, Drive, hertz_energy, hertz_force, hertz_force_slope};
+use crate::{Bare, Excitation, hertz_energy, hertz_force, hertz_force_slope};
 use wide::f64x4;
 
 impl Coupled {
     /// `[E1, dE1/dt, d²E1/dt²]` of the primary structure in J, W, W/s (see [`Bare::primary_energy_rates`]);
     /// here `G = P cos ωt - c1 v1 + c2 (v2 - v1) + k2 (x2 - x1 - D) - F_con(z1) + F_con(z2)`.
     #[inline]
-    pub fn primary_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        at_one_moment(drive, y, |drive, y| self.primary_energy_rates_under(drive, y, self.wall_forces(y)))
+    pub fn primary_energy_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
+        at_one_moment(excitation, y, |excitation, y| {
+            self.primary_energy_rates_under(excitation, y, self.wall_forces(y))
+        })
     }
 
     /// [`Self::primary_energy_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
-    pub fn primary_energy_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.primary_energy_rates_under(drive, y, WallForces::NONE)
+    pub fn primary_energy_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.primary_energy_rates_under(excitation, y, WallForces::NONE)
     }
 
     #[inline(always)]
     fn primary_energy_rates_under(
         &self,
-        drive: &[f64x4; 2],
+        excitation: &[f64x4; 2],
         y: &[f64x4; 4],
         walls: WallForces,
     ) -> [f64x4; 3] {
         let &[x1, v1, ..] = y;
         let Bare { m1, k1, .. } = self.bare;
         let Accelerations { a: [a1, _], force: [g, _], force_rate: [g_rate, _] } =
-            self.accelerations(drive, y, walls);
+            self.accelerations(excitation, y, walls);
         [(v1 * v1 * m1 + x1 * x1 * k1) * 0.5, v1 * g, a1 * g + v1 * g_rate]
     }
 
     /// The paper's damper energy `E2 = (m2 v2² + k2 (x2 - D)²) / 2` with its first two time derivatives, in J, W, W/s.
     ///
-    /// Not the energy the damper really holds: its spring is stretched by `x2 - x1 - D` (see [`Self::total_energy`]).
+    /// Not the energy stored in the damper: its spring is stretched by `x2 - x1 - D` (see [`Self::total_energy`]).
     #[inline]
-    pub fn damper_energy_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        at_one_moment(drive, y, |drive, y| self.damper_energy_rates_under(drive, y, self.wall_forces(y)))
+    pub fn damper_energy_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
+        at_one_moment(excitation, y, |excitation, y| {
+            self.damper_energy_rates_under(excitation, y, self.wall_forces(y))
+        })
     }
 
     /// [`Self::damper_energy_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
-    pub fn damper_energy_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.damper_energy_rates_under(drive, y, WallForces::NONE)
+    pub fn damper_energy_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.damper_energy_rates_under(excitation, y, WallForces::NONE)
     }
 
     #[inline(always)]
-    fn damper_energy_rates_under(&self, drive: &[f64x4; 2], y: &[f64x4; 4], walls: WallForces) -> [f64x4; 3] {
+    fn damper_energy_rates_under(
+        &self,
+        excitation: &[f64x4; 2],
+        y: &[f64x4; 4],
+        walls: WallForces,
+    ) -> [f64x4; 3] {
         let &[_, _, x2, v2] = y;
         let Accelerations { a: [_, a2], force: [_, force], force_rate: [_, rate] } =
-            self.accelerations(drive, y, walls);
+            self.accelerations(excitation, y, walls);
         let (m2, k2, x) = (self.m2, self.k2, x2 - self.d);
         let net = force + x * k2;
         [(v2 * v2 * m2 + x * x * k2) * 0.5, v2 * net, a2 * net + v2 * (rate + v2 * k2)]
@@ -63,25 +72,27 @@ impl Coupled {
 
     /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².
     #[inline]
-    pub fn relative_position_rates(&self, drive: Drive, y: &[f64; 4]) -> [f64; 3] {
-        at_one_moment(drive, y, |drive, y| self.relative_position_rates_under(drive, y, self.wall_forces(y)))
+    pub fn relative_position_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
+        at_one_moment(excitation, y, |excitation, y| {
+            self.relative_position_rates_under(excitation, y, self.wall_forces(y))
+        })
     }
 
     /// [`Self::relative_position_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
-    pub fn relative_position_rates_in_flight(&self, drive: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.relative_position_rates_under(drive, y, WallForces::NONE)
+    pub fn relative_position_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
+        self.relative_position_rates_under(excitation, y, WallForces::NONE)
     }
 
     #[inline(always)]
     fn relative_position_rates_under(
         &self,
-        drive: &[f64x4; 2],
+        excitation: &[f64x4; 2],
         y: &[f64x4; 4],
         walls: WallForces,
     ) -> [f64x4; 3] {
         let &[x1, v1, x2, v2] = y;
-        let Accelerations { a: [a1, a2], .. } = self.accelerations(drive, y, walls);
+        let Accelerations { a: [a1, a2], .. } = self.accelerations(excitation, y, walls);
         [x2 - x1, v2 - v1, a2 - a1]
     }
 
@@ -103,10 +114,10 @@ impl Coupled {
         Accelerations { a: [a1, a2], force: [g, on_damper], force_rate: [g_rate, on_damper_rate] }
     }
 
-    /// What both walls do to the damper.
+    /// The contact forces of both walls on the damper.
     #[inline(always)]
     fn wall_forces(&self, y: &[f64x4; 4]) -> WallForces {
-        let [z1, z2] = self.rapprochement(&y.map(|lanes| lanes.to_array()[0]));
+        let [z1, z2] = self.indentation(&y.map(|lanes| lanes.to_array()[0]));
         let net = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
         let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
         WallForces { net: f64x4::splat(net), slope: f64x4::splat(slope) }
@@ -117,7 +128,7 @@ impl Coupled {
     /// Constant when `P = c1 = c2 = 0`.
     pub fn total_energy(&self, y: &[f64; 4]) -> f64 {
         let &[x1, v1, x2, v2] = y;
-        let [z1, z2] = self.rapprochement(y);
+        let [z1, z2] = self.indentation(y);
         let stretch = x2 - x1 - self.d;
         self.bare.primary_energy(x1, v1)
             + 0.5 * (self.m2 * v2 * v2 + self.k2 * stretch * stretch)
@@ -131,7 +142,7 @@ impl Coupled {
     }
 }
 
-/// What walls do to the damper: the net contact force on it, N, and the sum of the slopes of both forces, N/m.
+/// The net contact force on the damper, N, and the sum of the slopes of both contact forces, N/m.
 #[derive(Clone, Copy)]
 struct WallForces {
     net: f64x4,
@@ -150,12 +161,12 @@ struct Accelerations {
     force_rate: [f64x4; 2],
 }
 
-/// What is written for moments side by side, at one.
+/// Evaluates at one moment a formula that is written for moments side by side.
 #[inline(always)]
 fn at_one_moment(
-    drive: Drive,
+    excitation: Excitation,
     y: &[f64; 4],
     rates: impl Fn(&[f64x4; 2], &[f64x4; 4]) -> [f64x4; 3],
 ) -> [f64; 3] {
-    rates(&drive.map(f64x4::splat), &y.map(f64x4::splat)).map(|lanes| lanes.to_array()[0])
+    rates(&excitation.map(f64x4::splat), &y.map(f64x4::splat)).map(|lanes| lanes.to_array()[0])
 }

@@ -2,7 +2,7 @@
 
 use crate::scenes::{Case, Numbers, SSVI, TMD, scene, system};
 use retune_model::{NonNegative, Positive, Scene};
-use retune_solver::observe::{Peak, RelativePosition};
+use retune_solver::observe::{RelativePosition, RunningMaximum};
 use retune_solver::{Hybrid, Motion, Phase};
 use std::error::Error;
 
@@ -59,7 +59,7 @@ fn stiffness(list: &mut List) -> Any<()> {
 pub fn reach(numbers: Numbers, to: f64) -> Any<f64> {
     let far = 10.0;
     let system = system(&scene(Numbers { d: far, c: far, ..numbers })?).ok_or("no damper")?;
-    let mut peak = Peak::new(RelativePosition::new(&system, -1.0), f64::INFINITY);
+    let mut peak = RunningMaximum::new(RelativePosition::new(&system, -1.0), f64::INFINITY);
     let begin = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     Hybrid::new(&system, 1e-12, to, 10_000_000).propagate(begin, to, &mut peak)?;
     Ok(far + peak.record().value)

@@ -32,7 +32,7 @@ impl Observer<4> for Touches {
 impl Observer<4> for Watch<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         let [from, to] = segment.ends();
-        let open = |y: &[f64; 4]| self.system.rapprochement(y).iter().all(|z| *z <= 1e-12);
+        let open = |y: &[f64; 4]| self.system.indentation(y).iter().all(|z| *z <= 1e-12);
         if from.clock != [1.0, 0.0] || !open(&from.y) || !open(&to.y) {
             return;
         }
@@ -41,7 +41,7 @@ impl Observer<4> for Watch<'_> {
         // A step that ends in a located touch-down is not one that jumped over it.
         let until = to.t - 1e-6 * (to.t - from.t);
         if let Ok(end) = self.exact.propagate(begin, until, &mut touches) {
-            let unfinished = matches!(end.phase, Phase::Pressed(_));
+            let unfinished = matches!(end.phase, Phase::InContact(_));
             self.jumped += touches.0 - u64::from(unfinished).min(touches.0);
         }
     }

@@ -8,7 +8,7 @@ use crate::own;
 use crate::panel::{Axis, BLUE, Drawn, GREEN, GREY, INK, Line, Marker, Panel, VERMILION, sheet};
 use crate::scenes::{Case, Numbers, SSVI, scene, system};
 use retune_model::{Coupled, Scene, Side};
-use retune_solver::observe::{Observer, Peak, PrimaryEnergy, Segment};
+use retune_solver::observe::{Observer, PrimaryEnergy, RunningMaximum, Segment};
 use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError};
 use std::error::Error;
 use std::fmt::Write;
@@ -27,7 +27,7 @@ pub struct Rigid {
 
 /// Flight up to a touch-down; what follows is not looked at.
 struct Flight<'a> {
-    peak: Peak<PrimaryEnergy<'a>>,
+    peak: RunningMaximum<PrimaryEnergy<'a>>,
     last: Option<(f64, [f64; 4])>,
     touched: Option<Side>,
 }
@@ -62,7 +62,7 @@ fn bounce([m1, m2]: [f64; 2], y: &mut [f64; 4]) {
 pub fn rigid(scene: &Scene, to: f64) -> Result<Rigid, Box<dyn Error>> {
     let system: Coupled = system(scene).ok_or("no damper")?;
     let masses = [scene.primary.mass.get(), scene.damper.ok_or("no damper")?.mass.get()];
-    let peak = Peak::new(PrimaryEnergy::new(&system), f64::INFINITY);
+    let peak = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
     let mut watch = Flight { peak, last: None, touched: None };
     let mut hybrid = Hybrid::new(&system, 1e-10, to, 10_000_000);
     let mut now = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };

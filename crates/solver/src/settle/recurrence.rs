@@ -1,90 +1,40 @@
-//! Whether a motion repeats: its states at whole periods of the force, and how far they are from where they will end.
+//! Whether a motion repeats: the states at whole periods of the force return, and their remaining drift is small.
 
-use super::Settle;
-use crate::observe::{Observer, Path, Segment};
 use crate::settings::Settings;
-use crate::steps::Steps;
 use retune_model::Coupled;
-use std::collections::VecDeque;
 
-/// The states at whole periods of the force, of the last blocks.
-pub struct Strobe {
-    period: f64,
-    /// Periods that are over.
-    count: f64,
-    most: usize,
-    states: VecDeque<[f64; 4]>,
+/// When a motion counts as settled: its state returns after some periods of the force, throughout successive blocks of time.
+///
+/// States are compared at whole periods of the force: the structure's as a share of the largest `√(m1 v1² + k1 x1²)`, the
+/// damper's, relative to the structure, of the largest `√((x2 - x1 - D)² + (v2 - v1)²/ω²)` at these moments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settle {
+    /// Length of a block in periods of the force, at least 1; the longest period of a motion that can settle.
+    pub periods: u32,
+    /// How many blocks in a row must agree, at least 2.
+    pub blocks: u32,
+    /// The largest change of the state that may remain, as a share of its size: the change from return to return in the last block,
+    /// and the sum of all later changes if they keep falling at the rate seen from block to block.
+    pub tolerance: f64,
 }
 
-impl Strobe {
-    /// For a force of this period, s.
-    pub fn new(period: f64, settle: Settle) -> Self {
-        let most = settle.periods as usize * settle.blocks as usize;
-        Self { period, count: 0.0, most, states: VecDeque::new() }
-    }
-
-    /// The latest states, those of `blocks` blocks at most.
-    pub fn states(&mut self) -> &[[f64; 4]] {
-        self.states.make_contiguous()
-    }
-
-    /// The next moment to keep, s.
-    fn next(&self) -> f64 {
-        (self.count + 1.0) * self.period
+impl Default for Settle {
+    fn default() -> Self {
+        Self { periods: 6, blocks: 3, tolerance: 1e-5 }
     }
 }
 
-impl Observer<4> for Strobe {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        let [begin, end] = segment.ends();
-        while self.next() <= end.t {
-            let state = match self.next() {
-                t if t == end.t => end.y,
-                t if t <= begin.t => begin.y, // between two pieces, by rounding
-                t => segment.at_time(t).y,
-            };
-            self.count += 1.0;
-            if self.states.len() == self.most {
-                self.states.pop_front();
-            }
-            self.states.push_back(state);
-        }
-    }
-    fn path(&mut self, path: &impl Path<4>) {
-        // A path does not say how long it is; its last piece does.
-        let mut end = End(f64::NEG_INFINITY);
-        path.show(path.pieces() - 1, &mut end);
-        if self.next() <= end.0 {
-            (0..path.pieces()).for_each(|piece| path.show(piece, self));
-        }
-    }
-    fn steps(&mut self, steps: &Steps<'_, 4>) {
-        if self.next() <= steps.time(steps.count()) {
-            (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
-        }
-    }
-}
-
-/// When the last piece ended, s.
-struct End(f64);
-
-impl Observer<4> for End {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        self.0 = segment.ends()[1].t;
-    }
-}
-
-/// Whether states return.
+/// The test whether states return.
 pub struct Recurrence<'a> {
     system: &'a Coupled,
     settle: Settle,
-    /// The most returns that a change is taken to go on for, however slowly it falls.
+    /// The number of returns over which a change is summed at most, however slowly it falls.
     most_returns: f64,
 }
 
 impl<'a> Recurrence<'a> {
-    /// As `settle` says. Changes below a thousandth of its tolerance, or below what a solver of these settings makes of a motion that
-    /// repeats, are not told from none.
+    /// A test by `settle`. Changes below a thousandth of its tolerance, or below the solver's own error at these settings, are
+    /// taken as zero.
     pub fn new(system: &'a Coupled, settle: Settle, settings: &Settings) -> Self {
         const SLOWEST: f64 = 1e3;
         const NOISE: f64 = 100.0;
@@ -109,7 +59,7 @@ impl<'a> Recurrence<'a> {
         let periods = periods as usize;
         let change = |i: usize| self.change(&states[i], &states[i - lag], size);
         let small = |change: f64| change <= tolerance;
-        // The latest change tells at once of most that do not return.
+        // The latest change rules out most states that do not return.
         if !small(change(states.len() - 1)) {
             return false;
         }
@@ -120,7 +70,7 @@ impl<'a> Recurrence<'a> {
             if !small(now) {
                 return false;
             }
-            falls = falls.max(now / largest); // NaN of the first
+            falls = falls.max(now / largest); // NaN for the first, which `max` ignores
             largest = now;
         }
         let share = falls.powf(lag as f64 / periods as f64);
@@ -135,7 +85,7 @@ impl<'a> Recurrence<'a> {
         [self.system.bare().primary_energy(x1, v1), (x2 - x1).powi(2) + ((v2 - v1) / omega).powi(2)]
     }
 
-    /// The sizes of both parts of a motion. Where one body moves a million times less than the other it is not looked at as closely.
+    /// The sizes of both parts of a motion. A body that moves a million times less than the other is compared less closely.
     fn size(&self, states: &[[f64; 4]]) -> [f64; 2] {
         const LEAST: f64 = 1e-6;
         let omega = self.system.bare().frequency();

@@ -184,7 +184,7 @@ impl Anything {
         }
     }
 
-    /// No wall that the damper does not rest on at first is said to be pressed before it is touched. (That none is missed is seen by
+    /// No wall on which the damper does not rest at first has a contact force before a touch-down. (That none is missed is seen by
     /// the solver itself, whose [`SolverError::Missed`] is let through nowhere here.)
     fn check_touches(&self, found: &Response) {
         let Some(damper) = self.scene.damper else { return };
@@ -192,7 +192,7 @@ impl Anything {
         if self.settings.method == Method::Hybrid && apart && self.window.from == 0.0 {
             for side in [0, 1] {
                 let missed = found.impacts[side] == 0 && found.force_max[side] > 0.0;
-                assert!(!missed, "a wall was pressed that nothing touched, {found:?}: {self:?}");
+                assert!(!missed, "a contact force on a wall without a touch-down, {found:?}: {self:?}");
             }
         }
         let linear = found.scene != SceneKind::Contact;

@@ -1,0 +1,193 @@
+//! Equation (1) during one contact, regularised: a polynomial system without the kink of `z^(3/2)`.
+//!
+//! While the damper is in contact with one wall, take `q = √z` for the indentation and a contact time `θ` with `dt = q dθ`
+//! (Levi-Civita's regularisation of a collision, for Hertz's law). Hertz's force is then `K q³`, and with `w = dz/dt`
+//!
+//! ```text
+//! dq/dθ = w/2      dw/dθ = q dw/dt      dx1/dθ = q v1      dv1/dθ = q a1      dt/dθ = q
+//! ```
+//!
+//! Every right-hand side is a polynomial, so the motion is analytic in `θ` from before touch-down (`q = 0`, `w > 0`)
+//! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
+//! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
+
+pub(crate) mod bounds;
+
+use crate::{Coupled, Excitation, Side};
+
+/// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.
+pub type RegularisedState = [f64; 5];
+
+/// Equation (1) in contact with one wall.
+#[derive(Clone, Copy, Debug)]
+pub struct RegularisedContact {
+    side: Side,
+    sign: f64,
+    wall: f64,
+    omega: f64,
+    // Accelerations per unit of each cause.
+    primary: [f64; 3], // 1/m1, c1/m1, k1/m1
+    hertz: [f64; 2],   // K/m1, K (1/m1 + 1/m2)
+    dashpot: [f64; 2], // c2/m1, c2 (1/m1 + 1/m2)
+    spring: [f64; 2],  // k2/m1, k2 (1/m1 + 1/m2)
+    stretch: f64,      // sign (wall - D): the spring's stretch at touch-down, towards the wall
+    since: f64,        // the time at which the excitation was set
+    cos: [f64; WAVE],  // Taylor coefficients of P cos ωt and P sin ωt about that time
+    sin: [f64; WAVE],
+}
+
+/// Terms of the force's Taylor polynomials.
+const WAVE: usize = 8;
+
+impl Coupled {
+    /// The regularised equations of contact with `side`.
+    pub fn regularised_contact(&self, side: Side) -> RegularisedContact {
+        let (_, k2, c2) = self.damper();
+        let bare = self.bare();
+        let (inv_m1, inv_m) = (1.0 / bare.m1, self.inverse_effective_mass());
+        let pair = |factor: f64| [factor * inv_m1, factor * inv_m];
+        RegularisedContact {
+            side,
+            sign: side.sign(),
+            wall: self.wall(side),
+            omega: bare.omega,
+            primary: [inv_m1, bare.c1 * inv_m1, bare.k1 * inv_m1],
+            hertz: pair(self.hertz(side)),
+            dashpot: pair(c2),
+            spring: pair(k2),
+            stretch: side.sign() * (self.wall(side) - self.rest_distance()),
+            since: 0.0,
+            cos: [0.0; WAVE],
+            sin: [0.0; WAVE],
+        }
+    }
+}
+
+impl RegularisedContact {
+    /// The wall in contact.
+    pub fn side(&self) -> Side {
+        self.side
+    }
+
+    /// The angle (rad) by which the force may turn after [`Self::set_excitation`]: the first neglected term is below
+    /// `0.05⁸ / 8! = 1e-15` of the force.
+    pub const TURN: f64 = 0.05;
+
+    /// Sets the force at time `t` (s, since touch-down); it is exact while `ω |t' - t| <= TURN`.
+    pub fn set_excitation(&mut self, t: f64, [cos, sin]: Excitation) {
+        (self.since, self.cos[0], self.sin[0]) = (t, cos, sin);
+        for k in 1..WAVE {
+            let turn = self.omega / k as f64;
+            (self.cos[k], self.sin[k]) = (-turn * self.sin[k - 1], turn * self.cos[k - 1]);
+        }
+    }
+
+    /// `[P cos ωt, P sin ωt]` at the time of a state, N.
+    pub fn excitation(&self, y: &RegularisedState) -> Excitation {
+        let t = y[4] - self.since;
+        [polynomial(&self.cos, t), polynomial(&self.sin, t)]
+    }
+
+    /// Angular frequency of the force, rad/s.
+    pub fn frequency(&self) -> f64 {
+        self.omega
+    }
+
+    /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
+    /// and the net force on the damper `-s (K q³ + c2 w + k2 (z + s (wall - D)))`.
+    #[inline(always)]
+    fn accelerations(&self, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
+        let z = q * q;
+        let (cube, stretch) = (z * q, z + self.stretch);
+        // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
+        let resisting = self.primary[1] * v1 + self.primary[2] * x1;
+        let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
+        let excitation = self.primary[0] * polynomial(&self.cos, t - self.since);
+        [
+            (self.sign * resisting - push(1)) - self.sign * excitation,
+            (self.sign * push(0) - resisting) + excitation,
+        ]
+    }
+
+    /// The sum of the sizes of the terms that accelerate the PS, m/s², which sets the rounding error of its acceleration.
+    pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &RegularisedState) -> f64 {
+        self.primary[0] * self.cos[0].hypot(self.sin[0])
+            + self.primary[1] * v1.abs()
+            + self.primary[2] * x1.abs()
+            + self.hertz[0] * q.abs().powi(3)
+            + self.dashpot[0] * w.abs()
+            + self.spring[0] * (q * q + self.stretch).abs()
+    }
+
+    /// Derivative with respect to `θ` of every component.
+    #[inline(always)]
+    pub fn derivative(&self, y: &RegularisedState) -> RegularisedState {
+        let &[q, w, _, v1, _] = y;
+        let [rate, a1] = self.accelerations(y);
+        [0.5 * w, q * rate, q * v1, q * a1, q]
+    }
+
+    /// `dw/dt`, the acceleration into the wall, m/s².
+    pub fn acceleration(&self, y: &RegularisedState) -> f64 {
+        self.accelerations(y)[0]
+    }
+
+    /// `κ = K (1/m1 + 1/m2)`: the contact force accelerates the bodies apart by `κ z^(3/2)`; m^-0.5 s^-2.
+    pub fn hertz_rate(&self) -> f64 {
+        self.hertz[1]
+    }
+
+    /// The touch-down speed (m/s) of an undisturbed collision that reaches `q` (√m): `w = √(4 κ q⁵ / 5)`.
+    pub fn speed_at_depth(&self, q: f64) -> f64 {
+        (0.8 * self.hertz[1] * q.powi(5)).sqrt()
+    }
+
+    /// `(1/m1 + 1/m2) m1`: the relative acceleration of the two bodies under a contact force, over that of the PS.
+    pub fn mass_ratio(&self) -> f64 {
+        self.hertz[1] / self.hertz[0]
+    }
+
+    /// The state `[x1, v1, x2, v2]` as a regularised one, with no time elapsed. A damper that is not in contact with this
+    /// wall is taken to be just touching it.
+    pub fn regularise(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> RegularisedState {
+        let z = self.sign * (x2 - x1 - self.wall);
+        [z.max(0.0).sqrt(), self.sign * (v2 - v1), x1, v1, 0.0]
+    }
+
+    /// The state `[x1, v1, x2, v2]` of a regularised one.
+    #[inline]
+    pub fn physical(&self, &[q, w, x1, v1, ..]: &RegularisedState) -> [f64; 4] {
+        [x1, v1, x1 + self.wall + self.sign * q * q, v1 + self.sign * w]
+    }
+
+    /// The largest `q` (√m) of an undisturbed collision at touch-down speed `w` (m/s): `(5 w² / 4κ)^(1/5)`.
+    pub fn greatest_depth(&self, w: f64) -> f64 {
+        (1.25 * w * w / self.hertz[1]).powf(0.2)
+    }
+
+    /// A prediction of the `θ` (s/√m) in which a damper that moves away from the wall will leave it; infinite if it will not.
+    ///
+    /// With the acceleration beside Hertz's, `a = dw/dt + κ q³`, held constant, `w² = v² - (4/5) κ q⁵ + 2 a q²`, and
+    /// `θ = ∫₀^q 2 dq / |w|` is expanded in `x = (4/5) κ q⁵ / v²` and `y = 2 a q² / v²`.
+    pub fn theta_to_wall(&self, y: &RegularisedState) -> f64 {
+        let &[q, w, ..] = y;
+        let depth = 0.8 * self.hertz[1] * q.powi(5);
+        let steady = 2.0 * (self.acceleration(y) + self.hertz[1] * q.powi(3)) * q * q;
+        let v2 = w * w + depth - steady;
+        if v2 <= 0.0 {
+            return f64::INFINITY;
+        }
+        let (x, y) = (depth / v2, steady / v2);
+        let series = 1.0 + x * (1.0 / 12.0 + x * (3.0 / 88.0 + x * (5.0 / 256.0 + x * (5.0 / 384.0))))
+            - y * (1.0 / 6.0 + x * 3.0 / 32.0 - y * 3.0 / 40.0);
+        2.0 * q / v2.sqrt() * series
+    }
+}
+
+/// `Σ c_k t^k` by Estrin's scheme: pairs, then pairs of pairs, so that chains of dependent operations are short.
+#[inline(always)]
+fn polynomial(c: &[f64; WAVE], t: f64) -> f64 {
+    let t2 = t * t;
+    let pair = |k: usize| c[k] + c[k + 1] * t;
+    (pair(0) + pair(2) * t2) + (pair(4) + pair(6) * t2) * (t2 * t2)
+}

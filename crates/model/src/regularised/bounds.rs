@@ -1,0 +1,132 @@
+//! Proven bounds on the derivatives of the motion during a contact, from the equations with every term replaced by its size.
+
+use super::{RegularisedContact, RegularisedState};
+
+/// Orders of the derivatives that are bounded, 0 to 6.
+pub const ORDERS: usize = 7;
+
+/// Bounds on Taylor coefficients, `|u⁽ᵏ⁾| / k!` for `k = 0, 1, …`, of the four numbers that the motion in contact consists of: `x1`,
+/// `v1`, the spring's stretch `z + s (wall - D)` towards the wall and the speed `w = dz/dt` into it.
+pub type Growth<const K: usize> = [[f64; K]; 4];
+
+/// Term `k` of the product of two series.
+#[inline(always)]
+fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..K.min(k + 1) {
+        sum += a[i] * b[k - i];
+    }
+    sum
+}
+
+impl RegularisedContact {
+    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m), from the states at its
+    /// ends; infinite if the piece is too long for the proof.
+    ///
+    /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf).
+    /// In the box each coefficient follows from those before it by the equations, with all terms taken as positive.
+    pub fn growth(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Growth<ORDERS> {
+        let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
+        let mut bounds = ends;
+        for _ in 0..8 {
+            let [slopes, _] = self.series::<2>(bounds);
+            let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + 0.5 * h * slopes[i][1]);
+            if (0..4).all(|i| reach[i] <= bounds[i]) {
+                return self.series::<ORDERS>(bounds)[1];
+            }
+            for i in 0..4 {
+                bounds[i] = bounds[i].max(1.05 * reach[i]);
+            }
+        }
+        [[f64::INFINITY; ORDERS]; 4]
+    }
+
+    /// The series of `[q, w, x1, v1]`, and those of [`Growth`], from bounds on the first four.
+    fn series<const K: usize>(&self, [q0, w0, x0, v0]: [f64; 4]) -> [Growth<K>; 2] {
+        let start = |bound: f64| {
+            let mut series = [0.0; K];
+            series[0] = bound;
+            series
+        };
+        let [mut q, mut w, mut x1, mut v1] = [q0, w0, x0, v0].map(start);
+        let mut excitation = start(self.cos[0].hypot(self.sin[0]));
+        let (mut z, mut stretch, mut cube) = ([0.0; K], [0.0; K], [0.0; K]);
+        let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
+        for k in 0..K {
+            z[k] = product(&q, &q, k);
+            cube[k] = product(&z, &q, k);
+            stretch[k] = z[k] + if k == 0 { self.stretch.abs() } else { 0.0 };
+            if k + 1 == K {
+                break;
+            }
+            let outside = self.primary[0] * excitation[k] + self.primary[1] * v1[k] + self.primary[2] * x1[k];
+            let push =
+                |i: usize| self.hertz[i] * cube[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
+            (a1[k], rate[k]) = (outside + push(0), outside + push(1));
+            let next = 1.0 / (k + 1) as f64;
+            let (along, turned) = (product(&q, &v1, k), self.omega * product(&q, &excitation, k));
+            (x1[k + 1], excitation[k + 1]) = (along * next, turned * next);
+            (v1[k + 1], w[k + 1]) = (product(&q, &a1, k) * next, product(&q, &rate, k) * next);
+            q[k + 1] = 0.5 * w[k] * next;
+        }
+        [[q, w, x1, v1], [x1, v1, stretch, w]]
+    }
+
+    /// Bounds on the first Taylor coefficients in *time* over a whole contact of `duration` seconds that begins at `touch`
+    /// (`q = 0`); `None` if forces other than Hertz's may change its speed too much for the proof. `q0` is the [`greatest
+    /// depth`](Self::greatest_depth) of an undisturbed collision at its touch-down speed, √m, `amplitude` that of the force, N.
+    ///
+    /// Let `G` bound the acceleration into the wall by all forces but Hertz's. Then `|w| <= ŵ = w0 + 2 G t`, as
+    /// `w² + (4/5) κ q⁵ = w0² + 2 ∫ g w dt <= w0² + 2 G t ŵ <= ŵ²`; so `q` stays below the greatest depth at
+    /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and `q |w|` below `max u √(1 - u⁵) = 0.658` times both. The change of `v1` follows from the
+    /// impulse. The speeds are guessed first, and the proof holds if the bounds confirm the guess.
+    pub fn growth_over_contact(
+        &self,
+        touch: &RegularisedState,
+        q0: f64,
+        duration: f64,
+        amplitude: f64,
+    ) -> Option<Growth<3>> {
+        let [w0, x1, v1] = [touch[1], touch[2], touch[3]].map(f64::abs);
+        let (share, excitation) = (self.hertz[0] / self.hertz[1], self.primary[0] * amplitude);
+        let outside = |w: f64, v: f64, z: f64| {
+            let resisting = excitation + self.primary[1] * v + self.primary[2] * (x1 + duration * v);
+            [0, 1].map(|i| resisting + self.dashpot[i] * w + self.spring[i] * (z + self.stretch.abs()))
+        };
+        let depth = |w: f64| q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
+        let follows = |[w, v]: [f64; 2]| {
+            let [on_primary, apart] = outside(w, v, depth(w).powi(2));
+            let reached = w0 + 2.0 * apart * duration;
+            let impulse = share * (w0 + reached + apart * duration);
+            [reached, v1 + impulse + on_primary * duration]
+        };
+        let mut guess = [1.5 * w0, v1 + 3.0 * w0];
+        let mut most = follows(guess);
+        for _ in 0..3 {
+            if most[0] <= guess[0] && most[1] <= guess[1] {
+                break;
+            }
+            guess = most.map(|bound| 1.5 * bound);
+            most = follows(guess);
+        }
+        let [w, v] = most;
+        // NaN is no proof.
+        if !(w <= guess[0] && v <= guess[1]) {
+            return None;
+        }
+        let q = depth(w);
+        let (z, x) = (q * q, x1 + duration * v);
+        let [on_primary, apart] = outside(w, v, z);
+        let (cube, cube_rate) = (z * q, 1.5 * 0.658 * q * w);
+        let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
+        let turning = self.omega * excitation + self.primary[1] * a1 + self.primary[2] * v;
+        let jerk =
+            |i: usize| turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate;
+        Some([
+            [x, v, 0.5 * a1],
+            [v, a1, 0.5 * jerk(0)],
+            [z + self.stretch.abs(), w, 0.5 * rate],
+            [w, rate, 0.5 * jerk(1)],
+        ])
+    }
+}

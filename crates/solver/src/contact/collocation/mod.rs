@@ -1,0 +1,29 @@
+//! A whole contact at once: a collocation of the contact force on the few nodes of a [`Rule`](rule::Rule).
+//!
+//! Between the bodies acts `F = K f`, `f = z^(3/2)`; everything else is linear. So the motion is the free one, which the contact
+//! would interrupt, and what the force adds to it. With `A` the linear part and `b` what a unit of `f` adds to `y'`,
+//!
+//! ```text
+//! y(t) = y_free(t) + Σ_k A^k b ∫₀^t (t - s)^k / k! f(s) ds
+//! z(t) = z_free(t) - Σ_k g_k  ∫₀^t (t - s)^k / k! f(s) ds,      g_0 = 0, g_1 = κ
+//! ```
+//!
+//! The second line is a Volterra equation for `z` alone. A contact is short beside the linear motion, so a few terms are
+//! exact to rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that
+//! are computed once a program (see `newton`). A contact that is not of this kind is declined, and integrated step by step (see
+//! `regularised`).
+//!
+//! Read `undisturbed` (the collision that all are close to), `nodes` and `rule` (integrals of its force on few nodes), `response`
+//! (`A^k b` and `g_k`), `newton` and `solve` (the iteration), then `motion` (the motion that observers see).
+
+pub mod motion;
+pub mod newton;
+pub mod nodes;
+pub mod quadrature;
+pub mod response;
+pub mod rule;
+pub mod solve;
+pub mod undisturbed;
+
+#[cfg(test)]
+mod tests;

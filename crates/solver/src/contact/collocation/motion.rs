@@ -1,0 +1,172 @@
+//! The motion during a contact that was computed at once.
+
+use super::nodes::{MOMENTS, Nodes, at_nodes, dot, node};
+use super::response::{Collisions, FREE};
+use super::rule::Rule;
+use crate::contact::regularised::piece::Piece;
+use crate::linear::flow::{Expansion, Flow};
+use crate::motion::form::Form;
+use crate::motion::knot::Knot;
+use crate::motion::lanes::each;
+use crate::observe::observer::{Observer, Path};
+
+/// A contact from touch-down to lift-off.
+pub(super) struct Collision<'a, const N: usize, const M: usize> {
+    pub(super) of: &'a Collisions,
+    pub(super) rule: &'static Rule<N, M>,
+    pub(super) flow: &'a Flow<4>,
+    pub(super) touch: &'a Knot<4>,
+    /// The motion without contact, and the terms of it and of the response to the force that are needed.
+    pub(super) free: &'a Expansion<4, FREE>,
+    pub(super) free_terms: usize,
+    pub(super) terms: usize,
+    /// Moments of the force at the nodes and at lift-off, and the factor to impulses (N·s, over `K`).
+    pub(super) moments: &'a [Nodes<M>; MOMENTS],
+    pub(super) last: &'a [f64; MOMENTS],
+    pub(super) scale: f64,
+    pub(super) duration: f64,
+    /// Greatest depth of the undisturbed collision, m.
+    pub(super) depth: f64,
+    /// `q = √z` at the nodes.
+    pub(super) roots: Nodes<M>,
+    /// `[x1, v1, x2, v2]` at lift-off.
+    pub(super) end: [f64; 4],
+}
+
+impl<const N: usize, const M: usize> Collision<'_, N, M> {
+    /// The state at lift-off, from the free motion and the moments of the force.
+    #[inline(always)]
+    pub(super) fn lift_off(&self) -> [f64; 4] {
+        let (mut end, mut power) = (self.free.at(self.duration), self.scale);
+        for (moment, kick) in self.last.iter().zip(&self.of.kicks).take(self.terms + 1) {
+            for c in 0..4 {
+                end[c] += kick[c] * power * moment;
+            }
+            power *= self.duration;
+        }
+        end[2] = end[0] + self.of.wall;
+        end
+    }
+
+    /// A component of the state at the nodes.
+    #[inline(always)]
+    fn component(&self, c: usize) -> Nodes<M> {
+        let times = self.rule.times.map(|time| time * self.duration);
+        let mut nodes = at_nodes(&self.free.0[c], self.free_terms, &times);
+        let mut power = self.scale;
+        for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
+            for i in 0..M {
+                nodes[i] += moment[i] * (kick[c] * power);
+            }
+            power *= self.duration;
+        }
+        nodes
+    }
+
+    /// The state at one node, equal to [`Self::component`] to the last bit.
+    fn state(&self, i: usize) -> [f64; 4] {
+        let time = node(&self.rule.times, i) * self.duration;
+        each(|c| {
+            let mut value = 0.0;
+            for block in self.free.0[c].0.iter().take(self.free_terms.div_ceil(4)).rev() {
+                for coefficient in block.to_array().into_iter().rev() {
+                    value = value * time + coefficient;
+                }
+            }
+            let mut power = self.scale;
+            for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
+                value += node(moment, i) * (kick[c] * power);
+                power *= self.duration;
+            }
+            value
+        })
+    }
+
+    /// `θ = ∫ dt / √z` at a knot.
+    fn theta(&self, slope: &Nodes<M>, knot: usize) -> f64 {
+        match knot {
+            0 => 0.0,
+            inner if inner <= N => {
+                let columns = self.rule.running.iter().enumerate();
+                columns.map(|(j, column)| node(column, inner - 1) * node(slope, j)).sum()
+            }
+            _ => dot(&self.rule.whole, slope),
+        }
+    }
+
+    /// `τ` of a knot: touch-down, the nodes, lift-off.
+    fn time(&self, knot: usize) -> f64 {
+        match knot {
+            0 => 0.0,
+            inner if inner <= N => node(&self.rule.times, inner - 1),
+            _ => 1.0,
+        }
+    }
+
+    fn knot(&self, knot: usize) -> Knot<4> {
+        let elapsed = self.time(knot) * self.duration;
+        let (y, root) = match knot {
+            0 => (self.touch.y, 0.0),
+            inner if inner <= N => (self.state(inner - 1), node(&self.roots, inner - 1)),
+            _ => (self.end, 0.0),
+        };
+        Knot {
+            t: self.touch.t + elapsed,
+            excitation: self.flow.excitation_after(self.touch.excitation, elapsed),
+            y,
+            clock: [root, 0.5 * self.of.side.sign() * (y[3] - y[1])],
+        }
+    }
+}
+
+impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
+    fn pieces(&self) -> usize {
+        N + 1
+    }
+
+    #[inline(always)]
+    fn states(&self, mut visit: impl FnMut(f64, &[f64; 4])) {
+        visit(0.0, &self.touch.y);
+        // Written out, so that the compiler drops the components that a visitor does not use.
+        let [x1, v1] = [self.component(0), self.component(1)];
+        let [x2, v2] = [self.component(2), self.component(3)];
+        for i in 0..N {
+            let state = [node(&x1, i), node(&v1, i), node(&x2, i), node(&v2, i)];
+            visit(self.duration * node(&self.rule.times, i), &state);
+        }
+        visit(self.duration, &self.end);
+    }
+
+    #[inline(always)]
+    fn second_derivative(&self, form: &Form<4>) -> f64 {
+        let touch = self.of.equations.regularise(&self.touch.y);
+        let growth = self.of.equations.growth_over_contact(
+            &touch,
+            self.depth.sqrt(),
+            self.duration,
+            self.of.amplitude,
+        );
+        growth.map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, 2)) // 2! of a Taylor coefficient
+    }
+
+    /// The segment between two knots is integrated from the first of them.
+    fn show(&self, piece: usize, observer: &mut impl Observer<4>) {
+        let ends = [self.knot(piece), self.knot(piece + 1)];
+        let mut from = self.of.equations.regularise(&ends[0].y);
+        from[0] = ends[0].clock[0];
+        let mut equations = self.of.equations;
+        equations.set_excitation(0.0, ends[0].excitation);
+        let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
+        let length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));
+        let derivative = equations.derivative(&from);
+        observer.segment(&Piece {
+            equations: &equations,
+            touch_down: ends[0].t,
+            from: &from,
+            slope: &derivative,
+            length,
+            steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
+            ends,
+        });
+    }
+}

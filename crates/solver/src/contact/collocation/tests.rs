@@ -1,0 +1,159 @@
+//! Contacts computed at once beside the same contacts followed step by step.
+
+use super::response::Collisions;
+use crate::budget::{Budget, Pace};
+use crate::contact::regularised::integrate::{End, integrate};
+use crate::linear::flow::Flow;
+use crate::motion::knot::Knot;
+use crate::motion::segment::Segment;
+use crate::observe::observer::{Observer, Unobserved};
+use crate::response::Work;
+use crate::system::LinearSystem;
+use retune_model::{Coupled, Side};
+
+#[path = "../../../../model/tests/scenes/mod.rs"]
+mod scenes;
+use scenes::{Numbers, SSVI};
+
+/// Numbers drawn evenly from `[0, 1)`, always the same (a linear congruential generator, Knuth's MMIX).
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+    fn between(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * self.next()
+    }
+}
+
+/// A damper, a side and a touch-down drawn at random: stiffnesses and speeds over several orders of magnitude.
+fn contact(draw: &mut Draw) -> (Coupled, Side, Knot<4>) {
+    let numbers = Numbers {
+        k2: 10f64.powf(draw.between(1.0, 3.5)),
+        c2: 10f64.powf(draw.between(0.0, 2.6)),
+        d: draw.between(0.0, 0.2),
+        r: 10f64.powf(draw.between(-1.0, 2.0)),
+        ..SSVI
+    };
+    let system = numbers.coupled();
+    let side = Side::BOTH[usize::from(draw.next() < 0.5)];
+    let speed = 10f64.powf(draw.between(-1.5, 0.5));
+    let (x1, v1, t) = (draw.between(-0.2, 0.2), draw.between(-1.2, 1.2), draw.between(0.0, 1.0));
+    let y = [x1, v1, x1 + system.wall(side), v1 + side.sign() * speed];
+    (system, side, Knot { t, excitation: system.excitation(t), y, clock: [1.0, 0.0] })
+}
+
+fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
+    let equations = system.regularised_contact(side);
+    let pressed = equations.regularise(&touch.y);
+    let budget = Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]);
+    let (limits, mut work) = ((1e-13, budget), Work::default());
+    match integrate(equations, touch, pressed, 1e9, limits, &mut work, &mut Unobserved) {
+        Ok(End::LiftOff(end)) => end,
+        _ => panic!("no lift-off"),
+    }
+}
+
+#[test]
+fn reference_contacts_at_once_agree_with_contacts_step_by_step() {
+    for (rtol, taken_at_least) in [(1e-6, 80), (1e-7, 80), (1e-8, 80), (1e-10, 60), (1e-12, 20)] {
+        let mut draw = Draw(1);
+        let (mut taken, mut worst) = (0, 0.0_f64);
+        for _ in 0..100 {
+            let (system, side, touch) = contact(&mut draw);
+            let flow = Flow::new(LinearSystem::linear(&system), 1.0);
+            let collisions = Collisions::new(&system, side, &flow, rtol);
+            let Some((Knot { t, y, .. }, _)) = collisions.collide(&flow, touch, 1e9, &mut Unobserved) else {
+                continue;
+            };
+            let expected = step_by_step(&system, side, &touch);
+            let speed = (touch.y[3] - touch.y[1]).abs();
+            let velocity = (y[1] - expected.y[1]).abs().max((y[3] - expected.y[3]).abs()) / speed;
+            let duration = (t - expected.t).abs() / (expected.t - touch.t);
+            taken += 1;
+            worst = worst.max(velocity).max(duration);
+        }
+        assert!(taken >= taken_at_least, "only {taken} of 100 contacts were taken at rtol {rtol:e}");
+        // Below 3e-11 rounding and the steps that they are compared with count.
+        assert!(worst <= (10.0 * rtol).max(3e-11), "{worst:e} at rtol {rtol:e}");
+    }
+}
+
+/// Keeps the largest distance of what it sees from the motion followed step by step.
+struct Compare<'a> {
+    system: &'a Coupled,
+    side: Side,
+    touch: Knot<4>,
+    worst: f64,
+    pieces: usize,
+}
+
+/// Finds the state at a time.
+struct Find {
+    t: f64,
+    y: Option<[f64; 4]>,
+}
+
+impl Observer<4> for Find {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let [a, b] = segment.ends();
+        if a.t <= self.t && self.t <= b.t {
+            self.y = Some(segment.at_time(self.t).y);
+        }
+    }
+}
+
+impl Observer<4> for Compare<'_> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.pieces += 1;
+        let equations = self.system.regularised_contact(self.side);
+        let pressed = equations.regularise(&self.touch.y);
+        for seen in
+            [*segment.ends()[0], segment.at(0.4 * segment.length()), segment.at(0.999 * segment.length())]
+        {
+            let mut find = Find { t: seen.t, y: None };
+            let mut work = Work::default();
+            let limits = (1e-13, Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]));
+            let _ = integrate(equations, &self.touch, pressed, seen.t + 1e-9, limits, &mut work, &mut find);
+            let y = find.y.expect("the time is within the contact");
+            let speed = (self.touch.y[3] - self.touch.y[1]).abs();
+            self.worst = (0..4).map(|i| (y[i] - seen.y[i]).abs() / speed).fold(self.worst, f64::max);
+        }
+    }
+}
+
+#[test]
+fn reference_the_inside_of_a_contact_is_what_stepping_finds() {
+    let system = SSVI.coupled();
+    let flow = Flow::new(LinearSystem::linear(&system), 1.0);
+    for side in Side::BOTH {
+        let y = [0.1, -0.4, 0.1 + system.wall(side), -0.4 + side.sign() * 0.9];
+        let touch = Knot { t: 0.3, excitation: system.excitation(0.3), y, clock: [1.0, 0.0] };
+        let collisions = Collisions::new(&system, side, &flow, 1e-10);
+        let mut compare = Compare { system: &system, side, touch, worst: 0.0, pieces: 0 };
+        collisions.collide(&flow, touch, 1e9, &mut compare).expect("an ordinary contact");
+        assert!(compare.pieces >= 13, "{}", compare.pieces);
+        assert!(compare.worst < 1e-9, "{:e}", compare.worst);
+    }
+}
+
+#[test]
+fn exact_what_is_no_collision_is_declined() {
+    let system = SSVI.coupled();
+    let flow = Flow::new(LinearSystem::linear(&system), 1.0);
+    let collisions = Collisions::new(&system, Side::Primary, &flow, 1e-8);
+    let at = |speed: f64| Knot {
+        t: 0.0,
+        excitation: system.excitation(0.0),
+        y: [0.0, speed, 0.0, 0.0],
+        clock: [1.0, 0.0],
+    };
+    let taken = |speed: f64, to: f64| collisions.collide(&flow, at(speed), to, &mut Unobserved).is_some();
+    assert!(taken(1.0, 1.0), "an ordinary contact");
+    for speed in [0.0, -1.0, 1e-9, f64::NAN, f64::INFINITY] {
+        assert!(!taken(speed, 1.0), "a speed of {speed}");
+    }
+    assert!(!taken(1.0, 1e-3), "the run ends in it");
+}

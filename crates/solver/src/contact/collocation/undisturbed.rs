@@ -1,0 +1,92 @@
+//! The undisturbed Hertz collision, to which most contacts are close.
+//!
+//! Two bodies that meet at speed `w` and feel nothing but Hertz's force obey `z'' = -κ z^(3/2)`. In units of the greatest depth
+//! `Z = (5 w² / 4κ)^(2/5)` and the duration `T = 2.943 Z/w` every such collision is the same, `ζ'' = -Λ ζ^(3/2)` with
+//! `ζ(0) = ζ(1) = 0`.
+
+use super::quadrature::gauss;
+use crate::methods::dop853;
+
+/// Duration of the undisturbed collision, in units of greatest depth over touch-down speed: `(4/5) B(2/5, 1/2)`.
+pub const DURATION: f64 = 2.943_275_184_324_705;
+
+/// `Λ = κ T² √Z` of the undisturbed collision: with `Z` its greatest depth, `(5/4) DURATION²`.
+pub const STIFFNESS: f64 = 1.25 * DURATION * DURATION;
+
+/// `τ` and `dτ/du` of the clock.
+pub fn clock(u: f64) -> [f64; 2] {
+    [u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)]
+}
+
+/// The force `ζ^(3/2)` of the undisturbed collision as a function of the clock, to rounding: `u³ (1 - u)³` times a polynomial
+/// that meets it on 40 nodes.
+pub fn undisturbed_force() -> impl Fn(f64) -> f64 {
+    const NODES: usize = 40;
+    let ends = |u: f64| (u * (1.0 - u)).powi(3);
+    let (nodes, _) = gauss(NODES, 0);
+    // In units of Z and Z/w the regularised collision is q' = w/2, w' = -(5/4) q⁴, t' = q (see `retune_model::RegularisedContact`).
+    let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4), q];
+    let advance = |y: &[f64; 3], h: f64| dop853::step(slope, y, &slope(y), h).y;
+    let mut y = [0.0, 1.0, 0.0];
+    // The collision is symmetric in time.
+    let mut values: Vec<f64> = nodes[..NODES / 2]
+        .iter()
+        .map(|&u| {
+            let time = DURATION * clock(u)[0];
+            // Newton's iteration for the end of the last of some short steps; time grows at the rate q.
+            while time - y[2] > 0.05 * y[0].max(0.05) {
+                y = advance(&y, 0.04);
+            }
+            let mut h = 0.0;
+            let mut at = y;
+            for _ in 0..50 {
+                let correction = (time - at[2]) / at[0].max(1e-3);
+                h += correction;
+                at = advance(&y, h);
+                if correction.abs() < 1e-16 {
+                    break;
+                }
+            }
+            y = at;
+            y[0].powi(3) / ends(u)
+        })
+        .collect();
+    values.extend(values.clone().into_iter().rev());
+    let weights: Vec<f64> = (0..NODES)
+        .map(|j| (0..NODES).filter(|&i| i != j).map(|i| 0.25 / (nodes[j] - nodes[i])).product())
+        .collect();
+    move |u| {
+        let (mut above, mut below) = (0.0, 0.0);
+        for ((node, weight), value) in nodes.iter().zip(&weights).zip(&values) {
+            if u == *node {
+                return ends(u) * value;
+            }
+            above += weight / (u - node) * value;
+            below += weight / (u - node);
+        }
+        ends(u) * above / below
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_undisturbed_collision() {
+        // (4/5) B(2/5, 1/2) by Γ(2/5), Γ(1/2), Γ(9/10)
+        let beta = 2.218_159_543_757_688 * std::f64::consts::PI.sqrt() / 1.068_628_702_119_319;
+        assert!((0.8 * beta / DURATION - 1.0).abs() < 1e-14, "{}", 0.8 * beta);
+        let force = undisturbed_force();
+        // At the deepest point ζ = 1; half-way in time back to it the energy law 1 - ζ^(5/2) = (dζ/dt)² holds.
+        assert!((force(0.5) - 1.0).abs() < 1e-14, "{}", force(0.5));
+        for u in [0.05, 0.2, 0.35] {
+            let depth = |u: f64| force(u).powf(2.0 / 3.0);
+            let h = 1e-4;
+            let slope = (depth(u - 2.0 * h) - 8.0 * depth(u - h) + 8.0 * depth(u + h) - depth(u + 2.0 * h))
+                / (12.0 * h);
+            let speed = slope / (DURATION * clock(u)[1]);
+            assert!((speed * speed + depth(u).powf(2.5) - 1.0).abs() < 1e-10, "{u}");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The loop over the steps of one contact, from touch-down (or a state in contact) to lift-off.
+
+use super::piece::{Piece, Q, TIME, W, at_elapsed, knot, step};
+use super::plan::Plan;
+use crate::budget::Budget;
+use crate::error::SolverError;
+use crate::methods::dop853::{self, EVALUATIONS};
+use crate::motion::knot::Knot;
+use crate::observe::observer::Observer;
+use crate::response::Work;
+use retune_model::{RegularisedContact, RegularisedState};
+
+/// How a contact ended.
+pub enum End {
+    /// The damper left the wall.
+    LiftOff(Knot<4>),
+    /// The run ended, or the observer was satisfied, while the damper was in contact.
+    InContact(Knot<4>),
+}
+
+/// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
+///
+/// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a sustained contact,
+/// relative to the recent ones.
+///
+/// # Errors
+/// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
+#[inline(always)]
+pub fn integrate(
+    mut equations: RegularisedContact,
+    from: &Knot<4>,
+    mut y: RegularisedState,
+    to: f64,
+    (rtol, budget): (f64, Budget),
+    work: &mut Work,
+    observer: &mut impl Observer<4>,
+) -> Result<End, SolverError> {
+    let touch_down = from.t;
+    equations.set_excitation(y[TIME], from.excitation);
+    let mut plan = Plan::new(&equations, &y, rtol);
+    let shortest = plan.h * 1e-12;
+    let mut start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
+    loop {
+        // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
+        equations.set_excitation(y[TIME], start.excitation);
+        let reach = RegularisedContact::TURN / (equations.frequency() * plan.q);
+        // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
+        let unhindered = plan.step(&y);
+        let planned = unhindered.min(reach);
+        let left = if y[W] < 0.0 { equations.theta_to_wall(&y) } else { f64::INFINITY };
+        let h = if left < (1.2 * planned).min(reach) { left } else { planned };
+        let slope = equations.derivative(&y);
+        let tried = step(&equations, &y, &slope, h);
+        work.evaluations += EVALUATIONS + 1;
+        let error = plan.error(h, &tried, rtol);
+        let t = touch_down + y[TIME];
+        let shortened = (h / unhindered).min(1.0);
+        let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
+        let wall = if lifting { reach_wall(&equations, &tried.y, &plan, rtol, work) } else { None };
+        // The length of the last step if it goes on to the wall: it may hardly be longer than the one tried.
+        let to_wall = |wall: &RegularisedState| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
+        let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
+        // Beyond the wall there is no contact: a step must end where the wall can be reached. Nor may it outrun the force.
+        let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
+        let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * RegularisedContact::TURN;
+        if error.is_nan() || error > 1.0 || lost {
+            work.rejected += 1;
+            plan.refuse(if lost { f64::INFINITY } else { error }, shortened, &y);
+            if !y.iter().all(|v| v.is_finite()) {
+                return Err(SolverError::NonFinite { t });
+            }
+            // Rejected steps count as work too.
+            budget.check(work.steps + work.rejected, t)?;
+            if plan.h < shortest {
+                return Err(SolverError::Contact { t });
+            }
+            continue;
+        }
+        work.steps += 1;
+        budget.check(work.steps, t)?;
+        let (mut next, mut length) = (tried.y, h);
+        if let Some(wall) = wall {
+            (next, length) = (wall, to_wall(&wall));
+        }
+        let over = touch_down + next[TIME] >= to;
+        if over {
+            let advance = |theta: f64| step(&equations, &y, &slope, theta).y;
+            (length, next) = at_elapsed(advance, length, to - touch_down);
+        }
+        let mut end = knot(&equations, touch_down, &next);
+        if over {
+            end.t = to;
+        }
+        let piece = Piece {
+            equations: &equations,
+            touch_down,
+            from: &y,
+            slope: &slope,
+            length,
+            steps: 1,
+            ends: [start, end],
+        };
+        observer.segment(&piece);
+        if over || observer.satisfied() {
+            return Ok(End::InContact(end));
+        }
+        if wall.is_some() {
+            return Ok(End::LiftOff(end));
+        }
+        let seconds = next[TIME] - y[TIME];
+        plan.adapt(&equations, error, (shortened, seconds), &next, rtol);
+        y = next;
+        start = end;
+    }
+}
+
+/// The state at the wall, `q = 0`, from one near it on either side (past lift-off the polynomial equations still hold), with
+/// `q` as the independent variable: one step of the classical Runge–Kutta method if the speed and the force hardly change on
+/// the way, else one of DOP853; `None` where that is too inaccurate because the damper leaves too slowly.
+fn reach_wall(
+    equations: &RegularisedContact,
+    y: &RegularisedState,
+    plan: &Plan,
+    rtol: f64,
+    work: &mut Work,
+) -> Option<RegularisedState> {
+    let by_q = |y: &RegularisedState| {
+        let slope = equations.derivative(y);
+        slope.map(|s| s / slope[Q])
+    };
+    let (k1, h) = (by_q(y), -y[Q]);
+    let (z, speed) = (h * h, y[W].abs());
+    // The change of speed by each force alone: their sum may be small by chance.
+    let pull = equations.mass_ratio() * equations.size_of_terms(y);
+    let change = z * (pull / speed + equations.frequency());
+    let mut end = if change < 1e-3 * speed {
+        work.evaluations += 4;
+        let along = |k: &RegularisedState, h: f64| std::array::from_fn::<f64, 5, _>(|i| y[i] + h * k[i]);
+        let k2 = by_q(&along(&k1, 0.5 * h));
+        let k3 = by_q(&along(&k2, 0.5 * h));
+        let k4 = by_q(&along(&k3, h));
+        along(&std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0), h)
+    } else {
+        work.evaluations += EVALUATIONS + 1;
+        let step = dop853::step(by_q, y, &k1, h);
+        let error = plan.error(h, &step, rtol);
+        if error.is_nan() || error > 1.0 || step.y[W] >= 0.0 {
+            return None;
+        }
+        step.y
+    };
+    end[Q] = 0.0;
+    Some(end)
+}

@@ -1,0 +1,112 @@
+//! A piece of a contact in regularised time, as observers see it.
+
+use crate::methods::dop853::{self, Step};
+use crate::motion::form::{Form, QUINTIC};
+use crate::motion::knot::Knot;
+use crate::motion::segment::Segment;
+use retune_model::{ORDERS, RegularisedContact, RegularisedState};
+
+// Components of a regularised state.
+pub const Q: usize = 0;
+pub const W: usize = 1;
+pub const V1: usize = 3;
+pub const TIME: usize = 4;
+
+/// A piece of a contact. Its interior is reached by steps from its start, shorter than those that would reach its end.
+pub struct Piece<'a> {
+    pub equations: &'a RegularisedContact,
+    /// Time from which the regularised state counts, s.
+    pub touch_down: f64,
+    pub from: &'a RegularisedState,
+    /// Derivative there.
+    pub slope: &'a RegularisedState,
+    /// Length in θ.
+    pub length: f64,
+    /// Steps in which it is reached.
+    pub steps: u32,
+    pub ends: [Knot<4>; 2],
+}
+
+/// The moment of a regularised state.
+pub fn knot(equations: &RegularisedContact, touch_down: f64, y: &RegularisedState) -> Knot<4> {
+    Knot {
+        t: touch_down + y[TIME],
+        excitation: equations.excitation(y),
+        y: equations.physical(y),
+        clock: [y[Q], 0.5 * y[W]],
+    }
+}
+
+/// One step of DOP853 from `y`, with the derivative `slope` there.
+#[inline(always)]
+pub fn step(
+    equations: &RegularisedContact,
+    y: &RegularisedState,
+    slope: &RegularisedState,
+    h: f64,
+) -> Step<5> {
+    dop853::step(|y| equations.derivative(y), y, slope, h)
+}
+
+impl Segment<4> for Piece<'_> {
+    fn ends(&self) -> [&Knot<4>; 2] {
+        [&self.ends[0], &self.ends[1]]
+    }
+    fn length(&self) -> f64 {
+        self.length
+    }
+    fn at(&self, theta: f64) -> Knot<4> {
+        knot(self.equations, self.touch_down, &self.advance(theta))
+    }
+    fn at_time(&self, t: f64) -> Knot<4> {
+        let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
+        Knot { t, ..knot(self.equations, self.touch_down, &y) }
+    }
+    fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
+        // `q` is taken from the clock, because it has lost digits in the state.
+        let [from, to] = ends.map(|knot| {
+            let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
+            [knot.clock[0], w, x1, v1, 0.0]
+        });
+        let growth = self.equations.growth(h, &from, &to);
+        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(&growth, 6)) // 6! of a Taylor coefficient
+    }
+}
+
+impl Piece<'_> {
+    fn advance(&self, theta: f64) -> RegularisedState {
+        let h = theta / f64::from(self.steps);
+        let mut y = step(self.equations, self.from, self.slope, h).y;
+        for _ in 1..self.steps {
+            y = step(self.equations, &y, &self.equations.derivative(&y), h).y;
+        }
+        y
+    }
+}
+
+/// The `θ` and the state when `elapsed` seconds have passed since touch-down, within a piece of `length`: time grows with
+/// θ, so Newton's iteration kept inside by bisection finds it.
+pub fn at_elapsed(
+    advance: impl Fn(f64) -> RegularisedState,
+    length: f64,
+    elapsed: f64,
+) -> (f64, RegularisedState) {
+    let (mut lower, mut upper, mut theta) = (0.0, length, 0.5 * length);
+    let mut y = advance(theta);
+    for _ in 0..100 {
+        let excess = y[TIME] - elapsed;
+        if excess < 0.0 {
+            lower = theta
+        } else {
+            upper = theta
+        }
+        let newton = theta - excess / y[Q];
+        let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+        if (next - theta).abs() <= 2.0 * f64::EPSILON * length {
+            break;
+        }
+        theta = next;
+        y = advance(theta);
+    }
+    (theta, y)
+}

@@ -1,0 +1,138 @@
+//! The energy bound check: no motion has more energy than the force can have supplied. The last check of every run.
+
+use crate::error::SolverError;
+use crate::response::{Extreme, Response};
+use crate::settings::{Method, Settings, Window};
+use retune_model::{Bare, Scene};
+
+/// Allowance for rounding in the bound on the energy, relative.
+const SLACK: f64 = 1e-6;
+
+/// Roundings by which the search for touch-downs and that for the largest relative displacement may differ in a position.
+const ROUNDINGS: f64 = 64.0;
+
+/// Returns a largest energy of the primary structure that is within the bound.
+///
+/// A run of the hybrid with more energy than the force can supply (see [`Bare::most_energy`]) has lost all digits, because its
+/// parameters are too many orders of magnitude apart. General methods are not held to the bound: at a fixed step or a loose
+/// tolerance they gain energy by themselves.
+///
+/// # Errors
+/// [`SolverError::NonFinite`], [`SolverError::Implausible`].
+pub fn energy(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    maximum: Extreme,
+) -> Result<Extreme, SolverError> {
+    let Extreme { value, time } = maximum;
+    if window.from >= window.to {
+        return Ok(maximum); // an empty window
+    }
+    if !value.is_finite() {
+        return Err(SolverError::NonFinite { t: window.to });
+    }
+    let most = most(scene, window);
+    let gained = settings.method == Method::Hybrid && value > most * (1.0 + SLACK);
+    if gained || value < 0.0 || !(window.from..=window.to).contains(&time) {
+        return Err(SolverError::Implausible { t: window.to, value, time, most });
+    }
+    Ok(maximum)
+}
+
+/// The most energy that the force can give in a run, J.
+fn most(scene: &Scene, window: Window) -> f64 {
+    Bare::new(&scene.primary, &scene.forcing).most_energy(window.to)
+}
+
+/// Returns a response whose numbers are all finite and whose energy is within the bound.
+///
+/// # Errors
+/// As [`energy`].
+pub fn response(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    found: Response,
+) -> Result<Response, SolverError> {
+    if window.from >= window.to {
+        return Ok(found); // an empty window
+    }
+    energy(scene, window, settings, found.e1_max)?;
+    let Extreme { value, time } = found.e2_max;
+    if value.is_finite() && !(window.from..=window.to).contains(&time) {
+        return Err(SolverError::Implausible { t: window.to, value, time, most: most(scene, window) });
+    }
+    let numbers = [found.e2_max.value, found.relative_displacement_max, found.spring_deflection_max];
+    let all = numbers.iter().chain(&found.force_max).chain(&found.final_state);
+    if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
+}
+
+/// The indentation, m, of a wall that was never touched, which is zero or negative. At positions of this size, m, rounding alone
+/// may put the damper slightly inside.
+///
+/// # Errors
+/// [`SolverError::Missed`]: the indentation is larger than rounding can explain.
+pub fn untouched(depth: f64, position: f64, t: f64) -> Result<f64, SolverError> {
+    if depth > ROUNDINGS * f64::EPSILON * position {
+        return Err(SolverError::Missed { t, depth });
+    }
+    Ok(depth.min(0.0))
+}
+
+/// The same error with its time limited to the run: where digits are lost, the time of a step may be wrong too.
+pub fn error(window: Window, error: SolverError) -> SolverError {
+    let sound = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
+    match error {
+        SolverError::StepTooSmall { t, h } => SolverError::StepTooSmall { t: sound(t), h },
+        SolverError::TooFast { t, h, remedy } => SolverError::TooFast { t: sound(t), h, remedy },
+        SolverError::Contact { t } => SolverError::Contact { t: sound(t) },
+        SolverError::TooManySteps { t, limit } => SolverError::TooManySteps { t: sound(t), limit },
+        SolverError::TooSlow { t, steps, needed, limit, remedy } => {
+            SolverError::TooSlow { t: sound(t), steps, needed, limit, remedy }
+        }
+        SolverError::Unstable { t } => SolverError::Unstable { t: sound(t) },
+        SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
+        SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
+        SolverError::Implausible { .. } => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::{Forcing, NonNegative, Positive, Primary};
+
+    /// 2 kg pushed by 4 N for 3 s have 36 J at most.
+    #[test]
+    fn exact_energy_that_the_force_cannot_give_is_refused_of_the_exact_method() {
+        let number = |value| NonNegative::new(value).expect("a number");
+        let mass = Positive::new(2.0).expect("a mass");
+        let scene = Scene {
+            primary: Primary { mass, damping: number(0.0), stiffness: number(0.0) },
+            forcing: Forcing { amplitude: number(4.0), frequency: number(0.0) },
+            damper: None,
+        };
+        let window = Window { from: 1.0, to: 3.0 };
+        let ask = |value, time, method| {
+            energy(&scene, window, &Settings { method, ..Settings::default() }, Extreme { value, time })
+        };
+        assert!(ask(36.0, 3.0, Method::Hybrid).is_ok());
+        let refused = ask(36.1, 3.0, Method::Hybrid);
+        let Err(SolverError::Implausible { t, value, time, most }) = refused else {
+            panic!("{refused:?}");
+        };
+        assert!((t, value, time) == (3.0, 36.1, 3.0) && (most - 36.0).abs() < 1e-12);
+        assert!(ask(36.1, 3.0, Method::Euler).is_ok());
+        assert!(matches!(ask(-1.0, 3.0, Method::Euler), Err(SolverError::Implausible { .. })));
+        assert!(matches!(ask(1.0, 0.5, Method::Hybrid), Err(SolverError::Implausible { time: 0.5, .. })));
+        assert_eq!(ask(f64::NAN, 3.0, Method::Hybrid), Err(SolverError::NonFinite { t: 3.0 }));
+    }
+
+    #[test]
+    fn exact_a_wall_that_was_never_touched_is_pressed_by_rounding_alone() {
+        assert_eq!(untouched(-0.5, 1.0, 3.0), Ok(-0.5));
+        assert_eq!(untouched(1e-16, 1.0, 3.0), Ok(0.0));
+        assert_eq!(untouched(1e-12, 1.0, 3.0), Err(SolverError::Missed { t: 3.0, depth: 1e-12 }));
+    }
+}

@@ -1,0 +1,180 @@
+//! Linear scenes in closed form: the bare structure, and a damper that provably never reaches a wall.
+//!
+//! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Damping only takes energy from the transient, so its
+//! energy norm bounds its later motion: it decides whether a wall can ever be reached, and whether the record can still be broken.
+
+use crate::budget::Budget;
+use crate::error::SolverError;
+use crate::linear::flow::Flow;
+use crate::linear::steps::{Step, StepClock, Steps};
+use crate::motion::knot::Knot;
+use crate::motion::lanes::LANES;
+use crate::motion::segment::Segment;
+use crate::observe::observer::{Observer, Unobserved};
+use crate::observe::quantity::Quantity;
+use crate::observe::running_maximum::RunningMaximum;
+use crate::response::{Extreme, Work};
+use crate::settings::Window;
+use crate::system::LinearSystem;
+use nalgebra::Complex;
+use retune_model::{Coupled, Side};
+
+/// A linear scene at a moment of its run.
+pub struct ContactFree<'a, S, const N: usize> {
+    system: &'a S,
+    flow: Flow<N>,
+    now: Knot<N>,
+    max_steps: u64,
+    /// Work done so far.
+    pub work: Work,
+}
+
+impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
+    /// The scene at rest at t = 0; no step will be longer than `longest` (s).
+    pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
+        let linear = system.linear();
+        let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: linear.origin, clock: [1.0, 0.0] };
+        Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
+    }
+
+    /// The same at rest at `t` (s) instead.
+    pub fn started(mut self, t: f64) -> Self {
+        (self.now.t, self.now.excitation) = (t, self.system.excitation(t));
+        self
+    }
+
+    /// The state reached.
+    pub fn state(&self) -> [f64; N] {
+        self.now.y
+    }
+
+    /// Steps to time `to` (s), or until the observer is satisfied.
+    ///
+    /// # Errors
+    /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
+    pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
+        let budget = self.budget(to);
+        self.go(to, observer, budget)
+    }
+
+    fn budget(&self, to: f64) -> Budget {
+        Budget::new(self.flow.pace(), self.max_steps, self.work.steps, [self.now.t, to])
+    }
+
+    fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
+        self.flow.check_step(self.now.t, to)?;
+        let whole = self.flow.step();
+        let mut clock = StepClock::new(self.now.t, whole);
+        while self.now.t < to && !observer.satisfied() {
+            let (now, remaining) = (self.now, to - self.now.t);
+            let energy =
+                self.system.energy_norm(&now.y) + LANES as f64 * whole * self.system.energy_norm_growth();
+            let mut steps = Steps::new(&self.flow, now, clock, energy);
+            steps.keep((remaining / whole) as usize);
+            if steps.count() > 0 {
+                observer.steps(&steps);
+                self.now = steps.knot(steps.count());
+                clock.count(steps.count());
+            } else {
+                let motion = self.flow.expand(now.excitation, &now.y);
+                let mut step = Step::part(&self.flow, now, &motion, remaining, energy);
+                step.end().t = to;
+                observer.segment(&step);
+                self.now = *step.ends()[1];
+            }
+            self.work.steps += steps.count().max(1) as u64;
+            budget.check(self.work.steps, now.t)?;
+            if !self.now.y.iter().all(|v| v.is_finite()) {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+        }
+        Ok(())
+    }
+
+    /// Advances to time `to` (s) unobserved: the transient by repeated squaring, the steady motion by its phase; step by step where
+    /// there is no steady motion.
+    fn jump(&mut self, to: f64) -> Result<(), SolverError> {
+        let whole = ((to - self.now.t) / self.flow.step()).floor();
+        let Some(steady) = self.system.steady() else {
+            return self.propagate(to, &mut Unobserved);
+        };
+        if whole >= 2.0 && whole < u64::MAX as f64 {
+            let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
+            let t = self.now.t + whole * self.flow.step();
+            let y = sum(&steady_state(&self.flow, &steady, t), &self.flow.decay(whole as u64, transient));
+            self.now = Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] };
+        }
+        self.propagate(to, &mut Unobserved)
+    }
+
+    /// Energy norm of the transient at this moment, √J; infinite where there is no steady motion.
+    fn transient(&self) -> f64 {
+        let Some(steady) = self.system.steady() else { return f64::INFINITY };
+        let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
+        self.system.energy_norm(&sum(&self.flow.linear().origin, &transient))
+    }
+
+    /// Largest energy of the primary structure over the window; it ends early once `cutoff` is exceeded, or once steady motion
+    /// and what is left of the transient cannot reach the record any more: `√E1 <= √E1_steady + |transient| / √2`.
+    ///
+    /// # Errors
+    /// As [`Self::propagate`].
+    pub fn e1_max<Q>(
+        &mut self,
+        window: Window,
+        mut maximum: RunningMaximum<Q>,
+        steady_e1: f64,
+    ) -> Result<Extreme, SolverError>
+    where
+        Q: Quantity<N>,
+    {
+        /// Steps between looks at the bound.
+        const STRIDE: f64 = 64.0;
+        // The maximum is often that of the steady motion: with it known first, most of the search can be skipped.
+        let (start, last) = (self.now, window.to - std::f64::consts::PI / self.flow.linear().frequency);
+        if self.system.steady().is_some() && window.from < last {
+            self.jump(last)?;
+            self.propagate(window.to, &mut maximum)?;
+            self.now = start;
+        }
+        self.jump(window.from)?;
+        let budget = self.budget(window.to);
+        while self.now.t < window.to && !Observer::<N>::satisfied(&maximum) {
+            let to = window.to.min(self.now.t + STRIDE * self.flow.step());
+            if to <= self.now.t {
+                // Late in a run a step may be less than the spacing of the numbers there.
+                return Err(self.flow.too_fast(self.now.t));
+            }
+            self.go(to, &mut maximum, budget)?;
+            let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
+            if bound <= maximum.record().value {
+                break;
+            }
+        }
+        Ok(maximum.record())
+    }
+}
+
+impl ContactFree<'_, Coupled, 4> {
+    /// Whether the damper provably stays off both walls from rest on: `|r - D| <= |X2 - X1| + |row of r| |transient|`.
+    pub fn clears_walls(&self) -> bool {
+        let reach = self.system.steady(self.system.bare().frequency()).stroke()
+            + self.system.dual_energy_norm(&[-1.0, 0.0, 1.0, 0.0]) * self.transient();
+        let rest = self.system.rest_distance();
+        reach < rest && reach < self.system.wall(Side::Obstacle) - rest
+    }
+}
+
+fn difference<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn sum<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// The steady motion at time `t`: `origin + Re(Y e^{iωt})`.
+fn steady_state<const N: usize>(flow: &Flow<N>, amplitudes: &[Complex<f64>; N], t: f64) -> [f64; N] {
+    let turn = Complex::from_polar(1.0, flow.linear().frequency * t);
+    std::array::from_fn(|i| flow.linear().origin[i] + (amplitudes[i] * turn).re)
+}

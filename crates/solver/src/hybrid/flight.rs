@@ -1,0 +1,150 @@
+//! Flight between contacts: whole steps where both gaps are certified open, an exact search for the touch-down in any other.
+
+use super::propagator::{Hybrid, Phase, relative_position};
+use crate::error::SolverError;
+use crate::linear::flow::Expansion;
+use crate::linear::gap::{CUBIC, Lost, ceiling, cubic, first_contact, floor, opening_floor};
+use crate::linear::steps::{Step, StepClock, Steps};
+use crate::motion::knot::Knot;
+use crate::motion::lanes::{LANES, shifted};
+use crate::motion::polynomial::{BLOCKS, Polynomial};
+use crate::motion::segment::Segment;
+use crate::observe::observer::Observer;
+use retune_model::Side;
+use wide::f64x4;
+
+/// How a flight ended.
+pub enum FlightEnd {
+    /// The damper has touched a wall.
+    TouchDown(Side, Knot<4>),
+    /// The run ends here.
+    Stopped(Knot<4>),
+}
+
+impl Hybrid<'_> {
+    /// Flies until a touch-down, until `to`, or until the observer is satisfied.
+    #[inline(always)]
+    pub(super) fn flight(
+        &mut self,
+        from: Knot<4>,
+        phase: Phase,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<FlightEnd, SolverError> {
+        let whole = self.flow.step();
+        let mut clock = StepClock::new(from.t, whole);
+        let mut now = from;
+        let mut leaving = if let Phase::Leaving(side) = phase { Some(side) } else { None };
+        loop {
+            let remaining = to - now.t;
+            if remaining <= 0.0 {
+                return Ok(FlightEnd::Stopped(now));
+            }
+            let energy = self.system.energy_norm(&now.y);
+            if !energy.is_finite() {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+            let growth = LANES as f64 * whole * self.system.energy_norm_growth();
+            let mut steps = Steps::new(&self.flow, now, clock, energy + growth);
+            let (open, near) = self.open_steps(&steps, leaving);
+            let seen = open.min((remaining / whole) as usize);
+            let careful = seen < LANES;
+            steps.keep(seen);
+            self.work.steps += seen as u64 + u64::from(careful);
+            self.budget.check(self.work.steps, now.t)?;
+            if seen > 0 {
+                observer.steps(&steps);
+                now = steps.knot(seen);
+                clock.count(seen);
+                leaving = None;
+                if observer.satisfied() {
+                    return Ok(FlightEnd::Stopped(now));
+                }
+            }
+            if careful {
+                let remaining = to - now.t;
+                if remaining <= 0.0 {
+                    return Ok(FlightEnd::Stopped(now));
+                }
+                let walls = Side::BOTH.into_iter().filter(|&side| seen == open && near[side as usize]);
+                let (step, touched) = self.careful_step(
+                    [now, steps.knot(seen + 1)],
+                    walls,
+                    leaving,
+                    (remaining, steps.energy()),
+                )?;
+                if step.length() > 0.0 {
+                    observer.segment(&step);
+                }
+                now = *step.ends()[1];
+                if let Some(side) = touched {
+                    return Ok(FlightEnd::TouchDown(side, now));
+                }
+                if observer.satisfied() || now.t >= to {
+                    return Ok(FlightEnd::Stopped(now));
+                }
+                clock.count(1);
+                leaving = None;
+            }
+        }
+    }
+
+    /// The number of steps that are certified to touch no wall, and the walls that the next one may touch.
+    #[inline(always)]
+    fn open_steps(&self, steps: &Steps<'_, 4>, leaving: Option<Side>) -> (usize, [bool; 2]) {
+        let (from, to, whole) = (steps.from(), steps.ends(), self.flow.step());
+        let margin = CUBIC * whole.powi(4) * (self.fourth[0] * steps.energy() + self.fourth[1]);
+        let [x1, v1, x2, v2] = to.y;
+        let ends = [x2 - x1, v2 - v1];
+        let starts = [shifted(from.y[2] - from.y[0], ends[0]), shifted(from.y[3] - from.y[1], ends[1])];
+        let bounds = cubic(whole, starts, ends);
+        let wall = f64x4::splat(self.system.wall(Side::Obstacle));
+        let mut gaps = [floor(bounds), wall - ceiling(bounds)];
+        if let Some(side) = leaving {
+            let sign = f64x4::splat(-side.sign());
+            let gap = |stroke: f64x4| sign * (stroke - self.system.wall(side));
+            let opening =
+                opening_floor(cubic(whole, [f64x4::ZERO, sign * starts[1]], [gap(ends[0]), sign * ends[1]]));
+            gaps[side as usize].as_mut_array()[0] = opening.to_array()[0];
+        }
+        let open = gaps.map(|gap| gap.simd_gt(f64x4::splat(margin)).to_bitmask());
+        let count = (open[0] & open[1]).trailing_ones();
+        (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
+    }
+
+    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: up to that point. `energy` bounds
+    /// the energy norm of the motion, √J.
+    fn careful_step(
+        &self,
+        [now, end]: [Knot<4>; 2],
+        walls: impl Iterator<Item = Side>,
+        leaving: Option<Side>,
+        (remaining, energy): (f64, f64),
+    ) -> Result<(Step<'_, 4>, Option<Side>), SolverError> {
+        let whole = self.flow.step();
+        let motion = self.flow.expand(now.excitation, &now.y);
+        let (mut length, mut touched) = (whole.min(remaining), None);
+        for side in walls {
+            let found = first_contact(self.gap_polynomial(&motion, side, leaving), length);
+            if let Some(s) = found.map_err(|Lost| SolverError::NonFinite { t: now.t })? {
+                (length, touched) = (s, Some(side));
+            }
+        }
+        if length == whole {
+            return Ok((Step::whole(&self.flow, [now, end], energy), touched));
+        }
+        let mut step = Step::part(&self.flow, now, &motion, length, energy);
+        match touched {
+            Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
+            None => step.end().t = now.t + remaining,
+        }
+        Ok((step, touched))
+    }
+
+    /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.
+    fn gap_polynomial(&self, motion: &Expansion<4>, side: Side, leaving: Option<Side>) -> Polynomial<BLOCKS> {
+        let gap = relative_position(motion, -side.sign());
+        let now = gap.coefficient(0) + side.sign() * self.system.wall(side);
+        gap.with_constant(if leaving == Some(side) { 0.0 } else { now.max(0.0) })
+    }
+}

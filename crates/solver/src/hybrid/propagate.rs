@@ -1,0 +1,75 @@
+//! The loop of the hybrid: flight, contact, flight, …
+
+use super::flight::FlightEnd;
+use super::propagator::{Hybrid, Motion, Phase};
+use crate::budget::Budget;
+use crate::contact::regularised::integrate::End;
+use crate::error::SolverError;
+use crate::motion::knot::Knot;
+use crate::observe::observer::Observer;
+
+impl Hybrid<'_> {
+    /// Follows the motion to time `to` (s) or until the observer is satisfied.
+    ///
+    /// # Errors
+    /// [`SolverError`] with the time reached.
+    #[inline(always)]
+    pub fn propagate(
+        &mut self,
+        from: Motion,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<Motion, SolverError> {
+        self.flow.check_step(from.t, to)?;
+        self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work.steps, [from.t, to]);
+        let mut phase = from.phase;
+        let mut now = self.knot(from.t, from.y);
+        let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
+        loop {
+            if let Phase::InContact(side) = phase {
+                let equations = self.contacts[side as usize];
+                let pressed = equations.regularise(&now.y);
+                match self.contact(equations, &now, pressed, to, observer)? {
+                    End::InContact(end) => return stopped(end, phase),
+                    End::LiftOff(end) => now = self.knot(end.t, end.y),
+                }
+                phase = Phase::Leaving(side);
+            }
+            match self.flight(now, phase, to, observer)? {
+                FlightEnd::Stopped(end) => return stopped(end, Phase::Flight),
+                FlightEnd::TouchDown(side, touch) => {
+                    // A damper that rests on a wall from the start makes no touch-down.
+                    let closing = side.sign() * (touch.y[3] - touch.y[1]);
+                    if touch.t > from.t || closing > 0.0 {
+                        observer.touch_down(touch.t, side);
+                    }
+                    if let Some((end, evaluations)) =
+                        self.collisions[side as usize].collide(&self.flow, touch, to, observer)
+                    {
+                        self.work.steps += 1;
+                        self.work.evaluations += evaluations;
+                        now = end;
+                        phase = Phase::Leaving(side);
+                        if observer.satisfied() {
+                            return stopped(now, phase);
+                        }
+                        continue;
+                    }
+                    let equations = self.contacts[side as usize];
+                    let (begin, pressed) = self.enter_contact(equations, touch, to, observer)?;
+                    if begin.t >= to {
+                        return stopped(begin, Phase::InContact(side));
+                    }
+                    match self.contact(equations, &begin, pressed, to, observer)? {
+                        End::InContact(end) => return stopped(end, Phase::InContact(side)),
+                        End::LiftOff(end) => now = self.knot(end.t, end.y),
+                    }
+                    phase = Phase::Leaving(side);
+                }
+            }
+            if observer.satisfied() || now.t >= to {
+                return stopped(now, phase);
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The data of the hybrid propagator: prepared once for a system, then used for any stretch of its motion.
+
+use crate::budget::Budget;
+use crate::contact::collocation::response::Collisions;
+use crate::linear::flow::{Expansion, Flow};
+use crate::motion::form::derivative_bounds;
+use crate::motion::knot::Knot;
+use crate::motion::polynomial::{BLOCKS, Polynomial};
+use crate::response::Work;
+use crate::system::LinearSystem;
+use retune_model::{Coupled, RegularisedContact, Side};
+
+/// The phase of the damper's motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Between the walls.
+    Flight,
+    /// Between the walls, having just left one, where the gap is zero by definition rather than by arithmetic.
+    Leaving(Side),
+    /// In contact with a wall.
+    InContact(Side),
+}
+
+impl Phase {
+    /// The phase of a state that was set rather than reached: in contact where the damper overlaps a wall.
+    pub fn of(system: &Coupled, y: &[f64; 4]) -> Self {
+        let overlaps = system.indentation(y);
+        let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
+        pressed.map_or(Self::Flight, Self::InContact)
+    }
+}
+
+/// A moment from which the motion can be continued.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// Time, s.
+    pub t: f64,
+    /// `[x1, v1, x2, v2]`.
+    pub y: [f64; 4],
+    /// The phase of the damper's motion.
+    pub phase: Phase,
+}
+
+/// The propagator of one coupled system. Preparing it costs about as much as a hundred flight steps; it allocates nothing.
+pub struct Hybrid<'a> {
+    pub(super) system: &'a Coupled,
+    pub(super) flow: Flow<4>,
+    pub(super) contacts: [RegularisedContact; 2],
+    pub(super) collisions: [Collisions; 2],
+    /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
+    pub(super) fourth: [f64; 2],
+    pub(super) rtol: f64,
+    pub(super) max_steps: u64,
+    pub(super) budget: Budget,
+    /// Work done so far.
+    pub work: Work,
+}
+
+/// The row that picks `r = x2 - x1` from a state.
+const STROKE: [f64; 4] = [-1.0, 0.0, 1.0, 0.0];
+
+impl<'a> Hybrid<'a> {
+    /// Prepares the propagator. `rtol` is the relative error allowed in a step of a contact, `longest` (s) the longest
+    /// flight step, `max_steps` the most steps a run may take.
+    pub fn new(system: &'a Coupled, rtol: f64, longest: f64, max_steps: u64) -> Self {
+        let linear = system.linear();
+        let flow = Flow::new(linear, longest);
+        Self {
+            system,
+            collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
+            budget: Budget::new(flow.pace(), max_steps, 0, [0.0; 2]),
+            flow,
+            contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
+            fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
+            rtol,
+            max_steps,
+            work: Work::default(),
+        }
+    }
+
+    /// The moment of flight with this state.
+    pub(super) fn knot(&self, t: f64, y: [f64; 4]) -> Knot<4> {
+        Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] }
+    }
+}
+
+/// `sign r` over the next step.
+pub fn relative_position(motion: &Expansion<4>, sign: f64) -> Polynomial<BLOCKS> {
+    let [x1, _, x2, _] = motion.0;
+    Polynomial(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * sign))
+}

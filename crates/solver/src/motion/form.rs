@@ -1,0 +1,179 @@
+//! Quantities as polynomials in the state, and bounds on their derivatives: the search for a largest value rests on them.
+
+use super::polynomial::{BLOCKS, Polynomial};
+use crate::system::LinearSystem;
+use retune_model::Growth;
+use wide::f64x4;
+
+/// `R` over `M h⁶`.
+pub const QUINTIC: f64 = 1.0 / 46080.0;
+
+/// A quantity as a polynomial of degree two in the deviation `d = y - y0` from rest: `constant + linear · d + Σ weight/2 (row · d)²`.
+#[derive(Clone, Copy, Debug)]
+pub struct Form<const N: usize> {
+    linear: [f64; N],
+    squares: [(f64, [f64; N]); 2],
+    rest: [f64; N],
+    /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
+    sixth: [f64; 3],
+}
+
+/// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
+///
+/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of the terms of the force.
+pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
+    system: &S,
+    row: [f64; N],
+) -> [[f64; 2]; K] {
+    let (linear, amplitude) = (system.linear(), amplitude(system));
+    let dot = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (mut row, mut forced) = (row, 0.0);
+    std::array::from_fn(|_| {
+        let bound = [system.dual_energy_norm(&row), amplitude * forced];
+        forced = forced * linear.frequency + dot(&row, &linear.input).abs();
+        row = linear.columns.map(|column| dot(&row, &column));
+        bound
+    })
+}
+
+/// P, N.
+fn amplitude<S: LinearSystem<N>, const N: usize>(system: &S) -> f64 {
+    let [cos, sin] = system.excitation(0.0);
+    cos.hypot(sin)
+}
+
+/// Terms of the polynomials that a motion in flight consists of.
+const TERMS: usize = 4 * BLOCKS;
+
+/// Binomial coefficients `5! / k! (5 - k)!`.
+const FIFTH: [f64; 6] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+
+/// A product of bounds: zero if one factor is zero, even if the other is infinite.
+fn times(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
+
+/// The row that picks a component of the state.
+fn unit<const N: usize>(i: usize) -> [f64; N] {
+    std::array::from_fn(|j| f64::from(u8::from(i == j)))
+}
+
+impl<const N: usize> Form<N> {
+    /// `row · d`.
+    pub fn linear<S: LinearSystem<N>>(system: &S, row: [f64; N]) -> Self {
+        let [.., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
+        let sixth = [offset, slope, 0.0];
+        Self { linear: row, squares: [(0.0, row); 2], rest: system.linear().origin, sixth }
+    }
+
+    /// `(mass v² + stiffness x²) / 2` of the components `x` and `v = x'` of the deviation from rest.
+    ///
+    /// It changes at the rate `v G`, with `G = mass v' + stiffness x` the sum of all forces but this spring's; so its sixth
+    /// derivative is the fifth of a product, by Leibniz's rule, each factor by its bound.
+    pub fn energy<S: LinearSystem<N>>(system: &S, [mass, stiffness]: [f64; 2], [x, v]: [usize; 2]) -> Self {
+        let linear = system.linear();
+        let mut force: [f64; N] = std::array::from_fn(|j| mass * linear.columns[j][v]);
+        force[x] += stiffness;
+        let speeds: [[f64; 2]; 6] = derivative_bounds(system, unit(v));
+        let mut forces: [[f64; 2]; 6] = derivative_bounds(system, force);
+        let mut driving = mass * linear.input[v].abs() * amplitude(system);
+        for force in &mut forces {
+            force[1] += driving;
+            driving *= linear.frequency;
+        }
+        let mut sixth = [0.0; 3];
+        for (k, binomial) in FIFTH.into_iter().enumerate() {
+            let ([a, b], [c, d]) = (speeds[k], forces[5 - k]);
+            sixth[2] += binomial * times(a, c);
+            sixth[1] += binomial * (times(a, d) + times(b, c));
+            sixth[0] += binomial * times(b, d);
+        }
+        let squares = [(mass, unit(v)), (stiffness, unit(x))];
+        Self { linear: [0.0; N], squares, rest: linear.origin, sixth }
+    }
+
+    /// A bound on the sixth time derivative in flight, wherever the energy norm of the state is at most `energy` (√J).
+    #[inline(always)]
+    pub fn sixth_in_flight(&self, energy: f64) -> f64 {
+        let [b0, b1, b2] = self.sixth;
+        let bound = b0 + (b1 + b2 * energy) * energy;
+        if bound.is_nan() { f64::INFINITY } else { bound }
+    }
+
+    /// The sum of the sizes of its terms, which sets its rounding error.
+    pub fn size(&self, y: &[f64; N]) -> f64 {
+        let size = |row: &[f64; N]| {
+            row.iter()
+                .zip(y)
+                .zip(&self.rest)
+                .map(|((r, y), y0)| times(r.abs(), y.abs() + y0.abs()))
+                .sum::<f64>()
+        };
+        let squares = self.squares.iter().map(|(weight, row)| 0.5 * weight * size(row).powi(2));
+        size(&self.linear) + squares.sum::<f64>()
+    }
+
+    /// A bound on how far the quantity leaves the quintic that meets it, its slope and its curvature at both ends, over `length`
+    /// seconds on which the components of the state are these polynomials in time.
+    ///
+    /// The quantity is itself a polynomial there, `Σ_j q_j τʲ` with `τ = t / length`; its sixth derivative is at most
+    /// `Σ_j |q_j| j! / (j - 6)!`, and `j! / (j - 6)! 46080` is the binomial coefficient `j` over 6, over 64.
+    pub fn quintic_error(&self, motion: &[Polynomial<BLOCKS>; N], length: f64) -> f64 {
+        let mut q = [0.0; 2 * TERMS];
+        self.combined(&self.linear, motion, length).into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
+        for (weight, row) in self.squares.iter().filter(|(weight, _)| *weight != 0.0) {
+            let row = self.combined(row, motion, length);
+            for (i, a) in row.into_iter().enumerate() {
+                let scaled = 0.5 * weight * a;
+                for (k, b) in row.iter().enumerate() {
+                    q[i + k] += scaled * b;
+                }
+            }
+        }
+        let (mut error, mut choose) = (0.0, 1.0 / 64.0);
+        for (j, q) in q.iter().enumerate().skip(6) {
+            error += choose * q.abs();
+            choose *= (j + 1) as f64 / (j - 5) as f64;
+        }
+        error
+    }
+
+    /// `row · d` as a polynomial in `t / length`.
+    fn combined(&self, row: &[f64; N], motion: &[Polynomial<BLOCKS>; N], length: f64) -> [f64; TERMS] {
+        let mut sum = [f64x4::ZERO; BLOCKS];
+        let mut constant = 0.0;
+        for ((weight, motion), rest) in row.iter().zip(motion).zip(&self.rest) {
+            constant += weight * (motion.coefficient(0) - rest);
+            for (sum, block) in sum.iter_mut().zip(motion.0) {
+                *sum += block * *weight;
+            }
+        }
+        let sum = Polynomial(sum).with_constant(constant);
+        let mut power = 1.0;
+        std::array::from_fn(|k| {
+            let term = sum.coefficient(k) * power;
+            power *= length;
+            term
+        })
+    }
+}
+
+impl Form<4> {
+    /// A bound on the Taylor coefficient of order `k` in a contact with the wall of this sign, from those of its motion.
+    pub fn in_contact<const K: usize>(&self, growth: &Growth<K>, k: usize) -> f64 {
+        // x2 - D = x1 + sign (stretch), v2 = v1 + sign w.
+        let combined = |[x1, v1, x2, v2]: &[f64; 4]| -> [f64; K] {
+            let weights = [x1 + x2, v1 + v2, *x2, *v2].map(f64::abs);
+            std::array::from_fn(|k| (0..4).map(|i| times(weights[i], growth[i][k])).sum())
+        };
+        let square = |(weight, row): &(f64, [f64; 4])| {
+            let row = combined(row);
+            let products: f64 = (0..=k).map(|i| times(row[i], row[k - i])).sum();
+            times(0.5 * weight, products)
+        };
+        combined(&self.linear)[k] + self.squares.iter().map(square).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests;

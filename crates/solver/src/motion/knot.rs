@@ -1,0 +1,16 @@
+//! A moment of the motion.
+
+use retune_model::Excitation;
+
+/// A moment of the motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Knot<const N: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// `[P cos ωt, P sin ωt]`, N.
+    pub excitation: Excitation,
+    /// State.
+    pub y: [f64; N],
+    /// `[dt/dθ, d²t/dθ²]`, the rate of time in the coordinate in which the segment is smooth; `[1, 0]` where that is time itself.
+    pub clock: [f64; 2],
+}

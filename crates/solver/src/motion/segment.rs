@@ -1,0 +1,26 @@
+//! A smooth segment of the motion.
+
+use super::form::Form;
+use super::knot::Knot;
+
+/// A segment of the motion, smooth in its own coordinate `θ`, which runs from 0 to `length`.
+pub trait Segment<const N: usize> {
+    /// First and last moment.
+    fn ends(&self) -> [&Knot<N>; 2];
+    /// Length in `θ`.
+    fn length(&self) -> f64;
+    /// The moment at `θ`.
+    fn at(&self, theta: f64) -> Knot<N>;
+    /// The moment at time `t` (s) inside the segment.
+    fn at_time(&self, t: f64) -> Knot<N>;
+    /// Whether it is free of contact forces, even where rounding has left one of its ends inside a wall.
+    fn in_flight(&self) -> bool {
+        false
+    }
+    /// How far a quantity may leave the quintic that meets its value, slope and curvature (with respect to `θ`) at two places `h`
+    /// apart: `h⁶/46080` times a bound on its sixth derivative between them; a `sharp` bound may cost more. Infinite where they are
+    /// too far apart for a bound; `None` for a motion without a known bound.
+    fn quintic_error(&self, _form: &Form<N>, _ends: [&Knot<N>; 2], _h: f64, _sharp: bool) -> Option<f64> {
+        None
+    }
+}

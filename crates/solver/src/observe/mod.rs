@@ -1,0 +1,23 @@
+//! Observers: they look at a motion while it is computed, and keep a few numbers of it.
+//!
+//! A method hands its motion over segment by segment, and nothing else is stored on the way, so a run allocates nothing. Read
+//! `observer` (the contract, and how observers compose), then `quantity` and `running_maximum` (E1max and its like), and for its
+//! proof `search` and `quintic`. `counters` see events alone; `displacement_range` gives stroke and contact forces.
+
+pub mod counters;
+pub mod displacement_range;
+pub mod observer;
+pub mod quantity;
+mod quintic;
+pub mod running_maximum;
+mod search;
+
+// For callers of the crate; inside it every file names the file that it means.
+pub use crate::motion::form::Form;
+pub use crate::motion::knot::Knot;
+pub use crate::motion::segment::Segment;
+pub use counters::{TouchDownTimes, TouchDowns};
+pub use displacement_range::DisplacementRange;
+pub use observer::{MOST_KNOTS, Observer, Path, Unobserved};
+pub use quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};
+pub use running_maximum::RunningMaximum;

@@ -1,0 +1,116 @@
+//! Observers: a method hands over its motion segment by segment, and each observer keeps its own result.
+
+use crate::linear::steps::Steps;
+use crate::motion::form::Form;
+use crate::motion::segment::Segment;
+use retune_model::Side;
+
+/// A stretch of the motion known at its knots; the segments between them are computed only on request.
+pub trait Path<const N: usize> {
+    /// Number of segments, one less than there are knots, of which there are at most [`MOST_KNOTS`].
+    fn pieces(&self) -> usize;
+    /// Visits the times (s, since the first) and states at the knots in their order.
+    fn states(&self, visit: impl FnMut(f64, &[f64; N]));
+    /// A bound on the second time derivative of a quantity; infinite where none is known.
+    fn second_derivative(&self, form: &Form<N>) -> f64;
+    /// Hands the segment that follows a knot to an observer.
+    fn show(&self, piece: usize, observer: &mut impl Observer<N>);
+}
+
+/// Most knots of a [`Path`].
+pub const MOST_KNOTS: usize = 18;
+
+/// Follows a run. A pair of observers, nested as deep as need be, is an observer; so are an array and an `Option` of one.
+pub trait Observer<const N: usize> {
+    /// Whether it looks at the motion. An observer of events alone sets this to `false`, and no segment is computed for it.
+    const WATCHES_MOTION: bool = true;
+    /// A segment of the motion has been computed.
+    fn segment(&mut self, _segment: &impl Segment<N>) {}
+    /// Several segments at once. To take them one by one is always right.
+    #[inline(always)]
+    fn path(&mut self, path: &impl Path<N>)
+    where
+        Self: Sized,
+    {
+        if Self::WATCHES_MOTION {
+            for piece in 0..path.pieces() {
+                path.show(piece, self);
+            }
+        }
+    }
+    /// Several whole steps of an exact flow at once. To take them one by one is always right.
+    #[inline(always)]
+    fn steps(&mut self, steps: &Steps<'_, N>)
+    where
+        Self: Sized,
+    {
+        if Self::WATCHES_MOTION {
+            for number in 0..steps.count() {
+                self.segment(&steps.step(number));
+            }
+        }
+    }
+    /// The damper has touched a wall at time `t` (s).
+    fn touch_down(&mut self, _t: f64, _side: Side) {}
+    /// Whether the run may stop here. It stops as soon as one of several observers says so.
+    fn satisfied(&self) -> bool {
+        false
+    }
+}
+
+/// The observer that sees nothing: for the transient before a window.
+pub struct Unobserved;
+
+impl<const N: usize> Observer<N> for Unobserved {
+    const WATCHES_MOTION: bool = false;
+}
+
+impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
+    const WATCHES_MOTION: bool = A::WATCHES_MOTION || B::WATCHES_MOTION;
+    fn segment(&mut self, segment: &impl Segment<N>) {
+        self.0.segment(segment);
+        self.1.segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<N>) {
+        self.0.path(path);
+        self.1.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, N>) {
+        self.0.steps(steps);
+        self.1.steps(steps);
+    }
+    fn touch_down(&mut self, t: f64, side: Side) {
+        self.0.touch_down(t, side);
+        self.1.touch_down(t, side);
+    }
+    fn satisfied(&self) -> bool {
+        self.0.satisfied() || self.1.satisfied()
+    }
+}
+
+/// Implements [`Observer`] for a container by handing everything on to each observer in it.
+macro_rules! for_each_in {
+    ($container:ty, [$($generics:tt)*], $each:ident, $any:ident) => {
+        impl<const N: usize, O: Observer<N>, $($generics)*> Observer<N> for $container {
+            const WATCHES_MOTION: bool = O::WATCHES_MOTION;
+            fn segment(&mut self, segment: &impl Segment<N>) {
+                self.$each().for_each(|observer| observer.segment(segment));
+            }
+            fn path(&mut self, path: &impl Path<N>) {
+                self.$each().for_each(|observer| observer.path(path));
+            }
+            fn steps(&mut self, steps: &Steps<'_, N>) {
+                self.$each().for_each(|observer| observer.steps(steps));
+            }
+            fn touch_down(&mut self, t: f64, side: Side) {
+                self.$each().for_each(|observer| observer.touch_down(t, side));
+            }
+            fn satisfied(&self) -> bool {
+                self.$any().any(|observer| observer.satisfied())
+            }
+        }
+    };
+}
+
+for_each_in!([O; K], [const K: usize], iter_mut, iter);
+for_each_in!(Option<O>, [], iter_mut, iter);

@@ -1,0 +1,122 @@
+//! The running maximum of a quantity: the observer that most runs are made for.
+
+use super::observer::{MOST_KNOTS, Observer, Path};
+use super::quantity::Quantity;
+use super::quintic::{highest, quintic};
+use super::search::{Search, in_theta};
+use crate::linear::steps::Steps;
+use crate::motion::form::QUINTIC;
+use crate::motion::lanes::shifted;
+use crate::motion::segment::Segment;
+use crate::response::Extreme;
+use wide::f64x4;
+
+/// The largest value of a quantity, located where its rate of change is zero, to rounding.
+pub struct RunningMaximum<Q> {
+    search: Search<Q>,
+    cutoff: f64,
+    /// Time and rates at the end of the latest segment, and whether these are rates in flight.
+    last: Option<(f64, bool, [f64; 3])>,
+}
+
+impl<Q> RunningMaximum<Q> {
+    /// Watches a quantity; the run may end early once its value exceeds `cutoff`.
+    pub fn new(quantity: Q, cutoff: f64) -> Self {
+        Self { search: Search::new(quantity), cutoff, last: None }
+    }
+
+    /// The largest value so far and its time; `-∞` and NaN before any motion was seen.
+    pub fn record(&self) -> Extreme {
+        self.search.record
+    }
+
+    /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is proven.
+    pub fn doubt(&self) -> f64 {
+        self.search.doubt()
+    }
+}
+
+impl<const N: usize, Q> Observer<N> for RunningMaximum<Q>
+where
+    Q: Quantity<N>,
+{
+    #[inline(always)]
+    fn segment(&mut self, segment: &impl Segment<N>) {
+        let ([a, b], in_flight) = (segment.ends(), segment.in_flight());
+        let rates_a = match self.last {
+            Some((t, flown, rates)) if t == a.t && flown == in_flight => rates,
+            _ => {
+                let rates = a.rates(&self.search.quantity, in_flight);
+                self.search.note(rates[0], a.t);
+                rates
+            }
+        };
+        let rates_b = b.rates(&self.search.quantity, in_flight);
+        self.last = Some((b.t, in_flight, rates_b));
+        self.search.note(rates_b[0], b.t);
+        let from = (0.0, *a, in_theta(rates_a, a.clock));
+        let to = (segment.length(), *b, in_theta(rates_b, b.clock));
+        let remainder = self.search.quintic_error(segment, &from, &to, false);
+        self.search.begin(segment, &from, &to, remainder);
+    }
+
+    /// Searches only between knots where the record could be broken: a quantity whose second derivative is at most `m` rises above
+    /// the larger of two values `t` seconds apart by at most `m t² / 8`.
+    #[inline(always)]
+    fn path(&mut self, path: &impl Path<N>) {
+        let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
+        let mut count = 0;
+        path.states(|t, y| {
+            [values[count], ..] = self.search.quantity.rates([0.0; 2], y);
+            times[count] = t;
+            count += 1;
+        });
+        let second = path.second_derivative(self.search.quantity.form());
+        for piece in 0..count - 1 {
+            let rise = 0.125 * second * (times[piece + 1] - times[piece]).powi(2);
+            let dropped = values[piece].max(values[piece + 1]) + rise <= self.search.record.value;
+            if !dropped {
+                path.show(piece, self);
+            }
+        }
+    }
+
+    /// The bound of [`Self::segment`] for all steps side by side.
+    #[inline(always)]
+    fn steps(&mut self, steps: &Steps<'_, N>) {
+        let (from, to) = (steps.from(), steps.ends());
+        let first = match self.last {
+            Some((t, true, rates)) if t == from.t => rates,
+            _ => from.rates(&self.search.quantity, true),
+        };
+        let ends = self.search.quantity.rates_in_flight(&to.excitation, &to.y);
+        let begins = [0, 1, 2].map(|order| shifted(first[order], ends[order]));
+        let h = steps.length();
+        let sixth = self.search.quantity.form().sixth_in_flight(steps.energy());
+        let remainder = QUINTIC * h.powi(6) * sixth;
+        let highest = highest(quintic(h, begins, ends), f64x4::splat(remainder));
+        let last = steps.count() - 1;
+        self.last = Some((steps.time(last + 1), true, ends.map(|lanes| lanes.to_array()[last])));
+        // The values at both ends are among the coefficients.
+        let dropped = highest.simd_le(f64x4::splat(self.search.record.value)).to_bitmask();
+        let wanted = !dropped & ((2 << last) - 1);
+        if wanted == 0 {
+            return;
+        }
+        for number in 0..=last {
+            self.search.note(begins[0].to_array()[number], steps.time(number));
+            self.search.note(ends[0].to_array()[number], steps.time(number + 1));
+        }
+        for number in (0..=last).filter(|number| wanted >> number & 1 == 1) {
+            let step = steps.step(number);
+            let [begin, end] = step.ends();
+            let rates = |all: [f64x4; 3]| all.map(|lanes| lanes.to_array()[number]);
+            let (from, to) = ((0.0, *begin, rates(begins)), (h, *end, rates(ends)));
+            self.search.begin(&step, &from, &to, remainder);
+        }
+    }
+
+    fn satisfied(&self) -> bool {
+        self.search.record.value > self.cutoff
+    }
+}

@@ -1,0 +1,216 @@
+//! The search for the largest value of a quantity on one segment, by branch and bound.
+//!
+//! A stretch of the motion is dropped only where a bound proves that it holds no larger value: see `quintic`, `form` and
+//! `docs/bounds.md`.
+
+use super::quantity::Quantity;
+use super::quintic::{Shape, highest, quintic, shape, slope_root};
+use crate::motion::knot::Knot;
+use crate::motion::segment::Segment;
+use crate::response::Extreme;
+use wide::f64x4;
+
+/// The largest value of a quantity on the segments that have been searched.
+pub struct Search<Q> {
+    /// The quantity.
+    pub quantity: Q,
+    /// The largest value so far, and its time.
+    pub record: Extreme,
+    /// Halvings left in the segment that is searched.
+    halvings: u32,
+    /// Whether its sharp bound is in use.
+    sharp: bool,
+    /// A bound on the largest value where a search ended before its bounds could decide.
+    undecided: f64,
+}
+
+/// An assumption for motions without a known bound (the interpolants of general methods): `R` relative to the variation at both ends,
+/// `h |slope| + h² |curvature|`. A quantity that oscillates at the rate `2/h` leaves its quintic by `2⁶ / 46080 = 1.4e-3` of its
+/// amplitude.
+const ASSUMED: f64 = 2e-3;
+
+/// Rounding error of a value, relative to `ε` times the sizes of its terms: the search ignores smaller gains.
+const ROUNDING: f64 = 8.0;
+
+/// Most halvings in a segment. Two or three are common, and 20 are many; they would not end only where parameters are so many
+/// orders of magnitude apart that slopes are lost in rounding.
+const HALVINGS: u32 = 64;
+
+/// Halvings after which a search asks for the sharp bound.
+const SHARP: u32 = 3;
+
+impl<Q> Search<Q> {
+    /// A search that has seen nothing.
+    pub fn new(quantity: Q) -> Self {
+        Self {
+            quantity,
+            record: Extreme { value: f64::NEG_INFINITY, time: f64::NAN },
+            halvings: 0,
+            sharp: false,
+            undecided: f64::NEG_INFINITY,
+        }
+    }
+
+    /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is
+    /// proven. The rest of such a search is climbed where its slopes show a maximum.
+    pub fn doubt(&self) -> f64 {
+        (self.undecided - self.record.value).max(0.0)
+    }
+}
+
+/// Value, slope and curvature with respect to `θ`, from those with respect to time.
+#[inline(always)]
+pub fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2]) -> [f64; 3] {
+    [value, slope * rate, curvature * rate * rate + slope * rate_slope]
+}
+
+/// A place in a segment: `θ`, the moment, and `[value, slope, curvature]` there.
+pub type Place<const N: usize> = (f64, Knot<N>, [f64; 3]);
+
+impl<Q> Search<Q> {
+    /// Keeps a value if it is the largest so far.
+    #[inline]
+    pub fn note(&mut self, value: f64, time: f64) {
+        if value > self.record.value {
+            self.record = Extreme { value, time };
+        }
+    }
+
+    /// Begins the search of a segment.
+    pub fn begin<const N: usize>(
+        &mut self,
+        segment: &impl Segment<N>,
+        a: &Place<N>,
+        b: &Place<N>,
+        remainder: f64,
+    ) where
+        Q: Quantity<N>,
+    {
+        (self.halvings, self.sharp) = (HALVINGS, false);
+        self.search(segment, a, b, remainder);
+    }
+
+    /// Looks for a maximum above the record between two places. `remainder` bounds how far the quantity leaves its quintic there.
+    fn search<const N: usize>(
+        &mut self,
+        segment: &impl Segment<N>,
+        a: &Place<N>,
+        b: &Place<N>,
+        remainder: f64,
+    ) where
+        Q: Quantity<N>,
+    {
+        let coefficients = quintic(b.0 - a.0, a.2.map(f64x4::splat), b.2.map(f64x4::splat));
+        let highest = highest(coefficients, f64x4::splat(remainder)).to_array()[0];
+        // A bound that is NaN drops nothing.
+        if highest <= self.record.value {
+            return;
+        }
+        match shape(coefficients.map(|lanes| lanes.to_array()[0]), remainder) {
+            Shape::EndsAreLargest => {} // and have been noted
+            Shape::OneMaximum => self.climb(segment, a, b),
+            Shape::Unknown => self.halve(segment, a, b, remainder, highest),
+        }
+    }
+
+    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder; a long search, or
+    /// one without a finite bound, asks for a sharper one first.
+    fn halve<const N: usize>(
+        &mut self,
+        segment: &impl Segment<N>,
+        a: &Place<N>,
+        b: &Place<N>,
+        mut remainder: f64,
+        highest: f64,
+    ) where
+        Q: Quantity<N>,
+    {
+        if self.halvings <= HALVINGS - SHARP {
+            let form = self.quantity.form();
+            let rounding = ROUNDING * f64::EPSILON * form.size(&a.1.y).max(form.size(&b.1.y));
+            if highest <= self.record.value + rounding {
+                return;
+            }
+            if self.halvings == 0 {
+                self.undecided = self.undecided.max(highest);
+                if a.2[1] > 0.0 && b.2[1] < 0.0 {
+                    self.climb(segment, a, b);
+                }
+                return;
+            }
+            if !self.sharp || remainder.is_infinite() {
+                self.sharp = true;
+                let sharper = self.quintic_error(segment, a, b, true);
+                if sharper < remainder {
+                    return self.search(segment, a, b, sharper);
+                }
+            }
+        }
+        self.halvings -= 1;
+        remainder /= 64.0;
+        let middle = self.look(segment, 0.5 * (a.0 + b.0));
+        self.note(middle.2[0], middle.1.t);
+        for (from, to) in [(a, &middle), (&middle, b)] {
+            self.search(segment, from, to, remainder);
+        }
+    }
+
+    fn look<const N: usize>(&self, segment: &impl Segment<N>, theta: f64) -> Place<N>
+    where
+        Q: Quantity<N>,
+    {
+        let knot = segment.at(theta);
+        (theta, knot, in_theta(knot.rates(&self.quantity, segment.in_flight()), knot.clock))
+    }
+
+    /// A bound on how far the quantity leaves its quintic between two places.
+    pub fn quintic_error<const N: usize>(
+        &self,
+        segment: &impl Segment<N>,
+        a: &Place<N>,
+        b: &Place<N>,
+        sharp: bool,
+    ) -> f64
+    where
+        Q: Quantity<N>,
+    {
+        let h = b.0 - a.0;
+        let assumed = || {
+            let variation = |[_, slope, curvature]: [f64; 3]| (slope.abs() + curvature.abs() * h) * h;
+            ASSUMED * (variation(a.2) + variation(b.2))
+        };
+        let error =
+            segment.quintic_error(self.quantity.form(), [&a.1, &b.1], h, sharp).unwrap_or_else(assumed);
+        if error.is_nan() { f64::INFINITY } else { error }
+    }
+
+    /// The only maximum between two places, where the quantity is concave: Newton's method on the slope, kept inside by bisection.
+    /// The quantity is flat there: an error δ of the place costs δ², which the parabola corrects by `slope² / 2|curvature|`, so that
+    /// an error of order δ³ is left.
+    fn climb<const N: usize>(&mut self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>)
+    where
+        Q: Quantity<N>,
+    {
+        let (mut lower, mut upper) = (a.0, b.0);
+        let mut theta = a.0 + slope_root(b.0 - a.0, a.2, b.2);
+        for _ in 0..60 {
+            let (_, Knot { t, clock: [rate, rate_slope], .. }, [value, slope, curvature]) =
+                self.look(segment, theta);
+            self.note(value, t);
+            if slope > 0.0 {
+                lower = theta
+            } else {
+                upper = theta
+            }
+            let step = -slope / curvature;
+            let gain = 0.5 * slope * step;
+            if curvature < 0.0 && gain <= 1e-10 * value.abs() {
+                // Where the quantity is almost level, the vertex of the parabola may lie far outside the bracket.
+                let way = step.max(lower - theta).min(upper - theta);
+                return self.note(value + gain, t + way * (rate + 0.5 * way * rate_slope));
+            }
+            let newton = theta + step;
+            theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+        }
+    }
+}

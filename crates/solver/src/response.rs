@@ -1,0 +1,58 @@
+//! The answer to a run: largest values, counts, the final state and the work.
+
+use serde::{Deserialize, Serialize};
+
+/// A largest value and when it was reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// The value, in the unit of the quantity.
+    pub value: f64,
+    /// The time, s.
+    pub time: f64,
+}
+
+/// The smallest model that was exact for a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SceneKind {
+    /// No damper: one degree of freedom, exact flow.
+    Bare,
+    /// A damper that touched neither wall, checked on the trajectory: two degrees of freedom, exact flow.
+    Linear,
+    /// A damper that touched.
+    Contact,
+}
+
+/// The work of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Steps taken (of the hybrid: flight and contact steps).
+    pub steps: u64,
+    /// Steps tried and rejected.
+    pub rejected: u64,
+    /// Evaluations of a right-hand side (of the hybrid: of the contact equations; an exact flight step needs none).
+    pub evaluations: u64,
+}
+
+/// The observations of a run within its window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Largest energy of the primary structure, J.
+    pub e1_max: Extreme,
+    /// Largest energy of the damper, the paper's E2, J; zero without a damper.
+    pub e2_max: Extreme,
+    /// Touch-downs on the primary structure and on the obstacle.
+    pub impacts: [u64; 2],
+    /// Largest contact forces on the primary structure and on the obstacle, N.
+    pub force_max: [f64; 2],
+    /// Largest relative displacement `|x2 - x1|` of the damper, m: its place in the cavity.
+    pub relative_displacement_max: f64,
+    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
+    pub spring_deflection_max: f64,
+    /// State at the end of the window: `[x1, v1, x2, v2]`, or `[x1, v1, 0, 0]` without a damper.
+    pub final_state: [f64; 4],
+    /// The smallest model that was exact for the whole run.
+    pub scene: SceneKind,
+    /// The work of the run.
+    pub work: Work,
+}

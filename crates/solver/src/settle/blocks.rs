@@ -1,0 +1,134 @@
+//! A run in blocks of some periods of the force.
+
+use super::recurrence::{Recurrence, Settle};
+use super::section::PoincareSection;
+use crate::extremes::{Ask, Extremes, Maxima, maxima, read};
+use crate::linear::steps::Steps;
+use crate::motion::segment::Segment;
+use crate::observe::observer::{Observer, Path};
+use crate::settings::Settings;
+use retune_model::Coupled;
+use std::f64::consts::TAU;
+
+/// The extremes of one block after another, until the motion has settled. A segment belongs to the block in which it begins.
+pub struct Blocks<'a> {
+    system: &'a Coupled,
+    /// The question put to each block.
+    ask: Ask,
+    /// Of the force, s.
+    period: f64,
+    /// Periods in a block.
+    periods: u32,
+    /// Blocks that begin at this time or later count even if the motion does not settle, s.
+    from: f64,
+    /// Stroke and force count for blocks that end after this time, s; `None` if they are not asked for.
+    walls_from: Option<f64>,
+    section: PoincareSection,
+    recurrence: Recurrence<'a>,
+    now: Maxima<'a>,
+    /// Blocks that are finished.
+    done: u32,
+    /// Largest stroke and force of the blocks that count.
+    walls: [f64; 2],
+    /// The last block of a motion that has settled.
+    settled: Option<Extremes>,
+    /// The extremes while the motion has not settled, and whether they are those of blocks that count.
+    unsettled: Option<(Extremes, bool)>,
+}
+
+impl<'a> Blocks<'a> {
+    /// Blocks from t = 0 on; those that begin at `from` (s) or later count even if the motion does not settle.
+    pub fn new(system: &'a Coupled, from: f64, settle: Settle, settings: &Settings, ask: Ask) -> Self {
+        let period = TAU / system.bare().frequency();
+        let walls_from = ask.walls;
+        let ask = Ask { walls: ask.walls.map(|_| 0.0), cutoff: f64::INFINITY, ..ask };
+        Self {
+            system,
+            ask,
+            period,
+            periods: settle.periods,
+            from,
+            walls_from,
+            section: PoincareSection::new(period, settle.periods as usize * settle.blocks as usize),
+            recurrence: Recurrence::new(system, settle, settings),
+            now: maxima(system, ask),
+            done: 0,
+            walls: [0.0; 2],
+            settled: None,
+            unsettled: None,
+        }
+    }
+
+    /// When a block begins, s.
+    fn begin(&self, block: u32) -> f64 {
+        (f64::from(block) * f64::from(self.periods)) * self.period
+    }
+
+    /// Begins the next block if the present one ends before `t` (s).
+    fn roll(&mut self, t: f64) {
+        if t < self.begin(self.done + 1) || self.settled.is_some() {
+            return;
+        }
+        let block = std::mem::replace(&mut self.now, maxima(self.system, self.ask));
+        let extremes = read(&block);
+        self.keep(extremes);
+        if self.recurrence.has_settled(self.section.states()) {
+            self.settled = Some(extremes);
+        }
+    }
+
+    fn keep(&mut self, block: Extremes) {
+        let counts = self.begin(self.done) >= self.from;
+        self.unsettled = match self.unsettled {
+            Some((all, true)) if block.e1_max.value <= all.e1_max.value => Some((all, true)),
+            Some((_, true)) => Some((block, true)),
+            Some((_, false)) | None => Some((block, counts)),
+        };
+        self.done += 1;
+        if self.walls_from.is_some_and(|from| self.begin(self.done) > from) {
+            self.walls = [self.walls[0].max(block.stroke), self.walls[1].max(block.force)];
+        }
+    }
+
+    /// The extremes of the settled motion, or of all blocks that count.
+    pub fn verdict(mut self) -> Extremes {
+        let found = match self.settled {
+            Some(block) => block,
+            None => {
+                let last = read(&self.now);
+                if last.e1_max.value.is_finite() {
+                    self.keep(last); // the block that the end of the run cut short
+                }
+                // A run in which no motion was seen has no block.
+                let all = self.unsettled.map_or(last, |(all, _)| all);
+                Extremes { settled: false, ..all }
+            }
+        };
+        let [stroke, force] = self.walls;
+        Extremes { stroke: stroke.max(found.stroke), force: force.max(found.force), ..found }
+    }
+}
+
+impl Observer<4> for Blocks<'_> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.roll(segment.ends()[0].t);
+        self.section.segment(segment);
+        self.now.segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        self.section.path(path);
+        self.now.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.roll(steps.from().t);
+        if steps.time(steps.count() - 1) < self.begin(self.done + 1) {
+            self.section.steps(steps);
+            self.now.steps(steps);
+        } else {
+            (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
+        }
+    }
+    fn satisfied(&self) -> bool {
+        self.settled.is_some()
+    }
+}

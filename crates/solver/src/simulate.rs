@@ -1,0 +1,154 @@
+//! Simulations: a scene, a window of time and a method go in, largest values and counts come out.
+
+use crate::energy_bound;
+use crate::error::SolverError;
+use crate::hybrid::contact_free::ContactFree;
+use crate::observe::counters::{TouchDownTimes, TouchDowns};
+use crate::observe::observer::Unobserved;
+use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, RelativePosition};
+use crate::observe::running_maximum::RunningMaximum;
+use crate::response::{Extreme, Response, SceneKind};
+use crate::run::{follow_bare, follow_coupled};
+use crate::settings::{Method, Settings, Window};
+use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
+
+/// Largest energy of the primary structure over the window, J, and when.
+///
+/// The run may end early, with any value above `cutoff` (J), once the maximum exceeds `cutoff`; pass infinity for the exact
+/// maximum.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn e1_max(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    cutoff: f64,
+) -> Result<Extreme, SolverError> {
+    largest_energy(scene, window, settings, cutoff)
+        .map_err(|error| energy_bound::error(window, error))
+        .and_then(|e1| energy_bound::energy(scene, window, settings, e1))
+}
+
+fn largest_energy(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    cutoff: f64,
+) -> Result<Extreme, SolverError> {
+    let hybrid = settings.method == Method::Hybrid;
+    match &scene.damper {
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            let mut e1 = RunningMaximum::new(BareEnergy::new(&system), cutoff);
+            if hybrid {
+                let steady = system.steady(system.frequency()).e1_max;
+                return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, e1, steady);
+            }
+            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            Ok(e1.record())
+        }
+        Some(damper) => {
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            let mut e1 = RunningMaximum::new(PrimaryEnergy::new(&system), cutoff);
+            if hybrid {
+                let mut free = ContactFree::new(&system, window.to, settings.max_steps);
+                if free.clears_walls() {
+                    return free.e1_max(window, e1, system.steady(system.bare().frequency()).e1_max);
+                }
+            }
+            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            Ok(e1.record())
+        }
+    }
+}
+
+/// Runs a scene and returns everything that [`Response`] reports.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+    let found = match &scene.damper {
+        None => simulate_bare(&Bare::new(&scene.primary, &scene.forcing), window, settings),
+        Some(damper) => {
+            simulate_coupled(&Coupled::new(&scene.primary, &scene.forcing, damper), window, settings)
+        }
+    };
+    found
+        .map_err(|error| energy_bound::error(window, error))
+        .and_then(|found| energy_bound::response(scene, window, settings, found))
+}
+
+fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+    let mut e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
+    let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+    Ok(Response {
+        e1_max: e1.record(),
+        e2_max: Extreme { value: 0.0, time: window.from },
+        impacts: [0; 2],
+        force_max: [0.0; 2],
+        relative_displacement_max: 0.0,
+        spring_deflection_max: 0.0,
+        final_state: [state[0], state[1], 0.0, 0.0],
+        scene: SceneKind::Bare,
+        work,
+    })
+}
+
+fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+    let position = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
+    let e1 = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
+    let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
+    let mut before = TouchDowns::default();
+    let mut seen = ((e1, e2), ([1.0, -1.0].map(position), TouchDowns::default()));
+    let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
+    let ((e1, e2), ([farthest, nearest], TouchDowns(impacts))) = seen;
+    let (nearest, farthest) = (-nearest.record().value, farthest.record().value);
+    let e1_max = e1.record();
+    let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
+    let relative_displacement_max = farthest_from(0.0);
+    let spring_deflection_max = farthest_from(system.rest_distance());
+    let mut depths = [-nearest, farthest - system.wall(Side::Obstacle)];
+    if settings.method == Method::Hybrid {
+        for side in Side::BOTH {
+            let i = side as usize;
+            let rests = system.wall(side) == system.rest_distance();
+            if !rests && before.0[i] + impacts[i] == 0 {
+                let reach = system.bare().reach(e1_max.value, final_state[0], window.to - window.from);
+                let position = 2.0 * reach + system.rest_distance() + relative_displacement_max;
+                depths[i] = energy_bound::untouched(depths[i], position, window.to)?;
+            }
+        }
+    }
+    let force_max = Side::BOTH.map(|side| hertz_force(system.hertz(side), depths[side as usize]));
+    // A damper that rests on a wall at t = 0 is in contact without a touch-down.
+    let touched = before.0 != [0; 2] || impacts != [0; 2] || force_max != [0.0; 2];
+    Ok(Response {
+        e1_max,
+        e2_max: e2.record(),
+        impacts,
+        force_max,
+        relative_displacement_max,
+        spring_deflection_max,
+        final_state,
+        scene: if touched { SceneKind::Contact } else { SceneKind::Linear },
+        work,
+    })
+}
+
+/// When the damper touched each wall in the window, s, in the order of time.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn touch_downs(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+) -> Result<Vec<(f64, Side)>, SolverError> {
+    let mut times = TouchDownTimes::default();
+    if let Some(damper) = &scene.damper {
+        let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+        follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut times)?;
+    }
+    Ok(times.0)
+}
