@@ -41,6 +41,7 @@
 mod band;
 mod bare;
 mod coupled;
+mod design;
 mod excitation;
 mod hertz;
 mod regularised;
@@ -51,6 +52,7 @@ mod value;
 pub use band::Worst;
 pub use bare::Bare;
 pub use coupled::{Coupled, Side};
+pub use design::{Design, Variable};
 pub use excitation::Excitation;
 pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
 pub use regularised::bounds::{Growth, ORDERS};

@@ -10,25 +10,22 @@
 //! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998) as an argmin solver, [`Fminsearch`], which logs
 //!   each iteration and can be saved and continued.
 
-pub mod band;
 mod chunks;
-pub mod ensemble;
-pub mod fminsearch;
-pub mod global;
-pub mod goal;
-pub mod grid;
-pub mod limits;
 pub mod objective;
-pub mod space;
-pub mod surf;
+pub mod search;
 
-pub use band::{Band, worst_over};
-pub use ensemble::{Ensemble, MOST_MEMBERS, Statistic};
-pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
-pub use global::{Basin, Descent, Global, GlobalError, Point, basins, explore};
-pub use goal::{Evaluation, Frequencies, Goal, Place, Stiffnesses, Term, When};
-pub use grid::{Axis, AxisError, Grid, GridError, Scale};
-pub use limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
-pub use objective::{Counts, Failures, PeakEnergy, Unusable, Variable, e1_max};
-pub use space::{Side, Space};
-pub use surf::{best_separated, surf, surf_part};
+pub use objective::band::{Band, worst_over};
+pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
+pub use objective::evaluate::{Evaluation, Goal, Place};
+pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
+pub use objective::peak_energy::{Counts, Failures, PeakEnergy};
+pub use objective::spec::{FrequencyBand, Objective, Part, Response, StiffnessRange, Stiffnesses};
+pub use objective::unusable::Unusable;
+pub use retune_model::{Design, Variable};
+pub use search::fminsearch::{
+    Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize,
+};
+pub use search::global::{Basin, Descent, Global, GlobalError, Point, basins, explore};
+pub use search::grid::{Axis, AxisError, Grid, GridError, Scale};
+pub use search::space::{Side, Space};
+pub use search::surf::{best_separated, surf, surf_part};

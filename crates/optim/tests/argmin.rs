@@ -5,7 +5,7 @@ mod problems;
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{Error, Executor, KV, State as _, TerminationReason};
 use problems::PROBLEMS;
-use retune_optim::fminsearch::State;
+use retune_optim::search::fminsearch::State;
 use retune_optim::{Fminsearch, Options, Row, minimize};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};

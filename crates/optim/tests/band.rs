@@ -4,10 +4,10 @@
 mod scenes;
 
 use rayon::ThreadPoolBuilder;
-use retune_model::Worst;
+use retune_model::{Positive, Scene, Worst};
 use retune_optim::{
-    Band, Bounds, Goal, Options, PeakEnergy, Scaling, Term, Unusable, Variable, When, e1_max, minimize,
-    worst_over,
+    Band, Bounds, FrequencyBand, Goal, Limits, Objective, Options, PeakEnergy, Response, Scaling, Unusable,
+    Variable, minimize, worst_over,
 };
 use retune_solver::{Settings, Window};
 use scenes::{Numbers, SSVI, TMD};
@@ -15,6 +15,30 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 const BAND: Band = Band { from: 5.0, to: 8.0, samples: 61 };
+
+/// The largest E1 in a window, or steady where there is none, over a band.
+fn goal(window: Option<Window>, band: Option<Band>) -> Goal {
+    let positive = |value| Positive::new(value).expect("above 0");
+    let omega = band.map(|Band { from, to, samples }| FrequencyBand {
+        from: positive(from),
+        to: positive(to),
+        samples,
+        relative: false,
+    });
+    let response = if window.is_some() { Response::Window } else { Response::Steady };
+    let window = window.unwrap_or(Window { from: 0.0, to: 1.0 });
+    Goal {
+        objective: Objective { omega, response, ..Objective::default() },
+        window,
+        limits: Limits::default(),
+    }
+}
+
+/// Its value, and where it is.
+fn e1_max(scene: &Scene, window: Option<Window>, band: Option<Band>) -> Result<Worst, Unusable> {
+    let found = goal(window, band).evaluate(scene, &Settings::default(), f64::INFINITY)?;
+    Ok(Worst { value: found.value, frequency: found.worst.scene.forcing.frequency.get() })
+}
 
 fn over(band: Band, f: impl Fn(f64) -> f64 + Sync) -> Worst {
     worst_over(&band, |omega| Ok::<f64, ()>(f(omega)), f64::INFINITY).expect("no failures")
@@ -131,7 +155,7 @@ fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
     let window = Window { from: 5.0, to: 15.0 };
     let on = |threads: usize| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let run = || e1_max(&SSVI.scene(), window.into(), Some(band), &Settings::default(), f64::INFINITY);
+        let run = || e1_max(&SSVI.scene(), Some(window), Some(band));
         let worst = pool.install(run).expect("runs");
         (worst.value.to_bits(), worst.frequency.to_bits())
     };
@@ -140,7 +164,7 @@ fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
     // The worst is the value of a run at the frequency that is named, and no sample is above it.
     let at = |omega: f64| {
         let scene = Numbers { omega, ..SSVI }.scene();
-        e1_max(&scene, window.into(), None, &Settings::default(), f64::INFINITY).expect("a run").value
+        e1_max(&scene, Some(window), None).expect("a run").value
     };
     let (value, frequency) = (f64::from_bits(one.0), f64::from_bits(one.1));
     assert_eq!(at(frequency).to_bits(), value.to_bits());
@@ -151,34 +175,35 @@ fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
 #[test]
 fn exact_late_runs_over_a_band_agree_with_the_steady_response() {
     let scene = TMD.scene();
-    let value =
-        |when: When| e1_max(&scene, when, Some(BAND), &Settings::default(), f64::INFINITY).expect("a value");
-    let (runs, steady) = (value(Window { from: 150.0, to: 170.0 }.into()), value(When::Steady));
+    let value = |window| e1_max(&scene, window, Some(BAND)).expect("a value");
+    let (runs, steady) = (value(Some(Window { from: 150.0, to: 170.0 })), value(None));
     assert!((runs.value / steady.value - 1.0).abs() < 1e-9, "{runs:?} {steady:?}");
     assert!((runs.frequency - steady.frequency).abs() < 1e-4, "{runs:?} {steady:?}");
 }
 
 #[test]
 fn exact_a_steady_motion_that_reaches_a_wall_has_no_value() {
-    let steady = |numbers: Numbers| {
-        e1_max(&numbers.scene(), When::Steady, Some(BAND), &Settings::default(), f64::INFINITY)
-    };
+    let steady = |numbers: Numbers| e1_max(&numbers.scene(), None, Some(BAND));
     let stroke = TMD.coupled().steady_stroke_max([BAND.from, BAND.to]);
     let refused = steady(Numbers { d: 0.999 * stroke.value, ..TMD });
     let expected =
         Unusable::Touches { omega: stroke.frequency, stroke: stroke.value, room: 0.999 * stroke.value };
     assert_eq!(refused, Err(expected));
     assert_eq!(steady(Numbers { d: 1.001 * stroke.value, ..TMD }), steady(TMD));
-    let bare = e1_max(&TMD.bare_scene(), When::Steady, Some(BAND), &Settings::default(), f64::INFINITY);
+    let bare = e1_max(&TMD.bare_scene(), None, Some(BAND));
     assert_eq!(bare, Ok(TMD.bare().steady_e1_max([BAND.from, BAND.to])));
 }
 
 /// The best k2 and c2, N/m and N·s/m, of the worst steady E1max over a band, J.
 fn best(numbers: Numbers, band: Band, start: [f64; 2]) -> [f64; 3] {
     let (scene, damper) = (numbers.scene(), numbers.damper());
-    let objective =
-        PeakEnergy::new(scene, damper, vec![Variable::K2, Variable::C2], When::Steady, Settings::default())
-            .with(Goal::one(Term { omega: Some(band.into()), ..Term::new(When::Steady) }));
+    let objective = PeakEnergy::new(
+        scene,
+        damper,
+        vec![Variable::K2, Variable::C2],
+        goal(None, Some(band)),
+        Settings::default(),
+    );
     let mut x = start.to_vec();
     let mut value = f64::INFINITY;
     for _ in 0..4 {

@@ -3,22 +3,39 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
+use retune_model::Positive;
 use retune_model::Scene;
 use retune_optim::{
-    Band, Ensemble, Evaluation, Frequencies, Goal, Limits, Statistic, Stiffnesses, Term, When, e1_max,
+    Ensemble, Evaluation, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange,
+    Stiffnesses,
 };
 use retune_solver::{Ask, Settings, Settle, Window, extremes};
 use scenes::{Numbers, SSVI, TMD};
 
 const WINDOW: Window = Window { from: 2.0, to: 8.0 };
-const BAND: Band = Band { from: 5.5, to: 7.0, samples: 4 };
 
-fn evaluate(term: Term, scene: &Scene, cutoff: f64) -> Evaluation {
-    Goal::one(term).evaluate(scene, &Settings::default(), cutoff).expect("a value")
+fn positive(value: f64) -> Positive {
+    Positive::new(value).expect("above 0")
 }
 
-fn value(term: &Term, scene: &Scene) -> f64 {
-    evaluate(term.clone(), scene, f64::INFINITY).value
+fn band() -> Option<FrequencyBand> {
+    Some(FrequencyBand { from: positive(5.5), to: positive(7.0), samples: 4, relative: false })
+}
+
+fn set(stiffnesses: &[f64]) -> Option<Stiffnesses> {
+    Some(Stiffnesses::Set(stiffnesses.iter().map(|k1| positive(*k1)).collect()))
+}
+
+fn goal(objective: Objective, window: Window) -> Goal {
+    Goal { objective, window, limits: Limits::default() }
+}
+
+fn evaluate(objective: Objective, scene: &Scene, cutoff: f64) -> Evaluation {
+    goal(objective, WINDOW).evaluate(scene, &Settings::default(), cutoff).expect("a value")
+}
+
+fn value(objective: &Objective, scene: &Scene) -> f64 {
+    evaluate(objective.clone(), scene, f64::INFINITY).value
 }
 
 fn ensemble(statistic: Statistic) -> Ensemble {
@@ -27,11 +44,10 @@ fn ensemble(statistic: Statistic) -> Ensemble {
 
 #[test]
 fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
-    let term = Term { omega: Some(BAND.into()), ..Term::new(WINDOW) };
+    let term = Objective { omega: band(), ..Objective::default() };
     let stiffnesses = [3e4, 5e4, 3.95e4];
     let each = stiffnesses.map(|k1| value(&term, &Numbers { k1, ..SSVI }.scene()));
-    let set = Term { k1: Some(Stiffnesses::Set(stiffnesses.to_vec())), ..term.clone() };
-    let found = evaluate(set, &SSVI.scene(), f64::INFINITY);
+    let found = evaluate(Objective { k1: set(&stiffnesses), ..term.clone() }, &SSVI.scene(), f64::INFINITY);
     let worst = each.iter().copied().fold(0.0, f64::max);
     assert!(
         found.value == worst && each[1] == worst,
@@ -40,9 +56,13 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
     let k1 = found.worst.scene.primary.stiffness.get();
     assert_eq!(each[stiffnesses.iter().position(|other| *other == k1).expect("one of them")], worst);
     // A range holds its ends and refines what is between: of the bare structure at ω = 6, in closed form, k1 = m1 ω².
-    let range = Stiffnesses::Range(Band { from: 3e4, to: 5e4, samples: 5 });
+    let range = Stiffnesses::Range(StiffnessRange { from: positive(3e4), to: positive(5e4), samples: 5 });
     let bare = Numbers { omega: 6.0, ..TMD }.bare_scene();
-    let found = evaluate(Term { k1: Some(range), ..Term::new(When::Steady) }, &bare, f64::INFINITY);
+    let found = evaluate(
+        Objective { k1: Some(range), response: Response::Steady, ..Objective::default() },
+        &bare,
+        f64::INFINITY,
+    );
     let near = 0.5 * (800.0_f64 / (452.0 * 6.0)).powi(2) * 3.6e4;
     assert!((found.value / near - 1.0).abs() < 0.01 && found.value >= near, "{} {near}", found.value);
     assert!((found.worst.scene.primary.stiffness.get() / 3.6e4 - 1.0).abs() < 0.02);
@@ -50,11 +70,14 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
 
 #[test]
 fn exact_a_relative_band_moves_with_the_structure() {
-    let relative = Frequencies { band: Band { from: 0.9, to: 1.1, samples: 3 }, relative: true };
+    let relative = FrequencyBand { from: positive(0.9), to: positive(1.1), samples: 3, relative: true };
     for k1 in [2e4, 3.95e4] {
         let scene = Numbers { k1, ..TMD }.scene();
         let natural = (k1 / TMD.m1).sqrt();
-        let found = value(&Term { omega: Some(relative), ..Term::new(When::Steady) }, &scene);
+        let found = value(
+            &Objective { omega: Some(relative), response: Response::Steady, ..Objective::default() },
+            &scene,
+        );
         let steady = Numbers { k1, ..TMD }.coupled().steady_e1_max([0.9 * natural, 1.1 * natural]);
         assert!((found / steady.value - 1.0).abs() < 1e-14, "{found} {steady:?}");
     }
@@ -72,8 +95,9 @@ fn exact_statistics_are_those_of_the_members() {
     let mut sorted = each.clone();
     sorted.sort_by(f64::total_cmp);
     assert!(sorted[0] < 0.95 * sorted[11], "the members differ: {sorted:?}");
-    let of =
-        |statistic| value(&Term { ensemble: Some(ensemble(statistic)), ..Term::new(WINDOW) }, &SSVI.scene());
+    let of = |statistic| {
+        value(&Objective { ensemble: Some(ensemble(statistic)), ..Objective::default() }, &SSVI.scene())
+    };
     assert!((of(Statistic::Mean) / (each.iter().sum::<f64>() / 12.0) - 1.0).abs() < 1e-14);
     assert_eq!(of(Statistic::Worst), sorted[11]);
     // 0.75 of 12 members are 9; a little more needs a tenth.
@@ -108,20 +132,23 @@ fn exact_members_fill_their_space_and_stay_within_their_errors() {
 
 #[test]
 fn exact_a_sum_is_weighted_and_nothing_is_hidden_below_a_cutoff() {
-    let [one, two] = [Window { from: 0.0, to: 4.0 }, WINDOW].map(Term::new);
-    let robust = |statistic| Term { ensemble: Some(ensemble(statistic)), ..Term::new(WINDOW) };
+    let [one, two] = [band(), None].map(|omega| Objective { omega, ..Objective::default() });
+    let robust = |statistic| Objective { ensemble: Some(ensemble(statistic)), ..Objective::default() };
     let scene = SSVI.scene();
-    let [a, b] = [&one, &two].map(|term| value(term, &scene));
-    let sum = vec![Term { weight: 0.25, ..one }, Term { weight: 2.0, ..two }];
+    let [a, b] = [&one, &two].map(|objective| value(objective, &scene));
+    let part =
+        |weight, objective: &Objective| Part { weight: positive(weight), objective: objective.clone() };
+    // A sum within a sum: its weights are products.
+    let inner = Objective { sum: vec![part(0.5, &two)], ..Objective::default() };
     let goals = [
-        sum,
-        vec![robust(Statistic::Mean)],
-        vec![robust(Statistic::Worst)],
-        vec![robust(Statistic::Quantile(0.6))],
-        vec![Term { omega: Some(BAND.into()), ..Term::new(WINDOW) }],
-        vec![Term { k1: Some(Stiffnesses::Set(vec![3e4, 4e4])), ..Term::new(WINDOW) }],
+        Objective { sum: vec![part(0.25, &one), part(4.0, &inner)], ..Objective::default() },
+        robust(Statistic::Mean),
+        robust(Statistic::Worst),
+        robust(Statistic::Quantile(0.6)),
+        one,
+        Objective { k1: set(&[3e4, 4e4]), ..Objective::default() },
     ]
-    .map(|terms| Goal { terms, limits: Limits::default() });
+    .map(|objective| goal(objective, WINDOW));
     let of =
         |goal: &Goal, cutoff| goal.evaluate(&scene, &Settings::default(), cutoff).expect("a value").value;
     assert!((of(&goals[0], f64::INFINITY) / (0.25 * a + 2.0 * b) - 1.0).abs() < 1e-14);
@@ -138,22 +165,31 @@ fn exact_a_sum_is_weighted_and_nothing_is_hidden_below_a_cutoff() {
 #[test]
 fn exact_settled_is_steady_where_nothing_touches() {
     let window = Window { from: 20.0, to: 60.0 };
-    let term = |settle| Term { omega: Some(BAND.into()), ..Term::new(When::Settled(window, settle)) };
-    let found = evaluate(term(Settle::default()), &TMD.scene(), f64::INFINITY);
-    let steady = e1_max(&TMD.scene(), When::Steady, Some(BAND), &Settings::default(), f64::INFINITY);
-    assert!((found.value / steady.expect("a value").value - 1.0).abs() < 1e-7 && found.unsettled == 0);
+    let settled = |settle| {
+        let objective =
+            Objective { omega: band(), response: Response::Settled, settle, ..Objective::default() };
+        move |scene: &Scene| {
+            goal(objective.clone(), window)
+                .evaluate(scene, &Settings::default(), f64::INFINITY)
+                .expect("a value")
+        }
+    };
+    let found = settled(Settle::default())(&TMD.scene());
+    let steady = Objective { omega: band(), response: Response::Steady, ..Objective::default() };
+    let steady = value(&steady, &TMD.scene());
+    assert!((found.value / steady - 1.0).abs() < 1e-7 && found.unsettled == 0);
     let never = Settle { tolerance: 1e-300, ..Settle::default() };
-    let found = evaluate(term(never), &SSVI.scene(), f64::INFINITY);
+    let found = settled(never)(&SSVI.scene());
     assert!(found.unsettled == found.runs && found.runs >= 4, "{found:?}");
 }
 
 /// What is known to be above a cutoff is not looked at further: a stiffness at a time, members in groups of eight.
 #[test]
 fn contract_nothing_is_run_beyond_a_cutoff() {
-    let set = Term { k1: Some(Stiffnesses::Set(vec![3e4, 4e4, 5e4])), ..Term::new(WINDOW) };
+    let set = Objective { k1: set(&[3e4, 4e4, 5e4]), ..Objective::default() };
     let scene = SSVI.scene();
     let [first, _, last] =
-        [3e4, 4e4, 5e4].map(|k1| value(&Term::new(WINDOW), &Numbers { k1, ..SSVI }.scene()));
+        [3e4, 4e4, 5e4].map(|k1| value(&Objective::default(), &Numbers { k1, ..SSVI }.scene()));
     assert!(first < last);
     for (cutoff, runs) in [(0.0, 1), (0.5 * first, 1), (f64::INFINITY, 3)] {
         assert_eq!(evaluate(set.clone(), &scene, cutoff).runs, runs, "{cutoff}");

@@ -3,10 +3,10 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_model::Scene;
+use retune_model::{NonNegative, Positive, Scene};
 use retune_optim::{
-    Bounds, Goal, INFEASIBLE, Limit, Limits, Options, PeakEnergy, PerLimit, Term, Variable, When, energy,
-    minimize, ranked,
+    Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, PeakEnergy, Response,
+    Variable, energy, minimize, ranked,
 };
 use retune_solver::{Settings, Window, simulate};
 use scenes::{Numbers, SSVI, TMD};
@@ -14,8 +14,25 @@ use std::ops::ControlFlow;
 
 const WINDOW: Window = Window { from: 2.0, to: 8.0 };
 
+fn positive(value: f64) -> Positive {
+    Positive::new(value).expect("above 0")
+}
+
+fn band(samples: usize) -> Option<FrequencyBand> {
+    Some(FrequencyBand { from: positive(5.0), to: positive(8.0), samples, relative: false })
+}
+
+fn steady() -> Objective {
+    Objective { omega: band(2), response: Response::Steady, ..Objective::default() }
+}
+
+fn limits(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Limits {
+    let [stroke, force, cavity] = [stroke, force, cavity].map(|limit| limit.map(positive));
+    Limits { stroke, force, cavity, from: None }
+}
+
 fn goal(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Goal {
-    Goal { terms: vec![Term::new(WINDOW)], limits: PerLimit([stroke, force, cavity]).into() }
+    Goal { limits: limits(stroke, force, cavity), ..WINDOW.into() }
 }
 
 fn evaluate(goal: &Goal, scene: &Scene, cutoff: f64) -> retune_optim::Evaluation {
@@ -45,7 +62,7 @@ fn exact_violations_are_shares_of_the_limits() {
         evaluate(&goal(Some(stroke / 2.0), Some(force / 1.5), Some(0.42 / 1.25)), &scene, f64::INFINITY);
     assert!((broken.violation - 1.75).abs() < 1e-12, "{}", broken.violation);
     assert_eq!(broken.value, INFEASIBLE * (1.0 + broken.violation));
-    let limits = Limits::from(PerLimit([Some(stroke * 1.005), Some(force * 1.5), None]));
+    let limits = limits(Some(stroke * 1.005), Some(force * 1.5), None);
     assert_eq!(limits.active(&free.reached), [Limit::Stroke]);
     // Nothing is watched that no limit asks for.
     assert_eq!(evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached.0, [0.0, 0.0, 0.42]);
@@ -53,12 +70,11 @@ fn exact_violations_are_shares_of_the_limits() {
 
 #[test]
 fn exact_a_steady_stroke_is_limited_in_closed_form() {
-    let band = retune_optim::Band { from: 5.0, to: 8.0, samples: 2 };
-    let term = Term { omega: Some(band.into()), ..Term::new(When::Steady) };
     let stroke = TMD.coupled().steady_stroke_max([5.0, 8.0]).value;
     for (allowed, violation) in [(1.01 * stroke, 0.0), (0.5 * stroke, 1.0)] {
-        let limits = PerLimit([Some(allowed), Some(1.0), None]).into();
-        let found = evaluate(&Goal { terms: vec![term.clone()], limits }, &TMD.scene(), f64::INFINITY);
+        let limits = limits(Some(allowed), Some(1.0), None);
+        let found =
+            evaluate(&Goal { objective: steady(), window: WINDOW, limits }, &TMD.scene(), f64::INFINITY);
         assert!((found.violation - violation).abs() < 1e-12 && found.reached.get(Limit::Force) == 0.0);
     }
 }
@@ -87,7 +103,6 @@ fn exact_a_cutoff_hides_nothing_below_it() {
 /// The best c2 of a TMD whose steady stroke may not pass a limit lies on the limit: the same by halving on the closed form.
 #[test]
 fn exact_a_search_ends_on_an_active_limit() {
-    let band = retune_optim::Band { from: 5.0, to: 8.0, samples: 2 };
     let of = |c2: f64| Numbers { k2: 2083.0, c2, ..TMD };
     let stroke = |c2: f64| of(c2).coupled().steady_stroke_max([5.0, 8.0]).value;
     let value = |c2: f64| of(c2).coupled().steady_e1_max([5.0, 8.0]).value;
@@ -98,14 +113,10 @@ fn exact_a_search_ends_on_an_active_limit() {
         let middle = 0.5 * (low + high);
         if stroke(middle) < limit { high = middle } else { low = middle }
     }
-    let goal = Goal {
-        terms: vec![Term { omega: Some(band.into()), ..Term::new(When::Steady) }],
-        limits: PerLimit([Some(limit), None, None]).into(),
-    };
+    let goal = Goal { objective: steady(), window: WINDOW, limits: limits(Some(limit), None, None) };
     let numbers = of(150.0);
     let objective =
-        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Variable::C2], WINDOW, Settings::default())
-            .with(goal);
+        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Variable::C2], goal, Settings::default());
     for start in [130.0, 480.0] {
         let options =
             Options { tol_x: 1e-8, tol_fun: 1e-8, bounds: vec![Bounds::default()], ..Options::default() };
@@ -126,8 +137,8 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
     let window = Window { from: 4.0, to: 8.0 };
     let run = |from| simulate(&scene, Window { from, ..window }, &Settings::default()).expect("a run");
     let reached = |from| {
-        let limits = Limits { most: PerLimit([Some(1.0), Some(1e9), None]), from };
-        let goal = Goal { terms: vec![Term::new(window)], limits };
+        let from = NonNegative::new(from).ok();
+        let goal = Goal { limits: Limits { from, ..limits(Some(1.0), Some(1e9), None) }, ..window.into() };
         let found = evaluate(&goal, &scene, f64::INFINITY);
         assert_eq!(found.value, run(4.0).e1_max.value);
         [found.reached.get(Limit::Stroke), found.reached.get(Limit::Force)]
@@ -139,7 +150,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
             assert!((found / expected - 1.0).abs() < 1e-7, "{from}: {found} {expected}");
         }
     }
-    assert_eq!(Limits::from(PerLimit([None; 3])).from, 0.0);
+    assert_eq!(limits(Some(1.0), None, None).walls_from(), Some(0.0));
     let [whole, late] = [0.0, 6.0].map(reached);
     assert!(whole[0] > late[0] || whole[1] > late[1], "{whole:?} {late:?}");
 }
@@ -148,7 +159,6 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
 /// 31 samples and breaks it between them, as 601 show.
 #[test]
 fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limit() {
-    let band = |samples| retune_optim::Band { from: 5.0, to: 8.0, samples };
     let designs = [
         (
             Limit::Stroke,
@@ -173,11 +183,11 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
     ];
     for (limit, numbers) in designs {
         let found = |samples, allowed: f64| {
-            let term =
-                Term { omega: Some(band(samples).into()), ..Term::new(Window { from: 50.0, to: 100.0 }) };
-            let mut limits = Limits { from: 50.0, ..Limits::default() };
-            limits.most.set(limit, Some(allowed));
-            evaluate(&Goal { terms: vec![term], limits }, &numbers.scene(), f64::INFINITY)
+            let objective = Objective { omega: band(samples), ..Objective::default() };
+            let limits = Limits { from: NonNegative::new(50.0).ok(), ..Limits::default() };
+            let limits = limits.with(limit, positive(allowed));
+            let goal = Goal { objective, window: Window { from: 50.0, to: 100.0 }, limits };
+            evaluate(&goal, &numbers.scene(), f64::INFINITY)
         };
         // No peak can break so loose a limit, so none is searched.
         let [coarse, fine] = [31, 601].map(|samples| found(samples, 1e9).reached.get(limit));

@@ -7,7 +7,6 @@ pub mod any_text;
 mod explain;
 mod fronts;
 mod global;
-mod limits;
 mod objective;
 pub mod read;
 mod rule;
@@ -18,17 +17,16 @@ mod words;
 
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, is_fronts, read_fronts};
 pub use global::GlobalSearch;
-pub use limits::LimitsGiven;
-pub use objective::{Objective, Part, Response};
 pub use read::{StudyError, read, read_paper};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
-pub use words::{are, counted, joined, short};
+pub use words::{are, counted, joined, over, short};
 
-use retune_model::{NonNegative, Positive, Scene};
-use retune_optim::{Options, Scale, Variable};
+use retune_model::{NonNegative, Positive, Scene, Variable};
+use retune_optim::{Limits, Objective};
+use retune_optim::{Options, Scale};
 use retune_solver::{Contacts, Method, Settings, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -101,8 +99,8 @@ pub struct Optimize {
     #[serde(default)]
     pub bounds: PerVariable<(f64, Option<f64>)>,
     /// Largest stroke (spring deflection), contact force and cavity allowed, and from when on. Default: none.
-    #[serde(default, skip_serializing_if = "LimitsGiven::is_default")]
-    pub limits: LimitsGiven,
+    #[serde(default, skip_serializing_if = "Limits::is_default")]
+    pub limits: Limits,
     /// The coarse grid (the paper's `surf`), over all tuned parameters or some of them. Without it, without `global` and without
     /// `starts` the refinement starts at the damper of `scene`.
     #[serde(default)]

@@ -1,5 +1,6 @@
 //! From what a study says to what is searched; the rules that hold between its fields.
 
+use super::objective::{check, check_limits};
 use super::{GlobalSearch, GridAxis, Optimize, PerVariable, Rule, Study};
 use retune_model::Damper;
 use retune_optim::{Axis, Bounds, Global, Grid, Options, Scaling, Space, Variable};
@@ -61,8 +62,8 @@ impl Study {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         let variables = varied(&optimize.vary)?;
-        optimize.objective.check("optimize.objective", self.scene.forcing.frequency.get())?;
-        optimize.limits.check(self.window.end.get())?;
+        check(&optimize.objective, "optimize.objective", self.scene.forcing.frequency.get())?;
+        check_limits(&optimize.limits, self.window.end.get())?;
         let tuned = |field, variable: &Variable| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),

@@ -1,7 +1,7 @@
 //! `--set NAME=VALUE`: one number of a study, changed on the command line.
 
 use super::{Rule, Study};
-use retune_model::{Damper, NonNegative, OutOfRange, Positive, Scene};
+use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene};
 use std::str::FromStr;
 use thiserror::Error;
 
@@ -63,11 +63,6 @@ impl Setting {
         Self { name, value }
     }
 
-    /// Sets k2, c2, D and C, in SI units.
-    pub fn design([k2, c2, d, c]: [f64; 4]) -> [Self; 4] {
-        [Self::new("k2", k2), Self::new("c2", c2), Self::new("D", d), Self::new("C", c)]
-    }
-
     /// The number that is set, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value
@@ -112,6 +107,11 @@ impl Study {
         let mut study = self.clone();
         settings.iter().try_for_each(|setting| study.set(setting))?;
         Ok(study.scene)
+    }
+
+    /// The scene with another design of its damper; none where there is no damper.
+    pub fn scene_at(&self, design: &Design) -> Option<Scene> {
+        Some(Scene { damper: Some(design.on(self.scene.damper?)), ..self.scene })
     }
 
     /// The number that a setting of this name would change; none of a damper that is not there.

@@ -2,7 +2,7 @@
 
 use super::read::{parse, read, read_text};
 use super::{Rule, Study, StudyError};
-use retune_model::NonNegative;
+use retune_model::{Design, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -29,22 +29,6 @@ pub struct PaperRow {
     pub study: PathBuf,
     /// The paper's design, from which the refinement starts.
     pub paper: Design,
-}
-
-/// A damper's design.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Design {
-    /// k2, stiffness of the damper's spring, N/m.
-    pub k2: NonNegative,
-    /// c2, damping between damper and primary structure, N·s/m.
-    pub c2: NonNegative,
-    /// D, distance between the damper at rest and the primary structure, m.
-    #[serde(rename = "D")]
-    pub d: NonNegative,
-    /// C, clearance between the damper at rest and the obstacle, m.
-    #[serde(rename = "C")]
-    pub c: NonNegative,
 }
 
 /// A damper's study with the paper's design in its scene.
@@ -120,8 +104,7 @@ fn at_design(study: Study, design: Design) -> Result<Study, Rule> {
 
 fn with_design(mut study: Study, design: Design) -> Result<Study, Rule> {
     let damper = study.scene.damper.as_mut().ok_or(Rule::NoDamper)?;
-    (damper.stiffness, damper.damping) = (design.k2, design.c2);
-    (damper.rest_distance, damper.clearance) = (design.d, design.c);
+    *damper = design.on(*damper);
     Ok(study)
 }
 

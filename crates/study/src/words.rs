@@ -1,60 +1,47 @@
 //! An objective in words, for figures, tables and the screen; numbers and counts in words.
 
-use super::objective::{Band, Ensemble, K1, K1Range, Objective, Of, Response};
+use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
 use std::fmt::Display;
 
-impl Objective {
-    /// Over what its E1max is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
-    pub fn over(&self, omega: f64) -> String {
-        if !self.sum.is_empty() {
-            return format!("weighted sum of {}", counted(self.sum.len() as u64, "objective"));
-        }
-        let band = |Band { from, to, relative, .. }: Band| {
-            let unit = if relative { "times √(k1/m1)" } else { "rad/s" };
-            format!("omega = {} to {} {unit}", from.get(), to.get())
-        };
-        let over = [self.omega.map(band), self.k1.as_ref().map(K1::words)];
-        let over: Vec<String> = over.into_iter().flatten().collect();
-        let own = if self.omega.is_none() { format!("omega = {omega} rad/s") } else { String::new() };
-        let worst =
-            if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
-        let mut parts: Vec<String> = self.ensemble.iter().map(Ensemble::words).collect();
-        parts.extend([own, worst].into_iter().filter(|part| !part.is_empty()));
-        parts.join(", ")
+/// Over what the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
+pub fn over(objective: &Objective, omega: f64) -> String {
+    if !objective.sum.is_empty() {
+        return format!("weighted sum of {}", counted(objective.sum.len() as u64, "objective"));
     }
+    let band = |FrequencyBand { from, to, relative, .. }: FrequencyBand| {
+        let unit = if relative { "times √(k1/m1)" } else { "rad/s" };
+        format!("omega = {} to {} {unit}", from.get(), to.get())
+    };
+    let over = [objective.omega.map(band), objective.k1.as_ref().map(stiffnesses)];
+    let over: Vec<String> = over.into_iter().flatten().collect();
+    let own = if objective.omega.is_none() { format!("omega = {omega} rad/s") } else { String::new() };
+    let worst = if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
+    let mut parts: Vec<String> = objective.ensemble.iter().map(ensemble).collect();
+    parts.extend([own, worst].into_iter().filter(|part| !part.is_empty()));
+    parts.join(", ")
+}
 
-    /// Whether every part of it is steady, so that no window and no solver matter.
-    pub fn is_steady(&self) -> bool {
-        match self.sum.as_slice() {
-            [] => self.response == Response::Steady,
-            parts => parts.iter().all(|part| part.objective.is_steady()),
+fn stiffnesses(of: &Stiffnesses) -> String {
+    match of {
+        Stiffnesses::Set(set) => {
+            let values: Vec<String> = set.iter().map(|k1| k1.get().to_string()).collect();
+            format!("k1 = {} N/m", values.join(", "))
+        }
+        Stiffnesses::Range(StiffnessRange { from, to, .. }) => {
+            format!("k1 = {} to {} N/m", from.get(), to.get())
         }
     }
 }
 
-impl K1 {
-    fn words(&self) -> String {
-        match self {
-            Self::Set(set) => {
-                let values: Vec<String> = set.iter().map(|k1| k1.get().to_string()).collect();
-                format!("k1 = {} N/m", values.join(", "))
-            }
-            Self::Range(K1Range { from, to, .. }) => format!("k1 = {} to {} N/m", from.get(), to.get()),
-        }
-    }
-}
-
-impl Ensemble {
-    fn words(&self) -> String {
-        let Self { members, phases, errors, statistic, .. } = self;
-        let of = match statistic {
-            Of::Mean => "mean".to_owned(),
-            Of::Worst => "worst".to_owned(),
-            Of::Quantile(share) => format!("{share} quantile"),
-        };
-        let phases = if *phases { "all phases, " } else { "" };
-        format!("{of} of {} ({phases}errors to {} %)", counted((*members).into(), "member"), 100.0 * errors)
-    }
+fn ensemble(of: &Ensemble) -> String {
+    let Ensemble { members, phases, errors, statistic, .. } = of;
+    let of = match statistic {
+        Statistic::Mean => "mean".to_owned(),
+        Statistic::Worst => "worst".to_owned(),
+        Statistic::Quantile(share) => format!("{share} quantile"),
+    };
+    let phases = if *phases { "all phases, " } else { "" };
+    format!("{of} of {} ({phases}errors to {} %)", counted((*members).into(), "member"), 100.0 * errors)
 }
 
 /// So many of something: `1 design`, `2 searches`.

@@ -1,7 +1,7 @@
 //! What a study file asks for, in words: `check`.
 
-use retune_optim::Limit;
-use retune_study::{FrontsPlan, PaperStudy, Part, Response, Search, Study, Sweep, counted, joined, short};
+use retune_optim::{Limit, Part, Response};
+use retune_study::{FrontsPlan, PaperStudy, Search, Study, Sweep, counted, joined, over, short};
 
 /// What a table of studies asks for.
 pub fn table2(rows: &[PaperStudy]) -> String {
@@ -85,9 +85,9 @@ fn goal(study: &Study) -> Vec<String> {
         (Response::Steady, _) => "steady, exact".to_owned(),
     };
     if !objective.sum.is_empty() {
-        lines.push(format!("for the {}", objective.over(omega)));
+        lines.push(format!("for the {}", over(&objective, omega)));
         let part = |part: &Part| {
-            format!("  {} times E1max, {}", short(part.weight.get()), part.objective.over(omega))
+            format!("  {} times E1max, {}", short(part.weight.get()), over(&part.objective, omega))
         };
         lines.extend(objective.sum.iter().map(part));
     } else if objective.ensemble.is_none() && objective.k1.is_none() && objective.omega.is_none() {
@@ -97,8 +97,8 @@ fn goal(study: &Study) -> Vec<String> {
             lines.push("for the settled E1max".to_owned());
         }
     } else {
-        let over = objective.over(omega).replacen("worst over", "worst E1max over", 1);
-        lines.push(format!("for the {over}, {how}"));
+        let words = over(&objective, omega).replacen("worst over", "worst E1max over", 1);
+        lines.push(format!("for the {words}, {how}"));
     }
     let limits = study.goal().limits;
     let words: Vec<String> = Limit::ALL

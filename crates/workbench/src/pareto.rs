@@ -17,7 +17,7 @@ use crate::resolved::{self, Resolved};
 use crate::tune::{Found, optimize};
 use crate::{Error, Observer, Request};
 use design::{Design, SAME, by_excess, look};
-use retune_optim::{Limit, Variable, When};
+use retune_optim::{Limit, Variable};
 use retune_store::{Directory, Extent, Identity, Order, manifest};
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
 use serde_json::json;
@@ -202,7 +202,7 @@ impl Fronts {
     /// Whether a damper's response is in closed form, and so touches nothing.
     fn is_steady(&self, damper: usize) -> bool {
         let study = self.plan.dampers.get(damper).map(|(_, study)| study);
-        study.is_some_and(|study| study.goal().terms.iter().all(|term| term.when == When::Steady))
+        study.is_some_and(|study| study.objective().is_steady())
     }
 
     /// Certifies the designs that are furthest below the first damper under the same bound, each value once.

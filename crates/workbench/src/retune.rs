@@ -9,7 +9,7 @@ use crate::designs::{Table, quoted};
 use crate::tune::{Found, optimize};
 use crate::{Error, Observer, Request};
 use rayon::prelude::*;
-use retune_model::{NonNegative, Scene};
+use retune_model::{Design, NonNegative, Scene};
 use retune_store::Order;
 use retune_study::{self as study, PaperStudy, Setting, Study, short};
 use serde_json::json;
@@ -88,7 +88,7 @@ fn tune(
         let natural = short(study.scene.primary.natural_frequency());
         watch.log(&format!(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
-            study.objective().over(study.scene.forcing.frequency.get())
+            study::over(&study.objective(), study.scene.forcing.frequency.get())
         ))?;
         let place = table.directory().part(&format!("k1-{k1}/{}", study.name()));
         let (optimum, results) = optimize(&study, &place, order, watch)?;
@@ -156,7 +156,8 @@ impl Tuned {
     fn scene(&self, k1: f64) -> Option<Scene> {
         let (_, Found { design: [_, k2, c2, d, c], .. }) =
             self.designs.iter().find(|(other, _)| *other == k1)?;
-        self.study.scene_with(&Setting::design([*k2, *c2, *d, *c])).ok()
+        let at = [*k2, *c2, *d, *c];
+        self.study.scene_at(&Design::new(|variable| at[variable as usize]).ok()?)
     }
 
     /// E1max of the design for a stiffness at it, J, if it is one of those tuned for.

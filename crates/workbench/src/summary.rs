@@ -1,10 +1,11 @@
 //! What a run gave: one type, from which JSON and text are made.
 
 use retune_model::{Damper, Scene, energy_ratios};
+use retune_optim::Objective;
 use retune_optim::Variable;
 use retune_solver::{Response, SceneKind};
 use retune_study::counted;
-use retune_study::{Objective, Solver, Span, Study};
+use retune_study::{Solver, Span, Study, over};
 use serde::Serialize;
 
 /// What was observed in the window of a run. SI units; a ratio of nothing to nothing is null.
@@ -114,7 +115,7 @@ impl std::fmt::Display for MadeBy {
         let (t0, end) = (window.t0.get(), window.end.get());
         let rtol = solver.rtol;
         write!(f, "study {study}, ")?;
-        write!(f, "{}, ", objective.over(*omega))?;
+        write!(f, "{}, ", over(objective, *omega))?;
         if objective.is_steady() {
             return write!(f, "steady; Retune {retune}");
         }

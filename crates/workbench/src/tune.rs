@@ -181,8 +181,7 @@ fn kept<'a>(
 
 /// The objective of a study over some parameters of its damper.
 pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
-    let (window, settings) = (study.window.window(), study.solver.settings());
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), window, settings).with(study.goal())
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), study.solver.settings())
 }
 
 /// Whether `optimize` writes files of this name.

@@ -1,21 +1,32 @@
 //! Whether a motion repeats: the states at whole periods of the force return, and their remaining drift is small.
 
 use crate::settings::Settings;
-use retune_model::Coupled;
+use retune_model::{Coupled, Positive};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// When a motion counts as settled: its state returns after some periods of the force, throughout successive blocks of time.
-///
-/// States are compared at whole periods of the force: the structure's as a share of the largest `√(m1 v1² + k1 x1²)`, the
-/// damper's, relative to the structure, of the largest `√((x2 - x1 - D)² + (v2 - v1)²/ω²)` at these moments.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// When a motion counts as settled: its state returns after some periods of the force, throughout successive blocks of periods
+/// counted from t = 0. E1max is then that of the last of them.
+// States are compared at whole periods of the force: the structure's as a share of the largest `√(m1 v1² + k1 x1²)`, the damper's,
+// relative to the structure, of the largest `√((x2 - x1 - D)² + (v2 - v1)²/ω²)` at these moments.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Settle {
-    /// Length of a block in periods of the force, at least 1; the longest period of a motion that can settle.
+    /// Length of a block in periods of the force. A motion that repeats less often does not settle.
+    #[schemars(range(min = 1, max = 10000))]
     pub periods: u32,
-    /// How many blocks in a row must agree, at least 2.
+    /// How many blocks in a row must agree.
+    #[schemars(range(min = 2, max = 100))]
     pub blocks: u32,
-    /// The largest change of the state that may remain, as a share of its size: the change from return to return in the last block,
-    /// and the sum of all later changes if they keep falling at the rate seen from block to block.
+    /// The most by which the state may still change, as a share of its size: from return to return, and all that is to follow if
+    /// the change keeps falling as it fell from block to block.
+    #[serde(deserialize_with = "positive")]
+    #[schemars(with = "Positive")]
     pub tolerance: f64,
+}
+
+fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Positive::deserialize(deserializer).map(Positive::get)
 }
 
 impl Default for Settle {

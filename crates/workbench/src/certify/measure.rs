@@ -7,7 +7,7 @@ use crate::Error;
 use rayon::prelude::*;
 use retune_atlas::{Stretch, classify, follow};
 use retune_model::Scene;
-use retune_optim::{Ensemble, Frequencies, Goal, PerLimit, Place, Statistic, When};
+use retune_optim::{Ensemble, Goal, PerLimit, Place, Response, Statistic};
 use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
 use retune_study::{Setting, Study};
 
@@ -60,28 +60,29 @@ pub(super) fn measure(study: &Study) -> Result<Certificate, Error> {
 
 /// The goal with more samples, if any of its bands of frequencies is sampled.
 fn finer(goal: &Goal) -> Option<Goal> {
-    let mut goal = goal.clone();
-    let sampled = goal.terms.iter_mut().filter(|term| term.when != When::Steady);
-    let bands: Vec<&mut Frequencies> = sampled.filter_map(|term| term.omega.as_mut()).collect();
-    if bands.is_empty() {
-        return None;
-    }
-    for Frequencies { band, .. } in bands {
-        band.samples = FINER * (band.samples - 1) + 1;
-    }
-    Some(goal)
+    let (mut goal, mut any) = (goal.clone(), false);
+    goal.objective.for_each_term(&mut |term| {
+        if let Some(band) = term.omega.as_mut().filter(|_| term.response != Response::Steady) {
+            band.samples = FINER * (band.samples - 1) + 1;
+            any = true;
+        }
+    });
+    any.then_some(goal)
 }
 
 /// E1max of the worst run by every rung.
 fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, SolverError> {
-    let when = goal.terms.get(worst.term).map_or(When::Steady, |term| term.when);
+    let (response, settle) =
+        goal.term(worst.term).map_or((Response::Steady, STEADY), |term| (term.response, term.settle));
     let rung = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
         let ask = Ask { phase: worst.phase, ..Ask::default() };
-        let found = match when {
-            When::Window(window) => extremes(&worst.scene, window, &settings, ask)?,
-            When::Settled(window, settle) => settled(&worst.scene, window, settle, &settings, ask)?,
-            When::Steady => settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?,
+        let found = match response {
+            Response::Window => extremes(&worst.scene, goal.window, &settings, ask)?,
+            Response::Settled => settled(&worst.scene, goal.window, settle, &settings, ask)?,
+            Response::Steady => {
+                settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?
+            }
         };
         Ok(Rung { method, rtol, e1_max: found.e1_max.value })
     };
@@ -91,7 +92,7 @@ fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, 
 /// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to
 /// `near`.
 fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Vec<Sensitivity> {
-    let omega = goal.terms.iter().any(|term| term.omega.is_none()).then_some("omega");
+    let omega = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none()).then_some("omega");
     let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(omega);
     let known =
         names.filter_map(|name| Some((name, study.value_of(name)?))).filter(|(_, value)| *value != 0.0);

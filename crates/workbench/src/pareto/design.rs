@@ -1,7 +1,8 @@
 //! A design of a front: what it reaches on the samples of the study of fronts, and how it compares.
 
-use retune_optim::{Evaluation, PerLimit};
-use retune_study::{Setting, Study, Sweep};
+use retune_model::{Design as At, Positive};
+use retune_optim::{Evaluation, Limits};
+use retune_study::{Study, Sweep};
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -57,7 +58,7 @@ pub fn energy(study: &Study, samples: usize, at: [f64; 4]) -> Option<f64> {
 /// A study with a design in its scene, its band on so many samples; none where there is no such scene.
 pub fn finer(study: &Study, samples: usize, at: [f64; 4]) -> Option<Study> {
     let mut study = study.clone();
-    study.scene = study.scene_with(&Setting::design(at)).ok()?;
+    study.scene = study.scene_at(&At::new(|variable| at[variable as usize]).ok()?)?;
     if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
         band.samples = samples;
     }
@@ -68,7 +69,8 @@ pub fn finer(study: &Study, samples: usize, at: [f64; 4]) -> Option<Study> {
 pub fn look(study: &Study) -> Option<Evaluation> {
     // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
     let mut goal = study.goal();
-    goal.limits.most = PerLimit([Some(f64::MIN_POSITIVE), Some(f64::MIN_POSITIVE), None]);
+    let least = Positive::new(f64::MIN_POSITIVE).ok();
+    goal.limits = Limits { stroke: least, force: least, cavity: None, from: goal.limits.from };
     goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }
 

@@ -89,7 +89,7 @@ fn size(damper: usize) -> f64 {
 
 fn title(fronts: &Fronts) -> String {
     let over = fronts.plan.dampers.last().map(|(_, study)| {
-        let over = study.objective().over(study.scene.forcing.frequency.get());
+        let over = retune_study::over(&study.objective(), study.scene.forcing.frequency.get());
         format!("{over}; ")
     });
     format!("{}Retune {}", over.unwrap_or_default(), env!("CARGO_PKG_VERSION"))

@@ -29,7 +29,9 @@ pub(super) fn retention(tuned: &[Tuned], curves: &Curves) -> String {
     }
     let energies = curves.none.iter().chain(curves.kept.iter().flatten());
     let top = energies.copied().filter(|e| e.is_finite()).fold(0.0, f64::max);
-    let over = |first: &Tuned| first.study.objective().over(first.study.scene.forcing.frequency.get());
+    let over = |first: &Tuned| {
+        retune_study::over(&first.study.objective(), first.study.scene.forcing.frequency.get())
+    };
     let title =
         format!("{}; Retune {}", tuned.first().map(over).unwrap_or_default(), env!("CARGO_PKG_VERSION"));
     let chart = Chart {

@@ -5,7 +5,7 @@ use crate::summary::MadeBy;
 use rayon::prelude::*;
 use retune_figures::sheet::{BLACK, BLUE, Chart, Key, Layer, VERMILION, sheet};
 use retune_model::{NonNegative, Scene};
-use retune_optim::{Band, Goal, Term, When};
+use retune_optim::{Band, Goal, Limits, Objective, Response};
 use retune_store::Directory;
 use retune_study::Study;
 use retune_study::short;
@@ -21,17 +21,20 @@ const FINER: usize = 4;
 /// # Errors
 /// A file cannot be written.
 pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<(), Error> {
-    let Goal { terms, .. } = study.goal();
-    let Some((term, band)) = terms.first().and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
+    let objective = study.objective();
+    let Some((term, band)) = first(&objective).and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
     else {
         return Ok(());
     };
-    let samples =
-        if term.when == When::Steady { FINE.max(band.samples) } else { FINER * (band.samples - 1) + 1 };
+    let samples = if term.response == Response::Steady {
+        FINE.max(band.samples)
+    } else {
+        FINER * (band.samples - 1) + 1
+    };
     let fine = Band { samples, ..band };
     let scenes = [Scene { damper: None, ..tuned }, study.scene, tuned];
     let worst = scenes.map(|scene| energy(study, scene, term));
-    let single = Term { omega: None, ..term.clone() };
+    let single = Objective { omega: None, ..term.clone() };
     let rows: Vec<(f64, [f64; 3])> = (0..samples)
         .into_par_iter()
         .map(|i| {
@@ -58,15 +61,22 @@ fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
 }
 
 /// E1max of a scene as a term takes it, without limits, J; NaN where it has none.
-fn energy(study: &Study, scene: Scene, term: &Term) -> f64 {
-    let value = Goal::one(term.clone()).evaluate(&scene, &study.solver.settings(), f64::INFINITY);
+fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
+    let goal = Goal { objective: term.clone(), window: study.window.window(), limits: Limits::default() };
+    let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
     value.map_or(f64::NAN, |found| found.energy)
+}
+
+/// The first term of an objective.
+fn first(objective: &Objective) -> Option<&Objective> {
+    objective.terms().first().map(|(_, term)| *term)
 }
 
 /// E1max of a scene at its own frequency, J, as `band.csv` has it; NaN where it has none.
 pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
-    let Goal { terms, .. } = study.goal();
-    terms.first().map_or(f64::NAN, |term| energy(study, scene, &Term { omega: None, ..term.clone() }))
+    let objective = study.objective();
+    first(&objective)
+        .map_or(f64::NAN, |term| energy(study, scene, &Objective { omega: None, ..term.clone() }))
 }
 
 fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {

@@ -6,9 +6,9 @@ use crate::Error;
 use crate::certify::{self, certify};
 use crate::summary::Summary;
 use crate::tune::{band, objective};
-use retune_model::{NonNegative, Scene};
+use retune_model::{Design, NonNegative, Scene};
 use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
-use retune_study::{self as study, Setting, Study};
+use retune_study::{self as study, Study};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -34,7 +34,7 @@ pub fn verify(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), 
         let study = if has("optimum.json") {
             certify::read(&place.join("optimum.json"))?.0
         } else if searched {
-            study.with(&Setting::design(design(&said["design"])))? // what was found stands nowhere else
+            Study { scene: scene_at(&study, &design(&said["design"])).unwrap_or(study.scene), ..study } // what was found stands nowhere else
         } else {
             study
         };
@@ -113,10 +113,14 @@ pub fn certificate(study: &Study, said: &Value, name: &str, report: &mut Report<
     }
 }
 
+/// The scene of a study with a design (k2, c2, D, C in SI units); none where there is no such scene.
+pub fn scene_at(study: &Study, design: &[f64; 4]) -> Option<Scene> {
+    study.scene_at(&Design::new(|variable| design[variable as usize]).ok()?)
+}
+
 /// E1max by the objective of a study for a design (k2, c2, D, C in SI units), J; infinite where it has none.
 pub fn energy(study: &Study, design: &[f64; 4]) -> f64 {
-    let scene = study.scene_with(&Setting::design(*design)).ok();
-    scene.and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
+    scene_at(study, design).and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
 /// The check of a row of a search: the number that it made small, or the E1max of a basin, empty where that breaks a limit.

@@ -96,7 +96,7 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
     for (name, study) in studies {
         let home = study.scene.primary.stiffness.get();
         let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == home);
-        let scene = own.and_then(|row| study.scene_with(&Setting::design(row.design())).ok());
+        let scene = own.and_then(|row| search::scene_at(study, &row.design()));
         if let Some(scene) = scene {
             columns.push((retune::kept(name, home), study, scene));
         }

@@ -98,7 +98,8 @@ mod tests {
 
     #[test]
     fn exact_what_breaks_a_limit_most_is_told_with_its_place() {
-        let limits = Limits::from(PerLimit([Some(0.2), None, Some(0.5)]));
+        let limit = |value| retune_model::Positive::new(value).ok();
+        let limits = Limits { stroke: limit(0.2), cavity: limit(0.5), ..Limits::default() };
         let near =
             |at: &str, neighbour, reached| Near { at: at.to_owned(), neighbour, reached: PerLimit(reached) };
         let around = [
@@ -112,6 +113,6 @@ mod tests {
         assert_eq!(said, "stroke is 0.21 m beyond, 5 % over its limit of 0.2 m");
         let kept = Kept::new(&limits, &PerLimit([0.1, 0.0, 0.75]), &[]).expect("limits");
         assert_eq!(kept.broken().as_deref(), Some("the limit of cavity: 0.75 of 0.5 m, 50 % over"));
-        assert!(Kept::new(&Limits::from(PerLimit([None; 3])), &PerLimit([1.0; 3]), &around).is_none());
+        assert!(Kept::new(&Limits::default(), &PerLimit([1.0; 3]), &around).is_none());
     }
 }

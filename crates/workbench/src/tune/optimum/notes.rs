@@ -4,9 +4,8 @@ use super::super::global::Explored;
 use super::super::refine::{Refined, Run};
 use super::super::surf::Surf;
 use retune_model::Scene;
-use retune_optim::{Bounds, Evaluation, Limit, Variable, When};
-use retune_study::{LimitsGiven, Objective, Search, Study};
-use retune_study::{counted, joined, short};
+use retune_optim::{Bounds, Evaluation, Limit, Limits, Objective, Response, Variable};
+use retune_study::{Search, Study, counted, joined, short};
 use serde::Serialize;
 
 /// What was made small, and the ω at which E1max of the best design is reached, rad/s.
@@ -29,7 +28,7 @@ pub(super) struct Goal {
 /// How the limits are kept by the best design.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LimitNote {
-    allowed: LimitsGiven,
+    allowed: Limits,
     /// The largest values in any run of the objective, SI units.
     stroke: f64,
     force: f64,
@@ -55,13 +54,14 @@ pub(super) struct Met {
 
 impl Goal {
     pub(super) fn new(study: &Study, evaluation: &Evaluation) -> Self {
-        let goal = study.goal();
+        let objective = study.objective();
+        let any = |is: fn(&Objective) -> bool| objective.terms().iter().any(|(_, term)| is(term));
         let Scene { primary, forcing, .. } = evaluation.worst.scene;
-        let settles = goal.terms.iter().any(|term| matches!(term.when, When::Settled(..)));
+        let settles = any(|term| term.response == Response::Settled);
         Self {
-            objective: study.objective(),
+            objective: objective.clone(),
             worst_omega: forcing.frequency.get(),
-            worst_k1: goal.terms.iter().any(|term| term.k1.is_some()).then_some(primary.stiffness.get()),
+            worst_k1: any(|term| term.k1.is_some()).then_some(primary.stiffness.get()),
             unsettled: settles.then_some(evaluation.unsettled),
             runs: settles.then_some(evaluation.runs),
         }
@@ -77,18 +77,17 @@ impl LimitNote {
         refined: &Refined,
     ) -> Option<Self> {
         let allowed = study.optimize.as_ref()?.limits;
-        let limits = allowed.limits();
         let Evaluation { reached, violation, .. } = *evaluation;
         let counts = [surf.map(|surf| surf.counts), explored.map(|explored| explored.counts)];
         let counts = || counts.iter().flatten().copied().chain([refined.objective.counts()]);
-        (!limits.is_empty()).then(|| Self {
+        (!allowed.is_empty()).then(|| Self {
             allowed,
             stroke: reached.get(Limit::Stroke),
             force: reached.get(Limit::Force),
             cavity: reached.get(Limit::Cavity),
             feasible: violation == 0.0,
             violation,
-            active: limits.active(&reached),
+            active: allowed.active(&reached),
             evaluations: counts().map(|counts| counts.evaluations).sum(),
             infeasible: counts().map(|counts| counts.infeasible).sum(),
         })
@@ -96,10 +95,9 @@ impl LimitNote {
 
     pub(super) fn report(&self) -> String {
         let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
-        let limits = allowed.limits();
         let reached = [self.stroke, self.force, self.cavity];
         let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
-            let allowed = limits.get(limit)?;
+            let allowed = allowed.get(limit)?;
             let active = if active.contains(&limit) { ", active" } else { "" };
             Some(format!("{limit} {} of {} {}{active}", short(reached), short(allowed), limit.unit()))
         });

@@ -5,6 +5,7 @@
 //! breaks them by less in total is better. They are written as one number, [`ranked`], so that every search follows them
 //! without knowing of them.
 
+use retune_model::{NonNegative, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,20 +65,26 @@ impl<T: Copy> PerLimit<T> {
     }
 }
 
-/// The limits that a design must keep.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Largest values allowed. A design that breaks a limit is worse than any that keeps all; of two that do, the one that breaks
+/// them by less (the sum of reached / limit - 1) is better.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(rename = "LimitsGiven")]
 pub struct Limits {
-    /// The largest values allowed, each above 0; `None` where there is no limit.
-    pub most: PerLimit<Option<f64>>,
-    /// From when on stroke and force must keep them, s; 0 for the whole run. A steady response has no beginning.
-    pub from: f64,
-}
-
-impl From<PerLimit<Option<f64>>> for Limits {
-    /// Limits for the whole run.
-    fn from(most: PerLimit<Option<f64>>) -> Self {
-        Self { most, from: 0.0 }
-    }
+    /// The stroke: largest spring deflection |x2 - x1 - D| in any run of the objective, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stroke: Option<Positive>,
+    /// Largest contact force on either wall in any run of the objective, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<Positive>,
+    /// Largest D + C, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cavity: Option<Positive>,
+    /// From when on stroke and force must keep their limits, s: 0, the default, for the whole run from rest on, t0 of `window` for
+    /// the motion that E1max is taken from. A settled motion counts in any case, and in whole blocks. The steady response has no
+    /// beginning: of it the limits hold for the steady motion alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<NonNegative>,
 }
 
 /// Values of [`ranked`] from here on are of designs that break a limit. No E1max comes near.
@@ -89,17 +96,32 @@ pub const ACTIVE: f64 = 0.01;
 impl Limits {
     /// The largest value allowed of a quantity.
     pub fn get(&self, limit: Limit) -> Option<f64> {
-        self.most.get(limit)
+        let Self { stroke, force, cavity, .. } = self;
+        [stroke, force, cavity][limit as usize].map(Positive::get)
+    }
+
+    /// The same limits with another one.
+    #[must_use]
+    pub fn with(mut self, limit: Limit, most: Positive) -> Self {
+        let Self { stroke, force, cavity, .. } = &mut self;
+        *[stroke, force, cavity][limit as usize] = Some(most);
+        self
+    }
+
+    /// Whether none is given, nor from when on.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
     }
 
     /// Whether no limit is set.
     pub fn is_empty(&self) -> bool {
-        self.most.0.iter().all(Option::is_none)
+        Limit::ALL.into_iter().all(|limit| self.get(limit).is_none())
     }
 
     /// From when on a run must be watched for its stroke and its forces, s; `None` where no limit asks for them.
     pub fn walls_from(&self) -> Option<f64> {
-        (self.get(Limit::Stroke).is_some() || self.get(Limit::Force).is_some()).then_some(self.from)
+        (self.get(Limit::Stroke).is_some() || self.get(Limit::Force).is_some())
+            .then(|| self.from.map_or(0.0, NonNegative::get))
     }
 
     /// By how much the limits are broken: the sum of `reached / limit - 1` over those that are; 0 for a feasible design.

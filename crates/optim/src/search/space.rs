@@ -1,6 +1,6 @@
 //! A box of parameters in coordinates from 0 to 1, in which equal distances mean as much along every axis.
 
-use crate::grid::Scale;
+use crate::search::grid::Scale;
 
 /// One side of the box.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,33 +3,54 @@
 
 use crate::chunks::{TOGETHER, in_groups};
 use retune_model::{NonNegative, OutOfRange, Scene};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// What is taken of the members' E1max.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[schemars(rename = "Of")]
 pub enum Statistic {
     /// The mean.
+    #[default]
     Mean,
     /// The largest.
     Worst,
-    /// The smallest value that at least this share of the members does not exceed, above 0 and at most 1.
-    Quantile(f64),
+    /// The smallest that at least this share of the members does not exceed, above 0 and at most 1.
+    Quantile(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
 }
 
-/// An ensemble: the points of an Owen-scrambled Sobol sequence (B. Burley, Practical Hash-based Owen Scrambling, J. Comput.
-/// Graph. Tech. 9(4), 2020), so that a few members fill their space evenly. Every design meets the same members.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A deterministic ensemble about the scene, the same for every design: the points of a scrambled Sobol sequence.
+// Owen-scrambled Sobol points (B. Burley, Practical Hash-based Owen Scrambling, J. Comput. Graph. Tech. 9(4), 2020), so that a few
+// members fill their space evenly.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Ensemble {
-    /// How many members, at least 1 and at most [`MOST_MEMBERS`].
+    /// How many members.
+    #[schemars(range(min = 1, max = 65536))]
     pub members: u32,
-    /// Whether the force of each begins at its own phase, evenly spread over a turn, instead of at a crest.
+    /// Whether the force P cos(omega t + phase) begins at another phase in each member, evenly spread over a turn.
+    #[serde(default = "yes")]
     pub phases: bool,
-    /// k1, k2, c2, D and C of each are off by at most this share, independently and evenly spread; below 1.
+    /// k1, k2, c2, D and C of each member are off by at most this share, independently and evenly spread.
+    #[serde(default = "errors")]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub errors: f64,
-    /// Chooses the members.
-    pub seed: u32,
-    /// What is taken of them.
+    /// What is taken of the members' E1max.
+    #[serde(default)]
     pub statistic: Statistic,
+    /// Chooses the members.
+    #[serde(default)]
+    pub seed: u32,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn errors() -> f64 {
+    1e-3
 }
 
 /// Most members: the length of the sequence.

@@ -1,6 +1,6 @@
 //! The `surf` stage: an objective on every point of a grid, and the best points of it.
 
-use crate::grid::Grid;
+use crate::search::grid::Grid;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;

@@ -4,94 +4,32 @@
 //! function of a cutoff, above which it may stop; every rule for stopping is exact: a value at most at the cutoff is computed in
 //! full.
 
-use crate::band::{Band, all_worst_over};
+use super::band::{Band, all_worst_over};
+use super::ensemble::SLACK;
+use super::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
+use super::spec::{Objective, Response, Stiffnesses};
+use super::unusable::Unusable;
 use crate::chunks::in_groups;
-use crate::ensemble::{Ensemble, SLACK};
-use crate::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
-use crate::objective::Unusable;
-use retune_model::{Bare, Coupled, NonNegative, Primary, Scene, Worst};
-use retune_solver::{Ask, Settings, Settle, Window, extremes, settled};
+use retune_model::{Bare, Coupled, NonNegative, Scene, Worst};
+use retune_solver::{Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
-/// When E1max is taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum When {
-    /// In a window of a run from rest.
-    Window(Window),
-    /// Once all transients have died, in closed form: for scenes without contacts only.
-    Steady,
-    /// Once successive blocks of a run from rest agree; in the window, if they do not by its end.
-    Settled(Window, Settle),
-}
-
-impl From<Window> for When {
-    fn from(window: Window) -> Self {
-        Self::Window(window)
-    }
-}
-
-/// The frequencies over which E1max is the largest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frequencies {
-    /// The band, rad/s or, where it is relative, multiples of the structure's natural frequency.
-    pub band: Band,
-    /// Whether it moves with the structure's natural frequency √(k1/m1).
-    pub relative: bool,
-}
-
-impl From<Band> for Frequencies {
-    fn from(band: Band) -> Self {
-        Self { band, relative: false }
-    }
-}
-
-impl Frequencies {
-    /// The band for a structure, rad/s.
-    pub fn of(&self, primary: &Primary) -> Band {
-        let unit = if self.relative { primary.natural_frequency() } else { 1.0 };
-        let Band { from, to, samples } = self.band;
-        Band { from: unit * from, to: unit * to, samples }
-    }
-}
-
-/// The stiffnesses k1 of the structure over which E1max is the largest, N/m.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Stiffnesses {
-    /// Each of these.
-    Set(Vec<f64>),
-    /// A range, searched as a band of frequencies is.
-    Range(Band),
-}
-
-/// One term of a goal. Everything that is left out stays as it is in the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Term {
-    /// Its weight in the sum, above 0.
-    pub weight: f64,
-    /// When E1max is taken.
-    pub when: When,
-    /// The largest over these frequencies.
-    pub omega: Option<Frequencies>,
-    /// The largest over these stiffnesses of the structure.
-    pub k1: Option<Stiffnesses>,
-    /// A statistic over an ensemble.
-    pub ensemble: Option<Ensemble>,
-}
-
-impl Term {
-    /// E1max of the scene itself.
-    pub fn new(when: impl Into<When>) -> Self {
-        Self { weight: 1.0, when: when.into(), omega: None, k1: None, ensemble: None }
-    }
-}
-
-/// What is made small, and the limits that are kept.
+/// What is made small, when, and the limits that are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goal {
-    /// The terms, at least one; their weighted sum is made small.
-    pub terms: Vec<Term>,
+    /// What is made small.
+    pub objective: Objective,
+    /// The window of the objective's runs; one that is steady has none.
+    pub window: Window,
     /// The limits, on the largest over all runs of all terms.
     pub limits: Limits,
+}
+
+impl From<Window> for Goal {
+    /// The largest E1 in a window, without limits.
+    fn from(window: Window) -> Self {
+        Self { objective: Objective::default(), window, limits: Limits::default() }
+    }
 }
 
 /// The run with the largest E1max among those that a value was made of.
@@ -131,7 +69,7 @@ impl Evaluation {
     /// ensemble and with the force at a crest.
     pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
         scene.forcing.frequency = self.worst.scene.forcing.frequency;
-        if goal.terms.get(self.worst.term).is_some_and(|term| term.k1.is_some()) {
+        if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
             scene.primary.stiffness = self.worst.scene.primary.stiffness;
         }
         scene
@@ -139,9 +77,9 @@ impl Evaluation {
 }
 
 impl Goal {
-    /// A goal of one term without limits.
-    pub fn one(term: Term) -> Self {
-        Self { terms: vec![term], limits: Limits::default() }
+    /// A term of the objective, by its number.
+    pub fn term(&self, number: usize) -> Option<&Objective> {
+        self.objective.terms().get(number).map(|(_, term)| *term)
     }
 
     /// The value of a scene. Any value above `cutoff` as soon as it is known to be above: the rest is then incomplete.
@@ -154,7 +92,7 @@ impl Goal {
         let mut reached = PerLimit::default();
         reached.set(Limit::Cavity, cavity);
         let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
-        let watch = Watch { settings, limits: &self.limits, seen: Mutex::new(seen) };
+        let watch = Watch { settings, window: self.window, limits: &self.limits, seen: Mutex::new(seen) };
         // Too large a cavity needs no run to be worse than anything feasible.
         let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
             f64::INFINITY
@@ -178,12 +116,13 @@ impl Goal {
 
     /// The weighted sum, J.
     fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
-        if let [Term { weight: 1.0, .. }] = self.terms[..] {
-            return watch.term(scene, (0, &self.terms[0]), cutoff);
+        let terms = self.objective.terms();
+        if let [(1.0, term)] = terms[..] {
+            return watch.term(scene, (0, term), cutoff);
         }
         let (mut sum, most) = (0.0, cutoff * SLACK);
-        for (i, term) in self.terms.iter().enumerate() {
-            sum += term.weight * watch.term(scene, (i, term), (most - sum) / term.weight)?;
+        for (i, (weight, term)) in terms.into_iter().enumerate() {
+            sum += weight * watch.term(scene, (i, term), (most - sum) / weight)?;
             if sum > most {
                 break;
             }
@@ -203,12 +142,13 @@ struct Seen {
 /// How runs of a goal are made, and what is kept of them.
 struct Watch<'a> {
     settings: &'a Settings,
+    window: Window,
     limits: &'a Limits,
     seen: Mutex<Seen>,
 }
 
 /// A term with its number.
-type Numbered<'a> = (usize, &'a Term);
+type Numbered<'a> = (usize, &'a Objective);
 
 /// The largest E1max (J), stroke (m) and contact force (N) of some runs; all but the first 0 where no limit asks for them.
 type Largest = [f64; 3];
@@ -232,14 +172,14 @@ impl Watch<'_> {
         };
         match &term.1.k1 {
             None => self.over_omega(scene, phase, term, cutoff),
-            Some(Stiffnesses::Range(range)) => self.worst_over(range, at, cutoff),
+            Some(Stiffnesses::Range(range)) => self.worst_over(&range.band(), at, cutoff),
             Some(Stiffnesses::Set(set)) => {
                 let above = |results: &[Result<Largest, Unusable>]| match results.last() {
                     Some(Ok([e1_max, ..])) => *e1_max > cutoff,
                     Some(Err(_)) => true,
                     None => false,
                 };
-                let k1 = |i: usize| set.get(i).copied().unwrap_or(own);
+                let k1 = |i: usize| set.get(i).map_or(own, |k1| k1.get());
                 let results = in_groups(set.len(), 1, |i, _| at(k1(i)), above);
                 let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
                 results.into_iter().try_fold([0.0; 3], |worst, more| Ok(larger(worst, more?)))
@@ -255,8 +195,8 @@ impl Watch<'_> {
         cutoff: f64,
     ) -> Result<Largest, Unusable> {
         let own = scene.forcing.frequency.get();
-        let band = term.1.omega.map(|frequencies| frequencies.of(&scene.primary));
-        if term.1.when == When::Steady {
+        let band = term.1.omega.map(|band| band.of(&scene.primary));
+        if term.1.response == Response::Steady {
             return self.steady(scene, band.map_or([own; 2], |band| [band.from, band.to]), term.0);
         }
         let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
@@ -289,10 +229,10 @@ impl Watch<'_> {
         let mut scene = *scene;
         scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
         let ask = Ask { phase, walls: self.limits.walls_from(), cutoff };
-        let found = match term.when {
-            When::Settled(window, settle) => settled(&scene, window, settle, self.settings, ask)?,
-            When::Window(window) => extremes(&scene, window, self.settings, ask)?,
-            When::Steady => return self.steady(&scene, [omega; 2], number),
+        let found = match term.response {
+            Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
+            Response::Window => extremes(&scene, self.window, self.settings, ask)?,
+            Response::Steady => return self.steady(&scene, [omega; 2], number),
         };
         let place = Place { e1_max: found.e1_max.value, scene, phase, term: number };
         self.see(place, found.stroke, found.force, found.settled);

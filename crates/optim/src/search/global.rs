@@ -6,7 +6,7 @@
 //!   that the result is the same at any number of threads.
 //! - [`basins`]: how many searches came to the same place. An optimum that one of many reached is a lonely one.
 
-use crate::space::Space;
+use crate::search::space::Space;
 use basin::{
     BoundedCmaEs, BoxBounds, Constrained, ConstraintSet, Constraints, CostFunction, DenseMatrix, Executor,
     NoConstraints, PopulationProgress,

@@ -1,0 +1,130 @@
+//! A design: the four parameters of the damper that may be tuned, in the order of the paper's tables.
+
+use crate::{Damper, NonNegative, OutOfRange};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A parameter of the damper that may be tuned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+pub enum Variable {
+    /// k2, stiffness of the damper's spring, N/m.
+    #[serde(rename = "k2")]
+    K2,
+    /// c2, damping between damper and primary structure, N·s/m.
+    #[serde(rename = "c2")]
+    C2,
+    /// D, distance between the damper at rest and the primary structure, m.
+    D,
+    /// C, clearance between the damper at rest and the obstacle, m.
+    C,
+}
+
+impl Variable {
+    /// All of them, in the order of the paper's tables.
+    pub const ALL: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
+
+    /// The paper's symbol.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::K2 => "k2",
+            Self::C2 => "c2",
+            Self::D => "D",
+            Self::C => "C",
+        }
+    }
+
+    /// The SI unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::K2 => "N/m",
+            Self::C2 => "N·s/m",
+            Self::D | Self::C => "m",
+        }
+    }
+
+    /// Its value in `damper`.
+    pub const fn get(self, damper: &Damper) -> f64 {
+        match self {
+            Self::K2 => damper.stiffness.get(),
+            Self::C2 => damper.damping.get(),
+            Self::D => damper.rest_distance.get(),
+            Self::C => damper.clearance.get(),
+        }
+    }
+
+    /// Gives it a value in `damper`.
+    ///
+    /// # Errors
+    /// A value that no damper can have; `damper` is then unchanged.
+    pub fn set(self, damper: &mut Damper, value: f64) -> Result<(), OutOfRange> {
+        let value = NonNegative::new(value)?;
+        match self {
+            Self::K2 => damper.stiffness = value,
+            Self::C2 => damper.damping = value,
+            Self::D => damper.rest_distance = value,
+            Self::C => damper.clearance = value,
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Display for Variable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.symbol())
+    }
+}
+
+/// A value for each [`Variable`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// k2, stiffness of the damper's spring, N/m.
+    pub k2: NonNegative,
+    /// c2, damping between damper and primary structure, N·s/m.
+    pub c2: NonNegative,
+    /// D, distance between the damper at rest and the primary structure, m.
+    #[serde(rename = "D")]
+    pub d: NonNegative,
+    /// C, clearance between the damper at rest and the obstacle, m.
+    #[serde(rename = "C")]
+    pub c: NonNegative,
+}
+
+impl Design {
+    /// The design of a damper.
+    pub const fn of(damper: &Damper) -> Self {
+        let Damper { stiffness, damping, rest_distance, clearance, .. } = *damper;
+        Self { k2: stiffness, c2: damping, d: rest_distance, c: clearance }
+    }
+
+    /// From a value for each variable, in SI units.
+    ///
+    /// # Errors
+    /// The first value that no damper can have, with its variable.
+    pub fn new(value: impl Fn(Variable) -> f64) -> Result<Self, (Variable, OutOfRange)> {
+        let checked = |variable| NonNegative::new(value(variable)).map_err(|refused| (variable, refused));
+        let [k2, c2, d, c] = Variable::ALL.map(checked);
+        Ok(Self { k2: k2?, c2: c2?, d: d?, c: c? })
+    }
+
+    /// The value of a variable.
+    pub const fn get(&self, variable: Variable) -> f64 {
+        match variable {
+            Variable::K2 => self.k2.get(),
+            Variable::C2 => self.c2.get(),
+            Variable::D => self.d.get(),
+            Variable::C => self.c.get(),
+        }
+    }
+
+    /// All values, in the order of [`Variable::ALL`].
+    pub fn values(&self) -> [f64; 4] {
+        Variable::ALL.map(|variable| self.get(variable))
+    }
+
+    /// A damper with this design, all else as it is in `damper`.
+    #[must_use]
+    pub const fn on(&self, damper: Damper) -> Damper {
+        Damper { stiffness: self.k2, damping: self.c2, rest_distance: self.d, clearance: self.c, ..damper }
+    }
+}

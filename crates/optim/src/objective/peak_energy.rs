@@ -1,0 +1,138 @@
+//! The objective as a function of a design: what searches make small.
+
+use super::evaluate::{Evaluation, Goal};
+use super::limits::INFEASIBLE;
+use super::unusable::Unusable;
+use retune_model::{Damper, Scene, Variable};
+use retune_solver::Settings;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+/// The designs that could not be evaluated.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Failures {
+    /// How many evaluations failed.
+    pub count: u64,
+    /// One of them with its reason: the lowest in lexicographic order of the parameters, so that the choice does not depend on
+    /// which thread failed first.
+    pub example: Option<Box<(Vec<f64>, Unusable)>>,
+}
+
+/// How many designs were looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Values asked for.
+    pub evaluations: u64,
+    /// Of these, values of designs that were found to break a limit. One that was given up as too energetic before that is
+    /// not among them.
+    pub infeasible: u64,
+}
+
+/// The goal of a search as a function of a design: a value for each varied parameter of the damper. It may be shared by threads.
+///
+/// A design that cannot be evaluated counts as +∞, and is kept in [`Self::failures`].
+#[derive(Debug)]
+pub struct PeakEnergy {
+    scene: Scene,
+    damper: Damper,
+    variables: Vec<Variable>,
+    goal: Goal,
+    settings: Settings,
+    failures: Mutex<Failures>,
+    counts: [AtomicU64; 2],
+}
+
+impl PeakEnergy {
+    /// The objective over `variables` of `damper`, hung on the structure of `scene` in the place of its own, if any.
+    pub fn new(
+        scene: Scene,
+        damper: Damper,
+        variables: Vec<Variable>,
+        goal: impl Into<Goal>,
+        settings: Settings,
+    ) -> Self {
+        let goal = goal.into();
+        let (failures, counts) = Default::default();
+        Self { scene, damper, variables, goal, settings, failures, counts }
+    }
+
+    /// What is made small.
+    pub fn goal(&self) -> &Goal {
+        &self.goal
+    }
+
+    /// The varied parameters, in the order of a design.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// The damper of `design`: one value for each of [`Self::variables`], SI units; the rest as given at first.
+    ///
+    /// # Errors
+    /// A value that no damper can have.
+    pub fn damper(&self, design: &[f64]) -> Result<Damper, Unusable> {
+        let mut damper = self.damper;
+        for (&variable, &value) in self.variables.iter().zip(design) {
+            variable.set(&mut damper, value).map_err(|source| Unusable::OutOfRange { variable, source })?;
+        }
+        Ok(damper)
+    }
+
+    /// The scene of `design`.
+    ///
+    /// # Errors
+    /// A value that no damper can have.
+    pub fn scene(&self, design: &[f64]) -> Result<Scene, Unusable> {
+        Ok(Scene { damper: Some(self.damper(design)?), ..self.scene })
+    }
+
+    /// What searches make small: the goal's energy of `design`, J, or above [`INFEASIBLE`] if it breaks a
+    /// limit; any number above `cutoff` as soon as it is known to be above; +∞ where there is none.
+    pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
+        self.counts[0].fetch_add(1, Relaxed);
+        match self.scene(design).and_then(|scene| self.evaluate(&scene, cutoff)) {
+            Ok(found) => {
+                self.counts[1].fetch_add(u64::from(found.violation > 0.0), Relaxed);
+                found.value
+            }
+            Err(reason) => {
+                self.note(design, reason);
+                f64::INFINITY
+            }
+        }
+    }
+
+    /// Takes note of a value that [`Self::value`] gave in an earlier run of the same search, so that [`Self::counts`] are those of an
+    /// unbroken one.
+    pub fn recall(&self, value: f64) {
+        self.counts[0].fetch_add(1, Relaxed);
+        self.counts[1].fetch_add(u64::from(value > INFEASIBLE), Relaxed);
+    }
+
+    /// The value of a scene as this objective takes it, and what it was made of; see [`Goal::evaluate`].
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate`].
+    pub fn evaluate(&self, scene: &Scene, cutoff: f64) -> Result<Evaluation, Unusable> {
+        self.goal.evaluate(scene, &self.settings, cutoff)
+    }
+
+    /// The evaluations that failed so far.
+    pub fn failures(&self) -> Failures {
+        self.failures.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// How many designs were looked at so far.
+    pub fn counts(&self) -> Counts {
+        let [evaluations, infeasible] = [0, 1].map(|i| self.counts[i].load(Relaxed));
+        Counts { evaluations, infeasible }
+    }
+
+    fn note(&self, design: &[f64], reason: Unusable) {
+        let mut failures = self.failures.lock().unwrap_or_else(PoisonError::into_inner);
+        failures.count += 1;
+        if failures.example.as_ref().is_none_or(|lowest| design < lowest.0.as_slice()) {
+            failures.example = Some(Box::new((design.to_vec(), reason)));
+        }
+    }
+}

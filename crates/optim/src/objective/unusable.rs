@@ -1,0 +1,43 @@
+//! Why a design has no value.
+
+use retune_model::{OutOfRange, Variable};
+use retune_solver::SolverError;
+use thiserror::Error;
+
+/// Why a design has no value.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum Unusable {
+    /// A parameter that no damper can have.
+    #[error("{variable}: {source}")]
+    OutOfRange {
+        /// The parameter.
+        variable: Variable,
+        /// Its value and what is allowed.
+        source: OutOfRange,
+    },
+    /// A stiffness that no structure can have.
+    #[error("k1: {0}")]
+    Stiffness(OutOfRange),
+    /// A member of an ensemble with a parameter out of its range.
+    #[error("a member of the ensemble: {0}")]
+    Member(OutOfRange),
+    /// A frequency that no force can have.
+    #[error("omega: {0}")]
+    Frequency(OutOfRange),
+    /// The run could not be finished.
+    #[error(transparent)]
+    Run(#[from] SolverError),
+    /// The steady motion reaches a wall, so that it is not linear.
+    #[error(
+        "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \
+         widen them, or look at a window of time instead of the steady response"
+    )]
+    Touches {
+        /// Where the stroke is largest, rad/s.
+        omega: f64,
+        /// The stroke without walls, m.
+        stroke: f64,
+        /// The smaller of D and C, m.
+        room: f64,
+    },
+}
