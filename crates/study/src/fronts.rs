@@ -1,7 +1,9 @@
 //! The study behind `retune fronts`: dampers to tune under ever looser bounds on the spring or on the stroke.
 
-use super::read::{parse, read, read_text};
-use super::{PerVariable, Rule, Study, StudyError};
+use super::format::Study;
+use super::per_variable::PerVariable;
+use super::read::{StudyError, has_field, parse, read, read_text};
+use super::rule::Rule;
 use retune_model::Positive;
 use retune_optim::Variable;
 use schemars::JsonSchema;
@@ -182,5 +184,5 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
 /// # Errors
 /// The file cannot be read.
 pub fn is_fronts(path: &Path) -> Result<bool, StudyError> {
-    super::table2::has_field(path, "dampers")
+    has_field(path, "dampers")
 }

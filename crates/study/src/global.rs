@@ -1,6 +1,7 @@
 //! The global search of a study: an even look at the whole box, then CMA-ES from the best places.
 
-use super::{PerVariable, Rule};
+use super::per_variable::PerVariable;
+use super::rule::Rule;
 use retune_optim::{Bounds, Global, Scale, Side, Space, Variable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

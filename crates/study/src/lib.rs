@@ -1,13 +1,36 @@
-//! The study file: what a person wants to know, in JSON with the paper's symbols and SI units.
+//! Study files: what a person wants to know, in JSON with the paper's symbols and SI units.
 //!
-//! The types here are the format: their doc comments are the descriptions of the JSON Schema.
+//! [`read`] makes a checked [`Study`] of a file, or an error that names the field, its value and what is allowed. [`Study::search`]
+//! says what is searched, [`Study::goal`] what is made small.
+//!
+//! ```
+//! let study = retune_study::read::from_text(
+//!     r#"{
+//!         "scene": {
+//!             "primary": { "m1": 1000, "c1": 452, "k1": 39500 },
+//!             "forcing": { "P": 800, "omega": 6.28 }
+//!         },
+//!         "window": { "t0": 0, "T": 60 }
+//!     }"#,
+//!     "bare.json",
+//! )?;
+//! assert_eq!(study.name(), "bare");
+//! // At rest at first, the structure without a damper comes to hundreds of joules near its resonance.
+//! assert!(study.energy(&study.scene).is_some_and(|energy| energy > 500.0));
+//! let refused = retune_study::read::from_text(r#"{ "scene": { "primary": { "m1": -1 } } }"#, "bad.json");
+//! assert!(refused.is_err_and(|error| error.to_string().contains("m1: -1 is not allowed here")));
+//! # Ok::<(), retune_study::StudyError>(())
+//! ```
+#![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod explain;
+mod format;
 mod fronts;
 mod global;
 mod objective;
+mod per_variable;
 pub mod read;
 mod rule;
 mod search;
@@ -15,230 +38,13 @@ mod set;
 mod table2;
 mod words;
 
+pub use format::{GridAxis, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, is_fronts, read_fronts};
 pub use global::GlobalSearch;
+pub use per_variable::PerVariable;
 pub use read::{StudyError, read, read_paper};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, at_found, is_optimum, is_paper, is_table2, read_table2};
 pub use words::{are, counted, joined, over, short};
-
-use retune_model::{NonNegative, Positive, Scene, Variable};
-use retune_optim::{Limits, Objective};
-use retune_optim::{Options, Scale};
-use retune_solver::{Contacts, Method, Settings, Window};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-/// A study: a structure with its damper, when to look at it, and what to tune. SI units throughout.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Study {
-    /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
-    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
-    pub schema: Option<String>,
-    /// The version of Retune that wrote this file, when it did. Ignored.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub retune: Option<String>,
-    /// Names the directory of the results; the file's own name if left out. Letters, digits, `-`, `_` and `.`.
-    #[serde(default)]
-    pub name: Option<String>,
-    /// The primary structure, the force on it, and the damper.
-    pub scene: Scene,
-    /// When maxima are taken.
-    pub window: Span,
-    /// How the motion is computed.
-    #[serde(default)]
-    pub solver: Solver,
-    /// What is tuned, and where it is looked for.
-    #[serde(default)]
-    pub optimize: Option<Optimize>,
-}
-
-/// The window in which maxima are taken. Every run starts at rest at t = 0.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Span {
-    /// t0, start of the window, s. The motion before it is a transient that counts for nothing; 0 takes the whole run.
-    pub t0: NonNegative,
-    /// T, end of the window and of the run, s.
-    #[serde(rename = "T")]
-    pub end: Positive,
-}
-
-/// How the motion is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Solver {
-    /// The integration method.
-    pub method: Method,
-    /// How every method but the hybrid meets a contact. The hybrid always locates it.
-    pub contacts: Contacts,
-    /// Relative tolerance of a step.
-    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
-    pub rtol: f64,
-    /// Absolute tolerance of a step, m and m/s (of the methods with an error estimate, but the hybrid).
-    #[schemars(range(min = 0.0))]
-    pub atol: f64,
-    /// Most steps a run may take.
-    pub max_steps: u64,
-}
-
-/// What is tuned: the damper's parameters that make E1max, the largest energy of the primary structure, small.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Optimize {
-    /// The parameters to tune; the others keep their values in `scene`.
-    #[schemars(length(min = 1))]
-    pub vary: Vec<Variable>,
-    /// Which E1max is made small. Default: the largest in `window` at the scene's omega.
-    #[serde(default, skip_serializing_if = "Objective::is_default")]
-    pub objective: Objective,
-    /// Smallest and largest value allowed for a tuned parameter; null for no largest value. Default: `[0, null]`.
-    #[serde(default)]
-    pub bounds: PerVariable<(f64, Option<f64>)>,
-    /// Largest stroke (spring deflection), contact force and cavity allowed, and from when on. Default: none.
-    #[serde(default, skip_serializing_if = "Limits::is_default")]
-    pub limits: Limits,
-    /// The coarse grid (the paper's `surf`), over all tuned parameters or some of them. Without it, without `global` and without
-    /// `starts` the refinement starts at the damper of `scene`.
-    #[serde(default)]
-    pub surf: Option<PerVariable<GridAxis>>,
-    /// A global search beside the grid. Default: none; `{}` takes all its defaults.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub global: Option<GlobalSearch>,
-    /// Designs that start a refinement each, beside those that `surf` and `global` find. What one leaves out is that of `scene`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub starts: Vec<PerVariable<f64>>,
-    /// The refinement (the paper's `fminsearch`).
-    #[serde(default)]
-    pub refine: Refine,
-}
-
-/// Something for each parameter that may be tuned.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct PerVariable<T> {
-    /// k2, stiffness of the damper's spring, N/m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub k2: Option<T>,
-    /// c2, damping between damper and primary structure, N·s/m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub c2: Option<T>,
-    /// D, distance between the damper at rest and the primary structure, m.
-    #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
-    pub d: Option<T>,
-    /// C, clearance between the damper at rest and the obstacle, m.
-    #[serde(rename = "C", skip_serializing_if = "Option::is_none")]
-    pub c: Option<T>,
-}
-
-/// Evenly spaced values of a parameter, both ends included.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct GridAxis {
-    /// First value.
-    pub from: f64,
-    /// Last value.
-    pub to: f64,
-    /// Number of values.
-    #[schemars(range(min = 1))]
-    pub points: usize,
-    /// Equal differences or equal ratios.
-    #[serde(default = "linear")]
-    pub scale: Scale,
-}
-
-/// The refinement: MATLAB's `fminsearch` from the best points of the grid and the best basins, with MATLAB's names and defaults.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Refine {
-    /// How many of the grid's best points, and how many of the best basins, start a refinement each.
-    #[schemars(range(min = 1))]
-    pub starts: usize,
-    /// Grid steps between any two starts, along at least one axis.
-    pub apart: usize,
-    /// A run stops once its simplex is at most this wide and TolFun holds too.
-    #[serde(rename = "TolX")]
-    #[schemars(range(min = 0.0))]
-    pub tol_x: f64,
-    /// A run stops once E1max differs by at most this over its simplex, J, and TolX holds too.
-    #[serde(rename = "TolFun")]
-    #[schemars(range(min = 0.0))]
-    pub tol_fun: f64,
-    /// What TolX measures: false, the parameters in their units, as in MATLAB; true, the parameters divided by their starts.
-    pub scaled: bool,
-    /// Most iterations of a run. Default: 200 for each tuned parameter.
-    #[serde(rename = "MaxIter")]
-    pub max_iter: Option<u64>,
-    /// Most evaluations of a run. Default: 200 for each tuned parameter.
-    #[serde(rename = "MaxFunEvals")]
-    pub max_fun_evals: Option<u64>,
-}
-
-fn linear() -> Scale {
-    Scale::Linear
-}
-
-impl Span {
-    /// The window as solvers take it.
-    pub fn window(self) -> Window {
-        Window { from: self.t0.get(), to: self.end.get() }
-    }
-}
-
-impl Solver {
-    /// The settings as solvers take them.
-    pub fn settings(self) -> Settings {
-        let Self { method, contacts, rtol, atol, max_steps } = self;
-        Settings { method, contacts, rtol, atol, max_steps, ..Settings::default() }
-    }
-}
-
-impl Default for Solver {
-    fn default() -> Self {
-        let Settings { method, contacts, rtol, atol, max_steps, .. } = Settings::default();
-        Self { method, contacts, rtol, atol, max_steps }
-    }
-}
-
-impl Default for Refine {
-    fn default() -> Self {
-        let Options { tol_x, tol_fun, max_iter, max_fun_evals, .. } = Options::default();
-        Self { starts: 1, apart: 3, tol_x, tol_fun, scaled: false, max_iter, max_fun_evals }
-    }
-}
-
-impl<T> Default for PerVariable<T> {
-    fn default() -> Self {
-        Self { k2: None, c2: None, d: None, c: None }
-    }
-}
-
-impl<T: Copy> PerVariable<T> {
-    /// What is given for `variable`.
-    pub fn get(&self, variable: Variable) -> Option<T> {
-        match variable {
-            Variable::K2 => self.k2,
-            Variable::C2 => self.c2,
-            Variable::D => self.d,
-            Variable::C => self.c,
-        }
-    }
-
-    /// The place for `variable`.
-    pub fn get_mut(&mut self, variable: Variable) -> &mut Option<T> {
-        match variable {
-            Variable::K2 => &mut self.k2,
-            Variable::C2 => &mut self.c2,
-            Variable::D => &mut self.d,
-            Variable::C => &mut self.c,
-        }
-    }
-
-    /// The variables that something is given for, in the order of the paper's tables.
-    pub fn variables(&self) -> Vec<Variable> {
-        Variable::ALL.into_iter().filter(|&variable| self.get(variable).is_some()).collect()
-    }
-}

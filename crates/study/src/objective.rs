@@ -1,6 +1,7 @@
 //! The rules of an objective and of limits that their types cannot hold, and what a study makes small.
 
-use super::{Rule, Study};
+use super::format::Study;
+use super::rule::Rule;
 use retune_model::Scene;
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,

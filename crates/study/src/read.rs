@@ -1,7 +1,8 @@
 //! From a file to a checked study, or to one message that says what to change.
 
 use super::explain::explain;
-use super::{Rule, Study};
+use super::format::Study;
+use super::rule::Rule;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -126,6 +127,12 @@ pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> 
         Some(field) => Err(StudyError::List { file: file.to_owned(), field }),
         None => Ok(value),
     }
+}
+
+/// Whether a file is JSON with this field at its top.
+pub(super) fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
+    let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
+    Ok(json.is_ok_and(|json| json.get(field).is_some()))
 }
 
 /// The first field that was given as a list of values where they should be named. (Serde takes both.)

@@ -1,7 +1,10 @@
 //! From what a study says to what is searched; the rules that hold between its fields.
 
+use super::format::{GridAxis, Optimize, Study};
+use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
-use super::{GlobalSearch, GridAxis, Optimize, PerVariable, Rule, Study};
+use super::per_variable::PerVariable;
+use super::rule::Rule;
 use retune_model::Damper;
 use retune_optim::{Axis, Bounds, Global, Grid, Options, Scaling, Space, Variable};
 

@@ -1,6 +1,7 @@
 //! `--set NAME=VALUE`: one number of a study, changed on the command line.
 
-use super::{Rule, Study};
+use super::format::Study;
+use super::rule::Rule;
 use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene};
 use std::str::FromStr;
 use thiserror::Error;

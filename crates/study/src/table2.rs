@@ -1,7 +1,8 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
-use super::read::{parse, read, read_text};
-use super::{Rule, Study, StudyError};
+use super::format::Study;
+use super::read::{StudyError, has_field, parse, read, read_text};
+use super::rule::Rule;
 use retune_model::{Design, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -122,10 +123,4 @@ pub fn is_table2(path: &Path) -> Result<bool, StudyError> {
 /// The file cannot be read.
 pub fn is_paper(path: &Path) -> Result<bool, StudyError> {
     has_field(path, "table2")
-}
-
-/// Whether a file is JSON with this field at its top.
-pub(super) fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
-    let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
-    Ok(json.is_ok_and(|json| json.get(field).is_some()))
 }

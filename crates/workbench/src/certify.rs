@@ -59,15 +59,15 @@ fn is_same(one: &Path, other: &Path) -> bool {
 /// # Errors
 /// There is no damper, or the design has no value.
 pub fn certify(study: &Study) -> Result<Certificate, Error> {
-    if study.scene.damper.is_none() {
+    let Some(damper) = &study.scene.damper else {
         let rule = Rule::NotAllowed {
             field: "scene.damper".to_owned(),
             value: "none".to_owned(),
             allowed: "a damper, for that is what is certified",
         };
         return Err(Error::Rule { name: study.name().to_owned(), rule });
-    }
-    measure::measure(study)
+    };
+    measure::measure(study, damper)
 }
 
 /// Refuses the results of a search in `out` whose design breaks the limits of its study.

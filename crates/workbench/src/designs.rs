@@ -54,9 +54,9 @@ impl Table {
     }
 
     /// Appends a row.
-    pub fn push(&mut self, label: &str, damper: &str, Found { design, e1_max }: Found) {
-        self.csv.push(format!("{label},{},{},{e1_max}", quoted(damper), joined(&design, ",")));
-        self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, design), short(e1_max)));
+    pub fn push(&mut self, label: &str, damper: &str, Found { damper: found, e1_max }: Found) {
+        self.csv.push(format!("{label},{},{},{e1_max}", quoted(damper), joined(&found.values(), ",")));
+        self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, &found), short(e1_max)));
     }
 
     /// Takes the results of a search of a study, to be finished with the table.

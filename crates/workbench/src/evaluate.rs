@@ -2,7 +2,7 @@
 
 mod input;
 
-use crate::tune::objective;
+use crate::tune::objective::objective;
 use crate::{Error, Request};
 use input::Line;
 use rayon::prelude::*;

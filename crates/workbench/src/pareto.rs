@@ -14,10 +14,11 @@ use crate::certify::{Certificate, certify};
 use crate::designs::quoted;
 use crate::request::{open, where_results_are};
 use crate::resolved::{self, Resolved};
-use crate::tune::{Found, optimize};
+use crate::tune::optimize;
 use crate::{Error, Observer, Request};
-use design::{Design, SAME, by_excess, look};
-use retune_optim::{Limit, Variable};
+use design::{Candidate, SAME, by_excess, look};
+use retune_model::{Design, Variable};
+use retune_optim::Limit;
 use retune_store::{Directory, Extent, Identity, Order, manifest};
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
 use serde_json::json;
@@ -32,16 +33,16 @@ struct Row<'a> {
     sweep: Sweep,
     bound: f64,
     damper: usize,
-    design: Option<&'a Design>,
+    design: Option<&'a Candidate>,
 }
 
 /// All that was found.
 struct Fronts {
     plan: FrontsPlan,
     /// What the searches found, in their order.
-    designs: Vec<Design>,
+    designs: Vec<Candidate>,
     /// The dampers in the scenes of the studies, where they can be run.
-    given: Vec<Design>,
+    given: Vec<Candidate>,
 }
 
 /// A design that is certified: below the best of the first damper under the same bound.
@@ -115,7 +116,7 @@ impl Fronts {
         for damper in 0..fronts.plan.dampers.len() {
             let (name, study) = fronts.plan.dampers[damper].clone();
             if let Some(place) = study.scene.damper {
-                let at = Variable::ALL.map(|variable| variable.get(&place));
+                let at = Design::of(&place);
                 fronts.given.extend(fronts.look(damper, at, GIVEN));
             }
             for sweep in Sweep::ALL {
@@ -130,7 +131,7 @@ impl Fronts {
                     let (optimum, results) = optimize(&study, &place, order, watch)?;
                     parts.push(results);
                     watch.log(&optimum.report())?;
-                    let Found { design: [_, at @ ..], .. } = optimum.found();
+                    let at = optimum.found().damper.design;
                     fronts.designs.extend(fronts.look(damper, at, optimum.verdict()));
                 }
             }
@@ -145,9 +146,9 @@ impl Fronts {
             own.min_by(|a, b| by_excess(a, b, sweep, bound))
         });
         let Some(optimize) = &self.plan.dampers[damper].1.optimize else { return Vec::new() };
-        let clipped = |design: &Design| {
+        let clipped = |design: &Candidate| {
             let mut start = PerVariable::default();
-            for (variable, value) in Variable::ALL.into_iter().zip(design.at) {
+            for (variable, value) in Variable::ALL.into_iter().zip(design.at.values()) {
                 if optimize.vary.contains(&variable) {
                     let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
                     let bound =
@@ -161,14 +162,14 @@ impl Fronts {
     }
 
     /// A design on the samples of the study of fronts; none where it cannot be run.
-    fn look(&self, damper: usize, at: [f64; 4], verdict: &'static str) -> Option<Design> {
-        let found = look(&self.finer(damper, at)?)?;
+    fn look(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
+        let found = look(&self.finer(damper, &at)?)?;
         let [stroke, force] = [Limit::Stroke, Limit::Force].map(|limit| found.reached.get(limit));
-        Some(Design { damper, at, e1_max: found.energy, stroke, force, verdict })
+        Some(Candidate { damper, at, e1_max: found.energy, stroke, force, verdict })
     }
 
     /// The study of a damper with a design in its scene, its bands on the samples of the study of fronts.
-    fn finer(&self, damper: usize, at: [f64; 4]) -> Option<Study> {
+    fn finer(&self, damper: usize, at: &Design) -> Option<Study> {
         let (_, study) = self.plan.dampers.get(damper)?;
         finer(study, self.plan.said.samples, at)
     }
@@ -176,7 +177,7 @@ impl Fronts {
     /// The best designs under each bound, the dampers in their order under each.
     fn rows(&self, sweep: Sweep) -> Vec<Row<'_>> {
         let row = |bound: f64, damper: usize| {
-            let kept = |design: &&Design| design.damper == damper && design.excess(sweep, bound) == 0.0;
+            let kept = |design: &&Candidate| design.damper == damper && design.excess(sweep, bound) == 0.0;
             let all = self.designs.iter().chain(&self.given);
             let design = all.filter(kept).min_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
             Row { sweep, bound, damper, design }
@@ -187,9 +188,9 @@ impl Fronts {
     }
 
     /// The designs that no other beats in all of E1max, stroke, force and k2.
-    fn front(&self) -> Vec<&Design> {
-        let beaten = |design: &Design| self.designs.iter().any(|other| other.beats(design));
-        let mut front: Vec<&Design> = self.designs.iter().filter(|design| !beaten(design)).collect();
+    fn front(&self) -> Vec<&Candidate> {
+        let beaten = |design: &Candidate| self.designs.iter().any(|other| other.beats(design));
+        let mut front: Vec<&Candidate> = self.designs.iter().filter(|design| !beaten(design)).collect();
         front.sort_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
         front.dedup();
         front
@@ -225,7 +226,7 @@ impl Fronts {
         gains.truncate(self.plan.said.certificates);
         let mut certified = Vec::new();
         for (_, row, rival) in gains {
-            let Some(study) = row.design.and_then(|design| self.finer(row.damper, design.at)) else {
+            let Some(study) = row.design.and_then(|design| self.finer(row.damper, &design.at)) else {
                 continue;
             };
             let file = format!("certificate-{}-{}.json", row.sweep.name(), row.bound);
@@ -245,7 +246,7 @@ impl Fronts {
     fn csv(&self, sweep: Sweep) -> String {
         let mut text = format!("{}_most,damper,E1max,k2,c2,D,C,stroke,force,verdict\n", sweep.name());
         for Row { bound, damper, design, .. } in self.rows(sweep) {
-            let fields = design.map_or(",,,,,,,none keeps it".to_owned(), Design::fields);
+            let fields = design.map_or(",,,,,,,none keeps it".to_owned(), Candidate::fields);
             text += &format!("{bound},{},{fields}\n", quoted(self.name(damper)));
         }
         text

@@ -9,9 +9,9 @@ use crate::designs::{Table, quoted};
 use crate::tune::{Found, optimize};
 use crate::{Error, Observer, Request};
 use rayon::prelude::*;
-use retune_model::{Design, NonNegative, Scene};
+use retune_model::{NonNegative, Scene};
 use retune_store::Order;
-use retune_study::{self as study, PaperStudy, Setting, Study, short};
+use retune_study::{self as study, PaperStudy, PerVariable, Setting, Study, short};
 use serde_json::json;
 
 /// Stiffnesses between the smallest and the largest at which the retention is drawn, and those that were tuned for.
@@ -103,14 +103,8 @@ fn tune(
 /// The study at another stiffness, with one more start.
 fn warm(study: &Study, k1: f64, from: Option<Found>) -> Result<Study, Error> {
     let mut study = study.with(&[Setting::new("k1", k1)])?;
-    if let (Some(optimize), Some(Found { design: [_, k2, c2, d, c], .. })) = (&mut study.optimize, from) {
-        let mut start = study::PerVariable { k2: Some(k2), c2: Some(c2), d: Some(d), c: Some(c) };
-        for variable in start.variables() {
-            if !optimize.vary.contains(&variable) {
-                *start.get_mut(variable) = None;
-            }
-        }
-        optimize.starts.push(start);
+    if let (Some(optimize), Some(Found { damper, .. })) = (&mut study.optimize, from) {
+        optimize.starts.push(PerVariable::of_design(&damper.design, &optimize.vary));
     }
     Ok(study)
 }
@@ -154,10 +148,8 @@ pub fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
 impl Tuned {
     /// The scene with the design for one of the stiffnesses.
     fn scene(&self, k1: f64) -> Option<Scene> {
-        let (_, Found { design: [_, k2, c2, d, c], .. }) =
-            self.designs.iter().find(|(other, _)| *other == k1)?;
-        let at = [*k2, *c2, *d, *c];
-        self.study.scene_at(&Design::new(|variable| at[variable as usize]).ok()?)
+        let (_, found) = self.designs.iter().find(|(other, _)| *other == k1)?;
+        self.study.scene_at(&found.damper.design)
     }
 
     /// E1max of the design for a stiffness at it, J, if it is one of those tuned for.

@@ -1,8 +1,7 @@
 //! What a run gave: one type, from which JSON and text are made.
 
-use retune_model::{Damper, Scene, energy_ratios};
+use retune_model::{Damper, Design, Positive, Scene, energy_ratios};
 use retune_optim::Objective;
-use retune_optim::Variable;
 use retune_solver::{Response, SceneKind};
 use retune_study::counted;
 use retune_study::{Solver, Span, Study, over};
@@ -39,28 +38,27 @@ pub struct Summary {
     parameters: Scene,
 }
 
-/// A damper as in the paper's Table 2, SI units.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Design {
+/// A damper as in the paper's Table 2: m2 (kg) and its design.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TunedDamper {
     /// m2, mass, kg.
-    pub m2: f64,
-    /// k2, stiffness of its spring, N/m.
-    pub k2: f64,
-    /// c2, damping between it and the structure, N·s/m.
-    pub c2: f64,
-    /// D, distance to the structure at rest, m.
-    #[serde(rename = "D")]
-    pub d: f64,
-    /// C, clearance to the obstacle at rest, m.
-    #[serde(rename = "C")]
-    pub c: f64,
+    #[serde(rename = "m2")]
+    pub mass: Positive,
+    /// k2, c2, D, C.
+    #[serde(flatten)]
+    pub design: Design,
 }
 
-impl Design {
-    /// That of a damper.
-    pub fn new(damper: &Damper) -> Self {
-        let [k2, c2, d, c] = Variable::ALL.map(|variable| variable.get(damper));
-        Self { m2: damper.mass.get(), k2, c2, d, c }
+impl TunedDamper {
+    /// That of a scene.
+    pub const fn of(damper: &Damper) -> Self {
+        Self { mass: damper.mass, design: Design::of(damper) }
+    }
+
+    /// m2, k2, c2, D and C, in SI units.
+    pub fn values(&self) -> [f64; 5] {
+        let [k2, c2, d, c] = self.design.values();
+        [self.mass.get(), k2, c2, d, c]
     }
 }
 

@@ -4,6 +4,7 @@ pub mod band;
 mod global;
 pub mod log;
 pub mod merge;
+pub mod objective;
 mod optimum;
 pub mod pictures;
 mod refine;
@@ -19,8 +20,7 @@ use crate::summary::Summary;
 use crate::{Error, Observer, Request};
 use global::Basins;
 use optimum::Searched;
-use retune_optim::{PeakEnergy, Variable};
-use retune_store::{Begin, Directory, Extent, Journal, Order, manifest};
+use retune_store::{Begin, Directory, Extent, Order, manifest};
 use retune_study::{Search, Study, are};
 use shard::Shard;
 use std::path::Path;
@@ -161,27 +161,6 @@ fn tuned(
     }
     manifest::write(identity_of(study)?, [study.solver], results)?;
     Ok(optimum)
-}
-
-/// An objective as searches call it: what the journal knows of it is not computed again; then `on_known` is called.
-fn kept<'a>(
-    objective: &'a PeakEnergy,
-    journal: &'a Journal,
-    stage: &'static str,
-    on_known: impl Fn() + Sync + 'a,
-) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
-    move |design, cutoff| {
-        let known = |value| {
-            on_known();
-            objective.recall(value);
-        };
-        journal.value(stage, design, cutoff, || objective.value(design, cutoff), known)
-    }
-}
-
-/// The objective of a study over some parameters of its damper.
-pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), study.solver.settings())
 }
 
 /// Whether `optimize` writes files of this name.

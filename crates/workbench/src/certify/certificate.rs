@@ -8,8 +8,9 @@ pub use limits::{Kept, Near};
 pub use verdict::Verdict;
 
 use crate::Error;
-use crate::summary::{Design, MadeBy};
+use crate::summary::{MadeBy, TunedDamper};
 use retune_atlas::{Kind, Regime};
+use retune_model::Damper;
 use retune_optim::Evaluation;
 use retune_solver::Method;
 use retune_study::Study;
@@ -25,7 +26,7 @@ const WITHIN: [f64; 2] = [0.05, 0.95];
 pub struct Certificate {
     #[serde(flatten)]
     made_by: MadeBy,
-    design: Design,
+    design: TunedDamper,
     /// The objective's value, J.
     #[serde(rename = "E1max")]
     e1_max: f64,
@@ -201,14 +202,14 @@ impl Neighbourhood {
 }
 
 impl Certificate {
-    pub(super) fn new(study: &Study, own: &Evaluation, measured: Measured) -> Self {
+    pub(super) fn new(study: &Study, damper: &Damper, own: &Evaluation, measured: Measured) -> Self {
         let Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits } = measured;
         let off = |rung: &Rung| (rung.e1_max - worst_run.e1_max).abs();
         let missed = finer.map_or(0.0, |finer| (finer - own.energy).abs());
         let error_bar = ladder.iter().map(off).fold(missed, f64::max);
         let mut certificate = Self {
             made_by: MadeBy::new(study),
-            design: study.scene.damper.as_ref().map(Design::new).unwrap_or_default(),
+            design: TunedDamper::of(damper),
             e1_max: own.energy,
             error_bar,
             predictable: verdict::is_predictable(error_bar, worst_run.e1_max),

@@ -6,7 +6,7 @@ use super::certificate::{
 use crate::Error;
 use rayon::prelude::*;
 use retune_atlas::{Stretch, classify, follow};
-use retune_model::Scene;
+use retune_model::{Damper, Scene};
 use retune_optim::{Ensemble, Goal, PerLimit, Place, Response, Statistic};
 use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
 use retune_study::{Setting, Study};
@@ -32,7 +32,7 @@ const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 ///
 /// # Errors
 /// The design itself has no value, or its worst run cannot be followed.
-pub(super) fn measure(study: &Study) -> Result<Certificate, Error> {
+pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
     let own = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
     let mut near = Vec::new();
@@ -55,7 +55,7 @@ pub(super) fn measure(study: &Study) -> Result<Certificate, Error> {
     let worst_run =
         WorstRun { e1_max, omega: scene.forcing.frequency.get(), k1: scene.primary.stiffness.get(), phase };
     let measured = Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits };
-    Ok(Certificate::new(study, &own, measured))
+    Ok(Certificate::new(study, damper, &own, measured))
 }
 
 /// The goal with more samples, if any of its bands of frequencies is sampled.

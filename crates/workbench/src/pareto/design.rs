@@ -1,8 +1,8 @@
 //! A design of a front: what it reaches on the samples of the study of fronts, and how it compares.
 
-use retune_model::{Design as At, Positive};
+use retune_model::{Design, Positive};
 use retune_optim::{Evaluation, Limits};
-use retune_study::{Study, Sweep};
+use retune_study::{Study, Sweep, joined};
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -10,11 +10,11 @@ pub const SAME: f64 = 0.01;
 
 /// A design, looked at on the samples of the study of fronts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Design {
+pub struct Candidate {
     /// The number of its damper.
     pub damper: usize,
-    /// k2 (N/m), c2 (N·s/m), D (m), C (m).
-    pub at: [f64; 4],
+    /// Its design.
+    pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
     /// The largest stroke (spring deflection |x2 - x1 - D|), m, and contact force, N, in any run.
@@ -24,10 +24,10 @@ pub struct Design {
     pub verdict: &'static str,
 }
 
-impl Design {
+impl Candidate {
     /// By how much it is beyond a bound, as a share of it.
     pub fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
-        let reached = if sweep == Sweep::K2 { self.at[0] } else { self.stroke };
+        let reached = if sweep == Sweep::K2 { self.at.k2.get() } else { self.stroke };
         (reached / bound - 1.0).max(0.0)
     }
 
@@ -38,27 +38,27 @@ impl Design {
 
     /// Whether it is as good in everything and better in something.
     pub fn beats(&self, other: &Self) -> bool {
-        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at[0]];
+        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.k2.get()];
         let pairs = || all(self).into_iter().zip(all(other));
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
     }
 
     /// Its fields in a table.
     pub fn fields(&self) -> String {
-        let Self { at: [k2, c2, d, c], e1_max, stroke, force, verdict, .. } = self;
-        format!("{e1_max},{k2},{c2},{d},{c},{stroke},{force},{verdict}")
+        let Self { at, e1_max, stroke, force, verdict, .. } = self;
+        format!("{e1_max},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
     }
 }
 
 /// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
-pub fn energy(study: &Study, samples: usize, at: [f64; 4]) -> Option<f64> {
+pub fn energy(study: &Study, samples: usize, at: &Design) -> Option<f64> {
     Some(look(&finer(study, samples, at)?)?.energy)
 }
 
 /// A study with a design in its scene, its band on so many samples; none where there is no such scene.
-pub fn finer(study: &Study, samples: usize, at: [f64; 4]) -> Option<Study> {
+pub fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
     let mut study = study.clone();
-    study.scene = study.scene_at(&At::new(|variable| at[variable as usize]).ok()?)?;
+    study.scene = study.scene_at(at)?;
     if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
         band.samples = samples;
     }
@@ -75,7 +75,7 @@ pub fn look(study: &Study) -> Option<Evaluation> {
 }
 
 /// The design that keeps a bound first, then that which is beyond it by less.
-pub fn by_excess(a: &Design, b: &Design, sweep: Sweep, bound: f64) -> Ordering {
+pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Ordering {
     let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
     own.total_cmp(&other).then(a.e1_max.total_cmp(&b.e1_max))
 }

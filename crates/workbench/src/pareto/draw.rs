@@ -1,6 +1,6 @@
 //! The figures of `fronts`.
 
-use super::{Design, Fronts, Row};
+use super::{Candidate, Fronts, Row};
 use retune_figures::sheet::{BLUE, Chart, GREY, Key, Layer, ORANGE, PURPLE, VERMILION, sheet};
 use retune_study::Sweep;
 
@@ -22,7 +22,7 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
         layers.push(Layer::Line { points: line(damper), colour, width: 4.0, dash: "" });
         layers.push(Layer::Dots { points: line(damper), colour, size: size(damper) });
     }
-    let reached = |design: &Design| if sweep == Sweep::K2 { design.at[0] } else { design.stroke };
+    let reached = |design: &Candidate| if sweep == Sweep::K2 { design.at.k2.get() } else { design.stroke };
     layers.extend(given(fronts, reached));
     let right = 1.03 * rows.last().map_or(1.0, |row| row.bound);
     let energies = rows.iter().filter_map(|row| row.design).chain(&fronts.given).map(|design| design.e1_max);
@@ -47,8 +47,8 @@ pub(super) fn front(fronts: &Fronts) -> String {
     let all = || fronts.designs.iter().chain(&fronts.given);
     let top = 1.06 * all().map(|design| design.e1_max).fold(0.0, f64::max);
     let chart = |which: usize| {
-        let value = |design: &Design| [design.stroke, design.force, design.at[0]][which];
-        let point = |design: &Design| (value(design), design.e1_max);
+        let value = |design: &Candidate| [design.stroke, design.force, design.at.k2.get()][which];
+        let point = |design: &Candidate| (value(design), design.e1_max);
         let beaten = fronts.designs.iter().filter(|design| !front.contains(design));
         let mut layers = vec![Layer::Dots { points: beaten.map(point).collect(), colour: GREY, size: 10.0 }];
         for damper in 0..fronts.plan.dampers.len() {
@@ -73,8 +73,8 @@ pub(super) fn front(fronts: &Fronts) -> String {
 }
 
 /// The dampers in the studies, each as a dot.
-fn given(fronts: &Fronts, value: impl Fn(&Design) -> f64) -> impl Iterator<Item = Layer> {
-    let dot = move |design: &Design| Layer::Dots {
+fn given(fronts: &Fronts, value: impl Fn(&Candidate) -> f64) -> impl Iterator<Item = Layer> {
+    let dot = move |design: &Candidate| Layer::Dots {
         points: vec![(value(design), design.e1_max)],
         colour: COLOURS[design.damper % COLOURS.len()][1],
         size: 20.0,
@@ -96,7 +96,7 @@ fn title(fronts: &Fronts) -> String {
 }
 
 /// What each colour means; of the dampers in the studies, those that are `shown`.
-fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Design) -> bool) -> Vec<(Key, String)> {
+fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Candidate) -> bool) -> Vec<(Key, String)> {
     let dampers = fronts.plan.dampers.iter().enumerate();
     let tuned = dampers.map(|(i, (name, _))| {
         let [colour, _] = COLOURS[i % COLOURS.len()];

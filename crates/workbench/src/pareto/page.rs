@@ -1,6 +1,6 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
-use super::{Certified, Design, Fronts, Row, SAME};
+use super::{Candidate, Certified, Fronts, Row, SAME};
 use retune_study::Sweep;
 use retune_study::short;
 
@@ -64,7 +64,7 @@ pub(super) fn answer(fronts: &Fronts) -> String {
         words.push(format!(
             "The {} of the study (k2 = {} N/m) has {} J, with a stroke of {} m.",
             fronts.name(given.damper),
-            short(given.at[0]),
+            short(given.at.k2.get()),
             joule(given.e1_max),
             metre(given.stroke)
         ));
@@ -134,7 +134,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
     let Certified { row: Row { sweep, bound, damper, design }, rival, file, certificate } = one;
     let Some(design) = design else { return String::new() };
-    let [k2, c2, d, c] = design.at.map(|value| round(value, 4));
+    let [k2, c2, d, c] = design.at.values().map(|value| round(value, 4));
     let rival = rival.map_or("none".to_owned(), |rival| format!("{} J", joule(rival)));
     format!(
         "- {}, {} at most {bound} {}: k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m with {} J (best {} under the same bound: {rival}). \
@@ -148,8 +148,8 @@ fn certificate(fronts: &Fronts, one: &Certified) -> String {
     )
 }
 
-fn cells(design: &Design) -> String {
-    let [k2, c2, d, c] = design.at.map(|value| round(value, 4));
+fn cells(design: &Candidate) -> String {
+    let [k2, c2, d, c] = design.at.values().map(|value| round(value, 4));
     format!(
         "{} | {k2} | {c2} | {d} | {c} | {} | {:.0} | {}",
         joule(design.e1_max),

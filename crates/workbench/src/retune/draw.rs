@@ -49,7 +49,7 @@ pub(super) fn retention(tuned: &[Tuned], curves: &Curves) -> String {
 pub(super) fn path(tuned: &[Tuned]) -> String {
     const LABELS: [&str; 4] = ["k₂, N/m", "c₂, N·s/m", "D, m", "C, m"];
     let chart = |which: usize| {
-        let value = |found: &Found| found.design[which + 1];
+        let value = |found: &Found| found.damper.design.values()[which];
         let all = tuned.iter().flat_map(|damper| damper.designs.iter().map(|(_, found)| value(found)));
         let top = all.fold(0.0, f64::max);
         let layers = tuned.iter().enumerate().flat_map(|(i, damper)| {

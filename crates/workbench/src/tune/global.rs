@@ -1,10 +1,11 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
+use super::log::worth;
+use super::objective::{kept, objective};
 use super::refine::{Refined, Run};
-use super::surf::design;
-use super::{kept, objective};
 use crate::Error;
 use crate::Observer;
+use retune_model::Design;
 use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
 use retune_store::{Directory, Journal};
 use retune_study::{PerVariable, Search, Study};
@@ -85,12 +86,6 @@ impl Explored {
     }
 }
 
-/// A value of the objective in words.
-pub(super) fn worth(value: f64) -> String {
-    let energy = energy(value);
-    if energy.is_nan() { "no feasible design".to_owned() } else { format!("{} J", short(energy)) }
-}
-
 /// Basins after the refinements, and how often each was reached.
 #[derive(Clone, Debug, Serialize)]
 pub struct Basins {
@@ -141,7 +136,7 @@ impl Basins {
         let is_refined = |i: usize| i < count || i >= explored.basins.len();
         let notes =
             basins(value, &explored.space, &points, explored.apart).into_iter().map(|basin| BasinNote {
-                design: super::optimum::per_variable(&search.variables, &basin.best.x),
+                design: PerVariable::of(&search.variables, &basin.best.x),
                 e1_max: energy(basin.best.value),
                 searches: basin
                     .reached_by
@@ -168,7 +163,11 @@ impl Basins {
             let x: Vec<f64> = objective.variables().iter().filter_map(|&v| at.get(v)).collect();
             let damper = objective.damper(&x)?;
             let value = if e1_max.is_nan() { String::new() } else { e1_max.to_string() };
-            csv += &format!("{},{searches},{refinements},{},{value}\n", i + 1, joined(&design(&damper), ","));
+            csv += &format!(
+                "{},{searches},{refinements},{},{value}\n",
+                i + 1,
+                joined(&Design::of(&damper).values(), ",")
+            );
         }
         Ok(results.write("basins.csv", &csv)?)
     }

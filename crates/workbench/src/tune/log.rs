@@ -1,7 +1,7 @@
 //! The log of a refinement, in the forms it is written in.
 
-use retune_optim::Row;
-use retune_study::joined;
+use retune_optim::{Row, energy};
+use retune_study::{joined, short};
 
 /// Columns of `fminsearch.csv`.
 pub const CSV_HEADER: &str = "iteration,func_count,procedure,k2,c2,D,C,E1max";
@@ -13,22 +13,28 @@ pub const TXT_HEADER: &str = "k2 opt N/m      c2 opt N·s/m    D opt m         C
 pub const SCREEN_HEADER: &str =
     " iter evals  k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         E1max J         procedure";
 
-/// A row of `fminsearch.csv`; numbers to the last bit.
-pub fn csv(row: &Row, design: &[f64; 4]) -> String {
+/// A row of `fminsearch.csv`, with k2, c2, D and C (SI units); numbers to the last bit.
+pub fn csv(row: &Row, values: &[f64; 4]) -> String {
     let Row { iteration, func_count, procedure, value, .. } = row;
-    format!("{iteration},{func_count},{procedure},{},{value}", joined(design, ","))
+    format!("{iteration},{func_count},{procedure},{},{value}", joined(values, ","))
 }
 
 /// A row of `fminsearch.txt`, with the look of the paper's Table 1.
-pub fn table1(row: &Row, design: &[f64; 4]) -> String {
-    let [k2, c2, d, c] = design.map(scientific);
+pub fn table1(row: &Row, values: &[f64; 4]) -> String {
+    let [k2, c2, d, c] = values.map(scientific);
     format!("{k2}   {c2}   {d}   {c}   {}", scientific(row.value))
 }
 
 /// A row of the log on screen.
-pub fn screen(row: &Row, design: &[f64; 4]) -> String {
+pub fn screen(row: &Row, values: &[f64; 4]) -> String {
     let Row { iteration, func_count, procedure, .. } = row;
-    format!("{iteration:>5} {func_count:>5}  {}   {procedure}", table1(row, design)).trim_end().to_owned()
+    format!("{iteration:>5} {func_count:>5}  {}   {procedure}", table1(row, values)).trim_end().to_owned()
+}
+
+/// A value of the objective in words.
+pub fn worth(value: f64) -> String {
+    let energy = energy(value);
+    if energy.is_nan() { "no feasible design".to_owned() } else { format!("{} J", short(energy)) }
 }
 
 /// A number as in the paper's Table 1: `2.203750E+002`.

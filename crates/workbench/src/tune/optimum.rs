@@ -7,9 +7,9 @@ use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::Error;
 use crate::certify::Short;
-use crate::summary::{Design, MadeBy, Summary};
+use crate::summary::{MadeBy, Summary, TunedDamper};
 use notes::{Goal, LimitNote, Met};
-use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Unusable, Variable, energy};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Unusable, energy};
 use retune_study::{PerVariable, Search, Study};
 use retune_study::{counted, short};
 use serde::Serialize;
@@ -19,7 +19,7 @@ use serde::Serialize;
 pub struct Optimum {
     damper_type: &'static str,
     #[serde(flatten)]
-    design: Design,
+    damper: TunedDamper,
     #[serde(rename = "E1max")]
     e1_max: f64,
     /// What E1max is, where it is not that of a window at the scene's omega.
@@ -51,11 +51,11 @@ pub(super) struct Searched<'a> {
     pub basins: Option<Basins>,
 }
 
-/// A design as in the paper's Table 2: m2, k2, c2, D, C in SI units; and its E1max, J.
+/// A damper that was found, and its E1max.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
-    /// m2, k2, c2, D, C.
-    pub design: [f64; 5],
+    /// The damper.
+    pub damper: TunedDamper,
     /// E1max, J.
     pub e1_max: f64,
 }
@@ -116,18 +116,18 @@ impl Optimum {
     ) -> Self {
         let best = refined.best();
         let damper = refined.objective.damper(&best.minimum.x).unwrap_or(search.damper);
-        let over = |values: &[f64]| per_variable(&search.variables, values);
+        let over = |values: &[f64]| PerVariable::of(&search.variables, values);
         let refine = study.optimize.as_ref().map(|optimize| optimize.refine).unwrap_or_default();
         Self {
             damper_type: summary.damper_type(),
-            design: Design::new(&damper),
+            damper: TunedDamper::of(&damper),
             e1_max: evaluation.energy,
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),
             limits: LimitNote::new(study, &evaluation, surf, explored, refined),
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
-                best: per_variable(&surf.variables, &surf.point(surf.best)),
+                best: PerVariable::of(&surf.variables, &surf.point(surf.best)),
                 e1_max: energy(surf.values[surf.best]),
             }),
             global: basins,
@@ -152,8 +152,7 @@ impl Optimum {
 
     /// The best design.
     pub fn found(&self) -> Found {
-        let Design { m2, k2, c2, d, c } = self.design;
-        Found { design: [m2, k2, c2, d, c], e1_max: self.e1_max }
+        Found { damper: self.damper, e1_max: self.e1_max }
     }
 
     /// The verdict of its certificate.
@@ -181,7 +180,7 @@ impl Optimum {
         let mut lines = vec![
             String::new(),
             table2_header(),
-            table2_row(self.damper_type, self.found().design),
+            table2_row(self.damper_type, &self.damper),
             format!("E1max = {} J; {}", short(self.e1_max), self.made_by),
             format!(
                 "fminsearch, start {winner} of {}: {} after {}, {}; TolX {tol_x:e} is {tol_x_mode}",
@@ -222,8 +221,8 @@ pub fn table2_header() -> String {
 }
 
 /// A row of the paper's Table 2.
-pub fn table2_row(name: &str, row: [f64; 5]) -> String {
-    let [m2, k2, c2, d, c] = row.map(short);
+pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
+    let [m2, k2, c2, d, c] = damper.values().map(short);
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 
@@ -231,7 +230,6 @@ pub fn table2_row(name: &str, row: [f64; 5]) -> String {
 fn start(search: &Search, refined: &Refined) -> Found {
     let first = refined.best().rows.first();
     let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
-    let Design { m2, k2, c2, d, c } = Design::new(&damper);
     let again = |x: &[f64]| {
         let scene = refined.objective.scene(x)?;
         Ok::<f64, Unusable>(refined.objective.evaluate(&scene, f64::INFINITY)?.energy)
@@ -240,7 +238,7 @@ fn start(search: &Search, refined: &Refined) -> Found {
         none if none.is_nan() => again(&row.best).unwrap_or(f64::NAN),
         known => known,
     });
-    Found { design: [m2, k2, c2, d, c], e1_max }
+    Found { damper: TunedDamper::of(&damper), e1_max }
 }
 
 impl RunNote {
@@ -270,15 +268,6 @@ impl FailureNote {
         let first = stages.iter().flatten().find_map(|failures| failures.example.as_deref());
         Self { count, example: first.map(|(design, reason)| format!("{design:?}: {reason}")) }
     }
-}
-
-/// The values by the names of their parameters.
-pub(super) fn per_variable(variables: &[Variable], values: &[f64]) -> PerVariable<f64> {
-    let mut all = PerVariable::default();
-    for (&variable, &value) in variables.iter().zip(values) {
-        *all.get_mut(variable) = Some(value);
-    }
-    all
 }
 
 fn tol_x_mode(scaling: Scaling) -> &'static str {

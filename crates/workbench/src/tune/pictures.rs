@@ -1,6 +1,6 @@
 //! The figures of a search: Figure 2's surfaces, and the way of the refinement.
 
-use super::global::worth;
+use super::log::worth;
 use super::refine::Refined;
 use super::surf::Surf;
 use crate::Error;

@@ -1,11 +1,11 @@
 //! The fine stage: `fminsearch` from each start, logged as it happens.
 
 use super::log::{self, CSV_HEADER, TXT_HEADER};
-use super::surf::design;
-use super::{kept, objective};
+use super::objective::{kept, objective};
 use crate::Error;
 use crate::Observer;
 use crate::summary::MadeBy;
+use retune_model::Design;
 use retune_optim::{Minimum, PeakEnergy, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
 use retune_study::{Search, Study};
@@ -97,7 +97,7 @@ fn run(
             told = objective
                 .damper(&row.best)
                 .map_err(Error::from)
-                .and_then(|damper| tell(row, &design(&damper)));
+                .and_then(|damper| tell(row, &Design::of(&damper).values()));
             if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
     told?;
@@ -112,7 +112,7 @@ fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result
     csv.push(&format!("{CSV_HEADER}\n"))?;
     txt.push(&format!("{TXT_HEADER}\n"))?;
     for row in &refined.best().rows {
-        let design = design(&refined.objective.damper(&row.best)?);
+        let design = Design::of(&refined.objective.damper(&row.best)?).values();
         csv.push(&format!("{}\n", log::csv(row, &design)))?;
         txt.push(&format!("{}\n", log::table1(row, &design)))?;
     }

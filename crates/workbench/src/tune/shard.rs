@@ -1,7 +1,7 @@
 //! A share of the grid, for many machines: `optimize --shard 3/64` computes the third of sixty-four shares and writes it as one
 //! part, whose name holds the hash of its content. A part never changes: it is there and whole, or not there.
 
-use super::objective;
+use super::objective::objective;
 use crate::request;
 use crate::resolved::identity_of;
 use crate::{Error, Observer};

@@ -1,9 +1,10 @@
 //! The coarse stage: E1max on a grid.
 
-use super::objective;
+use super::log::worth;
+use super::objective::objective;
 use crate::Error;
 use crate::Observer;
-use retune_model::Damper;
+use retune_model::Design;
 use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
 use retune_store::Directory;
 use retune_study::{Search, Study};
@@ -79,15 +80,10 @@ fn write(objective: &PeakEnergy, grid: &Grid, values: &[f64], results: &Director
     for (i, value) in values.iter().enumerate() {
         grid.point(i, &mut point);
         let damper = objective.damper(&point)?;
-        file.push(&format!("{},{value}\n", joined(&design(&damper), ",")))?;
+        file.push(&format!("{},{value}\n", joined(&Design::of(&damper).values(), ",")))?;
     }
     file.finish()?;
     Ok(())
-}
-
-/// All four parameters of a damper, in the order of the paper's tables.
-pub(super) fn design(damper: &Damper) -> [f64; 4] {
-    Variable::ALL.map(|variable| variable.get(damper))
 }
 
 impl Surf {
@@ -125,7 +121,7 @@ impl Surf {
             .zip(point)
             .map(|(variable, value)| format!("{variable} = {value}"))
             .collect();
-        let least = super::global::worth(self.values[self.best]);
+        let least = worth(self.values[self.best]);
         format!("surf: {seconds:.1} s; least E1max {least} at {}{failed}", at.join(", "))
     }
 }

@@ -5,7 +5,8 @@ use super::{Check, Report, json};
 use crate::Error;
 use crate::certify::{self, certify};
 use crate::summary::Summary;
-use crate::tune::{band, objective};
+use crate::tune::band;
+use crate::tune::objective::objective;
 use retune_model::{Design, NonNegative, Scene};
 use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
 use retune_study::{self as study, Study};
@@ -34,7 +35,8 @@ pub fn verify(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), 
         let study = if has("optimum.json") {
             certify::read(&place.join("optimum.json"))?.0
         } else if searched {
-            Study { scene: scene_at(&study, &design(&said["design"])).unwrap_or(study.scene), ..study } // what was found stands nowhere else
+            let found = design(&said["design"]).and_then(|found| study.scene_at(&found)); // it stands nowhere else
+            Study { scene: found.unwrap_or(study.scene), ..study }
         } else {
             study
         };
@@ -60,7 +62,7 @@ fn search(place: &Path, study: &Study, most: usize, report: &mut Report<'_>) -> 
         return report.unchecked("there is no optimum.json: the design that was found");
     }
     let optimum = json(place, "optimum.json")?;
-    let Ok(tuned) = objective.scene(&design(&optimum)) else {
+    let Some(tuned) = design(&optimum).and_then(|found| study.scene_at(&found)) else {
         return report.fail("optimum.json", "its design cannot be run");
     };
     if place.join("band.csv").exists() {
@@ -113,14 +115,9 @@ pub fn certificate(study: &Study, said: &Value, name: &str, report: &mut Report<
     }
 }
 
-/// The scene of a study with a design (k2, c2, D, C in SI units); none where there is no such scene.
-pub fn scene_at(study: &Study, design: &[f64; 4]) -> Option<Scene> {
-    study.scene_at(&Design::new(|variable| design[variable as usize]).ok()?)
-}
-
-/// E1max by the objective of a study for a design (k2, c2, D, C in SI units), J; infinite where it has none.
-pub fn energy(study: &Study, design: &[f64; 4]) -> f64 {
-    scene_at(study, design).and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
+/// E1max by the objective of a study for a design, J; infinite where it has none.
+pub fn energy(study: &Study, design: &Design) -> f64 {
+    study.scene_at(design).and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
 /// The check of a row of a search: the number that it made small, or the E1max of a basin, empty where that breaks a limit.
@@ -130,9 +127,10 @@ fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
     if !(basin && text.is_empty()) && row.number("E1max").is_nan() {
         return Check::never();
     }
-    let scene = objective.scene(&row.design());
+    let design = row.design();
     let again = move || {
-        let found = scene.and_then(|scene| objective.evaluate(&scene, f64::INFINITY));
+        let scene = design.and_then(|design| objective.scene(&design.values()).ok());
+        let found = scene.and_then(|scene| objective.evaluate(&scene, f64::INFINITY).ok());
         let value = found.map_or(f64::INFINITY, |found| found.value);
         if basin { retune_optim::energy(value) } else { value }
     };
@@ -162,7 +160,7 @@ fn curves<'a>(study: &'a Study, tuned: Scene, sample: &Sample) -> Vec<Check<'a>>
     checks
 }
 
-/// k2, c2, D and C in a JSON object; NaN where there is no number.
-pub fn design(of: &Value) -> [f64; 4] {
-    Variable::ALL.map(|variable| of[variable.symbol()].as_f64().unwrap_or(f64::NAN))
+/// The design in a JSON object; none where a number is missing or none of a damper.
+pub fn design(of: &Value) -> Option<Design> {
+    Design::new(|variable| of[variable.symbol()].as_f64().unwrap_or(f64::NAN)).ok()
 }

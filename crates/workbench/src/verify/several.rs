@@ -62,7 +62,7 @@ fn names(place: &Path) -> std::io::Result<Vec<String>> {
 /// The study with the design that a certificate of `fronts` is of.
 fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
     let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
-    pareto::finer(study, samples?, search::design(&said["design"]))
+    pareto::finer(study, samples?, &search::design(&said["design"])?)
 }
 
 /// The check of a row with a design; none where the row says that it has none.
@@ -74,13 +74,11 @@ fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> 
     if ["k2", "c2", "D", "C", "E1max"].iter().all(|name| row.text(name).is_empty()) {
         return None; // no design keeps this bound
     }
-    if at.iter().chain([&said]).any(|value| value.is_nan()) {
-        return Some(Check::never());
-    }
+    let Some(at) = at.filter(|_| !said.is_nan()) else { return Some(Check::never()) };
     let k1 = row.number("k1");
     let study = if k1.is_nan() { study.clone() } else { study.with(&[Setting::new("k1", k1)]).ok()? };
     let again = move || match samples {
-        Some(samples) => pareto::energy(&study, samples, at).unwrap_or(f64::INFINITY),
+        Some(samples) => pareto::energy(&study, samples, &at).unwrap_or(f64::INFINITY),
         None => energy(&study, &at),
     };
     Some(Check { said, again: Box::new(again) })
@@ -96,7 +94,7 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
     for (name, study) in studies {
         let home = study.scene.primary.stiffness.get();
         let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == home);
-        let scene = own.and_then(|row| search::scene_at(study, &row.design()));
+        let scene = own.and_then(|row| study.scene_at(&row.design()?));
         if let Some(scene) = scene {
             columns.push((retune::kept(name, home), study, scene));
         }

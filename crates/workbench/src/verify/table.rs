@@ -1,6 +1,7 @@
 //! A table of results as it is looked at again: a sample of its rows, their fields by the names of the columns.
 
 use crate::Error;
+use retune_model::Design;
 use retune_study::counted;
 use std::path::Path;
 
@@ -73,8 +74,8 @@ impl<'a> Row<'a> {
         self.text(name).parse().unwrap_or(f64::NAN)
     }
 
-    /// k2, c2, D and C.
-    pub fn design(self) -> [f64; 4] {
-        ["k2", "c2", "D", "C"].map(|name| self.number(name))
+    /// Its design; none where a field is no number, or none of a damper.
+    pub fn design(self) -> Option<Design> {
+        Design::new(|variable| self.number(variable.symbol())).ok()
     }
 }

@@ -1,7 +1,6 @@
 //! A certificate as text.
 
 use super::{Certificate, FINER, Motion, Neighbourhood, Rung, Sensitivity, Short, WorstRun};
-use crate::summary::Design;
 use retune_study::short;
 
 impl std::fmt::Display for Short {
@@ -15,8 +14,7 @@ impl std::fmt::Display for Short {
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { made_by, design, e1_max, error_bar, worst_run, motion, neighbourhood, .. } = self;
-        let Design { m2, k2, c2, d, c } = design;
-        let [m2, k2, c2, d, c] = [m2, k2, c2, d, c].map(|value| short(*value));
+        let [m2, k2, c2, d, c] = design.values().map(short);
         writeln!(f, "{made_by}")?;
         writeln!(f, "design        m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m")?;
         let predictable = if self.predictable { "predictable" } else { "not predictable" };

@@ -1,0 +1,26 @@
+//! The objective of a study as searches call it.
+
+use retune_optim::{PeakEnergy, Variable};
+use retune_store::Journal;
+use retune_study::{Search, Study};
+
+/// An objective as searches call it: what the journal knows of it is not computed again; then `on_known` is called.
+pub(super) fn kept<'a>(
+    objective: &'a PeakEnergy,
+    journal: &'a Journal,
+    stage: &'static str,
+    on_known: impl Fn() + Sync + 'a,
+) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
+    move |design, cutoff| {
+        let known = |value| {
+            on_known();
+            objective.recall(value);
+        };
+        journal.value(stage, design, cutoff, || objective.value(design, cutoff), known)
+    }
+}
+
+/// The objective of a study over some parameters of its damper.
+pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), study.solver.settings())
+}
