@@ -1,8 +1,8 @@
 //! The state of a run and its iteration.
 
+use super::log::{Procedure, Row, State, Stop};
 use super::options::{Error, Options, Scaling};
 use super::simplex::{self, Vertex};
-use super::{Procedure, Row, State, Stop};
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use argmin::kv;
 use serde::{Deserialize, Serialize};
