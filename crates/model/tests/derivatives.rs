@@ -10,7 +10,7 @@ const T: f64 = 0.37;
 /// Spacing of the differences, small beside a indentation of millimetres.
 const H: f64 = 3e-5;
 
-/// Random states: in flight, pressed into the structure, pressed into the obstacle.
+/// Random states: in flight, in contact with the structure, in contact with the obstacle.
 fn states(system: &Coupled) -> Vec<[f64; 4]> {
     let mut spread = Spread::new(1);
     let mut states = Vec::new();

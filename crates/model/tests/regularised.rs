@@ -7,8 +7,8 @@ use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, slope};
 
 const T: f64 = 1.21;
 
-/// A random state pressed `z` (m) into a wall.
-fn pressed(system: &retune_model::Coupled, side: Side, z: f64, spread: &mut Spread) -> [f64; 4] {
+/// A random state with the indentation `z` (m) of a wall.
+fn in_contact(system: &retune_model::Coupled, side: Side, z: f64, spread: &mut Spread) -> [f64; 4] {
     let (x1, v1, v2) = (0.1 * spread.signed(), 0.6 * spread.signed(), 1.5 * spread.signed());
     [x1, v1, x1 + system.wall(side) + side.sign() * z, v2]
 }
@@ -22,7 +22,7 @@ fn exact_compressing_and_expanding_is_the_identity() {
             let equations = system.regularised_contact(side);
             assert_eq!(equations.side(), side);
             for z in [0.0, 1e-6, 1e-3, 0.02] {
-                let y = pressed(&system, side, z, &mut spread);
+                let y = in_contact(&system, side, z, &mut spread);
                 let regularised = equations.regularise(&y);
                 assert!((regularised[0] - z.sqrt()).abs() < 1e-8, "{} {z}", regularised[0]);
                 assert_eq!(regularised[4], 0.0, "no time has passed");
@@ -31,7 +31,7 @@ fn exact_compressing_and_expanding_is_the_identity() {
                     assert!((back[i] - y[i]).abs() <= 1e-15, "{side:?} {z}: {back:?} {y:?}");
                 }
             }
-            let apart = equations.regularise(&pressed(&system, side, -0.01, &mut spread));
+            let apart = equations.regularise(&in_contact(&system, side, -0.01, &mut spread));
             assert_eq!(apart[0], 0.0, "a damper that is not in contact counts as touching");
         }
     }
@@ -47,7 +47,7 @@ fn exact_regularised_equations_are_equation_1() {
             let mut equations = system.regularised_contact(side);
             equations.set_excitation(0.0, system.excitation(T));
             for z in [1e-4, 1e-3, 5e-3] {
-                let (y, excitation) = (pressed(&system, side, z, &mut spread), system.excitation(T));
+                let (y, excitation) = (in_contact(&system, side, z, &mut spread), system.excitation(T));
                 let regularised = equations.regularise(&y);
                 let q = regularised[0];
                 let rate = equations.derivative(&regularised);

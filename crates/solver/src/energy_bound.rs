@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_a_wall_that_was_never_touched_is_pressed_by_rounding_alone() {
+    fn exact_a_wall_that_was_never_touched_is_indented_by_rounding_alone() {
         assert_eq!(untouched(-0.5, 1.0, 3.0), Ok(-0.5));
         assert_eq!(untouched(1e-16, 1.0, 3.0), Ok(0.0));
         assert_eq!(untouched(1e-12, 1.0, 3.0), Err(SolverError::Missed { t: 3.0, depth: 1e-12 }));

@@ -150,7 +150,7 @@ struct Recorder<'a, S, const N: usize> {
     /// The end of the last piece.
     last: Option<Knot<N>>,
     /// The wall in contact, and the largest indentation of this contact.
-    pressed: Option<(Side, f64)>,
+    contact: Option<(Side, f64)>,
 }
 
 /// Share of the largest indentation below which a contact has ended.
@@ -158,7 +158,7 @@ const LEFT: f64 = 1e-9;
 
 impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
     fn new(system: &'a S, start: f64, rows: Rows, visit: &'a mut dyn FnMut(&Sample)) -> Self {
-        Self { system, start, rows, next: 0.0, visit, last: None, pressed: None }
+        Self { system, start, rows, next: 0.0, visit, last: None, contact: None }
     }
 
     fn show(&mut self, knot: &Knot<N>, moment: Moment) {
@@ -189,10 +189,10 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
         // A damper that rests on a wall from the start is in contact without a touch-down.
         let depth = |side: Side| knots.map(|knot| self.system.depth(&knot, side)[0]);
         let deepest = |side: Side| depth(side).into_iter().fold(0.0, f64::max);
-        let pressed = self
-            .pressed
+        let contact = self
+            .contact
             .or_else(|| Side::BOTH.into_iter().find(|&side| deepest(side) > 1e-12).map(|side| (side, 0.0)));
-        if let Some((side, before)) = pressed {
+        if let Some((side, before)) = contact {
             maxima(&|knot| self.system.depth(knot, side)[1], Moment::ForceMax);
             // Rounding makes no contact.
             moments.retain(|(knot, moment)| {
@@ -201,7 +201,7 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             let deepest = deepest(side).max(before);
             let [depth, rate] = self.system.depth(to, side);
             let left = deepest > 0.0 && rate < 0.0 && depth <= LEFT * deepest;
-            self.pressed = (!left).then_some((side, deepest));
+            self.contact = (!left).then_some((side, deepest));
             if left {
                 moments.push((*to, Moment::LiftOff));
             }
@@ -251,7 +251,7 @@ impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
     }
 
     fn touch_down(&mut self, _t: f64, side: Side) {
-        self.pressed = Some((side, 0.0));
+        self.contact = Some((side, 0.0));
         if let (true, Some(knot)) = (self.rows.events, self.last) {
             self.show(&knot, Moment::TouchDown);
         }

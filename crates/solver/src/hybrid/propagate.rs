@@ -28,8 +28,8 @@ impl Hybrid<'_> {
         loop {
             if let Phase::InContact(side) = phase {
                 let equations = self.contacts[side as usize];
-                let pressed = equations.regularise(&now.y);
-                match self.contact(equations, &now, pressed, to, observer)? {
+                let regularised = equations.regularise(&now.y);
+                match self.contact(equations, &now, regularised, to, observer)? {
                     End::InContact(end) => return stopped(end, phase),
                     End::LiftOff(end) => now = self.knot(end.t, end.y),
                 }
@@ -56,11 +56,11 @@ impl Hybrid<'_> {
                         continue;
                     }
                     let equations = self.contacts[side as usize];
-                    let (begin, pressed) = self.enter_contact(equations, touch, to, observer)?;
+                    let (begin, regularised) = self.enter_contact(equations, touch, to, observer)?;
                     if begin.t >= to {
                         return stopped(begin, Phase::InContact(side));
                     }
-                    match self.contact(equations, &begin, pressed, to, observer)? {
+                    match self.contact(equations, &begin, regularised, to, observer)? {
                         End::InContact(end) => return stopped(end, Phase::InContact(side)),
                         End::LiftOff(end) => now = self.knot(end.t, end.y),
                     }

@@ -25,8 +25,8 @@ impl Phase {
     /// The phase of a state that was set rather than reached: in contact where the damper overlaps a wall.
     pub fn of(system: &Coupled, y: &[f64; 4]) -> Self {
         let overlaps = system.indentation(y);
-        let pressed = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
-        pressed.map_or(Self::Flight, Self::InContact)
+        let contact = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
+        contact.map_or(Self::Flight, Self::InContact)
     }
 }
 

@@ -15,11 +15,11 @@ impl Hybrid<'_> {
         &mut self,
         equations: RegularisedContact,
         from: &Knot<4>,
-        pressed: RegularisedState,
+        regularised: RegularisedState,
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<End, SolverError> {
-        integrate(equations, from, pressed, to, (self.rtol, self.budget), &mut self.work, observer)
+        integrate(equations, from, regularised, to, (self.rtol, self.budget), &mut self.work, observer)
     }
 
     /// Starts a contact at a touch-down. A contact that begins (almost) at rest has no time scale of its own at `q = 0`: the flight
@@ -31,18 +31,18 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<(Knot<4>, RegularisedState), SolverError> {
-        let mut pressed = equations.regularise(&touch.y);
-        pressed[0] = 0.0;
+        let mut regularised = equations.regularise(&touch.y);
+        regularised[0] = 0.0;
         let remaining = to - touch.t;
         if remaining <= 0.0 {
-            return Ok((touch, pressed));
+            return Ok((touch, regularised));
         }
         equations.set_excitation(0.0, touch.excitation);
-        let (speed, pull) = (pressed[1], equations.acceleration(&pressed));
+        let (speed, pull) = (regularised[1], equations.acceleration(&regularised));
         // After `s` seconds at this speed the force has moved the damper by `κ √z s²` of `z = w s`.
         let slow = |s: f64| speed <= pull * s;
         if speed > 0.0 && !slow((1e-28 / (equations.hertz_rate().powi(2) * speed)).powf(0.2)) {
-            return Ok((touch, pressed)); // fast enough to start at q = 0
+            return Ok((touch, regularised)); // fast enough to start at q = 0
         }
         let unfelt = |s: f64, z: f64| z > 0.0 && equations.hertz_rate() * z.sqrt() * s * s <= 1e-14;
         let sign = equations.side().sign();
@@ -58,9 +58,9 @@ impl Hybrid<'_> {
                 step.end().y[2] = step.end().y[0] + self.system.wall(equations.side()) + sign * z;
                 observer.segment(&step);
                 let end = *step.ends()[1];
-                let mut pressed = equations.regularise(&end.y);
-                (pressed[0], pressed[1]) = (z.sqrt(), rate.at(s));
-                return Ok((end, pressed));
+                let mut regularised = equations.regularise(&end.y);
+                (regularised[0], regularised[1]) = (z.sqrt(), rate.at(s));
+                return Ok((end, regularised));
             }
             s *= 0.5;
         }

@@ -76,7 +76,7 @@ fn moment<const N: usize>(flow: &Flow<N>, from: &Knot<N>, motion: &Expansion<N>,
     }
 }
 
-/// Up to [`LANES`] whole steps.
+/// Up to four whole steps.
 pub struct Steps<'a, const N: usize> {
     flow: &'a Flow<N>,
     clock: StepClock,
@@ -113,7 +113,7 @@ impl StepClock {
 }
 
 impl<'a, const N: usize> Steps<'a, N> {
-    /// The next [`LANES`] steps from the moment `from`, the time of `clock`; `energy` bounds the energy norm (√J) of the motion in
+    /// The next four steps from the moment `from`, the time of `clock`; `energy` bounds the energy norm (√J) of the motion in
     /// all of them.
     #[inline(always)]
     pub fn new(flow: &'a Flow<N>, from: Knot<N>, clock: StepClock, energy: f64) -> Self {

@@ -90,27 +90,27 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
 
 /// Implements [`Observer`] for a container by handing everything on to each observer in it.
 macro_rules! for_each_in {
-    ($container:ty, [$($generics:tt)*], $each:ident, $any:ident) => {
-        impl<const N: usize, O: Observer<N>, $($generics)*> Observer<N> for $container {
+    ($container:ty $(, const $count:ident)?) => {
+        impl<const N: usize, O: Observer<N>, $(const $count: usize)?> Observer<N> for $container {
             const WATCHES_MOTION: bool = O::WATCHES_MOTION;
             fn segment(&mut self, segment: &impl Segment<N>) {
-                self.$each().for_each(|observer| observer.segment(segment));
+                self.iter_mut().for_each(|observer| observer.segment(segment));
             }
             fn path(&mut self, path: &impl Path<N>) {
-                self.$each().for_each(|observer| observer.path(path));
+                self.iter_mut().for_each(|observer| observer.path(path));
             }
             fn steps(&mut self, steps: &Steps<'_, N>) {
-                self.$each().for_each(|observer| observer.steps(steps));
+                self.iter_mut().for_each(|observer| observer.steps(steps));
             }
             fn touch_down(&mut self, t: f64, side: Side) {
-                self.$each().for_each(|observer| observer.touch_down(t, side));
+                self.iter_mut().for_each(|observer| observer.touch_down(t, side));
             }
             fn satisfied(&self) -> bool {
-                self.$any().any(|observer| observer.satisfied())
+                self.iter().any(|observer| observer.satisfied())
             }
         }
     };
 }
 
-for_each_in!([O; K], [const K: usize], iter_mut, iter);
-for_each_in!(Option<O>, [], iter_mut, iter);
+for_each_in!([O; K], const K);
+for_each_in!(Option<O>);

@@ -28,7 +28,8 @@ pub trait Quantity<const N: usize> {
 }
 
 impl<const N: usize> Knot<N> {
-    /// A quantity with its first two time derivatives at this moment; `in_flight` as in [`Segment::in_flight`].
+    /// A quantity with its first two time derivatives at this moment; `in_flight` as in
+    /// [`Segment`](crate::observe::Segment).
     #[inline(always)]
     pub fn rates(&self, quantity: &impl Quantity<N>, in_flight: bool) -> [f64; 3] {
         if in_flight {

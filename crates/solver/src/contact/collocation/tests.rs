@@ -47,10 +47,10 @@ fn contact(draw: &mut Draw) -> (Coupled, Side, Knot<4>) {
 
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.regularised_contact(side);
-    let pressed = equations.regularise(&touch.y);
+    let regularised = equations.regularise(&touch.y);
     let budget = Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]);
     let (limits, mut work) = ((1e-13, budget), Work::default());
-    match integrate(equations, touch, pressed, 1e9, limits, &mut work, &mut Unobserved) {
+    match integrate(equations, touch, regularised, 1e9, limits, &mut work, &mut Unobserved) {
         Ok(End::LiftOff(end)) => end,
         _ => panic!("no lift-off"),
     }
@@ -109,14 +109,15 @@ impl Observer<4> for Compare<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.pieces += 1;
         let equations = self.system.regularised_contact(self.side);
-        let pressed = equations.regularise(&self.touch.y);
+        let regularised = equations.regularise(&self.touch.y);
         for seen in
             [*segment.ends()[0], segment.at(0.4 * segment.length()), segment.at(0.999 * segment.length())]
         {
             let mut find = Find { t: seen.t, y: None };
             let mut work = Work::default();
             let limits = (1e-13, Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]));
-            let _ = integrate(equations, &self.touch, pressed, seen.t + 1e-9, limits, &mut work, &mut find);
+            let _ =
+                integrate(equations, &self.touch, regularised, seen.t + 1e-9, limits, &mut work, &mut find);
             let y = find.y.expect("the time is within the contact");
             let speed = (self.touch.y[3] - self.touch.y[1]).abs();
             self.worst = (0..4).map(|i| (y[i] - seen.y[i]).abs() / speed).fold(self.worst, f64::max);
