@@ -1,7 +1,7 @@
 //! The responses at one stiffness of the structure, and the peaks of their curves: what Figures 3 to 5 are made of.
 
 use super::plan::Plan;
-use retune_atlas::{Parameter, Point, fresh};
+use retune_dynamics::{Parameter, Point, fresh};
 use retune_workbench::Error;
 use retune_workbench::Progress;
 

@@ -2,9 +2,9 @@
 
 use super::plan::Plan;
 use rayon::prelude::*;
-use retune_atlas::record::coordinates;
-use retune_atlas::strobe::Periods;
-use retune_atlas::{
+use retune_dynamics::record::coordinates;
+use retune_dynamics::strobe::Periods;
+use retune_dynamics::{
     Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, carried, classify, follow, fresh_orbits,
     resumed,
 };
@@ -47,12 +47,12 @@ impl Motions {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
         let settings = plan.settings();
-        let record = |&value: &f64| -> Result<Record, retune_atlas::Error> {
+        let record = |&value: &f64| -> Result<Record, retune_dynamics::Error> {
             let record = follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?;
             bar.inc(1);
             Ok(record)
         };
-        let records: Vec<Result<Record, retune_atlas::Error>> = omega.par_iter().map(record).collect();
+        let records: Vec<Result<Record, retune_dynamics::Error>> = omega.par_iter().map(record).collect();
         let records = records.into_iter().collect::<Result<Vec<_>, _>>()?;
         let sweep = |values: &[f64]| {
             let periods = Periods { settle: SETTLE[1], record: RECORD };

@@ -3,7 +3,7 @@
 use super::item::{Grid, Item, Verdict};
 use super::plan::Plan;
 use rayon::prelude::*;
-use retune_atlas::{Stretch, classify, follow};
+use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Positive};
 use retune_optim::{Failures, Minimum, Options, PeakEnergy, Row, Stop, Variable, minimize};
 use retune_solver::{Settings, Window};

@@ -1,6 +1,6 @@
 //! The jobs of Retune as a library.
 //!
-//! A job takes a study (`retune_study`), computes with `retune_optim` and `retune_atlas`, keeps what it makes in a directory of
+//! A job takes a study (`retune_study`), computes with `retune_optim` and `retune_dynamics`, keeps what it makes in a directory of
 //! results (`retune_store`), tells an [`Observer`] how far it is, and returns what it found. Nothing here prints.
 //!
 //! [`tune()`] searches the best design of a study; [`certify`] says what a design is worth; [`table2`], [`retune`] and [`pareto`]

@@ -9,7 +9,7 @@ pub use verdict::Verdict;
 
 use crate::Error;
 use crate::summary::{MadeBy, TunedDamper};
-use retune_atlas::{Kind, Regime};
+use retune_dynamics::{Kind, Regime};
 use retune_model::Damper;
 use retune_optim::Evaluation;
 use retune_solver::Method;

@@ -5,7 +5,7 @@ use super::certificate::{
 };
 use crate::Error;
 use rayon::prelude::*;
-use retune_atlas::{Stretch, classify, follow};
+use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Scene};
 use retune_optim::{Ensemble, Goal, PerLimit, Place, Response, Statistic};
 use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};

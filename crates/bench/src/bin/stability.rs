@@ -1,8 +1,8 @@
 //! `just stability`: every method on every difficulty, into `results/stability/`.
 
 use rayon::prelude::*;
-use retune_peers::atlas::draw::Row;
-use retune_peers::atlas::{
+use retune_bench::atlas::draw::Row;
+use retune_bench::atlas::{
     Verdict, WAYS, cell, difficulties, draw, energy, energy_cell, missed, objective, rigid, stable, truth,
 };
 use std::error::Error;
@@ -82,8 +82,8 @@ fn heading(rows: &[Row]) -> Result<String, std::fmt::Error> {
          rtol 1e-12, which DOP853 confirms (a test). *Works*: at most {:e}, every impact counted. *Inaccurate*: at most {:e}, at most one impact, or one in ten, miscounted (any number, if the motion is right). \
          *Says it fails*: an error is returned. *Fails silently*: anything else.\n\n![atlas](atlas.svg)\n\n\
          | method | works | inaccurate | says it fails | fails silently |\n| --- | --- | --- | --- | --- |\n",
-        retune_peers::atlas::WORKS,
-        retune_peers::atlas::INACCURATE
+        retune_bench::atlas::WORKS,
+        retune_bench::atlas::INACCURATE
     );
     for (j, way) in WAYS.iter().enumerate() {
         let [a, b, c, d] =

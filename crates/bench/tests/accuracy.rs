@@ -1,10 +1,10 @@
 //! The scenes of the comparison: their references, the default tolerance, the smallest models, the tables of other programs.
 
-use retune_peers::record::errors;
-use retune_peers::reference::Reference;
-use retune_peers::savings::savings;
-use retune_peers::scenes::cases;
-use retune_peers::{external, own, statistics};
+use retune_bench::record::errors;
+use retune_bench::reference::Reference;
+use retune_bench::savings::savings;
+use retune_bench::scenes::cases;
+use retune_bench::{external, own, statistics};
 use retune_solver::{Contacts, Method, Settings};
 use std::path::Path;
 

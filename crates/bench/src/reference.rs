@@ -3,7 +3,7 @@
 use crate::own;
 use crate::record::{Found, errors};
 use crate::scenes::Case;
-use retune_atlas::{Exponent, Stretch, follow};
+use retune_dynamics::{Exponent, Stretch, follow};
 use retune_solver::{Contacts, Method, Settings};
 use std::error::Error;
 

@@ -1,9 +1,9 @@
 //! The atlas of failures: its references against another method, the hybrid's cells, and every cell as committed.
 
-use retune_peers::atlas::difficulties::all;
-use retune_peers::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
-use retune_peers::own;
-use retune_peers::record::errors;
+use retune_bench::atlas::difficulties::all;
+use retune_bench::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
+use retune_bench::own;
+use retune_bench::record::errors;
 use retune_solver::{Contacts, Method};
 use std::path::Path;
 

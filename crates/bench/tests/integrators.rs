@@ -1,10 +1,10 @@
 //! The wrapped integrators of others find the motion: what separates them on the chart is theirs, not the wrapping's.
 #![cfg(feature = "integrators")]
 
-use retune_peers::own;
-use retune_peers::peers::{PEERS, run};
-use retune_peers::record::errors;
-use retune_peers::scenes::cases;
+use retune_bench::own;
+use retune_bench::peers::{PEERS, run};
+use retune_bench::record::errors;
+use retune_bench::scenes::cases;
 use retune_solver::{Contacts, Method};
 
 #[test]

@@ -2,13 +2,13 @@
 #![allow(clippy::print_stderr)]
 
 use retune_model::{Coupled, Side};
-use retune_peers::chart::{self, Cost};
-use retune_peers::reading::Measure;
-use retune_peers::record::{Found, Row, csv, errors, parse};
-use retune_peers::reference::Reference;
-use retune_peers::savings::savings;
-use retune_peers::scenes::{Case, cases};
-use retune_peers::{external, own, peers, statistics, text};
+use retune_bench::chart::{self, Cost};
+use retune_bench::reading::Measure;
+use retune_bench::record::{Found, Row, csv, errors, parse};
+use retune_bench::reference::Reference;
+use retune_bench::savings::savings;
+use retune_bench::scenes::{Case, cases};
+use retune_bench::{external, own, peers, statistics, text};
 use retune_solver::{Contacts, Method};
 use std::error::Error;
 use std::fs;

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{ROW1, TMD, scene};
-use retune_atlas::{Exponent, Kind, Record, Regime, Stretch, classify, follow};
+use retune_dynamics::{Exponent, Kind, Record, Regime, Stretch, classify, follow};
 use retune_solver::Settings;
 
 /// A record of a map of the line, with its exact growth of neighbours.

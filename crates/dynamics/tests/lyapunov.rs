@@ -4,8 +4,8 @@
 mod common;
 
 use common::{ROW1, TMD, scene};
-use retune_atlas::lyapunov::{Exponent, Neighbours, Pair, growth};
-use retune_atlas::{Stretch, follow};
+use retune_dynamics::lyapunov::{Exponent, Neighbours, Pair, growth};
+use retune_dynamics::{Stretch, follow};
 use retune_model::Coupled;
 use retune_solver::Settings;
 use std::convert::Infallible;

@@ -4,10 +4,10 @@
 mod common;
 
 use common::{SSVI, TMD, scene};
-use retune_atlas::parameter::evenly;
-use retune_atlas::strobe::Periods;
-use retune_atlas::sweep::zones;
-use retune_atlas::{Error, Parameter, Zone, carried, fresh, fresh_orbits};
+use retune_dynamics::parameter::evenly;
+use retune_dynamics::strobe::Periods;
+use retune_dynamics::sweep::zones;
+use retune_dynamics::{Error, Parameter, Zone, carried, fresh, fresh_orbits};
 use retune_model::{Bare, Coupled};
 use retune_solver::{Settings, Window};
 

@@ -6,8 +6,8 @@
 mod common;
 
 use common::{SSVI, TMD, scene};
-use retune_atlas::parameter::evenly;
-use retune_atlas::{Kind, Parameter, Point, Regime, Stretch, Zone, classify, follow, fresh};
+use retune_dynamics::parameter::evenly;
+use retune_dynamics::{Kind, Parameter, Point, Regime, Stretch, Zone, classify, follow, fresh};
 use retune_solver::{Settings, Window};
 
 const WINDOW: Window = Window { from: 50.0, to: 100.0 };

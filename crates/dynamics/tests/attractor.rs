@@ -3,10 +3,10 @@
 mod common;
 
 use common::{SSVI, scene};
-use retune_atlas::attractor::{distinct, motions, separation};
-use retune_atlas::record::coordinates;
-use retune_atlas::strobe::Periods;
-use retune_atlas::{Parameter, carried, resumed};
+use retune_dynamics::attractor::{distinct, motions, separation};
+use retune_dynamics::record::coordinates;
+use retune_dynamics::strobe::Periods;
+use retune_dynamics::{Parameter, carried, resumed};
 use retune_solver::Settings;
 
 fn states(count: usize, of: impl Fn(usize) -> f64) -> Vec<[f64; 4]> {
