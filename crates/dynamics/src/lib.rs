@@ -2,7 +2,7 @@
 //! exponents through contacts, and names for regimes that stand on evidence.
 //!
 //! - [`sweep`]: the response at each value of a parameter, every run fresh from rest, in parallel.
-//! - [`strobe`]: the motion once per period of the force, and sweeps that carry the state over.
+//! - [`poincare`]: the motion once per period of the force, and sweeps that carry the state over.
 //! - [`lyapunov`]: how fast neighbouring motions part, from two trajectories with renormalisation.
 //! - [`record`]: a motion followed for many periods together with its neighbour.
 //! - [`attractor`]: whether two stretches of motion show one motion or two.
@@ -14,14 +14,14 @@
 pub mod attractor;
 pub mod lyapunov;
 pub mod parameter;
+pub mod poincare;
 pub mod record;
 pub mod regime;
-pub mod strobe;
 pub mod sweep;
 
 pub use lyapunov::Exponent;
 pub use parameter::{Error, Parameter};
+pub use poincare::{Orbit, continuation, independent_orbits, resumed};
 pub use record::{Record, Stretch, follow};
 pub use regime::{Kind, Regime, classify};
-pub use strobe::{Orbit, carried, fresh_orbits, resumed};
-pub use sweep::{Point, Zone, fresh};
+pub use sweep::{Point, Zone, independent};

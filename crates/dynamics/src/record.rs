@@ -2,7 +2,7 @@
 
 use crate::lyapunov::{Exponent, Neighbours, Pair};
 use crate::parameter::Error;
-use crate::strobe::{Strobe, Touches, at_rest, coupled};
+use crate::poincare::{PoincareMap, Touches, at_rest, coupled};
 use retune_model::{Coupled, Scene};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings, SolverError};
@@ -60,7 +60,7 @@ pub(crate) fn distance(a: &[f64; 4], b: &[f64; 4]) -> f64 {
 struct Twins<'a> {
     scene: &'a Scene,
     system: &'a Coupled,
-    strobe: Strobe<'a>,
+    map: PoincareMap<'a>,
 }
 
 impl Neighbours for Twins<'_> {
@@ -68,7 +68,7 @@ impl Neighbours for Twins<'_> {
     type Error = SolverError;
 
     fn step(&mut self, state: Motion) -> Result<Motion, SolverError> {
-        self.strobe.next(state, &mut Unobserved)
+        self.map.next(state, &mut Unobserved)
     }
     fn distance(&self, a: Motion, b: Motion) -> f64 {
         distance(&coordinates(self.scene, &a.y), &coordinates(self.scene, &b.y))
@@ -92,8 +92,8 @@ pub fn follow(
     let system = coupled(scene)?;
     let settings = Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings };
     let start = start.unwrap_or_else(|| at_rest(&system));
-    let mut twins = Twins { scene, system: &system, strobe: Strobe::new(&system, &settings) };
-    let mut ahead = Strobe::new(&system, &settings);
+    let mut twins = Twins { scene, system: &system, map: PoincareMap::new(&system, &settings) };
+    let mut ahead = PoincareMap::new(&system, &settings);
     let count = stretch.settle + stretch.observe;
     let mut record = Record {
         period: ahead.period(),

@@ -64,7 +64,7 @@ impl Point {
 ///
 /// # Errors
 /// A value that the parameter cannot have, or a run that could not be finished.
-pub fn fresh(
+pub fn independent(
     scene: &Scene,
     parameter: Parameter,
     values: &[f64],

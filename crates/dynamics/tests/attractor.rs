@@ -4,9 +4,9 @@ mod common;
 
 use common::{SSVI, scene};
 use retune_dynamics::attractor::{distinct, motions, separation};
+use retune_dynamics::poincare::Periods;
 use retune_dynamics::record::coordinates;
-use retune_dynamics::strobe::Periods;
-use retune_dynamics::{Parameter, carried, resumed};
+use retune_dynamics::{Parameter, continuation, resumed};
 use retune_solver::Settings;
 
 fn states(count: usize, of: impl Fn(usize) -> f64) -> Vec<[f64; 4]> {
@@ -71,8 +71,15 @@ fn exact_motions_are_counted_once_each() {
 fn exact_resumed_motions_go_on() {
     let scene = scene(3.95e4, 7.4, Some(SSVI));
     let sweep = |values: &[f64], settle| {
-        carried(&scene, Parameter::Omega, values, Periods { settle, record: 2 }, &Settings::default(), || ())
-            .expect("a sweep")
+        continuation(
+            &scene,
+            Parameter::Omega,
+            values,
+            Periods { settle, record: 2 },
+            &Settings::default(),
+            || (),
+        )
+        .expect("a sweep")
     };
     let last = sweep(&[7.4], 300)[0].samples[1];
     let again = resumed(&scene, last).expect("a damper");
@@ -88,7 +95,7 @@ fn regress_a_sweep_carries_its_motion_on() {
     let soft = scene(2.00e4, 4.079, Some(SSVI));
     let periods = Periods { settle: 300, record: 50 };
     let sweep = |values: &[f64]| {
-        let orbits = carried(&soft, Parameter::Omega, values, periods, &Settings::default(), || ());
+        let orbits = continuation(&soft, Parameter::Omega, values, periods, &Settings::default(), || ());
         orbits.expect("a sweep").pop().expect("an orbit")
     };
     let (rest, up) = (sweep(&[4.079]), sweep(&[4.0, 4.02, 4.04, 4.05, 4.06, 4.07, 4.079]));

@@ -7,7 +7,7 @@ mod common;
 
 use common::{SSVI, TMD, scene};
 use retune_dynamics::parameter::evenly;
-use retune_dynamics::{Kind, Parameter, Point, Regime, Stretch, Zone, classify, follow, fresh};
+use retune_dynamics::{Kind, Parameter, Point, Regime, Stretch, Zone, classify, follow, independent};
 use retune_solver::{Settings, Window};
 
 const WINDOW: Window = Window { from: 50.0, to: 100.0 };
@@ -17,7 +17,7 @@ const FAMILY: [f64; 5] = [2.00e4, 3.00e4, TUNED, 5.00e4, 6.00e4];
 fn curve(k1: f64, design: Option<[f64; 4]>) -> Vec<Point> {
     let natural = (k1 / 1000.0_f64).sqrt();
     let omega = evenly(0.8 * natural, 1.2 * natural, 121);
-    fresh(&scene(k1, natural, design), Parameter::Omega, &omega, WINDOW, &Settings::default(), || ())
+    independent(&scene(k1, natural, design), Parameter::Omega, &omega, WINDOW, &Settings::default(), || ())
         .expect("runs")
 }
 
@@ -118,9 +118,9 @@ fn paper_figure_5_ssvi_holds_the_larger_share() {
         let natural = (k1 / 1000.0_f64).sqrt();
         let share = |design| {
             let scene = scene(k1, natural, Some(design));
-            fresh(&scene, Parameter::Omega, &[natural], WINDOW, &Settings::default(), || ()).expect("a run")
-                [0]
-            .ratios()[1]
+            independent(&scene, Parameter::Omega, &[natural], WINDOW, &Settings::default(), || ())
+                .expect("a run")[0]
+                .ratios()[1]
         };
         assert!(share(SSVI) > share(TMD), "{k1}");
     }
@@ -183,7 +183,7 @@ fn paper_figure_5_ssvi_holds_the_larger_share_around_resonance() {
         let natural = (k1 / 1000.0_f64).sqrt();
         let near = |design| {
             let omega = evenly(natural - 0.226, natural + 0.226, 21);
-            fresh(
+            independent(
                 &scene(k1, natural, Some(design)),
                 Parameter::Omega,
                 &omega,
@@ -203,7 +203,7 @@ fn paper_figure_5_ssvi_holds_the_larger_share_around_resonance() {
 fn paper_figure_6_energies_at_resonance() {
     let [none, ssvi, tmd] = [None, Some(SSVI), Some(TMD)].map(|design| {
         let scene = scene(TUNED, 6.28, design);
-        fresh(&scene, Parameter::Omega, &[6.28], WINDOW, &Settings::default(), || ()).expect("a run")[0]
+        independent(&scene, Parameter::Omega, &[6.28], WINDOW, &Settings::default(), || ()).expect("a run")[0]
     });
     assert!(ssvi.e1_max < tmd.e1_max && tmd.e1_max < 0.5 * none.e1_max, "{ssvi:?} {tmd:?} {none:?}");
     assert!(ssvi.ratios()[1] > tmd.ratios()[1], "{ssvi:?} {tmd:?}");

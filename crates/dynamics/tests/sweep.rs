@@ -5,9 +5,9 @@ mod common;
 
 use common::{SSVI, TMD, scene};
 use retune_dynamics::parameter::evenly;
-use retune_dynamics::strobe::Periods;
+use retune_dynamics::poincare::Periods;
 use retune_dynamics::sweep::zones;
-use retune_dynamics::{Error, Parameter, Zone, carried, fresh, fresh_orbits};
+use retune_dynamics::{Error, Parameter, Zone, continuation, independent, independent_orbits};
 use retune_model::{Bare, Coupled};
 use retune_solver::{Settings, Window};
 
@@ -19,7 +19,7 @@ fn exact_linear_sweeps_meet_the_steady_response() {
     for design in [None, Some(TMD)] {
         let scene = scene(3.95e4, 6.28, design);
         let points =
-            fresh(&scene, Parameter::Omega, &values, LATE, &Settings::default(), || ()).expect("runs");
+            independent(&scene, Parameter::Omega, &values, LATE, &Settings::default(), || ()).expect("runs");
         for (point, &omega) in points.iter().zip(&values) {
             let steady = match &scene.damper {
                 None => Bare::new(&scene.primary, &scene.forcing).steady(omega),
@@ -39,7 +39,7 @@ fn exact_carried_linear_sweeps_agree_in_both_directions() {
     let down: Vec<f64> = up.iter().rev().copied().collect();
     let periods = Periods { settle: 120, record: 3 };
     let run = |values: &[f64]| {
-        carried(&scene, Parameter::Omega, values, periods, &Settings::default(), || ()).expect("runs")
+        continuation(&scene, Parameter::Omega, values, periods, &Settings::default(), || ()).expect("runs")
     };
     let (there, back) = (run(&up), run(&down));
     for (a, b) in there.iter().zip(back.iter().rev()) {
@@ -56,11 +56,11 @@ fn exact_results_do_not_depend_on_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
             let window = Window { from: 20.0, to: 40.0 };
-            let points =
-                fresh(&scene, Parameter::Omega, &values, window, &Settings::default(), || ()).expect("runs");
+            let points = independent(&scene, Parameter::Omega, &values, window, &Settings::default(), || ())
+                .expect("runs");
             let periods = Periods { settle: 20, record: 20 };
             let orbits =
-                fresh_orbits(&scene, Parameter::Omega, &values, periods, &Settings::default(), || ())
+                independent_orbits(&scene, Parameter::Omega, &values, periods, &Settings::default(), || ())
                     .expect("runs");
             (points, orbits)
         })
@@ -72,8 +72,9 @@ fn exact_results_do_not_depend_on_threads() {
 fn exact_zones_tile_the_sweep() {
     let scene = scene(3.95e4, 6.28, Some(SSVI));
     let window = Window { from: 50.0, to: 100.0 };
-    let points = fresh(&scene, Parameter::Omega, &evenly(4.0, 9.0, 26), window, &Settings::default(), || ())
-        .expect("runs");
+    let points =
+        independent(&scene, Parameter::Omega, &evenly(4.0, 9.0, 26), window, &Settings::default(), || ())
+            .expect("runs");
     let found = zones(&points);
     assert_eq!((found[0].1, found[found.len() - 1].2), (4.0, 9.0));
     assert!(found.windows(2).all(|pair| pair[0].2 == pair[1].1 && pair[0].0 != pair[1].0), "{found:?}");
@@ -85,11 +86,11 @@ fn exact_what_cannot_be_swept_is_refused() {
     let settings = Settings::default();
     let periods = Periods { settle: 1, record: 1 };
     let bare = scene(3.95e4, 6.28, None);
-    let refused = carried(&bare, Parameter::Omega, &[6.0], periods, &settings, || ());
+    let refused = continuation(&bare, Parameter::Omega, &[6.0], periods, &settings, || ());
     assert_eq!(refused.err(), Some(Error::NoDamper));
     let tmd = scene(3.95e4, 6.28, Some(TMD));
-    let refused = carried(&tmd, Parameter::Omega, &[0.0], periods, &settings, || ());
+    let refused = continuation(&tmd, Parameter::Omega, &[0.0], periods, &settings, || ());
     assert_eq!(refused.err(), Some(Error::NoPeriod));
-    let refused = fresh(&tmd, Parameter::K1, &[1.0, -1.0, f64::NAN], LATE, &settings, || ());
+    let refused = independent(&tmd, Parameter::K1, &[1.0, -1.0, f64::NAN], LATE, &settings, || ());
     assert!(matches!(refused, Err(Error::OutOfRange(wrong)) if wrong.value == -1.0));
 }

@@ -2,11 +2,11 @@
 
 use super::plan::Plan;
 use rayon::prelude::*;
+use retune_dynamics::poincare::Periods;
 use retune_dynamics::record::coordinates;
-use retune_dynamics::strobe::Periods;
 use retune_dynamics::{
-    Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, carried, classify, follow, fresh_orbits,
-    resumed,
+    Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, classify, continuation, follow,
+    independent_orbits, resumed,
 };
 use retune_model::Scene;
 use retune_workbench::Error;
@@ -56,13 +56,13 @@ impl Motions {
         let records = records.into_iter().collect::<Result<Vec<_>, _>>()?;
         let sweep = |values: &[f64]| {
             let periods = Periods { settle: SETTLE[1], record: RECORD };
-            carried(scene, Parameter::Omega, values, periods, &settings, || bar.inc(1))
+            continuation(scene, Parameter::Omega, values, periods, &settings, || bar.inc(1))
         };
         let (up, back) = rayon::join(|| sweep(&omega), || sweep(&down));
         let mut back = back?;
         back.reverse();
         let periods = Periods { settle: SETTLE[0], record: RECORD };
-        let rest = fresh_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
+        let rest = independent_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
         let orbits = [rest, up?, back];
         let indices: Vec<usize> = (0..omega.len()).collect();
         let found: Vec<Result<Option<Coexisting>, Error>> = indices

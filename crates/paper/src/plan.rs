@@ -109,8 +109,9 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// A stiffness that cannot be.
     pub fn scenes(&self, k1: f64) -> Result<[Scene; 3], Error> {
-        let at =
-            |study: &Study| -> Result<Scene, Error> { Ok(retune_dynamics::Parameter::K1.at(study.scene, k1)?) };
+        let at = |study: &Study| -> Result<Scene, Error> {
+            Ok(retune_dynamics::Parameter::K1.at(study.scene, k1)?)
+        };
         let (ssvi, tmd) = (at(&self.ssvi)?, at(&self.tmd)?);
         Ok([Scene { damper: None, ..ssvi }, ssvi, tmd])
     }

@@ -1,7 +1,6 @@
 //! `just accuracy`: every method on every scene at every tolerance, into `results/accuracy/`.
 #![allow(clippy::print_stderr)]
 
-use retune_model::{Coupled, Side};
 use retune_bench::chart::{self, Cost};
 use retune_bench::reading::Measure;
 use retune_bench::record::{Found, Row, csv, errors, parse};
@@ -9,6 +8,7 @@ use retune_bench::reference::Reference;
 use retune_bench::savings::savings;
 use retune_bench::scenes::{Case, cases};
 use retune_bench::{external, own, peers, statistics, text};
+use retune_model::{Coupled, Side};
 use retune_solver::{Contacts, Method};
 use std::error::Error;
 use std::fs;

@@ -23,12 +23,12 @@ pub fn coupled(scene: &Scene) -> Result<Coupled, Error> {
 /// The map of the state over one period of the force, from a crest of `P cos ωt` to the next.
 ///
 /// Time starts anew with each period, so the map is the same at every step.
-pub struct Strobe<'a> {
+pub struct PoincareMap<'a> {
     follower: Follower<'a>,
     period: f64,
 }
 
-impl<'a> Strobe<'a> {
+impl<'a> PoincareMap<'a> {
     /// Prepares the map, by the method that is asked for. A period may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings) -> Self {
         let period = TAU / system.bare().frequency();
@@ -126,10 +126,10 @@ fn orbit(
     periods: Periods,
     settings: &Settings,
 ) -> Result<(Orbit, Motion), Error> {
-    let mut strobe = Strobe::new(system, settings);
+    let mut map = PoincareMap::new(system, settings);
     let mut motion = start;
     for _ in 0..periods.settle {
-        motion = strobe.next(motion, &mut Unobserved)?;
+        motion = map.next(motion, &mut Unobserved)?;
     }
     let mut samples = Vec::with_capacity(periods.record);
     let (mut e1_max, mut impacts) = (0.0_f64, [0; 2]);
@@ -138,7 +138,7 @@ fn orbit(
             peak: RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY),
             touches: Touches::default(),
         };
-        motion = strobe.next(motion, &mut watch)?;
+        motion = map.next(motion, &mut watch)?;
         samples.push(motion.y);
         e1_max = e1_max.max(watch.peak.record().value);
         impacts = [0, 1].map(|side| impacts[side] + watch.touches.0[side]);
@@ -151,7 +151,7 @@ fn orbit(
 ///
 /// # Errors
 /// As [`Error`] says.
-pub fn carried(
+pub fn continuation(
     scene: &Scene,
     parameter: Parameter,
     values: &[f64],
@@ -176,7 +176,7 @@ pub fn carried(
 ///
 /// # Errors
 /// As [`Error`] says.
-pub fn fresh_orbits(
+pub fn independent_orbits(
     scene: &Scene,
     parameter: Parameter,
     values: &[f64],
