@@ -1,6 +1,7 @@
 //! The figures of `fronts`.
 
-use super::{Design, Fronts, Row};
+use super::design::Design;
+use super::fronts::{Fronts, Row};
 use retune_figures::sheet::{BLUE, Chart, GREY, Key, Layer, ORANGE, PURPLE, VERMILION, sheet};
 use retune_study::Sweep;
 
@@ -95,7 +96,7 @@ fn title(fronts: &Fronts) -> String {
     format!("{}Retune {}", over.unwrap_or_default(), env!("CARGO_PKG_VERSION"))
 }
 
-/// What each colour means; of the dampers in the studies, those that are `shown`.
+/// The entries of the legend; of the dampers in the studies, those that are `shown`.
 fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Design) -> bool) -> Vec<(Key, String)> {
     let dampers = fronts.plan.dampers.iter().enumerate();
     let tuned = dampers.map(|(i, (name, _))| {

@@ -1,10 +1,11 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
-use super::{Certified, Design, Fronts, Row, SAME};
+use super::design::{Design, SAME};
+use super::fronts::{Certified, Fronts, Row};
 use retune_study::Sweep;
 use retune_study::short;
 
-/// Why a soft spring does with a stop what a stiff one does without.
+/// Why a soft spring with a stop does as well as a stiff one without.
 const MECHANISM: &str = "A mass that bounces on one stop makes only about half of each swing of its spring, so it comes back up to twice as \
      fast as the spring alone lets it: with one strike a period it is in tune with the structure at down to a quarter of the \
      stiffness that a TMD needs. The stop also cuts the swing off on its side, and the other wall stays out of reach, so that \
@@ -57,7 +58,7 @@ pub(super) fn page(fronts: &Fronts, certified: &[Certified]) -> String {
     text
 }
 
-/// What each damper but the first is good for, in words.
+/// The advantage of each damper over the first, in words.
 pub(super) fn answer(fronts: &Fronts) -> String {
     let mut words = Vec::new();
     for given in &fronts.given {
