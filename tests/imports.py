@@ -37,12 +37,8 @@ MOST_SHARE = 0.25
 LONG_FILES = {
     "crates/optim/src/goal.rs": (342, "becomes part of the serialisable Objective"),
     "crates/peers/src/panel.rs": (309, "becomes part of `figures`"),
-    "crates/retune/src/results.rs": (318, "becomes `store`"),
-    "crates/retune/src/study/objective.rs": (316, "becomes part of the serialisable Objective"),
 }
-LARGE_CRATES = {
-    "retune": (0.60, "`study`, `store`, `figures`, `workbench` and `paper` are still inside"),
-}
+LARGE_CRATES = {}
 
 IDENT = r"(?:r#)?[A-Za-z_]\w*"
 ITEM = re.compile(
