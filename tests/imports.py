@@ -34,14 +34,9 @@ MOST_SHARE = 0.25
 
 # Known exceptions, each with the size that it may have and the reason. One that is no longer needed is named, and goes.
 LONG_FILES = {
-    "crates/optim/src/goal.rs": (342, "becomes part of the serialisable Objective"),
     "crates/bench/src/panel.rs": (309, "becomes part of `figures`"),
-    "crates/retune/src/results.rs": (318, "becomes `store`"),
-    "crates/retune/src/study/objective.rs": (316, "becomes part of the serialisable Objective"),
 }
-LARGE_CRATES = {
-    "retune": (0.60, "`study`, `store`, `figures`, `workbench` and `paper` are still inside"),
-}
+LARGE_CRATES = {}
 
 
 def circles(edges):

@@ -24,11 +24,11 @@ const LADDER: [(Method, f64); 5] = [
     (Method::Dop853, 1e-12),
     (Method::Ode45, 1e-10),
 ];
-/// How long a steady motion is followed by the methods that step in time, s, and when it has settled.
+/// Time over which methods that step in time follow a steady motion, s, and the criterion by which it has settled.
 const LONG: f64 = 2000.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 
-/// All of them.
+/// Makes all measurements and the certificate.
 ///
 /// # Errors
 /// The design itself has no value, or its worst run cannot be followed.
@@ -130,7 +130,7 @@ fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings, near: &mut Vec
     Neighbourhood::new(NEIGHBOURS.errors, found.iter().map(|found| found.energy).collect())
 }
 
-/// What a scene gives.
+/// The result of a scene.
 struct Look {
     /// J, infinite where there is none.
     energy: f64,

@@ -1,12 +1,12 @@
-//! The figures of `retune`: what a tuning is worth along k1, and the path of the designs.
+//! The figures of `retune`: E1max along k1, and the designs against k1.
 
-use super::{Curves, Tuned};
+use super::tuned::{Curves, Tuned};
 use crate::tune::Found;
 use retune_figures::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, ORANGE, VERMILION, sheet};
 
 /// A colour for each damper, of its tuning that is kept and of its tuning anew.
 const COLOURS: [[&str; 2]; 2] = [[ORANGE, VERMILION], [GREEN, BLUE]];
-/// How a tuning that is kept is drawn, and no damper.
+/// Dashes of the curve of a tuning that is kept, and of that without a damper.
 const DASHES: [&str; 2] = ["18 8", "6 6"];
 
 /// E1max against k1: none, as tuned for the study's own k1, and tuned anew.

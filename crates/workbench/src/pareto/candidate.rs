@@ -1,4 +1,4 @@
-//! A design of a front: what it reaches on the samples of the study of fronts, and how it compares.
+//! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
 use retune_model::{Design, Positive};
 use retune_optim::{Evaluation, Limits};
@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 /// E1max that differs by less than this share is the same.
 pub const SAME: f64 = 0.01;
 
-/// A design, looked at on the samples of the study of fronts.
+/// A design, evaluated on the samples of the study of fronts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// The number of its damper.
@@ -20,7 +20,7 @@ pub struct Candidate {
     /// The largest stroke (spring deflection |x2 - x1 - D|), m, and contact force, N, in any run.
     pub stroke: f64,
     pub force: f64,
-    /// What its certificate says, in a word.
+    /// The verdict of its certificate.
     pub verdict: &'static str,
 }
 
@@ -31,13 +31,13 @@ impl Candidate {
         (reached / bound - 1.0).max(0.0)
     }
 
-    /// Whether it is of the same damper and worth the same.
+    /// Whether it is of the same damper and has nearly the same E1max.
     pub fn is_like(&self, other: &Self) -> bool {
         self.damper == other.damper && (self.e1_max / other.e1_max - 1.0).abs() < SAME
     }
 
-    /// Whether it is as good in everything and better in something.
-    pub fn beats(&self, other: &Self) -> bool {
+    /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.
+    pub fn dominates(&self, other: &Self) -> bool {
         let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.k2.get()];
         let pairs = || all(self).into_iter().zip(all(other));
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
