@@ -173,9 +173,10 @@ bench-surf *OPTIONS:
 fmt *OPTIONS:
     cargo fmt --all "$@"
 
-# Check format and lints, warnings as errors
+# Check format, lints (warnings as errors), and who imports whom (needs python3)
 lint:
     cargo fmt --all --check
+    python3 tests/imports.py
     cargo clippy --all-targets -- -D warnings
 
 # Speed against accuracy of every method and peer, on six scenes, into results/accuracy

@@ -61,11 +61,11 @@ fn tune(
     watch: &dyn Observer,
 ) -> Result<Tuned, Error> {
     let PaperStudy { damper: name, study } = row;
-    let home = study.scene.primary.stiffness.get();
-    let mut stiffnesses: Vec<f64> = others.iter().map(Setting::value).chain([home]).collect();
+    let nominal = study.scene.primary.stiffness.get();
+    let mut stiffnesses: Vec<f64> = others.iter().map(Setting::value).chain([nominal]).collect();
     stiffnesses.sort_by(f64::total_cmp);
     stiffnesses.dedup();
-    let here = stiffnesses.iter().position(|k1| *k1 == home).unwrap_or_default();
+    let here = stiffnesses.iter().position(|k1| *k1 == nominal).unwrap_or_default();
     let mut designs: Vec<Option<Found>> = vec![None; stiffnesses.len()];
     let upwards = (here..stiffnesses.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > here)));
     let downwards = (0..here).rev().map(|i| (i, Some(i + 1)));
@@ -86,7 +86,7 @@ fn tune(
         designs[i] = Some(optimum.found());
     }
     let designs = stiffnesses.into_iter().zip(designs).filter_map(|(k1, found)| Some((k1, found?))).collect();
-    Ok(Tuned { name, study, home, designs })
+    Ok(Tuned { name, study, nominal, designs })
 }
 
 /// The study at another stiffness, with one more start.

@@ -6,7 +6,7 @@ mod text;
 mod verdict;
 
 pub use limits::{Kept, Near};
-pub use measured::{FINER, Measured, Motion, Neighbourhood, Rung, Sensitivity, WorstRun};
+pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
 pub use verdict::Verdict;
 
 use crate::Error;
@@ -25,7 +25,7 @@ pub struct Certificate {
     /// The objective's value, J.
     #[serde(rename = "E1max")]
     e1_max: f64,
-    /// Largest difference of a rung of the ladder to the worst run, or of `finer` to the value, J.
+    /// Largest difference of a run of the convergence study to the worst run, or of `finer` to the value, J.
     error_bar: f64,
     predictable: bool,
     /// null where the design breaks a limit.
@@ -39,7 +39,7 @@ pub struct Certificate {
     limits: Option<Kept>,
     /// The run with the largest E1max that the value is made of.
     worst_run: WorstRun,
-    ladder: Vec<Rung>,
+    convergence: Vec<Run>,
     /// The objective with four times the samples of its bands, J, where it has bands that are sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     finer: Option<f64>,
@@ -81,10 +81,10 @@ impl Certificate {
     pub(super) fn new(study: &Study, damper: &Damper, own: &Evaluation, measured: Measured) -> Self {
         let missed = measured.finer.map_or(0.0, |finer| (finer - own.energy).abs());
         let error_bar =
-            measured.ladder.iter().map(|rung| rung.error(&measured.worst_run)).fold(missed, f64::max);
+            measured.convergence.iter().map(|run| run.error(&measured.worst_run)).fold(missed, f64::max);
         let predictable = verdict::is_predictable(error_bar, measured.worst_run.e1_max);
         let (verdict, words) = verdict::judge(own.energy, error_bar, predictable, &measured);
-        let Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits } = measured;
+        let Measured { worst_run, convergence, finer, motion, sensitivity, neighbourhood, limits } = measured;
         Self {
             made_by: MadeBy::new(study),
             design: TunedDamper::of(damper),
@@ -96,7 +96,7 @@ impl Certificate {
             rule: verdict::rule(limits.is_some()),
             limits,
             worst_run,
-            ladder,
+            convergence,
             finer,
             motion,
             sensitivity,

@@ -109,12 +109,12 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         words += &format!(" Only the {name} keeps {what} at most {} {unit}.", alone.join(", "));
     }
     let draws: Vec<String> = own()
-        .filter(|row| row.design.is_some_and(|design| design.verdict == "draw"))
+        .filter(|row| row.design.is_some_and(|design| design.verdict == "single chaotic realisation"))
         .map(|row| row.bound.to_string())
         .collect();
     if !draws.is_empty() {
         words += &format!(
-            " For {what} at most {} {unit} it is a draw: designs that nobody can tell apart from it have much more or \
+            " For {what} at most {} {unit} it is a single chaotic realisation: practically equal designs have much more or \
              less.",
             draws.join(", ")
         );

@@ -23,9 +23,9 @@ pub(super) fn retention(tuned: &[Tuned], curves: &Curves) -> String {
             damper.designs.iter().map(|(k1, Found { e1_max, .. })| (*k1, *e1_max)).collect();
         layers.push(Layer::Line { points: points.clone(), colour: anew, width: 4.0, dash: "" });
         layers.push(Layer::Dots { points, colour: anew, size: 14.0 });
-        let Tuned { name, home, .. } = damper;
+        let Tuned { name, nominal, .. } = damper;
         keys.extend([Key::Line(kept, DASHES[0]), Key::Line(anew, "")]);
-        words.extend([format!("{name} tuned for k1 = {home} N/m"), format!("{name} re-tuned")]);
+        words.extend([format!("{name} tuned for k1 = {nominal} N/m"), format!("{name} re-tuned")]);
     }
     let energies = curves.none.iter().chain(curves.kept.iter().flatten());
     let top = energies.copied().filter(|e| e.is_finite()).fold(0.0, f64::max);

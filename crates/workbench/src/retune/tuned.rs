@@ -16,7 +16,7 @@ pub struct Tuned {
     /// Its study.
     pub study: Study,
     /// The stiffness of its study, N/m.
-    pub home: f64,
+    pub nominal: f64,
     /// A design for each stiffness, N/m, in their order.
     pub designs: Vec<(f64, Found)>,
 }
@@ -45,7 +45,7 @@ pub fn retention(tuned: &[Tuned]) -> Curves {
     };
     let none = tuned.first().map(|first| curve(&first.study, Scene { damper: None, ..first.study.scene }));
     let kept = |damper: &Tuned| {
-        let scene = damper.scene(damper.home).unwrap_or(damper.study.scene);
+        let scene = damper.scene(damper.nominal).unwrap_or(damper.study.scene);
         curve(&damper.study, scene)
     };
     let (none, kept) = (none.unwrap_or_default(), tuned.iter().map(kept).collect());
@@ -72,14 +72,14 @@ impl Tuned {
 }
 
 /// The column of a damper as it was tuned for the stiffness of its study, N/m.
-pub fn kept(name: &str, home: f64) -> String {
-    format!("{name} tuned for {home}")
+pub fn kept(name: &str, nominal: f64) -> String {
+    format!("{name} tuned for {nominal}")
 }
 
 /// A row for each stiffness; what has no value is an empty field.
 pub fn csv(tuned: &[Tuned], curves: &Curves) -> String {
-    let columns = tuned.iter().map(|Tuned { name, home, .. }| {
-        let columns = [kept(name, *home), format!("{name} re-tuned")];
+    let columns = tuned.iter().map(|Tuned { name, nominal, .. }| {
+        let columns = [kept(name, *nominal), format!("{name} re-tuned")];
         columns.map(|column| quoted(&column)).join(",")
     });
     let mut text = format!("k1,none,{}\n", columns.collect::<Vec<_>>().join(","));

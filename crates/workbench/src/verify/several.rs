@@ -93,11 +93,11 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
         columns.push(("none".to_owned(), first, bare));
     }
     for (name, study) in studies {
-        let home = study.scene.primary.stiffness.get();
-        let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == home);
+        let nominal = study.scene.primary.stiffness.get();
+        let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == nominal);
         let scene = own.and_then(|row| study.scene_at(&row.design()?));
         if let Some(scene) = scene {
-            columns.push((retune::kept(name, home), study, scene));
+            columns.push((retune::kept(name, nominal), study, scene));
         }
     }
     let mut checks = Vec::new();

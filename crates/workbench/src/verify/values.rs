@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(look(with("/a/0", json!(0.5)), 0.0), (1, 0.5));
         assert_eq!(look(with("/a/1", json!(0.5)), 0.0), (1, f64::INFINITY));
         assert_eq!(look(with("/a", json!([1.0])), 0.0), (1, f64::INFINITY));
-        assert_eq!(look(with("/b/verdict", json!("sharp")), 0.1), (1, f64::INFINITY));
+        assert_eq!(look(with("/b/verdict", json!("sensitive")), 0.1), (1, f64::INFINITY));
         assert_eq!(look(with("/b/words", json!("other")), 0.0), (1, f64::INFINITY));
         assert_eq!(look(with("/b/words", json!("other")), 0.1), (0, 0.0));
         assert_eq!(look(with("/b", json!("gone")), 0.0), (2, f64::INFINITY));

@@ -23,7 +23,7 @@ pub struct WorstRun {
 
 /// E1max of the worst run by a method.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Rung {
+pub struct Run {
     pub method: Method,
     pub rtol: f64,
     #[serde(rename = "E1max")]
@@ -71,7 +71,7 @@ pub struct Neighbourhood {
 /// All measurements of a design that a certificate is made from.
 pub struct Measured {
     pub worst_run: WorstRun,
-    pub ladder: Vec<Rung>,
+    pub convergence: Vec<Run>,
     pub finer: Option<f64>,
     pub motion: Motion,
     pub sensitivity: Vec<Sensitivity>,
@@ -79,7 +79,7 @@ pub struct Measured {
     pub limits: Option<Kept>,
 }
 
-impl Rung {
+impl Run {
     /// Difference to the worst run of the study's own method, J.
     pub fn error(&self, worst: &WorstRun) -> f64 {
         (self.e1_max - worst.e1_max).abs()

@@ -8,8 +8,8 @@ use serde::Serialize;
 const PREDICTABLE: f64 = 1e-3;
 /// Width of the neighbours' E1max, as a share of that of the design, above which it is wide; an error bar as wide counts as much.
 const WIDE: f64 = 0.05;
-/// Growth of E1max within 1 % of any one parameter above which an optimum is sharp.
-const SHARP: f64 = 0.1;
+/// Growth of E1max within 1 % of any one parameter above which an optimum is sensitive.
+const SENSITIVE: f64 = 0.1;
 
 /// A verdict. A design that breaks its limits has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -20,9 +20,10 @@ pub enum Verdict {
     /// Small errors change E1max little, but break a limit.
     Edge,
     /// Small errors change much, in a regular way or at an edge.
-    Sharp,
-    /// The motion is irregular, and the value one of many that equal designs have.
-    Draw,
+    Sensitive,
+    /// The motion is irregular, and the value one of many that practically equal designs have.
+    #[serde(rename = "single chaotic realisation")]
+    SingleChaoticRealisation,
 }
 
 impl Verdict {
@@ -31,8 +32,8 @@ impl Verdict {
         match self {
             Self::Robust => "robust",
             Self::Edge => "edge",
-            Self::Sharp => "sharp",
-            Self::Draw => "draw",
+            Self::Sensitive => "sensitive",
+            Self::SingleChaoticRealisation => "single chaotic realisation",
         }
     }
 }
@@ -74,10 +75,13 @@ fn judge_energy(e1_max: f64, error_bar: f64, predictable: bool, measured: &Measu
         format!("designs within {} % of it have {} to {} J", 100.0 * errors, short(*low), short(*high));
     if !narrow && (motion.irregular || !predictable) {
         let width = short(neighbourhood.width().max(error_bar));
-        return (Verdict::Draw, format!("a draw from a distribution of width {width} J: {near}"));
+        return (
+            Verdict::SingleChaoticRealisation,
+            format!("a single chaotic realisation of a distribution of width {width} J: {near}"),
+        );
     }
     if !narrow {
-        return (Verdict::Sharp, format!("sharp: {near}"));
+        return (Verdict::Sensitive, format!("sensitive: {near}"));
     }
     // The parameter whose error of 1 % raises E1max most.
     let worst = sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
@@ -85,8 +89,8 @@ fn judge_energy(e1_max: f64, error_bar: f64, predictable: bool, measured: &Measu
         format!("{parameter} off by {worst_at_percent:+} % gives {} J", short(*worst))
     });
     match worst {
-        Some(worst) if worst.worst > (1.0 + SHARP) * e1_max => {
-            (Verdict::Sharp, format!("sharp: {said}, {} times as much", short(worst.worst / e1_max)))
+        Some(worst) if worst.worst > (1.0 + SENSITIVE) * e1_max => {
+            (Verdict::Sensitive, format!("sensitive: {said}, {} times as much", short(worst.worst / e1_max)))
         }
         _ => (Verdict::Robust, format!("robust: at worst {said}")),
     }
@@ -101,12 +105,12 @@ pub fn rule(limits: bool) -> String {
         ""
     };
     format!(
-        "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of E1max; draw: wide, and the \
-         motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sharp: \
+        "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of E1max; single chaotic realisation: wide, and the \
+         motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sensitive: \
          wide, or 1 % of one parameter raises E1max by more than {} %; robust: none of these{edge}. predictable: the error bar is at \
          most {} % of the worst run's E1max",
         100.0 * WIDE,
-        100.0 * SHARP,
+        100.0 * SENSITIVE,
         100.0 * PREDICTABLE
     )
 }
