@@ -39,7 +39,7 @@ impl Observe<State> for Recorder {
 }
 
 #[test]
-fn exact_argmin_observers_see_the_same_rows() {
+fn contract_argmin_observers_see_the_same_rows() {
     for (name, objective, start) in PROBLEMS {
         let objective = |x: &[f64], _cutoff: f64| objective(x);
         let mut rows = Vec::new();

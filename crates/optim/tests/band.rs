@@ -58,7 +58,7 @@ fn exact_peaks_between_samples_are_found() {
 }
 
 #[test]
-fn exact_the_higher_of_two_peaks_wins_though_its_sample_is_lower() {
+fn contract_the_higher_of_two_peaks_is_found_though_its_sample_is_lower() {
     let worst = over(BAND, |omega: f64| {
         let peak = |at: f64, width: f64| 1.0 / (1.0 + ((omega - at) / width).powi(2));
         0.9 * peak(5.5, 0.2) + peak(7.024, 0.02)
@@ -67,13 +67,13 @@ fn exact_the_higher_of_two_peaks_wins_though_its_sample_is_lower() {
 }
 
 #[test]
-fn exact_ends_of_the_band_count() {
+fn contract_ends_of_the_band_are_included() {
     assert_eq!(over(BAND, |omega| omega), Worst { value: 8.0, frequency: 8.0 });
     assert_eq!(over(BAND, |omega| -omega), Worst { value: -5.0, frequency: 5.0 });
 }
 
 #[test]
-fn exact_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
+fn contract_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
     let count = AtomicUsize::new(0);
     let rugged = |omega: f64| {
         count.fetch_add(1, Relaxed);
@@ -144,13 +144,13 @@ fn regress_places_that_a_search_looks_at() {
 }
 
 #[test]
-fn exact_the_first_failure_in_the_order_of_the_band_is_told() {
+fn contract_the_first_failure_in_the_order_of_the_band_is_returned() {
     let failing = |omega: f64| if omega > 6.0 { Err(omega) } else { Ok(1.0) };
     assert_eq!(worst_over(&BAND, failing, f64::INFINITY), Err(BAND.at(21)));
 }
 
 #[test]
-fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
+fn contract_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
     let band = Band { from: 6.0, to: 6.6, samples: 7 };
     let window = Window { from: 5.0, to: 15.0 };
     let on = |threads: usize| {
@@ -182,7 +182,7 @@ fn exact_late_runs_over_a_band_agree_with_the_steady_response() {
 }
 
 #[test]
-fn exact_a_steady_motion_that_reaches_a_wall_has_no_value() {
+fn contract_a_steady_motion_that_reaches_a_wall_has_no_value() {
     let steady = |numbers: Numbers| e1_max(&numbers.scene(), None, Some(BAND));
     let stroke = TMD.coupled().steady_stroke_max([BAND.from, BAND.to]);
     let refused = steady(Numbers { d: 0.999 * stroke.value, ..TMD });

@@ -106,7 +106,7 @@ fn exact_statistics_are_those_of_the_members() {
 }
 
 #[test]
-fn exact_members_fill_their_space_and_stay_within_their_errors() {
+fn invariant_members_fill_their_space_and_stay_within_their_errors() {
     let all = Ensemble { members: 64, ..ensemble(Statistic::Mean) };
     let mut phases = Vec::new();
     for i in 0..64 {
@@ -131,7 +131,7 @@ fn exact_members_fill_their_space_and_stay_within_their_errors() {
 }
 
 #[test]
-fn exact_a_sum_is_weighted_and_nothing_is_hidden_below_a_cutoff() {
+fn contract_a_sum_is_weighted_and_exact_below_a_cutoff() {
     let [one, two] = [band(), None].map(|omega| Objective { omega, ..Objective::default() });
     let robust = |statistic| Objective { ensemble: Some(ensemble(statistic)), ..Objective::default() };
     let scene = SSVI.scene();

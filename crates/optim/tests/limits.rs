@@ -40,7 +40,7 @@ fn evaluate(goal: &Goal, scene: &Scene, cutoff: f64) -> retune_optim::Evaluation
 }
 
 #[test]
-fn exact_any_feasible_design_is_better_than_any_other() {
+fn contract_any_feasible_design_is_better_than_any_infeasible_one() {
     assert_eq!(ranked(1e90, 0.0), 1e90);
     assert!(ranked(1e90, 0.0) < ranked(0.0, 1e-15));
     assert!(ranked(900.0, 0.2) < ranked(1.0, 0.2 + 1e-12), "the energy does not matter, the violation does");
@@ -81,7 +81,7 @@ fn exact_a_steady_stroke_is_limited_in_closed_form() {
 
 /// At any cutoff a value is either the full one, or both are above the cutoff.
 #[test]
-fn exact_a_cutoff_hides_nothing_below_it() {
+fn invariant_values_below_a_cutoff_are_exact() {
     let designs = [SSVI, Numbers { k2: 400.0, ..SSVI }, Numbers { c: 0.1, ..SSVI }].map(|n| n.scene());
     let stroke =
         evaluate(&goal(Some(1.0), None, None), &designs[0], f64::INFINITY).reached.get(Limit::Stroke);

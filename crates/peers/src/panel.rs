@@ -297,7 +297,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_axes_place_values_and_label_decades() {
+    fn contract_axes_place_values_and_label_decades() {
         let axis = Axis::log("x", 1e-4, 1e4);
         assert!((axis.place(1.0) - 0.5).abs() < 1e-12);
         assert_eq!((axis.place(1e-9), axis.place(1e9)), (0.0, 1.0));

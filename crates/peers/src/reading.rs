@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_a_lucky_run_does_not_count_and_a_failed_one_is_counted() {
+    fn contract_a_lucky_run_does_not_count_and_a_failed_one_is_counted() {
         let rows = [
             row(1e-3, 1.0, 1e-9), // lucky
             row(1e-4, 2.0, 1e-4),

@@ -21,7 +21,7 @@ fn reference_of_every_scene_is_confirmed_and_predictable() {
 
 /// The certificate asks for E1max to 1e-9.
 #[test]
-fn exact_the_default_tolerance_gives_a_certificate() {
+fn reference_the_default_tolerance_suffices_for_a_certificate() {
     for case in cases().expect("valid numbers") {
         let reference = Reference::of(&case).expect("runs").found;
         let found = own::run(&case, &Settings::default(), false).expect("runs");
@@ -32,7 +32,7 @@ fn exact_the_default_tolerance_gives_a_certificate() {
 }
 
 #[test]
-fn exact_the_smallest_model_and_the_full_one_agree() {
+fn invariant_the_smallest_model_and_the_full_one_agree() {
     for saving in savings(&cases().expect("valid numbers")).expect("runs") {
         let [small, full] = saving.e1_max;
         assert!((small / full - 1.0).abs() < 1e-11, "{}: {small} {full}", saving.label);

@@ -21,7 +21,7 @@ fn reference_of_every_difficulty_is_confirmed_by_another_method() {
 }
 
 #[test]
-fn exact_the_hybrid_works_on_every_difficulty() {
+fn reference_the_hybrid_works_on_every_difficulty() {
     for difficulty in all().expect("valid numbers") {
         let truth = truth(&difficulty).expect("runs");
         let found = cell(&WAYS[0], &difficulty.case, &truth);
@@ -63,7 +63,7 @@ fn order_of_the_approach_to_rigid_walls_is_two_fifths() {
 }
 
 #[test]
-fn exact_the_hybrid_jumps_over_no_contact() {
+fn contract_the_hybrid_misses_no_contact() {
     for case in &missed::subjects().expect("valid numbers") {
         for step in [1e-3, 1.0] {
             let found = missed::missed(case, Method::Hybrid, Contacts::Located, step).expect("runs");

@@ -113,13 +113,13 @@ mod tests {
     use retune_workbench::Progress as _;
 
     #[test]
-    fn exact_rates_have_few_digits() {
+    fn contract_rates_have_few_digits() {
         assert_eq!([0.0, 3.4219, 1249.8].map(words), ["0.0/s", "3.4/s", "1250/s"]);
     }
 
     /// 900 of 1000 were known, so 50 new ones in 25 s are 2/s, and the other 50 take as long again.
     #[test]
-    fn exact_what_was_known_makes_no_rate() {
+    fn contract_known_values_do_not_count_in_the_rate() {
         let progress = Stage::new("surf", 1000, true);
         progress.inc(950);
         (0..900).for_each(|_| progress.known());

@@ -58,7 +58,7 @@ fn ssvi_band() -> Value {
 }
 
 #[test]
-fn exact_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
+fn contract_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
     let desk = Desk::new();
     desk.write_json("band.json", &ssvi_band());
     for threads in ["1", "2"] {
@@ -83,7 +83,7 @@ fn exact_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
 }
 
 #[test]
-fn exact_the_resolved_study_of_a_band_repeats_its_results() {
+fn contract_the_resolved_study_of_a_band_repeats_its_results() {
     let desk = Desk::new();
     desk.write_json("band.json", &ssvi_band());
     desk.good(&["optimize", "band.json", "--quiet", "--out", "first"]);
@@ -95,7 +95,7 @@ fn exact_the_resolved_study_of_a_band_repeats_its_results() {
 }
 
 #[test]
-fn exact_check_says_what_is_made_small() {
+fn contract_check_says_what_is_minimised() {
     let desk = Desk::new();
     desk.write_json("band.json", &ssvi_band());
     let said = desk.good(&["check", "band.json"]);
@@ -108,7 +108,7 @@ fn exact_check_says_what_is_made_small() {
 
 /// A start whose steady motion reaches a wall has no value, and the message says where and what to do.
 #[test]
-fn exact_a_steady_motion_that_reaches_a_wall_is_told() {
+fn contract_a_steady_motion_that_reaches_a_wall_is_an_error() {
     let desk = Desk::new();
     let mut study = tmd_band();
     study["scene"]["damper"]["D"] = json!(0.01);

@@ -24,7 +24,7 @@ fn number(json: &Value, path: &str) -> f64 {
 }
 
 #[test]
-fn exact_a_global_search_is_the_same_at_any_number_of_threads_and_tells_its_basins() {
+fn contract_a_global_search_is_the_same_at_any_number_of_threads_and_lists_its_basins() {
     let desk = Desk::new();
     desk.write_json("global.json", &with(json!({}), json!({})));
     let said = desk.good(&["optimize", "global.json", "--out", "1", "--threads", "1"]);
@@ -48,7 +48,7 @@ fn exact_a_global_search_is_the_same_at_any_number_of_threads_and_tells_its_basi
 
 /// A limit that the free optimum breaks is kept, and told to be active; one that cannot be kept is said not to be.
 #[test]
-fn exact_limits_are_kept_and_told() {
+fn contract_limits_are_kept_and_reported() {
     let desk = Desk::new();
     desk.write_json("free.json", &with(json!({}), json!({ "stroke": 1e3, "force": 1e9 })));
     desk.good(&["optimize", "free.json", "--quiet"]);
@@ -98,7 +98,7 @@ fn exact_limits_are_kept_and_told() {
 }
 
 #[test]
-fn exact_check_says_every_part_of_an_objective() {
+fn contract_check_says_every_part_of_an_objective() {
     let desk = Desk::new();
     let robust = json!({
         "omega": { "from": 0.9, "to": 1.1, "samples": 3, "relative": true },
@@ -123,7 +123,7 @@ fn exact_check_says_every_part_of_an_objective() {
 }
 
 #[test]
-fn exact_a_robust_objective_is_tuned_and_its_worst_place_told() {
+fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
     let desk = Desk::new();
     let objective = json!({
         "omega": { "from": 6.0, "to": 6.6, "samples": 2 },
@@ -150,7 +150,7 @@ fn exact_a_robust_objective_is_tuned_and_its_worst_place_told() {
 }
 
 #[test]
-fn exact_objectives_that_are_none_are_refused() {
+fn contract_invalid_objectives_are_refused() {
     let desk = Desk::new();
     for (objective, message) in [
         (
@@ -230,7 +230,7 @@ fn paper_table_2_is_certified() {
 }
 
 #[test]
-fn exact_what_a_search_found_is_certified_where_it_lies() {
+fn contract_results_of_a_search_are_certified_in_place() {
     let desk = Desk::new();
     let mut study = with(json!({}), json!({}));
     study["optimize"]["global"] = Value::Null;
@@ -265,7 +265,7 @@ fn exact_what_a_search_found_is_certified_where_it_lies() {
 
 /// The curves of `retune`: at its own k1 a kept tuning is the re-tuned one.
 #[test]
-fn exact_retention_begins_at_the_tuned_design() {
+fn contract_retention_begins_at_the_tuned_design() {
     let desk = Desk::new();
     let mut study =
         with(json!({ "omega": { "from": 0.9, "to": 1.1, "samples": 2, "relative": true } }), json!({}));

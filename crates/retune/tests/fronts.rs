@@ -67,7 +67,7 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
 }
 
 #[test]
-fn exact_the_fronts_are_the_same_with_one_thread_and_two() {
+fn contract_the_fronts_are_the_same_with_one_thread_and_two() {
     let desk = desk();
     for threads in ["1", "2"] {
         desk.good(&["fronts", "fronts.json", "--quiet", "--threads", threads, "--out", threads]);
@@ -78,7 +78,7 @@ fn exact_the_fronts_are_the_same_with_one_thread_and_two() {
 }
 
 #[test]
-fn exact_a_wrong_study_of_fronts_is_told_what_to_change() {
+fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     let desk = desk();
     assert!(desk.good(&["check", "fronts.json"]).contains("each for k2 at most 100, 400 N/m"));
     let good = desk.read_json("fronts.json");

@@ -172,7 +172,7 @@ fn make_parts(desk: &Desk, draw: &mut Draw, limit: Duration, count: &mut impl Fn
 }
 
 #[test]
-fn exact_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
+fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
     let asked: usize = std::env::var("RETUNE_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
     let desk = desk();
     let mut draw = Draw(20_261_121);

@@ -13,7 +13,7 @@ fn desk() -> Desk {
 }
 
 #[test]
-fn exact_results_hold_to_the_last_bit() {
+fn contract_results_are_verified_to_the_last_bit() {
     let desk = desk();
     let said = desk.good(&["verify", "out", "--sample", "7"]);
     let lines: Vec<&str> = said.lines().collect();
@@ -29,7 +29,7 @@ fn exact_results_hold_to_the_last_bit() {
 }
 
 #[test]
-fn exact_a_changed_row_is_found_twice() {
+fn contract_a_changed_row_is_found_by_hash_and_by_value() {
     let desk = desk();
     let surf = desk.read("out/surf.csv");
     let row = surf.lines().nth(5).expect("a row");
@@ -53,7 +53,7 @@ fn exact_a_changed_row_is_found_twice() {
 }
 
 #[test]
-fn exact_another_study_beside_results_is_found() {
+fn contract_another_study_beside_results_is_found() {
     let desk = desk();
     let study = desk.read("out/study.json").replace("\"k1\": 39500.0", "\"k1\": 39501.0");
     desk.write("out/study.json", study);
@@ -66,7 +66,7 @@ fn exact_another_study_beside_results_is_found() {
 }
 
 #[test]
-fn exact_a_band_and_a_table_are_run_again_too() {
+fn contract_a_band_and_a_directory_of_results_are_verified() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 5 } });
@@ -81,7 +81,7 @@ fn exact_a_band_and_a_table_are_run_again_too() {
 }
 
 #[test]
-fn exact_what_is_no_result_is_refused() {
+fn contract_directories_without_results_are_refused() {
     let desk = Desk::new();
     desk.write("none/a.txt", "");
     let Answer { code, stderr, .. } = desk.run(&["verify", "none"]);
@@ -164,7 +164,7 @@ fn contract_a_directory_without_a_manifest_below_is_named() {
 
 /// The penalty of a design that breaks its limits stands in the tables of its search; its energy in `optimum.json`.
 #[test]
-fn exact_results_that_break_their_limits_hold_too() {
+fn contract_results_that_break_their_limits_are_verified() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["limits"] = json!({ "stroke": 1e-6 });
@@ -180,7 +180,7 @@ fn exact_results_that_break_their_limits_hold_too() {
 
 /// A table has the energy of a start that breaks the limits, and its command says that they are not kept.
 #[test]
-fn exact_a_table_of_designs_that_break_their_limits_holds_too() {
+fn contract_a_table_of_designs_that_break_their_limits_is_verified() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["limits"] = json!({ "stroke": 1e-6 });
@@ -202,7 +202,7 @@ fn exact_a_table_of_designs_that_break_their_limits_holds_too() {
 
 /// `certify`, `fronts` and `retune` say of their own results, too, what made them, and have their rows run again.
 #[test]
-fn exact_results_of_several_studies_and_certificates_hold_and_a_changed_digit_is_found() {
+fn contract_results_of_several_studies_and_certificates_are_verified_and_a_changed_digit_is_found() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["surf"] = json!(null);

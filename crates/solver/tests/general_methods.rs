@@ -159,7 +159,7 @@ fn run(method: Method, contacts: Contacts, rtol: f64, step: Option<f64>) -> Resu
 
 /// Every method comes to the hybrid's motion, to what its order and step allow.
 #[test]
-fn exact_all_methods_agree_through_impacts() {
+fn reference_all_methods_agree_through_impacts() {
     let reference = run(Method::Hybrid, Contacts::Located, 1e-12, None).expect("runs");
     assert!(reference.impacts[0] > 5);
     for (method, contacts, rtol, step, allowed) in [
@@ -180,7 +180,7 @@ fn exact_all_methods_agree_through_impacts() {
 }
 
 #[test]
-fn exact_a_fixed_step_is_kept() {
+fn contract_a_fixed_step_is_kept() {
     for method in [Method::Rk4, Method::Euler] {
         let work = run(method, Contacts::Stepped, 1e-6, Some(1e-3)).expect("runs").work;
         assert!((10_000..=10_001).contains(&work.steps), "{method:?}: {} steps", work.steps);
@@ -191,7 +191,7 @@ fn exact_a_fixed_step_is_kept() {
 }
 
 #[test]
-fn exact_no_step_is_longer_than_allowed() {
+fn contract_no_step_is_longer_than_allowed() {
     for method in [Method::Ode23, Method::Ode45, Method::Ode23s, Method::Dop853] {
         let work = run(method, Contacts::Stepped, 1e-2, Some(1e-3)).expect("runs").work;
         assert!(work.steps >= 9_090, "{method:?}: {} steps", work.steps); // the last of a run may be 10 % longer
@@ -200,7 +200,7 @@ fn exact_no_step_is_longer_than_allowed() {
 
 /// Beyond the limit of stability a method of fixed step has no error estimate to warn it, but infinity is noticed.
 #[test]
-fn exact_a_motion_that_blows_up_is_reported() {
+fn contract_a_motion_that_blows_up_is_reported() {
     for method in [Method::Rk4, Method::Euler] {
         let mut scene = ssvi();
         scene.primary.stiffness = NonNegative::new(1e9).expect("not negative");

@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_one_is_one_and_not_many() {
+    fn contract_singular_and_plural() {
         let said = |count| [counted(count, "design"), counted(count, "CMA-ES search"), are(count, "value")];
         assert_eq!(said(1), ["1 design", "1 CMA-ES search", "1 value is"]);
         assert_eq!(said(0), ["0 designs", "0 CMA-ES searches", "0 values are"]);
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_short_numbers_have_six_digits() {
+    fn contract_short_numbers_have_six_digits() {
         assert_eq!(short(215.0), "215");
         assert_eq!(short(0.060_333_333_3), "0.0603333");
         assert_eq!(short(1_234.567_89), "1234.57");

@@ -175,7 +175,7 @@ mod tests {
     /// The second quantity is a parabola that rises from its sample at 6 by 0.04 to 1: a search allows for four times what the
     /// samples show of that, and looks only if it could break the limit so.
     #[test]
-    fn exact_peaks_that_cannot_break_a_limit_are_not_searched() {
+    fn contract_peaks_that_cannot_break_a_limit_are_not_searched() {
         let band = Band { from: 5.0, to: 8.0, samples: 4 };
         let looks = |limit| {
             let count = AtomicUsize::new(0);

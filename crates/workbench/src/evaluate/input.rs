@@ -68,7 +68,7 @@ mod tests {
     use std::io::BufReader;
 
     #[test]
-    fn exact_lines_are_taken_apart_and_long_ones_not_kept() {
+    fn contract_lines_are_taken_apart_and_long_ones_not_kept() {
         let most = "1".repeat(MOST);
         let input = format!("1 2\n\n{most}\n{most}1\nlast");
         for capacity in [1, 7, 1 << 16] {

@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_shares_are_disjoint_and_complete() {
+    fn invariant_shares_are_disjoint_and_complete() {
         for (len, count) in [(10, 3), (7, 7), (3, 5), (10_000_000, 999), (0, 2)] {
             let mut next = 0;
             for index in 1..=count {
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_shares_that_are_none_are_refused() {
+    fn contract_invalid_shares_are_refused() {
         assert_eq!("3/64".parse(), Ok(Shard { index: 3, count: 64 }));
         for text in ["0/3", "4/3", "3", "a/b", "1/0", "-1/3", ""] {
             assert!(text.parse::<Shard>().is_err(), "{text}");

@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_converged_needs_both_tolerances() {
+    fn contract_converged_needs_both_tolerances() {
         let simplex = |dx: f64, df: f64| [vertex(&[1.0], 3.0), vertex(&[1.0 - dx], 3.0 + df)];
         assert!(converged(&simplex(0.25, 0.5), 0.25, 0.5), "both limits are included");
         assert!(!converged(&simplex(0.26, 0.5), 0.25, 0.5), "too wide");
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_converged_with_zero_tolerances_allows_ten_roundings() {
+    fn contract_converged_with_zero_tolerances_allows_ten_roundings() {
         let f = 1e6_f64;
         let simplex =
             |roundings: f64| [vertex(&[-8.0, 2.0], f), vertex(&[-8.0, 2.0], f + roundings * eps(f))];
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_ties_keep_their_order() {
+    fn contract_ties_keep_their_order() {
         let mut simplex =
             vec![vertex(&[1.0], 2.0), vertex(&[2.0], 0.0), vertex(&[3.0], -0.0), vertex(&[4.0], 0.0)];
         sort(&mut simplex);

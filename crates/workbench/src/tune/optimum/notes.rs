@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_a_bound_met_to_within_rounding_is_met() {
+    fn contract_a_bound_met_to_within_rounding_is_met() {
         let open = Bounds { lower: Some(0.0), upper: None };
         let closed = Bounds { lower: Some(10.0), upper: Some(600.0) };
         // A search that was given a start on the bound: neither the start nor the end is of any size.
