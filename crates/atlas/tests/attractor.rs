@@ -1,4 +1,4 @@
-//! One motion or two: stretches whose answer is known.
+//! Counting motions: stretches whose answer is known.
 
 mod common;
 
@@ -51,7 +51,7 @@ fn contract_chaos_is_one_motion_from_any_start_and_not_its_unstable_fixed_point(
     assert!(distinct(&one, &fixed));
 }
 
-/// The larger stretch is still on its way to the smaller.
+/// The larger stretch still converges to the smaller.
 #[test]
 fn contract_a_motion_that_still_drifts_is_not_a_second_one() {
     let settling = states(100, |i| (-0.02 * i as f64).exp());
@@ -66,7 +66,7 @@ fn contract_motions_are_counted_once_each() {
     assert!(motions(&[]).is_empty());
 }
 
-/// What a sweep ends in goes on as the same motion.
+/// The last state of a sweep continues as the same motion.
 #[test]
 fn contract_resumed_motions_continue() {
     let scene = scene(3.95e4, 7.4, Some(SSVI));
@@ -81,8 +81,8 @@ fn contract_resumed_motions_continue() {
     assert!(!distinct(&[a, a], &[b, b]));
 }
 
-/// A sweep keeps a motion beyond the frequency where rest leads to another: at k1 = 2.00e4 N/m and ω = 4.079 rad/s the damper
-/// strikes one wall on the way up, and both from rest.
+/// A sweep stays on its branch beyond the frequency where a start from rest leads to another: at k1 = 2.00e4 N/m and ω = 4.079
+/// rad/s the damper strikes one wall in the upward sweep, and both from rest.
 #[test]
 fn regress_a_sweep_carries_its_motion_on() {
     let soft = scene(2.00e4, 4.079, Some(SSVI));

@@ -48,8 +48,8 @@ fn exact_logistic_intermittency() {
     assert_eq!(regime.kind, Kind::Intermittent, "{regime:?}");
 }
 
-/// In a window of period 3 most starts wander over the remains of the chaotic set first. Starts with long wanderings are few:
-/// take the longest of many.
+/// In a window of period 3 most orbits have a chaotic transient near the former attractor. Long transients are rare:
+/// take many starts.
 #[test]
 fn contract_transient_chaos_is_recognised() {
     let longest = (1..400).map(|i| f64::from(i) / 400.0).map(|start| logistic(3.8285, start, 3000, 2000));
@@ -59,7 +59,7 @@ fn contract_transient_chaos_is_recognised() {
     assert_eq!(straight.transient, None, "{straight:?}");
 }
 
-/// A turn by an irrational angle with a beat: never repeats, neighbours keep their distance.
+/// A rotation by an irrational angle: never repeats, and neighbours keep their distance.
 #[test]
 fn contract_an_irrational_rotation_is_amplitude_modulated() {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);

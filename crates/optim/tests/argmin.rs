@@ -10,7 +10,7 @@ use retune_optim::{Fminsearch, Options, Row, minimize};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
-/// What an argmin observer is told, as (iteration, func_count, procedure, best, value).
+/// The values passed to an argmin observer: (iteration, func_count, procedure, best, value).
 type Seen = (u64, u64, String, Vec<f64>, f64);
 
 #[derive(Clone, Default)]

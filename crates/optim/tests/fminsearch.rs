@@ -139,14 +139,14 @@ fn contract_limits_end_the_run() {
         let (found, _) = run(|x, _| rosenbrock(x), &[-1.2, 1.0], limited(max_iter, Some(max_fun_evals)));
         assert_eq!((found.stop, found.iterations, found.func_count), (Stop::MaxFunEvals, 13, 27));
     }
-    // An objective that falls for ever has no other end than 200 iterations for each coordinate.
+    // An objective without a lower bound ends only after 200 iterations for each coordinate.
     let (found, _) = run(|x, _| -x[0], &[1.0], Options { max_fun_evals: Some(10_000), ..Options::default() });
     assert_eq!((found.stop, found.iterations), (Stop::MaxIter, 200));
 }
 
 #[test]
 fn contract_tolerances_must_both_hold() {
-    // Flat in value from the start, so that TolX alone decides; and the reverse.
+    // A constant objective, so that TolX alone decides; and the reverse.
     let (found, _) = run(|_, _| 1.0, &[100.0, 0.0], Options::default());
     assert_eq!(found.stop, Stop::Converged);
     assert!(found.iterations > 10, "5 must shrink below 1e-4: {}", found.iterations);

@@ -58,7 +58,7 @@ fn contract_the_same_bits_at_any_number_of_threads_and_others_for_another_seed()
     assert!(one.iter().all(|search| search.found.value < search.start.value));
 }
 
-/// Every evaluation lies in the box, and their number is bounded: the look, and whole generations of the searches.
+/// Every evaluation lies in the box, and their number is bounded: the samples, and whole generations of the searches.
 #[test]
 fn contract_searches_stay_in_the_box_and_within_their_evaluations() {
     let space = Space(vec![Side::natural(10.0, 5000.0), Side::natural(0.0, 2.0)]);
@@ -89,7 +89,7 @@ fn exact_coordinates_are_the_inverse_of_values() {
     assert!((space.distance(&[10.0, 0.0], &[100.0, 0.3]) - 10_f64.ln() / 500_f64.ln()).abs() < 1e-14);
 }
 
-/// Ratios where a side spans a decade above zero, wherever that decade lies.
+/// Logarithmic if a side spans a decade above zero, at any magnitude.
 #[test]
 fn contract_a_side_is_logarithmic_from_a_decade_on() {
     for from in [1e-3, 0.1, 1.0, 250.0] {

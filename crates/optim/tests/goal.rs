@@ -1,4 +1,4 @@
-//! Objectives composed: stiffnesses, ensembles and sums give what their runs give one by one, and a cutoff changes nothing below it.
+//! Composed objectives: stiffnesses, ensembles and sums agree with their single runs, and a cutoff changes no value below it.
 
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
@@ -55,7 +55,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
     );
     let k1 = found.worst.scene.primary.stiffness.get();
     assert_eq!(each[stiffnesses.iter().position(|other| *other == k1).expect("one of them")], worst);
-    // A range holds its ends and refines what is between: of the bare structure at ω = 6, in closed form, k1 = m1 ω².
+    // A range includes its ends and is refined between them: of the bare structure at ω = 6, in closed form, k1 = m1 ω².
     let range = Stiffnesses::Range(StiffnessRange { from: positive(3e4), to: positive(5e4), samples: 5 });
     let bare = Numbers { omega: 6.0, ..TMD }.bare_scene();
     let found = evaluate(
@@ -161,7 +161,7 @@ fn contract_a_sum_is_weighted_and_exact_below_a_cutoff() {
     }
 }
 
-/// A settled objective without contacts is the steady one; with them it counts what has not settled.
+/// A settled objective without contacts equals the steady one; with contacts it counts the runs that have not settled.
 #[test]
 fn exact_settled_is_steady_where_nothing_touches() {
     let window = Window { from: 20.0, to: 60.0 };
@@ -183,7 +183,7 @@ fn exact_settled_is_steady_where_nothing_touches() {
     assert!(found.unsettled == found.runs && found.runs >= 4, "{found:?}");
 }
 
-/// What is known to be above a cutoff is not looked at further: a stiffness at a time, members in groups of eight.
+/// Evaluation stops once a value is known to exceed the cutoff: after each stiffness, and after each group of eight members.
 #[test]
 fn contract_nothing_is_run_beyond_a_cutoff() {
     let set = Objective { k1: set(&[3e4, 4e4, 5e4]), ..Objective::default() };

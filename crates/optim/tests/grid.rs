@@ -86,7 +86,7 @@ fn contract_grids_above_the_limit_are_refused_before_anything_is_made() {
     assert_eq!(Grid::new(axes(2, 10), 99), Err(GridError::TooLarge { points: 100, limit: 99 }));
     let million_million = Grid::new(axes(2, 1_000_000), 10_000_000).expect_err("too large");
     assert_eq!(million_million.to_string(), "the grid has 1e12 points: at most 10000000 are allowed");
-    // 10¹⁹⁰ points fit no integer; a wrapped product would be 0.
+    // 10¹⁹⁰ points overflow any integer; a wrapped product would be 0.
     let overflow = Grid::new(axes(10, usize::MAX), usize::MAX);
     assert_eq!(overflow, Err(GridError::TooLarge { points: u128::MAX, limit: usize::MAX }));
     assert_eq!(Grid::new(vec![], 10), Err(GridError::NoAxes));

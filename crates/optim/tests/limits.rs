@@ -1,4 +1,4 @@
-//! Limits: the order they put designs in, what they are measured against, and that a cutoff changes nothing below it.
+//! Limits: the ranking of designs, the values that limits apply to, and that a cutoff changes no value below it.
 
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
@@ -47,7 +47,7 @@ fn contract_any_feasible_design_is_better_than_any_infeasible_one() {
     assert!(energy(ranked(5.0, 0.1)).is_nan() && energy(5.0) == 5.0 && energy(f64::INFINITY).is_nan());
 }
 
-/// The limits are measured against what a run shows, and the violation is the sum of shares.
+/// The limits apply to the values of a run, and the violation is the sum of the relative excesses.
 #[test]
 fn exact_violations_are_shares_of_the_limits() {
     let scene = SSVI.scene();
@@ -64,7 +64,7 @@ fn exact_violations_are_shares_of_the_limits() {
     assert_eq!(broken.value, INFEASIBLE * (1.0 + broken.violation));
     let limits = limits(Some(stroke * 1.005), Some(force * 1.5), None);
     assert_eq!(limits.active(&free.reached), [Limit::Stroke]);
-    // Nothing is watched that no limit asks for.
+    // Quantities without a limit are not observed.
     assert_eq!(evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached.0, [0.0, 0.0, 0.42]);
 }
 
@@ -100,13 +100,13 @@ fn invariant_values_below_a_cutoff_are_exact() {
     }
 }
 
-/// The best c2 of a TMD whose steady stroke may not pass a limit lies on the limit: the same by halving on the closed form.
+/// The best c2 of a TMD whose steady stroke may not pass a limit lies on the limit: compared with bisection of the closed form.
 #[test]
 fn exact_a_search_ends_on_an_active_limit() {
     let of = |c2: f64| Numbers { k2: 2083.0, c2, ..TMD };
     let stroke = |c2: f64| of(c2).coupled().steady_stroke_max([5.0, 8.0]).value;
     let value = |c2: f64| of(c2).coupled().steady_e1_max([5.0, 8.0]).value;
-    let (mut low, mut high) = (120.0, 500.0); // more damping moves less, and serves worse than the tuned one
+    let (mut low, mut high) = (120.0, 500.0); // more damping reduces the stroke, but E1max is worse than with the tuned damping
     let limit = 0.7 * stroke(low);
     assert!(stroke(high) < limit && value(low) < value(high));
     for _ in 0..60 {

@@ -43,7 +43,7 @@ fn contract_failures_are_infinite_counted_and_one_is_kept() {
     assert_eq!(reason.to_string(), "c2: -1 is not allowed here: give a finite number not below 0");
 }
 
-/// What keeps its limits is at most [`INFEASIBLE`], what is recalled counts as what was found.
+/// A feasible value is at most [`INFEASIBLE`]; a recalled value counts like a computed one.
 #[test]
 fn contract_recalled_values_are_counted_as_when_they_were_found() {
     let objective = objective(vec![Variable::C2], 5.0, Settings::default());

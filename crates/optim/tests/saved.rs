@@ -1,4 +1,4 @@
-//! Interrupted runs: what they keep, and how they go on from memory or from a save.
+//! Interrupted runs: what they keep, and how they continue from memory or from a save.
 
 mod problems;
 
@@ -35,7 +35,7 @@ fn unbroken() -> (Minimum, Vec<Row>) {
     (found.expect("a valid start"), rows)
 }
 
-/// Breaks the run at every row and goes on with what `continued` makes of the solver.
+/// Breaks the run at every row and continues with the solver that `continued` returns.
 fn interrupted_at_every_row(
     solver: Fminsearch,
     continued: impl Fn(Fminsearch) -> Fminsearch,

@@ -9,7 +9,7 @@ use retune_solver::{Hybrid, Motion, Phase, SolverError, observe::Unobserved};
 pub struct Case {
     /// Its name in tables.
     pub name: &'static str,
-    /// What it is, for a chart.
+    /// Its label on a chart.
     pub label: &'static str,
     /// The scene.
     pub scene: Scene,
@@ -45,7 +45,7 @@ pub fn system(scene: &Scene) -> Option<Coupled> {
 /// The paper's structure with a damper.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 #[expect(clippy::approx_constant, reason = "the paper's rounded numbers")]
 pub fn scene(n: Numbers) -> Result<Scene, OutOfRange> {
     let steel = (Positive::new(2.1e11)?, PoissonRatio::new(0.3)?);
@@ -82,7 +82,7 @@ pub fn scene(n: Numbers) -> Result<Scene, OutOfRange> {
 /// The six scenes.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn cases() -> Result<Vec<Case>, OutOfRange> {
     let bare = Scene { damper: None, ..scene(TMD)? };
     let critical = 2.0 * (SSVI.k2 * 60.0_f64).sqrt();
@@ -97,7 +97,7 @@ pub fn cases() -> Result<Vec<Case>, OutOfRange> {
     ])
 }
 
-/// Rate (1/s) at which two motions of a scene, begun 1e-9 m apart in `x1`, part over the run; `None` without a damper.
+/// Finite-time Lyapunov exponent (1/s) of two motions of a scene that start 1e-9 m apart in `x1`; `None` without a damper.
 ///
 /// # Errors
 /// A run that failed.

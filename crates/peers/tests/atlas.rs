@@ -1,4 +1,4 @@
-//! The atlas of failures: its references against another method, the hybrid's cells, and every cell as committed.
+//! The atlas of failures: its references against another method, the hybrid's cells, and every committed cell.
 
 use retune_peers::atlas::difficulties::all;
 use retune_peers::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
@@ -29,7 +29,7 @@ fn reference_the_hybrid_works_on_every_difficulty() {
     }
 }
 
-/// What each contact may change of the energy: the tolerance of its steps.
+/// The allowed change of the energy per contact: the tolerance of its steps.
 #[test]
 fn invariant_energy_of_the_hybrid_drifts_by_less_than_rtol_an_impact() {
     for rtol in [1e-4, 1e-6, 1e-8, 1e-10] {
@@ -52,7 +52,7 @@ fn exact_largest_stable_steps_are_those_of_theory() {
     }
 }
 
-/// A contact lasts as long as `K^(-2/5)`.
+/// The duration of a contact is proportional to `K^(-2/5)`.
 #[test]
 fn order_of_the_approach_to_rigid_walls_is_two_fifths() {
     let [_, near] = rigid::distance(8).expect("runs");

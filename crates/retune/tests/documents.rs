@@ -1,4 +1,4 @@
-//! What the documents name is there.
+//! The files, commands and studies that the documents name exist.
 
 mod common;
 #[path = "../../model/tests/scenes/mod.rs"]
@@ -16,7 +16,7 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What stands between backticks; every second piece.
+/// The texts between backticks: every second piece.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
@@ -65,7 +65,7 @@ fn contract_every_recipe_of_the_documents_exists() {
     assert!(seen >= 12, "{seen}");
 }
 
-/// Whoever runs a command through just can give it options, `--resume` among them; and the command that goes on with a run, which
+/// A command run through just accepts options, `--resume` among them; and the command that resumes a run, which
 /// then begins with `just`, is a recipe.
 #[test]
 fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_with() {

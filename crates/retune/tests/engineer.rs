@@ -1,11 +1,11 @@
-//! What an engineer asks for: limits, other objectives, a global search, a certificate, retention. From the study to the results.
+//! Limits, other objectives, a global search, a certificate, retention: from the study to the results.
 
 mod common;
 
 use common::{Answer, Desk, studies, tiny};
 use serde_json::{Value, json};
 
-/// The tiny study with a global search in the place of its grid.
+/// The tiny study with a global search instead of its grid.
 fn with(objective: Value, limits: Value) -> Value {
     let mut study = tiny();
     study["optimize"] = json!({
@@ -46,7 +46,7 @@ fn contract_a_global_search_is_the_same_at_any_number_of_threads_and_lists_its_b
     assert_eq!(desk.read("1/optimum.json"), desk.read("3/optimum.json"));
 }
 
-/// A limit that the free optimum breaks is kept, and told to be active; one that cannot be kept is said not to be.
+/// A limit that the unconstrained optimum breaks is kept and reported as active; one that cannot be kept is reported as broken.
 #[test]
 fn contract_limits_are_kept_and_reported() {
     let desk = Desk::new();
@@ -193,7 +193,7 @@ fn contract_invalid_objectives_are_refused() {
     );
 }
 
-/// Table 2's SSVI NES: predictable by every method, and yet one draw of many; the TMD beside it is robust.
+/// Table 2's SSVI NES: predictable by every method, and yet a single chaotic realisation; the TMD is robust.
 #[test]
 fn paper_table_2_is_certified() {
     let desk = Desk::new();
@@ -213,7 +213,7 @@ fn paper_table_2_is_certified() {
         assert!(said.contains("verdict ") && said.contains("rule ") && said.contains("c2 "), "{said}");
     }
     let tmd = desk.read_json("results/certify/tmd/certificate.json");
-    // Without contacts C changes nothing, and the slope in k2 is that of two runs.
+    // Without contacts C has no effect, and the slope in k2 is that of two runs.
     let row = |name: &str| {
         let rows = tmd["sensitivity"].as_array().expect("rows");
         rows.iter().find(|row| row["parameter"] == name).cloned().expect("a row")
@@ -263,7 +263,7 @@ fn contract_results_of_a_search_are_certified_in_place() {
     assert!(code == Some(2) && stderr.contains("nothing.json: cannot be read"), "{stderr}");
 }
 
-/// The curves of `retune`: at its own k1 a kept tuning is the re-tuned one.
+/// The curves of `retune`: at the nominal k1 the original tuning is the re-tuned one.
 #[test]
 fn contract_retention_begins_at_the_tuned_design() {
     let desk = Desk::new();

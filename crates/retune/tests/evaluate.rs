@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
-/// What `evaluate` says to `input`, given as a whole.
+/// The output of `evaluate` for the whole `input`.
 fn said(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Answer {
     let mut command = desk.command(&[&["evaluate", study], options].concat());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -88,14 +88,14 @@ fn contract_a_bad_line_is_answered_by_an_error_and_the_next_is_evaluated() {
     ]) {
         assert!(line.starts_with(words), "{line}, not {words}");
     }
-    // The same, with the number of the line, where a person sees it.
+    // The same on standard error, with the line number.
     let told: Vec<&str> = stderr.lines().collect();
     assert_eq!(told.len(), 10, "{stderr}");
     assert_eq!(told[2], "error: line 3: k2: \"soft\" is not a number");
     assert_eq!(told[9], "error: standard input: 9 of 10 lines had no value");
 }
 
-/// What nobody would write is neither kept nor said back.
+/// An absurdly long line is neither stored nor echoed.
 #[test]
 fn contract_a_line_without_end_and_a_word_of_megabytes_cost_nothing() {
     let desk = Desk::new();
@@ -119,7 +119,7 @@ fn contract_a_line_without_end_and_a_word_of_megabytes_cost_nothing() {
     assert!(stderr.len() < 1000 && !stderr.contains('\x1b'), "{stderr}");
 }
 
-/// Who does not read standard error is not held up by it.
+/// A full pipe of standard error does not block the answers.
 #[test]
 fn contract_standard_error_names_the_first_hundred_lines() {
     let desk = Desk::new();

@@ -1,4 +1,4 @@
-//! What dampers are good for: the least E1max under bounds on the spring and on the stroke.
+//! Pareto fronts of dampers: the least E1max under bounds on the spring and on the stroke.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn desk() -> Desk {
     desk
 }
 
-/// The columns of a table: the bound, the damper, E1max, k2, stroke.
+/// The columns of a table: bound, damper, E1max, k2, stroke.
 fn rows(desk: &Desk, name: &str) -> Vec<(f64, String, f64, f64, f64)> {
     let number = |text: &str| text.parse().unwrap_or(f64::NAN);
     let row = |line: &str| {

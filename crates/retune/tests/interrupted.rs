@@ -1,5 +1,5 @@
-//! Runs that are stopped, killed, locked out or cut off from the disk: nothing is lost, and the results that come in the end
-//! have the bytes of an unbroken run.
+//! Runs that are stopped, killed, locked out or out of disk space: nothing is lost, and the final results
+//! have the bytes of an uninterrupted run.
 
 mod common;
 
@@ -36,7 +36,7 @@ fn contract_a_killed_run_resumes_and_ends_in_the_same_bytes() {
     assert_same(&desk, "whole", "out");
 }
 
-/// A loop that tries again until a run succeeds may try once more.
+/// A loop that retries until a run succeeds may run once more after it.
 #[test]
 fn contract_resuming_finished_work_computes_nothing() {
     let desk = desk();
@@ -56,7 +56,7 @@ fn contract_resuming_finished_work_computes_nothing() {
     assert!(said.starts_with("surf: "), "another study is not finished: {said}");
 }
 
-/// Not even the superuser may write there.
+/// Not even root can write there.
 #[cfg(target_os = "linux")]
 #[test]
 fn contract_a_directory_that_cannot_be_written_is_named() {
@@ -77,7 +77,7 @@ fn contract_unfinished_work_can_be_discarded() {
     assert_same(&desk, "whole", "out");
 }
 
-/// The unfinished work of one study is not mixed with another, nor thrown away for it.
+/// The unfinished work of one study is neither mixed with that of another nor discarded for it.
 #[test]
 fn contract_unfinished_work_of_another_study_is_left_alone() {
     let desk = desk();
@@ -112,7 +112,7 @@ fn contract_two_runs_into_one_directory_are_refused() {
     assert_same(&desk, "whole", "out");
 }
 
-/// Until new results are whole, those of an earlier run stay as they are.
+/// Until new results are complete, those of an earlier run stay unchanged.
 #[test]
 fn contract_earlier_results_outlive_a_run_that_is_killed_or_refused() {
     let desk = desk();
@@ -156,7 +156,7 @@ fn contract_ctrl_c_stops_within_a_second_and_says_how_to_resume() {
     }
 }
 
-/// A run that just has started goes on with just, whose recipes are named like the commands.
+/// A run started through just resumes through just, whose recipes are named like the commands.
 #[cfg(unix)]
 #[test]
 fn contract_a_run_through_just_goes_on_through_just() {
@@ -230,7 +230,7 @@ fn contract_table2_resumes_where_it_was_killed() {
     assert_eq!(desk.read("whole/table2.csv"), desk.read("out/table2.csv"));
 }
 
-/// The global search goes on as well, and counts what it looked at as if it had not been broken off.
+/// The global search resumes as well, with the counts of an uninterrupted one.
 #[test]
 fn contract_a_global_search_resumes_where_it_was_killed() {
     let desk = Desk::new();

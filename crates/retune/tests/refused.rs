@@ -1,4 +1,4 @@
-//! Bad input: one clear message each, exit code 2, and nothing left behind.
+//! Bad input: one clear message each, exit code 2, and no file left.
 
 mod common;
 
@@ -309,7 +309,7 @@ fn contract_a_failed_run_exits_with_1_not_2() {
     assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
 }
 
-/// One cause, and one thing to do, at once: no run of a day for a slip of the keyboard.
+/// One cause and one remedy, immediately: a typing error must not start a run of a day.
 #[test]
 fn contract_values_that_nobody_means_are_told_with_what_helps() {
     let desk = Desk::new();

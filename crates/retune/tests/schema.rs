@@ -1,4 +1,4 @@
-//! The committed JSON Schemas: current, and true of every study.
+//! The committed JSON Schemas: they are current, and every study is valid.
 
 mod common;
 

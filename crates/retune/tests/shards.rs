@@ -1,4 +1,4 @@
-//! A grid in parts: the bytes of a single process, and every way in which parts may be wrong.
+//! A grid in parts: the bytes of a single process, and the errors of wrong parts.
 
 mod common;
 
@@ -51,7 +51,7 @@ fn contract_merged_parts_are_the_bytes_of_one_process() {
     }
 }
 
-/// More shares than points, and parts of two divisions that fit together.
+/// More shares than points, and parts from two divisions that are complementary.
 #[test]
 fn contract_shares_may_be_empty_or_of_different_sizes() {
     let desk = desk();
@@ -129,7 +129,7 @@ fn contract_parts_of_another_study_or_version_are_named() {
     assert_eq!(code, Some(2));
     let words = format!("error: out/parts/{}: it is of another study (SHA-256 ", part(&desk, 2));
     assert!(stderr.starts_with(&words), "{stderr}");
-    // Nor is the part of another study taken for one's own.
+    // The part of another study is not accepted either.
     let Answer { code, stderr, .. } = desk.run(&["optimize", "study.json", "--out", "out", "--shard", "2/2"]);
     assert!(code == Some(2) && stderr.starts_with(&words), "{stderr}");
 }

@@ -1,4 +1,4 @@
-//! `verify`: results are run again, and what does not hold is said.
+//! `verify`: results are computed again, and differences are reported.
 
 mod common;
 
@@ -109,7 +109,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     let none = "there is no manifest.json: what made these files, and whether they are as it made them";
     assert_eq!(verify(), (Some(4), format!("error: out: cannot be checked: {none}\n")));
 
-    // A verdict that was touched up, and the manifest gone with it.
+    // A changed verdict, without the manifest.
     assert!(certificate.contains("\"verdict\": \"robust\""), "{certificate}");
     desk.write(
         "out/certificate.json",
@@ -123,7 +123,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert_eq!(verify(), (Some(1), expected));
     desk.write("out/certificate.json", &certificate);
 
-    // A file that the manifest does not name, though it is among what Retune writes.
+    // A file that Retune writes but the manifest does not name.
     let line = manifest.lines().find(|line| line.contains("\"convergence.svg\"")).expect("a line");
     desk.write("out/manifest.json", manifest.replace(&format!("{line}\n"), ""));
     let expected = "error: out: cannot be checked: convergence.svg is not in the manifest\n";
@@ -132,7 +132,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert!(verify().1.starts_with("error: out: does not hold: manifest.json, is no manifest: "));
     desk.write("out/manifest.json", &manifest);
 
-    // Without the optimum its certificate still is of a design of its own.
+    // Without the optimum the certificate still has its own design.
     let optimum = desk.read("out/optimum.json");
     std::fs::remove_file(desk.path("out/optimum.json")).expect("an optimum");
     let expected = "error: out: does not hold: optimum.json is missing; cannot be checked: there is no optimum.json: the design \
@@ -152,7 +152,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert!(code == Some(1) && said.contains("study.json is missing"), "{said}");
 }
 
-/// Results below that have lost all that said what they are.
+/// Results below a directory without a manifest or study.
 #[test]
 fn contract_a_directory_without_a_manifest_below_is_named() {
     let desk = desk();
@@ -162,7 +162,7 @@ fn contract_a_directory_without_a_manifest_below_is_named() {
     assert!(stderr.starts_with("error: out: cannot be checked: below/there is no manifest.json"), "{stderr}");
 }
 
-/// The penalty of a design that breaks its limits stands in the tables of its search; its energy in `optimum.json`.
+/// The tables of a search have the penalty of a design that breaks its limits; `optimum.json` has its energy.
 #[test]
 fn contract_results_that_break_their_limits_are_verified() {
     let desk = Desk::new();
@@ -178,7 +178,7 @@ fn contract_results_that_break_their_limits_are_verified() {
     assert!(value.parse::<f64>().is_ok_and(|value| value > 1e100), "{value}");
 }
 
-/// A table has the energy of a start that breaks the limits, and its command says that they are not kept.
+/// A table has the energy of a start that breaks the limits, and its command reports the broken limits.
 #[test]
 fn contract_a_table_of_designs_that_break_their_limits_is_verified() {
     let desk = Desk::new();
@@ -200,7 +200,7 @@ fn contract_a_table_of_designs_that_break_their_limits_is_verified() {
     );
 }
 
-/// `certify`, `fronts` and `retune` say of their own results, too, what made them, and have their rows run again.
+/// The results of `certify`, `fronts` and `retune` name their studies as well, and their rows are computed again.
 #[test]
 fn contract_results_of_several_studies_and_certificates_are_verified_and_a_changed_digit_is_found() {
     let desk = Desk::new();

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::cmp::Ordering;
 
-/// A point and the objective there.
+/// A point and the value of the objective there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Vertex {
     /// Coordinates the simplex moves in: parameters over their scale.
@@ -22,7 +22,7 @@ fn null_is_infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
-/// Sorts from best to worst; equal values keep their order, so a newcomer comes after the vertex it ties with.
+/// Sorts from best to worst; equal values keep their order, so a new vertex comes after the one it ties with.
 pub(super) fn sort(simplex: &mut [Vertex]) {
     simplex.sort_by(|a, b| a.value.partial_cmp(&b.value).unwrap_or(Ordering::Equal));
 }
@@ -42,7 +42,7 @@ pub(super) fn along(centroid: &[f64], worst: &[f64], t: f64) -> Vec<f64> {
     centroid.iter().zip(worst).map(|(xbar, w)| (1.0 + t) * xbar - t * w).collect()
 }
 
-/// The point v₁ + σ·(v − v₁): `x` drawn towards the best vertex.
+/// The point v₁ + σ·(v − v₁): `x` moved towards the best vertex.
 pub(super) fn shrunk(best: &[f64], x: &[f64], sigma: f64) -> Vec<f64> {
     best.iter().zip(x).map(|(v1, v)| v1 + sigma * (v - v1)).collect()
 }

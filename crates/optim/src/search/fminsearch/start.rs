@@ -8,7 +8,7 @@ const STEP: f64 = 0.05;
 const STEP_AT_ZERO: f64 = 0.00025;
 
 /// Coordinate `x` of the start moved for its vertex of the initial simplex: to (1 + 0.05) x, or to 0.00025 if it is
-/// zero. Where that leaves `bounds` (on the parameter `x · scale`) it steps the other way; where both ways leave it,
+/// zero. If that is outside `bounds` (on the parameter `x · scale`) it steps the other way; if both are outside,
 /// halfway to the farther bound.
 pub(super) fn stepped(x: f64, scale: f64, bounds: Bounds) -> f64 {
     let (there, back) =
