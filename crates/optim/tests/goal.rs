@@ -45,7 +45,7 @@ fn ensemble(statistic: Statistic) -> Ensemble {
 #[test]
 fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
     let term = Objective { omega: band(), ..Objective::default() };
-    let stiffnesses = [3e4, 5e4, 3.95e4];
+    let stiffnesses = [3e4, 5e4, SSVI.k1];
     let each = stiffnesses.map(|k1| value(&term, &Numbers { k1, ..SSVI }.scene()));
     let found = evaluate(Objective { k1: set(&stiffnesses), ..term.clone() }, &SSVI.scene(), f64::INFINITY);
     let worst = each.iter().copied().fold(0.0, f64::max);
@@ -63,7 +63,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
         &bare,
         f64::INFINITY,
     );
-    let near = 0.5 * (800.0_f64 / (452.0 * 6.0)).powi(2) * 3.6e4;
+    let near = 0.5 * (TMD.p / (TMD.c1 * 6.0)).powi(2) * 3.6e4;
     assert!((found.value / near - 1.0).abs() < 0.01 && found.value >= near, "{} {near}", found.value);
     assert!((found.worst.scene.primary.stiffness.get() / 3.6e4 - 1.0).abs() < 0.02);
 }
@@ -71,7 +71,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
 #[test]
 fn exact_a_relative_band_moves_with_the_structure() {
     let relative = FrequencyBand { from: positive(0.9), to: positive(1.1), samples: 3, relative: true };
-    for k1 in [2e4, 3.95e4] {
+    for k1 in [2e4, TMD.k1] {
         let scene = Numbers { k1, ..TMD }.scene();
         let natural = (k1 / TMD.m1).sqrt();
         let found = value(

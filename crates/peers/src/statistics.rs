@@ -1,7 +1,7 @@
 //! Beyond the predictable horizon: a chaotic motion, where only statistics can be compared.
 
 use crate::own;
-use crate::scenes::{Numbers, SSVI, scene};
+use crate::scenes::{ROW1, scene};
 use retune_model::Scene;
 use retune_solver::{Contacts, Method, Rows, Settings, Window, simulate, trajectory};
 use std::error::Error;
@@ -11,7 +11,7 @@ use std::error::Error;
 /// # Errors
 /// A value out of range.
 pub fn chaotic() -> Result<Scene, Box<dyn Error>> {
-    Ok(scene(Numbers { k2: 150.0, c2: 218.4, d: 0.06, c: 0.11, ..SSVI })?)
+    Ok(scene(ROW1)?)
 }
 
 /// From t = 100 s for 2,000 s: some 2,000 periods and 1,800 Lyapunov times.
