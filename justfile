@@ -154,7 +154,7 @@ deny:
 package:
     # What cargo unpacked and built of an earlier packing of the same version it would take for the new one.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
-    cargo package --target-dir target/packing --workspace --exclude retune-peers --allow-dirty
+    cargo package --target-dir target/packing --workspace --exclude retune-bench --allow-dirty
 
 # Measure speed
 bench *OPTIONS:
@@ -173,24 +173,25 @@ bench-surf *OPTIONS:
 fmt *OPTIONS:
     cargo fmt --all "$@"
 
-# Check format and lints, warnings as errors
+# Check format, lints (warnings as errors), and who imports whom (needs python3)
 lint:
     cargo fmt --all --check
+    python3 tests/imports.py
     cargo clippy --all-targets -- -D warnings
 
 # Speed against accuracy of every method and peer, on six scenes, into results/accuracy
 accuracy *OPTIONS:
-    cargo run --release -p retune-peers --features integrators --bin accuracy "$@"
+    cargo run --release -p retune-bench --features integrators --bin accuracy "$@"
 
 # GNU Octave, SciPy and SUNDIALS on the same scenes (needs octave, and numpy, scipy, scikit-sundae for python3), and the charts again
 accuracy-external:
     octave-cli --no-gui --quiet tests/reference/external/octave_methods.m
     python3 tests/reference/external/scipy_methods.py
-    cargo run --release -p retune-peers --features integrators --bin accuracy draw
+    cargo run --release -p retune-bench --features integrators --bin accuracy draw
 
 # Where methods fail, and how, into results/stability
 stability *OPTIONS:
-    cargo run --release -p retune-peers --bin stability "$@"
+    cargo run --release -p retune-bench --bin stability "$@"
 
 # SciPy's optimisers beside Retune's own searches on the same objectives (needs numpy and scipy for python3), into results/rivals
 rivals *PROBLEMS:
@@ -199,5 +200,5 @@ rivals *PROBLEMS:
 
 # Test the comparison itself, every cell of the atlas among it; `just test-peers --features integrators` with the peers
 test-peers *OPTIONS:
-    cargo clippy -p retune-peers --all-targets "$@" -- -D warnings
-    cargo test -p retune-peers "$@"
+    cargo clippy -p retune-bench --all-targets "$@" -- -D warnings
+    cargo test -p retune-bench "$@"

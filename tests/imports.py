@@ -14,21 +14,19 @@ import modules
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# What each crate may depend on. `atlas` and `peers` are the earlier names of `dynamics` and `bench`.
+# What each crate may depend on.
 BELOW = {
     "model": "",
     "solver": "model",
     "optim": "model solver",
     "dynamics": "model solver",
-    "atlas": "model solver",
     "store": "",
     "figures": "",
-    "study": "model solver optim dynamics atlas",
-    "workbench": "model solver optim dynamics atlas study store figures",
-    "paper": "model solver optim dynamics atlas study store figures workbench",
-    "retune": "model solver optim dynamics atlas study store figures workbench paper",
-    "bench": "model solver optim dynamics atlas study store figures workbench paper",
-    "peers": "model solver optim dynamics atlas study store figures workbench paper",
+    "study": "model solver optim dynamics",
+    "workbench": "model solver optim dynamics study store figures",
+    "paper": "model solver optim dynamics study store figures workbench",
+    "retune": "model solver optim dynamics study store figures workbench paper",
+    "bench": "model solver optim dynamics study store figures workbench paper",
 }
 
 MOST_LINES = 300
@@ -36,14 +34,9 @@ MOST_SHARE = 0.25
 
 # Known exceptions, each with the size that it may have and the reason. One that is no longer needed is named, and goes.
 LONG_FILES = {
-    "crates/optim/src/goal.rs": (342, "becomes part of the serialisable Objective"),
-    "crates/peers/src/panel.rs": (309, "becomes part of `figures`"),
-    "crates/retune/src/results.rs": (318, "becomes `store`"),
-    "crates/retune/src/study/objective.rs": (316, "becomes part of the serialisable Objective"),
+    "crates/bench/src/panel.rs": (309, "becomes part of `figures`"),
 }
-LARGE_CRATES = {
-    "retune": (0.60, "`study`, `store`, `figures`, `workbench` and `paper` are still inside"),
-}
+LARGE_CRATES = {}
 
 
 def circles(edges):

@@ -12,7 +12,7 @@ import argparse, collections, fnmatch, functools, hashlib, json, os, pathlib, sh
 DRAWN = 345
 # As many are tried before what became of them is written down.
 AT_ONCE = 10
-# Files of each crate, and its tests: quick and decisive ones first, what they miss to the next.
+# Files of each crate, and its tests: quick and decisive ones first, what they miss to the next; after an @ those of another crate.
 CRATES = {
     "retune-model": (["crates/model/src/*"], ["--tests"]),
     "retune-solver": (["crates/solver/src/*"], [
@@ -20,7 +20,7 @@ CRATES = {
         "--lib --test allocation --test bounds --test exact --test extreme_values --test general_methods --test invariant --test observers --test order --test paper --test running_maximum --test settled --test trajectory",
         "--test any_scene --test edge --test hunt"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
-    "retune": (["crates/retune/src/results*"], ["--bins", "--tests"]),
+    "retune-store": (["crates/store/src/*"], ["--tests", "@retune --tests"]),
 }
 # How much is drawn at random in the slowest tests.
 SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_SETTLED": "40", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}
@@ -86,7 +86,8 @@ def tried(package, names, tests, timeout):
     (home / "mutants.out").mkdir(parents=True)
     (home / "mutants.out/caught.txt").write_text("".join(f"{name}\n" for name in set(made(package)) - set(names)))
     limit = ["--timeout", str(timeout), "--baseline=skip"] if timeout else ["--timeout-multiplier", "10", "--minimum-test-timeout", "60"]
-    command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(home / "tree"), "--output", str(home), "--package", package,
+    other, tests = tests[1:].split(" ", 1) if tests.startswith("@") else (package, tests)
+    command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(home / "tree"), "--output", str(home), "--package", package, "--test-package", other,
                "--profile", "mutants", *limit, "--build-timeout", "600", "--no-times", "--jobserver=false", "--iterate", *(f"--cargo-arg={choice}" for choice in tests.split())]
     environment = {**os.environ, **SMALL, "CARGO_TARGET_DIR": str((home / "build").absolute())}
     status = subprocess.run(command, env=environment).returncode

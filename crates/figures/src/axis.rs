@@ -1,15 +1,15 @@
-//! An axis: its range, its scale and round numbers on it.
+//! An axis: its range, its scale and its ticks.
 
-/// How values are spaced along an axis.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal differences.
+    /// Linear.
     Linear,
-    /// Equal ratios, of values above zero.
+    /// Logarithmic, for values above zero.
     Log,
 }
 
-/// A range of a quantity along a side of a frame.
+/// An axis of a quantity.
 pub struct Axis {
     label: String,
     scale: Scale,
@@ -18,18 +18,18 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis from `from` to `to`; a range of no width is widened.
+    /// An axis from `from` to `to`; a range of zero width is widened.
     pub fn new(label: String, scale: Scale, from: f64, to: f64) -> Self {
         let pad = if to > from { 0.0 } else { 0.05 * from.abs().max(1e-3) };
         Self { label, scale, from: from - pad, to: to + pad }
     }
 
-    /// An axis that just holds all finite `values` (of a logarithmic one: all above zero).
+    /// An axis from the smallest to the largest of the finite `values` (on a logarithmic scale: of those above zero).
     pub fn exact(label: String, scale: Scale, values: &[f64]) -> Self {
         Self::holding(label, scale, values, 0.0)
     }
 
-    /// As [`Self::exact`], with a little room at both ends.
+    /// As [`Self::exact`], extended by 8 % at both ends.
     pub fn around(label: String, scale: Scale, values: &[f64]) -> Self {
         Self::holding(label, scale, values, 0.08)
     }
@@ -51,12 +51,12 @@ impl Axis {
         }
     }
 
-    /// What the axis shows, with its unit.
+    /// The quantity with its unit.
     pub fn label(&self) -> &str {
         &self.label
     }
 
-    /// How far along the axis `value` lies, 0 to 1; beyond its ends at the ends, and at 0 if it is no number.
+    /// The position of `value` on the axis, 0 to 1; a value outside the range is clamped, NaN gives 0.
     pub fn share(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.from) / (self.to - self.from),
@@ -70,7 +70,7 @@ impl Axis {
         self.from <= value && value <= self.to
     }
 
-    /// Round numbers on the axis, about `count` of them, with their text.
+    /// The ticks, at round numbers, about `count` of them, with their text.
     pub fn ticks(&self, count: i32) -> Vec<(f64, String)> {
         let values = match self.scale {
             Scale::Log if self.to / self.from >= 5.0 => self.log_ticks(),
@@ -110,7 +110,7 @@ impl Axis {
     }
 }
 
-/// Logarithmic for energies over more than a decade, else linear.
+/// The scale for some values: logarithmic if the finite ones are all positive and span more than a decade, else linear.
 pub fn scale_for(values: &[f64]) -> Scale {
     let usable = values.iter().filter(|v| v.is_finite());
     let (low, high) = usable.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(*v), high.max(*v)));

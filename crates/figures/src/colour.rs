@@ -1,4 +1,4 @@
-//! Colours that people with any colour vision tell apart, and that keep their order in grey.
+//! Colours that remain distinct for colour-blind readers and keep their order in grey.
 
 use plotters::style::RGBColor;
 

@@ -1,46 +1,48 @@
-//! A surface seen from above: a cell of colour for each node of a grid, with a bar that explains the colours.
+//! A heat map: a coloured cell for each node of a grid, with a colour bar.
 
-use super::axis::{Axis, Scale, scale_for};
-use super::colour::{NOTHING, viridis};
-use super::{Canvas, Drawn, Frame, TEXT, TICK, figure, line, text, upright};
+use crate::axis::{Axis, Scale, scale_for};
+use crate::canvas::{Canvas, Drawn, TEXT, TICK, figure, line, text, upright};
+use crate::colour::{NOTHING, viridis};
+use crate::frame::Frame;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 /// A side of the grid.
 pub struct Nodes {
-    /// What it is, with its unit.
+    /// The quantity with its unit.
     pub label: String,
     /// Its spacing.
     pub scale: Scale,
-    /// Its values, rising.
+    /// Its values, ascending.
     pub values: Vec<f64>,
 }
 
-/// A point to be pointed out.
+/// A point marked on the map.
 pub enum Mark {
     /// A square on a node of the grid.
     Grid {
-        /// Place along the first side.
+        /// Its coordinate along the first side.
         x: f64,
-        /// Place along the second side.
+        /// Its coordinate along the second side.
         y: f64,
-        /// What it is.
+        /// Its entry in the legend.
         label: String,
     },
-    /// A disc anywhere; not drawn beyond the axes, where the legend says so.
+    /// A disc at any place. Outside the axes it is not drawn, and the legend says so.
     Optimum {
-        /// Place along the first side.
+        /// Its coordinate along the first side.
         x: f64,
-        /// Place along the second side.
+        /// Its coordinate along the second side.
         y: f64,
-        /// What it is.
+        /// Its entry in the legend.
         label: String,
     },
 }
 
 const HEIGHT: u32 = 1200;
 
-/// Draws `values` over the two `sides`, the first running fastest. `quantity` names them; values that are not finite stay grey.
+/// Draws `values` over the two `sides`, row by row: the index of the first side varies fastest. `quantity` is their label with its
+/// unit. Values that are not finite are grey.
 ///
 /// # Errors
 /// The drawing library's.

@@ -1,8 +1,9 @@
-//! Quantities over one common axis, a panel each, one above the other.
+//! Several quantities over one common abscissa, each in its own panel, stacked.
 
-use super::axis::{Axis, Scale};
-use super::colour::BLUE;
-use super::{Frame, figure, line};
+use crate::axis::{Axis, Scale};
+use crate::canvas::{figure, line};
+use crate::colour::BLUE;
+use crate::frame::Frame;
 
 /// A quantity.
 pub struct Panel {
@@ -21,7 +22,7 @@ impl Panel {
 /// Height of the first panel, and of each of the others, px.
 const HEIGHTS: [i32; 2] = [420, 260];
 
-/// Draws each of `panels` over `x`, which has a value for each of theirs.
+/// Draws each of `panels` over `x`, which has as many values as each of them.
 ///
 /// # Errors
 /// The drawing library's.

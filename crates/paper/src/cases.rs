@@ -4,7 +4,7 @@ use super::item::{Grid, Item, Verdict, numbers};
 use super::judgement::definitions;
 use super::plan::{Plan, stiffness};
 use rayon::prelude::*;
-use retune_atlas::{Kind, Parameter, Regime, Stretch, Zone, classify, follow};
+use retune_dynamics::{Kind, Parameter, Regime, Stretch, Zone, classify, follow};
 use retune_figures::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, sheet};
 use retune_model::{Positive, Scene};
 use retune_solver::{Rows, Sample, Window, trajectory};

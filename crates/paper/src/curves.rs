@@ -1,8 +1,8 @@
 //! Figure 3: the curves of the largest energy for several stiffnesses.
 
+use super::detuning::statements;
 use super::family::{Family, Peak};
 use super::item::{Grid, Item, numbers};
-use super::keeping::statements;
 use super::plan::{Plan, stiffness};
 use retune_figures::sheet::{BLUE, Chart, Drawing, GREEN, Key, Layer, ORANGE, PURPLE, SKY, VERMILION, sheet};
 use retune_workbench::Error;

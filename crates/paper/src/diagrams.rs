@@ -3,8 +3,8 @@
 use super::family::Family;
 use super::motions::Motions;
 use super::plan::stiffness;
-use retune_atlas::sweep::zones;
-use retune_atlas::{Kind, Zone};
+use retune_dynamics::sweep::zones;
+use retune_dynamics::{Kind, Zone};
 use retune_figures::sheet::{
     BLACK, BLUE, Chart, Drawing, GREEN, GREY, Key, Layer, ORANGE, PURPLE, SKY, VERMILION, YELLOW, sheet,
 };
@@ -114,7 +114,7 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
 fn strip(motions: &Motions) -> Vec<Layer> {
     let omega = &motions.omega;
     let middle = |i: usize, j: usize| 0.5 * (omega[i] + omega[j]);
-    let band = |(i, regime): (usize, &retune_atlas::Regime)| Layer::Band {
+    let band = |(i, regime): (usize, &retune_dynamics::Regime)| Layer::Band {
         from: middle(i.saturating_sub(1), i),
         to: middle(i, (i + 1).min(omega.len() - 1)),
         colour: colour(regime.kind),

@@ -1,7 +1,7 @@
 //! The responses at one stiffness of the structure, and the peaks of their curves: the data of Figures 3 to 5.
 
 use super::plan::Plan;
-use retune_atlas::{Parameter, Point, fresh};
+use retune_dynamics::{Parameter, Point, independent};
 use retune_workbench::Error;
 use retune_workbench::Progress;
 
@@ -33,7 +33,8 @@ impl Family {
         let omega = plan.file.omega.values();
         let mut points = [Vec::new(), Vec::new(), Vec::new()];
         for (scene, place) in scenes.iter().zip(&mut points) {
-            *place = fresh(scene, Parameter::Omega, &omega, plan.window(), &plan.settings(), || bar.inc(1))?;
+            *place =
+                independent(scene, Parameter::Omega, &omega, plan.window(), &plan.settings(), || bar.inc(1))?;
         }
         let primary = scenes[0].primary;
         let (natural, half_width) = (primary.natural_frequency(), primary.half_power_half_width());

@@ -1,7 +1,7 @@
 //! The names of motions in words, with the thresholds of the classifier and the reason for each.
 
 use super::item::Grid;
-use retune_atlas::regime::{
+use retune_dynamics::regime::{
     ARRIVED, FALLING, FLOOR, LAMINAR, LAMINAR_PERIOD, LAMINAR_PHASE, LONGEST, MARGIN, MOSTLY, NEARING,
     PARTED, SAME,
 };

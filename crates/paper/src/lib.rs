@@ -2,12 +2,12 @@
 
 mod cases;
 mod curves;
+mod detuning;
 mod diagrams;
 mod energies;
 mod family;
 mod item;
 mod judgement;
-mod keeping;
 mod motions;
 mod page;
 mod plan;

@@ -2,11 +2,11 @@
 
 use super::plan::Plan;
 use rayon::prelude::*;
-use retune_atlas::record::coordinates;
-use retune_atlas::strobe::Periods;
-use retune_atlas::{
-    Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, carried, classify, follow, fresh_orbits,
-    resumed,
+use retune_dynamics::poincare::Periods;
+use retune_dynamics::record::coordinates;
+use retune_dynamics::{
+    Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, classify, continuation, follow,
+    independent_orbits, resumed,
 };
 use retune_model::Scene;
 use retune_workbench::Error;
@@ -47,22 +47,22 @@ impl Motions {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
         let settings = plan.settings();
-        let record = |&value: &f64| -> Result<Record, retune_atlas::Error> {
+        let record = |&value: &f64| -> Result<Record, retune_dynamics::Error> {
             let record = follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?;
             bar.inc(1);
             Ok(record)
         };
-        let records: Vec<Result<Record, retune_atlas::Error>> = omega.par_iter().map(record).collect();
+        let records: Vec<Result<Record, retune_dynamics::Error>> = omega.par_iter().map(record).collect();
         let records = records.into_iter().collect::<Result<Vec<_>, _>>()?;
         let sweep = |values: &[f64]| {
             let periods = Periods { settle: SETTLE[1], record: RECORD };
-            carried(scene, Parameter::Omega, values, periods, &settings, || bar.inc(1))
+            continuation(scene, Parameter::Omega, values, periods, &settings, || bar.inc(1))
         };
         let (up, back) = rayon::join(|| sweep(&omega), || sweep(&down));
         let mut back = back?;
         back.reverse();
         let periods = Periods { settle: SETTLE[0], record: RECORD };
-        let rest = fresh_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
+        let rest = independent_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
         let orbits = [rest, up?, back];
         let indices: Vec<usize> = (0..omega.len()).collect();
         let found: Vec<Result<Option<Coexisting>, Error>> = indices

@@ -60,7 +60,7 @@ const MOST_STEPS: u64 = 1_000_000;
 impl Range {
     /// The values.
     pub fn values(self) -> Vec<f64> {
-        retune_atlas::parameter::evenly(self.from, self.to, self.points)
+        retune_dynamics::parameter::evenly(self.from, self.to, self.points)
     }
 
     fn is_sound(self) -> bool {
@@ -109,8 +109,9 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// A stiffness that cannot be.
     pub fn scenes(&self, k1: f64) -> Result<[Scene; 3], Error> {
-        let at =
-            |study: &Study| -> Result<Scene, Error> { Ok(retune_atlas::Parameter::K1.at(study.scene, k1)?) };
+        let at = |study: &Study| -> Result<Scene, Error> {
+            Ok(retune_dynamics::Parameter::K1.at(study.scene, k1)?)
+        };
         let (ssvi, tmd) = (at(&self.ssvi)?, at(&self.tmd)?);
         Ok([Scene { damper: None, ..ssvi }, ssvi, tmd])
     }

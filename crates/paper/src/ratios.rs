@@ -3,7 +3,7 @@
 use super::family::Family;
 use super::item::{Item, Verdict, numbers};
 use super::plan::{Plan, stiffness};
-use retune_atlas::Point;
+use retune_dynamics::Point;
 use retune_figures::sheet::{BLUE, Chart, Key, Layer, VERMILION, sheet};
 use retune_solver::simulate;
 use retune_workbench::Error;
@@ -19,7 +19,7 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
     let mut at_resonance = [Vec::new(), Vec::new()];
     for &k1 in &stiffnesses {
         for (scene, place) in plan.scenes(k1)?[1..].iter().zip(&mut at_resonance) {
-            let scene = retune_atlas::Parameter::Omega.at(*scene, scene.primary.natural_frequency())?;
+            let scene = retune_dynamics::Parameter::Omega.at(*scene, scene.primary.natural_frequency())?;
             let run = simulate(&scene, plan.window(), &plan.settings())?;
             bar.inc(1);
             let (e1_max, e2_max) = (run.e1_max.value, run.e2_max.value);

@@ -3,7 +3,7 @@
 use super::item::{Item, Verdict, numbers};
 use super::plan::Plan;
 use rayon::prelude::*;
-use retune_atlas::parameter::evenly;
+use retune_dynamics::parameter::evenly;
 use retune_figures::{Mark, Nodes, Scale, heat_map};
 use retune_optim::{PeakEnergy, Variable};
 use retune_study::Study;

@@ -3,7 +3,7 @@
 use super::item::{Grid, Item, Verdict};
 use super::plan::Plan;
 use rayon::prelude::*;
-use retune_atlas::{Stretch, classify, follow};
+use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Positive};
 use retune_optim::{Failures, Minimum, Options, PeakEnergy, Row, Stop, Variable, minimize};
 use retune_solver::{Settings, Window};
@@ -140,7 +140,7 @@ fn worth(
         "Holds if each of the four lies within what ours takes when every parameter is moved by up to 0.1 %, in part if some do: 0.1 % is less than the rounding of the printed D = 0.06 m.",
         Verdict::of_all(&inside),
         format!(
-            "{} of the 4 values lie within the spread; medians {} J. The motions are irregular or long transients: a single E1max is a draw, and no digits can be reproduced. What the paper leaves out moves the medians too (table)",
+            "{} of the 4 values lie within the spread; medians {} J. The motions are irregular or long transients: a single E1max is one realisation, and no digits can be reproduced. What the paper leaves out moves the medians too (table)",
             inside.iter().filter(|&&within| within).count(),
             fits.iter().map(|(_, near, _)| format!("{:.0}", near.median)).collect::<Vec<_>>().join(", ")
         ),

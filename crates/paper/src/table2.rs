@@ -4,7 +4,7 @@ use super::item::{Grid, Item, Verdict};
 use super::plan::{Plan, Range};
 use super::table1::perturbed;
 use rayon::prelude::*;
-use retune_atlas::Parameter;
+use retune_dynamics::Parameter;
 use retune_model::{Coupled, Damper, Scene};
 use retune_optim::{Bounds, Failures, Options, Scaling, Variable, minimize};
 use retune_solver::{Window, e1_max};

@@ -28,7 +28,7 @@ pub fn code_of(error: &Error) -> u8 {
         Error::NotChecked { .. } => UNCHECKED,
         Error::Threads(_)
         | Error::Run(_)
-        | Error::Atlas(_)
+        | Error::Motion(_)
         | Error::Unusable(_)
         | Error::NoStart(_)
         | Error::Global { .. }

@@ -1,11 +1,12 @@
-//! Ctrl-C and SIGTERM. All that was computed is in the journal at any moment, so there is nothing to save: the process says how
-//! to go on, and ends. (Where there are no signals, Ctrl-C ends it without a word, and nothing is lost either.)
+//! Ctrl-C and SIGTERM. The journal holds everything computed so far, so there is nothing to save: the process prints the command
+//! that resumes the work, and ends. (On systems without signals Ctrl-C ends it silently, and nothing is lost either.)
 
-/// Set by the justfile to the words that stand before a command there, `just`: its recipes are named like the commands.
+/// The environment variable that the justfile sets to `just`, whose recipes are named like the commands; it replaces the program's
+/// name in the printed command.
 #[cfg(unix)]
 const RUN_AS: &str = "RETUNE_RUN_AS";
 
-/// From now on, Ctrl-C ends the process with the command that goes on.
+/// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(unix)]
 pub fn say_how_to_go_on() {
     use signal_hook::consts::{SIGINT, SIGTERM};
@@ -18,7 +19,7 @@ pub fn say_how_to_go_on() {
         let wait = move || {
             if signals.forever().next().is_some() {
                 let words = go_on(std::env::var(RUN_AS).ok(), std::env::args_os());
-                let words = crate::screen::visible(&words).into_owned();
+                let words = crate::visible::visible(&words).into_owned();
                 let _ =
                     writeln!(std::io::stderr(), "\nstopped; what was computed is kept. To go on:\n  {words}");
                 std::process::exit(crate::exit::STOPPED.into());
@@ -28,11 +29,11 @@ pub fn say_how_to_go_on() {
     });
 }
 
-/// From now on, Ctrl-C ends the process with the command that goes on.
+/// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(not(unix))]
 pub fn say_how_to_go_on() {}
 
-/// The command line that goes on with the work of this one. `run_as` stands in the place of the program, if it is given.
+/// The command line that resumes the work of this one. `run_as` replaces the program's name, if it is given.
 #[cfg(unix)]
 fn go_on(run_as: Option<String>, mut arguments: impl Iterator<Item = std::ffi::OsString>) -> String {
     let program = arguments.next().unwrap_or_else(|| "retune".into());
@@ -43,7 +44,7 @@ fn go_on(run_as: Option<String>, mut arguments: impl Iterator<Item = std::ffi::O
     words.join(" ")
 }
 
-/// A word as a shell takes it, and as a terminal may show it: control characters and what is no UTF-8 as `$'\x1b'`.
+/// A word quoted for a shell and safe for a terminal: control characters and bytes that are not UTF-8 as `$'\x1b'`.
 #[cfg(unix)]
 fn quoted(word: &std::ffi::OsStr) -> String {
     use std::os::unix::ffi::OsStrExt;

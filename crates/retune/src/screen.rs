@@ -1,13 +1,13 @@
-//! What appears on the screen: results and the log on standard output, errors and progress on standard error.
+//! Output: results and the log on standard output, errors and progress on standard error.
 
+use crate::visible::visible;
 use crate::{interrupt, progress};
 use retune_workbench::{Error, Observer, Progress};
-use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-/// Where output goes.
+/// The observer of all jobs: shows them on the terminal.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
     quiet: bool,
@@ -52,22 +52,22 @@ impl Observer for Screen {
     }
 }
 
-/// Shows why a command failed. Where even that cannot be written, the exit code must do.
+/// Shows why a command failed. If standard error cannot be written, the exit code alone tells it.
 pub fn show_error(error: &Error) {
     say("error", &error.to_string());
 }
 
-/// Shows a line about an input that has no value; where that cannot be written, the answer must do.
+/// Shows a line about an input that has no value. If standard error cannot be written, the answer alone tells it.
 pub fn complain(words: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(words));
 }
 
-/// Writes to standard error; where that cannot be, nothing can be done about it.
+/// Writes to standard error, and ignores errors of doing so.
 fn say(what: &str, words: &str) {
     let _ = writeln!(std::io::stderr(), "{what}: {}", visible(words));
 }
 
-/// Shows what is wrong with the arguments, or the help that they ask for; the exit code.
+/// Shows the error in the arguments, or the help that they ask for. Returns the exit code.
 pub fn show_usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() && error.kind() != clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     {
@@ -76,48 +76,4 @@ pub fn show_usage(error: &clap::Error) -> ExitCode {
         let _ = error.print(); // in colours; nothing that was typed is in it
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
-}
-
-/// A text whose control characters are seen instead of obeyed: a terminal takes orders from whoever names a file or a study.
-/// Ends of lines stay; so do tabs. The form is that of JSON, so what is in a JSON text stays the same text.
-pub fn visible(text: &str) -> Cow<'_, str> {
-    if !text.contains(is_order) {
-        return text.into();
-    }
-    let mut shown = String::with_capacity(text.len() + 16);
-    for c in text.chars() {
-        if is_order(c) {
-            shown += &format!("\\u{:04x}", u32::from(c));
-        } else {
-            shown.push(c);
-        }
-    }
-    shown.into()
-}
-
-/// Whether a terminal may obey a character: controls, and those that turn the direction of writing.
-fn is_order(c: char) -> bool {
-    const TURNS: [std::ops::RangeInclusive<char>; 3] =
-        ['\u{200e}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2066}'..='\u{2069}'];
-    c.is_control() && !['\n', '\t'].contains(&c) || TURNS.iter().any(|turns| turns.contains(&c))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::visible;
-
-    #[test]
-    fn contract_control_characters_are_escaped() {
-        assert_eq!(visible("a\tb\nÄ √ N·s/m"), "a\tb\nÄ √ N·s/m");
-        assert_eq!(
-            visible("\u{1b}[2Jx\r\u{7}\u{9b}\u{7f}\u{202e}"),
-            "\\u001b[2Jx\\u000d\\u0007\\u009b\\u007f\\u202e"
-        );
-        for c in (0..=0x10_ffff).filter_map(char::from_u32).filter(|c| c.is_control()) {
-            assert_eq!(visible(&c.to_string()) == c.to_string(), c == '\n' || c == '\t', "{c:?}");
-        }
-        let json = serde_json::to_string("a\u{1b}\u{9b}\u{7f}\r\n\u{202e}").expect("JSON");
-        let read: String = serde_json::from_str(&visible(&json)).expect("JSON still");
-        assert_eq!(read, "a\u{1b}\u{9b}\u{7f}\r\n\u{202e}");
-    }
 }

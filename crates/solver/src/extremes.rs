@@ -62,14 +62,14 @@ pub fn extremes(
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing).with_phase(ask.phase);
             let mut e1 = RunningMaximum::new(BareEnergy::new(&system), ask.cutoff);
-            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            follow_bare(&system, window, settings, &mut Unobserved, &mut e1)?;
             nothing(e1.record())
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
             let mut before = ask.walls.map(|from| DisplacementRange::new(&system, from));
             let mut seen = maxima(&system, ask);
-            follow_coupled(&system, 0.0, window, settings, &mut before, &mut seen)?;
+            follow_coupled(&system, window, settings, &mut before, &mut seen)?;
             let ([stroke, force], seen) = (stroke_and_force(before.as_ref()), read(&seen));
             Extremes { stroke: stroke.max(seen.stroke), force: force.max(seen.force), ..seen }
         }

@@ -15,49 +15,46 @@ use retune_model::{Bare, Coupled};
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// Follows the bare structure from rest at `start` (s) on: `before` sees the motion to the window, `observer` that inside it.
+/// Follows the bare structure from rest at t = 0: `before` sees the motion to the window, `observer` that inside it.
 pub fn follow_bare(
     system: &Bare,
-    start: f64,
     window: Window,
     settings: &Settings,
     before: &mut impl Observer<2>,
     observer: &mut impl Observer<2>,
 ) -> Followed<2> {
     if let Some(method) = General::of(settings.method) {
-        let mut run = Run::new(system, settings, start, system.rest(), settings.longest_step(window.to));
+        let mut run = Run::new(system, settings, 0.0, system.rest(), settings.longest_step(window.to));
         method.follow(&mut run, window.from, before)?;
         method.follow(&mut run, window.to, observer)?;
         return Ok((run.state(), run.work));
     }
-    let mut free = ContactFree::new(system, window.to, settings.max_steps).started(start);
-    if window.from > start {
+    let mut free = ContactFree::new(system, window.to, settings.max_steps);
+    if window.from > 0.0 {
         free.propagate(window.from, before)?;
     }
     free.propagate(window.to, observer)?;
     Ok((free.state(), free.work))
 }
 
-/// Follows a structure and its damper from rest at `start` (s) on: `before` sees the motion to the window, `observer` that inside
-/// it.
+/// Follows a structure and its damper from rest at t = 0: `before` sees the motion to the window, `observer` that inside it.
 #[inline(always)]
 pub fn follow_coupled(
     system: &Coupled,
-    start: f64,
     window: Window,
     settings: &Settings,
     before: &mut impl Observer<4>,
     observer: &mut impl Observer<4>,
 ) -> Followed<4> {
     if let Some(method) = General::of(settings.method) {
-        let mut run = Run::new(system, settings, start, system.rest(), settings.longest_step(window.to));
+        let mut run = Run::new(system, settings, 0.0, system.rest(), settings.longest_step(window.to));
         method.follow(&mut run, window.from, before)?;
         method.follow(&mut run, window.to, observer)?;
         return Ok((run.state(), run.work));
     }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-    let rest = Motion { t: start, y: system.rest(), phase: Phase::Flight };
-    let middle = if window.from > start { hybrid.propagate(rest, window.from, before)? } else { rest };
+    let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+    let middle = if window.from > 0.0 { hybrid.propagate(rest, window.from, before)? } else { rest };
     let end = hybrid.propagate(middle, window.to, observer)?;
     Ok((end.y, hybrid.work))
 }
@@ -103,7 +100,7 @@ impl<'a> Follower<'a> {
                 let longest = self.settings.longest_step(to - from.t);
                 let mut run = Run::new(self.system, &self.settings, from.t, from.y, longest);
                 method.follow(&mut run, to, observer)?;
-                Ok(Motion { t: to, y: run.state(), phase: Phase::of(self.system, &run.state()) })
+                Ok(Motion { t: run.time(), y: run.state(), phase: Phase::of(self.system, &run.state()) })
             }
         }
     }

@@ -45,7 +45,7 @@ fn largest_energy(
                 let steady = system.steady(system.frequency()).e1_max;
                 return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, e1, steady);
             }
-            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            follow_bare(&system, window, settings, &mut Unobserved, &mut e1)?;
             Ok(e1.record())
         }
         Some(damper) => {
@@ -57,7 +57,7 @@ fn largest_energy(
                     return free.e1_max(window, e1, system.steady(system.bare().frequency()).e1_max);
                 }
             }
-            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+            follow_coupled(&system, window, settings, &mut Unobserved, &mut e1)?;
             Ok(e1.record())
         }
     }
@@ -81,7 +81,7 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
     let mut e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
-    let (state, work) = follow_bare(system, 0.0, window, settings, &mut Unobserved, &mut e1)?;
+    let (state, work) = follow_bare(system, window, settings, &mut Unobserved, &mut e1)?;
     Ok(Response {
         e1_max: e1.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
@@ -101,7 +101,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
     let mut before = TouchDowns::default();
     let mut seen = ((e1, e2), ([1.0, -1.0].map(position), TouchDowns::default()));
-    let (final_state, work) = follow_coupled(system, 0.0, window, settings, &mut before, &mut seen)?;
+    let (final_state, work) = follow_coupled(system, window, settings, &mut before, &mut seen)?;
     let ((e1, e2), ([farthest, nearest], TouchDowns(impacts))) = seen;
     let (nearest, farthest) = (-nearest.record().value, farthest.record().value);
     let e1_max = e1.record();
@@ -148,7 +148,7 @@ pub fn touch_downs(
     let mut times = TouchDownTimes::default();
     if let Some(damper) = &scene.damper {
         let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-        follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut times)?;
+        follow_coupled(&system, window, settings, &mut Unobserved, &mut times)?;
     }
     Ok(times.0)
 }

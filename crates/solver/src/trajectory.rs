@@ -88,12 +88,12 @@ pub fn trajectory(
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
             let mut recorder = Recorder::new(&system, window.from, rows, visit);
-            follow_bare(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
+            follow_bare(&system, window, settings, &mut Unobserved, &mut recorder)?;
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
             let mut recorder = Recorder::new(&system, window.from, rows, visit);
-            follow_coupled(&system, 0.0, window, settings, &mut Unobserved, &mut recorder)?;
+            follow_coupled(&system, window, settings, &mut Unobserved, &mut recorder)?;
         }
     }
     Ok(())

@@ -5,9 +5,9 @@ mod problems;
 use problems::scenes::SSVI;
 use retune_model::Coupled;
 use retune_solver::observe::{
-    DamperEnergy, Observer, PrimaryEnergy, RunningMaximum, TouchDownTimes, TouchDowns, Unobserved,
+    DamperEnergy, Observer, PrimaryEnergy, RunningMaximum, Segment, TouchDownTimes, TouchDowns, Unobserved,
 };
-use retune_solver::{Hybrid, Motion, Phase};
+use retune_solver::{Follower, Hybrid, Method, Motion, Phase, Settings};
 
 /// Follows the SSVI from rest for 20 s, or until the observer is satisfied.
 fn follow(system: &Coupled, observer: &mut impl Observer<4>) -> Motion {
@@ -56,4 +56,34 @@ fn invariant_a_run_stops_as_soon_as_one_of_its_observers_is_satisfied() {
     assert_eq!(follow(&system, &mut (e1(cutoff), e1(f64::INFINITY))).t, alone);
     assert_eq!(follow(&system, &mut [e1(f64::INFINITY), e1(cutoff)]).t, alone);
     assert_eq!(follow(&system, &mut Some(e1(cutoff))).t, alone);
+}
+
+/// Ends a run after some segments.
+struct Enough(u32);
+
+impl Observer<4> for Enough {
+    fn segment(&mut self, _segment: &impl Segment<4>) {
+        self.0 = self.0.saturating_sub(1);
+    }
+    fn satisfied(&self) -> bool {
+        self.0 == 0
+    }
+}
+
+#[test]
+fn regress_a_run_that_an_observer_ends_returns_the_time_it_reached() {
+    let system = SSVI.coupled();
+    for method in [Method::Dop853, Method::Hybrid] {
+        let settings = Settings { method, ..Settings::default() };
+        let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+        let mut follower = Follower::new(&system, &settings, 4.0);
+        let middle = follower.propagate(rest, 4.0, &mut Enough(5)).expect("a run");
+        assert!(middle.t > 0.0 && middle.t < 4.0, "{method:?}: {}", middle.t);
+        // Continued from there the motion is that of an unbroken run.
+        let [whole, parts] =
+            [rest, middle].map(|from| follower.propagate(from, 4.0, &mut Unobserved).expect("a run"));
+        for (a, b) in whole.y.into_iter().zip(parts.y) {
+            assert!((a - b).abs() < 1e-6, "{method:?}: {:?} {:?}", whole.y, parts.y);
+        }
+    }
 }

@@ -1,9 +1,9 @@
-//! Why results cannot be read, made or replaced.
+//! Errors of reading, making and replacing results.
 
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why results cannot be read, made or replaced.
+/// An error of reading, making or replacing results.
 #[derive(Debug, Error)]
 pub enum Error {
     /// Something cannot be written.
@@ -22,7 +22,7 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// Something stands where results are to go, and nobody said that it may be replaced.
+    /// There are files in the directory that the run was not allowed to replace.
     #[error(
         "{}: {problem}: choose another directory with --out, or give --replace to have it replaced",
         path.display()
@@ -30,18 +30,18 @@ pub enum Error {
     Standing {
         /// The directory.
         path: PathBuf,
-        /// What stands there.
+        /// Description of these files.
         problem: String,
     },
-    /// Something stands where a file is to go that is never replaced.
+    /// There is something that is never replaced where a file is to be written.
     #[error("{}: not replaced: {problem}: move it away, or choose another place", path.display())]
     Protected {
-        /// What stands there.
+        /// Its path.
         path: PathBuf,
-        /// What it is.
+        /// Its description.
         problem: String,
     },
-    /// Nobody can tell whose work a journal holds.
+    /// The work of a journal cannot be identified.
     #[error(
         "{}: {problem}: move it away to look at it, or throw the unfinished work away with --restart",
         path.display()
@@ -49,7 +49,7 @@ pub enum Error {
     Journal {
         /// The journal.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         problem: &'static str,
     },
     /// Another run is at work in the directory.
@@ -64,16 +64,16 @@ pub enum Error {
         /// The other process.
         holder: Option<u32>,
     },
-    /// A run was interrupted here, and nobody said what becomes of it.
+    /// There is unfinished work, which the run was asked neither to resume nor to discard.
     #[error("{}: {}", path.display(), unfinished(*lines, *damaged, difference.as_deref()))]
     Unfinished {
         /// The directory.
         path: PathBuf,
-        /// How much of it is kept.
+        /// Number of values and marks that are kept.
         lines: u64,
         /// Lines that are damaged.
         damaged: u64,
-        /// Why this run cannot go on with it, if it cannot.
+        /// Its difference to this run, where that prevents resuming.
         difference: Option<String>,
     },
 }

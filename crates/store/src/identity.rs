@@ -1,4 +1,4 @@
-//! What made a result: the study to the last digit, the version of Retune, and the arithmetic of the machine.
+//! The identity of a result: the study to the last digit, the version of Retune, and the arithmetic of the machine.
 
 use crate::error::Error;
 use sha2::{Digest, Sha256};
@@ -14,7 +14,7 @@ pub struct Identity {
     pub study: String,
     /// The version of Retune.
     pub version: String,
-    /// A few digits that stand for the machine's sines and powers; see [`arithmetic`].
+    /// A checksum of the machine's sines and powers; see [`arithmetic`].
     pub arithmetic: String,
 }
 
@@ -62,7 +62,7 @@ impl Identity {
 /// `value` as the text of a JSON file.
 ///
 /// # Errors
-/// None that is known: numbers that are none become null.
+/// The value cannot be serialised. Numbers that are not finite become null.
 pub fn json_text(value: &impl serde::Serialize, name: &str) -> Result<String, Error> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Error::Output { path: name.into(), source: error.into() })?;

@@ -1,27 +1,28 @@
 //! The journal: every value of an objective that was computed, as it is computed, so that nothing of an interrupted run is
 //! lost.
 //!
-//! Each search here is deterministic in the values of its objective. So a run that goes on begins anew, and the journal answers
-//! what it knows: the run comes to where it was in a moment, and its results have the bytes of an unbroken one. No search
-//! knows of it.
+//! Each search is deterministic in the values of its objective. A resumed run therefore starts from the beginning, and the journal
+//! supplies the values that are known: the run reaches the point of interruption at once, and its results are identical to the
+//! byte to those of an uninterrupted run. The searches themselves need not know of the journal.
 //!
-//! A line is whole or it does not count: it ends with a checksum that holds for this work alone (see [`Seal`]). So every record that
-//! is whole is believed, wherever it stands, and one that is not (a crash may leave half a line, a disk a flipped bit) is counted,
-//! announced and computed again. Lines are handed to the system as they come, which a killed process cannot undo, and to the
-//! disk about once a second.
+//! Each line ends with a checksum that is valid for this work alone (see [`Seal`]). A line with a valid checksum is used wherever it
+//! is; any other (a crash may leave half a line, a disk a flipped bit) is counted, reported and computed again. Lines are passed to
+//! the operating system at once, so they survive the process, and to the disk about once a second.
 //!
-//! Values that are not finite (designs that cannot be computed) are written, but not answered: such a design is run again, so
-//! that the search can say why it failed.
+//! Values that are not finite (designs that cannot be computed) are written, but not recalled: such a design is run again, so
+//! that the search can report why it failed.
 
 mod read;
+mod record;
 
 pub use read::{Damage, Found, Known, MOST_POINTS, read};
+pub use record::{grid_text, grid_value};
 
-use super::identity::{Identity, hexadecimal};
-use super::plain;
-use super::seal::Seal;
 use crate::error::Error;
-use sha2::{Digest, Sha256};
+use crate::identity::{Identity, hexadecimal};
+use crate::plain;
+use crate::seal::Seal;
+use record::key;
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -30,14 +31,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The first words of a journal.
-const TITLE: &str = "retune-journal-2";
-
 /// Milliseconds between two times that the disk is waited for.
 const SYNC_EVERY: u64 = 1000;
-
-/// Half of a SHA-256: the stage, the design and the cutoff.
-type Key = [u8; 16];
 
 /// A journal that is being written.
 #[derive(Debug)]
@@ -55,34 +50,8 @@ pub struct Journal {
     trouble: Mutex<Option<std::io::Error>>,
 }
 
-/// The text of the line of a point of the grid.
-pub fn grid_text(point: usize, value: f64) -> String {
-    format!("g {point} {:016x}", value.to_bits())
-}
-
-/// Reads [`grid_text`].
-pub fn grid_value(text: &str) -> Option<(usize, f64)> {
-    let (point, value) = text.strip_prefix("g ")?.split_once(' ')?;
-    Some((point.parse().ok()?, bits(value)?))
-}
-
-fn bits(text: &str) -> Option<f64> {
-    (text.len() == 16).then(|| u64::from_str_radix(text, 16).ok().map(f64::from_bits))?
-}
-
-fn key(stage: &str, design: &[f64], cutoff: f64) -> Key {
-    let mut hash = Sha256::new();
-    hash.update(stage.as_bytes());
-    for number in std::iter::once(&cutoff).chain(design) {
-        hash.update(number.to_bits().to_le_bytes());
-    }
-    let mut key = Key::default();
-    key.copy_from_slice(&hash.finalize()[..16]);
-    key
-}
-
 impl Journal {
-    /// Begins a journal, of which nothing must stand there.
+    /// Creates a journal; there must be none yet.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -94,7 +63,7 @@ impl Journal {
         Self::write_to(path, file, identity, Known::default())
     }
 
-    /// Goes on with a journal, of which `known` was read. Where there is damage, what is whole is written anew first.
+    /// Continues a journal from which `known` was read. A damaged one is first replaced by its complete records.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -123,17 +92,17 @@ impl Journal {
         })
     }
 
-    /// Whether there is no line.
+    /// Whether it has no value and no mark.
     pub fn is_empty(&self) -> bool {
         self.known.lines == 0 && !self.written.load(Relaxed)
     }
 
-    /// How many lines were known from before.
+    /// Number of values and marks from earlier runs.
     pub fn known(&self) -> u64 {
         self.known.lines
     }
 
-    /// The directories below that searches of this work were begun in before.
+    /// The directories below in which earlier runs of this work began searches.
     pub fn parts(&self) -> &BTreeSet<String> {
         &self.known.parts
     }
@@ -145,8 +114,8 @@ impl Journal {
         }
     }
 
-    /// The value of an objective at `design`: known from before, which `recall` is told, or computed now and written down. `stage`
-    /// names the objective; `cutoff` is what it may stop at.
+    /// The value of an objective at `design`: from the journal, and then `recall` is called with it; or computed and recorded.
+    /// `stage` names the objective; `cutoff` is the value at which its evaluation may stop.
     pub fn value(
         &self,
         stage: &str,
@@ -161,7 +130,7 @@ impl Journal {
         })
     }
 
-    /// The same of a point of the grid, which is known by its number.
+    /// The same for a point of the grid, identified by its number.
     pub fn grid_value(&self, point: usize, compute: impl FnOnce() -> f64, recall: impl FnOnce(f64)) -> f64 {
         self.answer(self.known.grid.get(point).copied(), compute, recall, |value| grid_text(point, value))
     }
@@ -178,7 +147,7 @@ impl Journal {
                 recall(value);
                 value
             }
-            // What cannot be kept need not be computed: the search comes to its end at once, and `check` says why.
+            // A value that cannot be recorded need not be computed: the search ends at once, and `check` reports why.
             _ if self.broken.load(Relaxed) => f64::INFINITY,
             known => {
                 let value = compute();
@@ -190,7 +159,7 @@ impl Journal {
         }
     }
 
-    /// Learns the value of a point of the grid that was computed elsewhere.
+    /// Records the value of a point of the grid that was computed elsewhere.
     pub fn learn_grid(&mut self, point: usize, value: f64) {
         if self.known.grid.get(point).is_none_or(|value| value.is_nan())
             && self.known.set_grid(point, value).is_some()
@@ -210,7 +179,7 @@ impl Journal {
         self.write(&format!("m {name}"));
     }
 
-    /// Whether all could be written so far. Must be asked before anything that a search found is believed.
+    /// Checks that everything could be written so far; to be called before the result of a search is used.
     ///
     /// # Errors
     /// The journal cannot be written, for instance because the disk is full.

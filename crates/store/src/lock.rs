@@ -57,7 +57,7 @@ impl Lock {
     }
 }
 
-/// Whether a lock's file has this in it: nothing, or the number of a process first.
+/// Whether this is the content of a lock file: nothing, or the number of a process first.
 fn is_ours(text: &[u8]) -> bool {
     text.is_empty()
         || text

@@ -1,40 +1,42 @@
-//! Whose results a directory holds, and what may be replaced in it.
+//! The owner of the results in a directory, and the rules for replacing them.
 //!
 //! A run may replace what Retune made of the same study file with the same command, however the file was edited since: that is
 //! everyday work. Anything else it is asked to replace in so many words (`--replace`): results of another study, a file that
 //! Retune did not make, or one that was changed after it was made.
 
-use super::manifest::{self, MadeBy, Manifest};
-use super::{Identity, names, plain};
+use crate::entries::names;
 use crate::error::Error;
+use crate::identity::Identity;
+use crate::manifest::{MadeBy, Manifest, NAME};
+use crate::plain;
 use std::path::{Component, Path, PathBuf};
 
-/// What becomes of unfinished work that is found.
+/// The treatment of unfinished work that is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Begin {
-    /// Nothing: it is announced, and the run refused.
+    /// It is kept, and the run is refused.
     #[default]
     New,
-    /// The run goes on with it.
+    /// The run resumes it.
     Resume,
-    /// It is thrown away.
+    /// It is discarded.
     Restart,
 }
 
-/// What was asked for that makes results.
+/// A request for results.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The command that makes such results.
     pub command: &'static str,
     /// The study file.
     pub study: PathBuf,
-    /// What becomes of unfinished work.
+    /// The treatment of unfinished work.
     pub begin: Begin,
     /// Whether results of others may be replaced.
     pub replace: bool,
 }
 
-/// How much of what stands in a directory a run makes anew.
+/// The part of the results in a directory that a run replaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// All of it.
@@ -46,7 +48,7 @@ pub enum Extent {
 }
 
 impl Order {
-    /// Who makes results in `place`, which must exist.
+    /// The owner of the results that this request makes in `place`, which must exist.
     pub fn made_by(&self, place: &Path) -> MadeBy {
         let full = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let (study, place) = (full(&self.study), full(place));
@@ -58,7 +60,7 @@ impl Order {
     /// Whether a run may put its results, which `is_ours` names, into `place`.
     ///
     /// # Errors
-    /// [`Error::Standing`] if it was not told to replace what stands there; [`Error::Protected`] if that is its own study.
+    /// [`Error::Standing`] if there are results that it may not replace; [`Error::Protected`] if its own study file would be replaced.
     pub fn may_replace(
         &self,
         place: &Path,
@@ -68,7 +70,7 @@ impl Order {
     ) -> Result<(), Error> {
         let manifest = Manifest::read(place);
         let by_hand = |name: &String| match &manifest {
-            Some(manifest) => name != manifest::NAME && !manifest.has_made(place, name),
+            Some(manifest) => name != NAME && !manifest.has_made(place, name),
             None => true,
         };
         let entries = names(place).map_err(|source| Error::Output { path: place.to_owned(), source })?;
@@ -93,13 +95,13 @@ impl Order {
         Err(Error::Standing { path: place.to_owned(), problem })
     }
 
-    /// Whose results they are, if they are another's.
+    /// The owner in words, if the results belong to another study or command.
     fn other(&self, place: &Path, identity: &Identity, manifest: &Manifest) -> Option<String> {
         if manifest.identity() == *identity {
             return None;
         }
         let Some(made_by) = &manifest.made_by else {
-            // Written before it said so: it must do that the directory has the name of the study.
+            // Manifests of early versions do not name the owner; the directory then must have the name of the study.
             let name = self.study.file_stem();
             let is_named = place.components().any(|part| Some(part.as_os_str()) == name);
             return (!is_named).then(|| "the results of another study stand here".to_owned());
@@ -123,8 +125,8 @@ impl MadeBy {
     }
 }
 
-/// Whether a file that is to be written at `path` may replace what stands there: only a plain file that is none of `inputs` and
-/// begins with `head`, as all do that Retune makes.
+/// Checks that a file may be written at `path`: an existing one is only replaced if it is a plain file, none of `inputs`, and begins
+/// with `head`, as all such files of Retune do.
 ///
 /// # Errors
 /// [`Error::Protected`].
@@ -154,7 +156,7 @@ fn is_same(one: &Path, other: &Path) -> bool {
     one.is_some() && one == other
 }
 
-/// Whether `name` leads to something below a directory, and nowhere else.
+/// Whether the relative path `name` stays below its directory.
 pub fn is_below(name: &str) -> bool {
     let mut parts = Path::new(name).components().peekable();
     parts.peek().is_some() && parts.all(|part| matches!(part, Component::Normal(_)))

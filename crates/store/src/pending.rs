@@ -1,4 +1,4 @@
-//! A file has its name only once it is whole: it is written beside its place and then renamed.
+//! Files that get their name only when they are complete: written under a temporary name, then renamed.
 
 use super::plain;
 use crate::error::Error;

@@ -16,7 +16,7 @@ pub fn open(path: &Path) -> Result<File> {
 /// Opens a plain file with `options`, which may make one.
 ///
 /// # Errors
-/// Something else stands there, or it may not be opened.
+/// There is something else of this name, or it may not be opened.
 pub fn open_with(path: &Path, options: &mut OpenOptions) -> Result<File> {
     is_there(path)?;
     without_links(options).open(path)

@@ -1,20 +1,20 @@
-//! A line with a checksum: whole, or it does not count. A line of a work holds under the seal of that work alone, so lines of two
-//! works cannot be taken for each other, whatever becomes of the file that they stand in.
+//! Lines with a checksum. The checksum of a line depends on the work that it belongs to, so lines of different works cannot be
+//! confused, even if their files are.
 
 use super::identity::{Identity, hexadecimal};
 use sha2::{Digest, Sha256};
 
-/// What checksums begin with.
+/// The state from which the checksums of a work's lines are computed.
 #[derive(Clone, Debug)]
 pub struct Seal(Sha256);
 
 impl Seal {
-    /// Of a line that says itself what it belongs to, or of a file that is checked as a whole.
+    /// For lines that name their work themselves, and for files that are checked as a whole.
     pub fn plain() -> Self {
         Self(Sha256::new())
     }
 
-    /// Of the lines of a work.
+    /// For the lines of a work.
     pub fn of(identity: &Identity) -> Self {
         Self(Sha256::new_with_prefix(identity.words()))
     }
@@ -24,7 +24,7 @@ impl Seal {
         format!("{text} {}\n", self.checksum(text))
     }
 
-    /// The text of a line; none if it is not whole, or not under this seal.
+    /// The text of a line; none if it is damaged or of another work.
     pub fn open<'a>(&self, line: &'a [u8]) -> Option<&'a str> {
         let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
         let (text, check) = line.rsplit_once(' ')?;

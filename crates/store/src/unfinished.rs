@@ -1,27 +1,29 @@
-//! Work that was begun in a directory and has not come to its end: found, gone on with, thrown away.
+//! Unfinished work in a directory: found, resumed or discarded.
 
-use super::journal::{self, Damage, Found, Journal, Known};
-use super::lock::Lock;
-use super::manifest::{self, Manifest};
-use super::order::is_below;
-use super::{Begin, Identity, names, plain};
+use crate::entries::names;
 use crate::error::Error;
+use crate::identity::Identity;
+use crate::journal::{self, Damage, Found, Journal, Known};
+use crate::lock::Lock;
+use crate::manifest::{Manifest, NAME};
+use crate::order::{Begin, is_below};
+use crate::plain;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Where new results come about.
+/// The subdirectory in which new results are written.
 pub const UNFINISHED: &str = "unfinished";
 
 /// The journal, in [`UNFINISHED`].
 pub const JOURNAL: &str = "journal";
 
-/// What a run that begins does with what it found.
+/// The start of a run, after its directory was looked at.
 #[derive(Debug)]
 pub enum Unfinished {
-    /// It goes on with it.
+    /// It resumes the work with this journal.
     GoOn(Known, Damage),
-    /// It begins anew, and throws the work in these directories below away.
+    /// It starts afresh, and discards the work in these directories below.
     Anew(BTreeSet<String>),
 }
 
@@ -29,7 +31,7 @@ impl Unfinished {
     /// Looks for unfinished work in a directory, and whether a run of this identity may go on with it.
     ///
     /// # Errors
-    /// There is some and `begin` does not say what becomes of it, or it is another's, or nobody can tell whose it is.
+    /// There is some and `begin` neither resumes nor discards it, or it is of another work, or its journal cannot be attributed.
     pub fn find(place: &Path, begin: Begin, identity: &Identity) -> Result<Self, Error> {
         let unfinished = place.join(UNFINISHED);
         let path = unfinished.join(JOURNAL);
@@ -57,8 +59,8 @@ impl Unfinished {
         Ok(Self::GoOn(known, damage))
     }
 
-    /// Takes the work up in its directory, and says which directories below hold work that was thrown away, and what a person should
-    /// know of the journal that was found.
+    /// Starts the run in its directory. Returns the journal, the directories below whose work is discarded, and a warning where the
+    /// journal was damaged.
     ///
     /// # Errors
     /// The journal cannot be written.
@@ -89,7 +91,7 @@ impl Unfinished {
     }
 }
 
-/// What is said of a damaged journal.
+/// The warning about a damaged journal.
 fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
     let first = "its first line is damaged, but its records are of this study";
     let rest = format!(
@@ -113,7 +115,7 @@ fn kept(place: &Path, identity: &Identity) -> u64 {
     }
 }
 
-/// Whether a directory of this name is one that Retune left behind: it has a journal, or nothing but temporary files.
+/// Checks that a directory of this name was made by Retune: it has a journal, or nothing but temporary files.
 fn check(unfinished: &Path) -> Result<(), Error> {
     let standing =
         |problem: &str| Error::Protected { path: unfinished.to_owned(), problem: problem.to_owned() };
@@ -144,7 +146,7 @@ fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Removes unfinished work. Its journal goes last: without one the directory is not known as Retune's.
+/// Removes unfinished work. Its journal is removed last: without one the directory is not recognised as Retune's.
 ///
 /// # Errors
 /// A file cannot be removed.
@@ -154,8 +156,8 @@ pub fn remove(unfinished: &Path) -> std::io::Result<()> {
     std::fs::remove_dir(unfinished)
 }
 
-/// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Where there is unfinished
-/// work, it all stays unless that is to go, too; so it does where another process is at work.
+/// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Everything
+/// stays where there is unfinished work that must not be removed, or where another process is at work.
 ///
 /// # Errors
 /// A file cannot be removed.
@@ -174,8 +176,8 @@ pub fn remove_results(place: &Path, with_unfinished: bool) -> std::io::Result<()
         for name in files.into_iter().filter(|name| is_below(name) && manifest.has_made(place, name)) {
             std::fs::remove_file(place.join(name))?;
         }
-        if plain::is_there(&place.join(manifest::NAME))? {
-            std::fs::remove_file(place.join(manifest::NAME))?;
+        if plain::is_there(&place.join(NAME))? {
+            std::fs::remove_file(place.join(NAME))?;
         }
     }
     drop(lock);

@@ -1,4 +1,4 @@
-//! `certify`: what a design's E1max is worth. An error bar, how it takes small errors, what motion it is, a verdict.
+//! `certify`: the reliability of a design's E1max. Its error bar, its sensitivity to small errors, the type of motion, a verdict.
 
 mod certificate;
 mod measure;
@@ -85,7 +85,8 @@ pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
     }
 }
 
-/// The study whose scene has the design of a study, an `optimum.json` or a directory of results, and where its certificate goes if that is beside what was read.
+/// The study with the design to certify in its scene, from a study, an `optimum.json` or a directory of results; of the latter two also
+/// the directory for the certificate.
 ///
 /// # Errors
 /// They cannot be read, or are wrong.

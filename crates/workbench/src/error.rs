@@ -105,7 +105,7 @@ pub enum Error {
     Run(#[from] SolverError),
     /// A motion could not be computed.
     #[error("the run failed: {0}")]
-    Atlas(#[from] retune_atlas::Error),
+    Motion(#[from] retune_dynamics::Error),
     /// A design that was found cannot be run.
     #[error("a design that was found cannot be run: {0}")]
     Unusable(#[from] Unusable),

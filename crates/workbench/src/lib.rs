@@ -1,11 +1,44 @@
-//! The jobs of Retune as a library.
+//! The jobs of Retune as a library: everything that the command line does, another program can do.
 //!
-//! A job takes a study (`retune_study`), computes with `retune_optim` and `retune_atlas`, keeps what it makes in a directory of
-//! results (`retune_store`), tells an [`Observer`] how far it is, and returns what it found. Nothing here prints.
+//! A job takes a study (`retune_study`), computes with `retune_optim` and `retune_dynamics`, keeps its files in a directory of
+//! results (`retune_store`), reports its progress to an [`Observer`], and returns its result. Nothing here prints.
 //!
-//! [`tune()`] searches the best design of a study; [`certify`] says what a design is worth; [`table2`], [`retune`] and [`pareto`]
-//! make several searches and compare them; [`verify`] looks at results again; [`simulate`] makes one run; [`evaluate`] answers
-//! designs from outside.
+//! [`tune()`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
+//! [`table2`], [`retune`] and [`pareto`] make several searches and compare them; [`verify`] checks results by computing them
+//! again; [`simulate`] makes one run; [`evaluate`] evaluates designs of other programs.
+//!
+//! ```
+//! use retune_workbench::simulate::simulate;
+//!
+//! // The damper of `studies/ssvi.json`. SI units: kg, N·s/m, N/m, N, rad/s, m, Pa, s.
+//! let text = r#"{
+//!     "scene": {
+//!         "primary": { "m1": 1000, "c1": 452, "k1": 3.95e4 },
+//!         "forcing": { "P": 800, "omega": 6.28 },
+//!         "damper": {
+//!             "m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36,
+//!             "contact": {
+//!                 "R": 2, "q": 0.318,
+//!                 "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4,
+//!                 "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4
+//!             }
+//!         }
+//!     },
+//!     "window": { "t0": 50, "T": 100 }
+//! }"#;
+//! let study = retune_study::read::from_text(text, "ssvi.json")?;
+//! let with_damper = simulate(&study, None)?;
+//! assert_eq!(with_damper.damper_type(), "SSVI NES"); // it strikes its walls
+//!
+//! let mut bare = study.clone();
+//! bare.scene.damper = None;
+//! let without = simulate(&bare, None)?;
+//!
+//! // The largest energy of the structure in the window, J, as a program reads it.
+//! let [with_damper, without] = [with_damper, without].map(|run| serde_json::json!(run)["E1max"].as_f64());
+//! assert!(with_damper < without);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod certify;
 pub mod describe;

@@ -1,31 +1,20 @@
-//! `retune`: both dampers tuned anew for each stiffness k1 of the structure, and how long each tuning lasts.
+//! `retune`: both dampers tuned anew for each stiffness k1 of the structure, and E1max of each tuning at other stiffnesses.
 //!
 //! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
 //! more refinement starts at the design of the neighbouring k1.
 
 mod draw;
+mod tuned;
 
-use crate::designs::{Table, quoted};
+pub use tuned::{energy, kept};
+
+use crate::designs::Table;
 use crate::tune::{Found, optimize};
 use crate::{Error, Observer, Request};
-use rayon::prelude::*;
-use retune_model::{NonNegative, Scene};
 use retune_store::Order;
 use retune_study::{self as study, PaperStudy, PerVariable, Setting, Study, short};
 use serde_json::json;
-
-/// Stiffnesses between the smallest and the largest at which the retention is drawn, and those that were tuned for.
-const ALONG: usize = 61;
-
-/// A damper tuned for several stiffnesses.
-struct Tuned {
-    name: String,
-    study: Study,
-    /// The stiffness of its study, N/m.
-    home: f64,
-    /// A design for each stiffness, N/m, in their order.
-    designs: Vec<(f64, Found)>,
-}
+use tuned::{Tuned, csv, retention};
 
 /// Tunes both dampers anew for each stiffness of the primary structure, and shows how E1max is retained.
 ///
@@ -72,11 +61,11 @@ fn tune(
     watch: &dyn Observer,
 ) -> Result<Tuned, Error> {
     let PaperStudy { damper: name, study } = row;
-    let home = study.scene.primary.stiffness.get();
-    let mut stiffnesses: Vec<f64> = others.iter().map(Setting::value).chain([home]).collect();
+    let nominal = study.scene.primary.stiffness.get();
+    let mut stiffnesses: Vec<f64> = others.iter().map(Setting::value).chain([nominal]).collect();
     stiffnesses.sort_by(f64::total_cmp);
     stiffnesses.dedup();
-    let here = stiffnesses.iter().position(|k1| *k1 == home).unwrap_or_default();
+    let here = stiffnesses.iter().position(|k1| *k1 == nominal).unwrap_or_default();
     let mut designs: Vec<Option<Found>> = vec![None; stiffnesses.len()];
     let upwards = (here..stiffnesses.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > here)));
     let downwards = (0..here).rev().map(|i| (i, Some(i + 1)));
@@ -97,7 +86,7 @@ fn tune(
         designs[i] = Some(optimum.found());
     }
     let designs = stiffnesses.into_iter().zip(designs).filter_map(|(k1, found)| Some((k1, found?))).collect();
-    Ok(Tuned { name, study, home, designs })
+    Ok(Tuned { name, study, nominal, designs })
 }
 
 /// The study at another stiffness, with one more start.
@@ -107,76 +96,4 @@ fn warm(study: &Study, k1: f64, from: Option<Found>) -> Result<Study, Error> {
         optimize.starts.push(PerVariable::of_design(&damper.design, &optimize.vary));
     }
     Ok(study)
-}
-
-/// E1max along k1.
-struct Curves {
-    /// The stiffnesses, N/m.
-    k1: Vec<f64>,
-    /// Without a damper, J, as the first study takes it.
-    none: Vec<f64>,
-    /// Of each damper as tuned for its study's own k1, J.
-    kept: Vec<Vec<f64>>,
-}
-
-fn retention(tuned: &[Tuned]) -> Curves {
-    let at = |damper: &Tuned| damper.designs.iter().map(|(k1, _)| *k1).collect::<Vec<f64>>();
-    let stops: Vec<f64> = tuned.iter().flat_map(at).collect();
-    let [low, high] = [f64::min, f64::max].map(|pick| stops.iter().copied().reduce(pick).unwrap_or_default());
-    let along = (0..ALONG).map(|i| low + (high - low) * (i as f64 / (ALONG - 1) as f64));
-    let mut k1: Vec<f64> = stops.iter().copied().chain(along).collect();
-    k1.sort_by(f64::total_cmp);
-    k1.dedup();
-    let curve = |study: &Study, scene: Scene| -> Vec<f64> {
-        k1.par_iter().map(|&k1| energy(study, scene, k1).unwrap_or(f64::NAN)).collect()
-    };
-    let none = tuned.first().map(|first| curve(&first.study, Scene { damper: None, ..first.study.scene }));
-    let kept = |damper: &Tuned| {
-        let scene = damper.scene(damper.home).unwrap_or(damper.study.scene);
-        curve(&damper.study, scene)
-    };
-    let (none, kept) = (none.unwrap_or_default(), tuned.iter().map(kept).collect());
-    Curves { k1, none, kept }
-}
-
-/// E1max by the objective of a study for a scene at another stiffness, N/m, in J; none where it cannot be run.
-pub fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
-    scene.primary.stiffness = NonNegative::new(k1).ok()?;
-    study.energy(&scene)
-}
-
-impl Tuned {
-    /// The scene with the design for one of the stiffnesses.
-    fn scene(&self, k1: f64) -> Option<Scene> {
-        let (_, found) = self.designs.iter().find(|(other, _)| *other == k1)?;
-        self.study.scene_at(&found.damper.design)
-    }
-
-    /// E1max of the design for a stiffness at it, J, if it is one of those tuned for.
-    fn retuned(&self, k1: f64) -> Option<f64> {
-        self.designs.iter().find(|(other, _)| *other == k1).map(|(_, found)| found.e1_max)
-    }
-}
-
-/// The column of a damper as it was tuned for the stiffness of its study, N/m.
-pub fn kept(name: &str, home: f64) -> String {
-    format!("{name} tuned for {home}")
-}
-
-/// A row for each stiffness; what has no value is an empty field.
-fn csv(tuned: &[Tuned], curves: &Curves) -> String {
-    let columns = tuned.iter().map(|Tuned { name, home, .. }| {
-        let columns = [kept(name, *home), format!("{name} re-tuned")];
-        columns.map(|column| quoted(&column)).join(",")
-    });
-    let mut text = format!("k1,none,{}\n", columns.collect::<Vec<_>>().join(","));
-    let field = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
-    for (i, &k1) in curves.k1.iter().enumerate() {
-        let mut fields = vec![k1.to_string(), field(curves.none[i])];
-        for (damper, kept) in tuned.iter().zip(&curves.kept) {
-            fields.extend([field(kept[i]), field(damper.retuned(k1).unwrap_or(f64::NAN))]);
-        }
-        text += &(fields.join(",") + "\n");
-    }
-    text
 }

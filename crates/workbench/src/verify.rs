@@ -1,53 +1,23 @@
-//! `verify`: whether results are those that their study gives. Every file is compared with the manifest, a sample of the rows is run
-//! again and compared to the last bit, certificates are made again. What cannot be checked is no evidence, and is said.
+//! `verify`: results are compared with those that their study gives. Every file is compared with the manifest, a sample of the rows
+//! is run again and compared to the last bit, certificates are made again. Parts that cannot be checked are reported.
 
 mod files;
+mod input;
+mod report;
 mod search;
 mod several;
 mod table;
+mod tally;
 mod values;
 
 use crate::resolved;
 use crate::tune::shard::PARTS;
 use crate::{Error, Observer};
-use rayon::prelude::*;
+use report::Report;
 use retune_store::{UNFINISHED, manifest};
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// A number of a result, and what gives it again.
-struct Check<'a> {
-    said: f64,
-    again: Box<dyn Fn() -> f64 + Sync + 'a>,
-}
-
-impl Check<'_> {
-    /// That of a row which no command writes.
-    fn never() -> Self {
-        Self { said: f64::NAN, again: Box::new(|| 0.0) }
-    }
-}
-
-/// What became of the numbers of a file.
-#[derive(Default)]
-struct Tally {
-    differ: usize,
-    /// The largest relative difference.
-    most: f64,
-}
-
-/// Says what holds, and keeps what does not and what cannot be checked.
-struct Report<'a> {
-    watch: &'a dyn Observer,
-    /// The largest relative difference that counts as held.
-    within: f64,
-    /// What stands before a file in a message: the directory, where there are several.
-    place: String,
-    problems: Vec<String>,
-    unchecked: Vec<String>,
-}
-
-/// Looks at a directory of results, and at those in it, and says of each file whether it holds. Of each table `sample` rows are run
+/// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
 /// again; numbers that differ by at most `within` of their size hold.
 ///
 /// # Errors
@@ -60,8 +30,7 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
         let words = "there is no manifest.json and no study.json in it: these are no results";
         return Err(refuse(std::io::Error::other(words)).into());
     }
-    let mut report =
-        Report { watch, within, place: String::new(), problems: Vec::new(), unchecked: Vec::new() };
+    let mut report = Report::new(watch, within);
     for place in &places {
         if places.len() > 1 {
             report.watch.result(&format!("{}:", place.display()))?;
@@ -74,7 +43,7 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
     report.end(path)
 }
 
-/// Looks at the results in one directory.
+/// Checks the results in one directory.
 fn look(place: &Path, sample: usize, report: &mut Report<'_>) -> Result<(), Error> {
     files::verify(place, report)?;
     let has = |name: &str| place.join(name).exists();
@@ -86,7 +55,7 @@ fn look(place: &Path, sample: usize, report: &mut Report<'_>) -> Result<(), Erro
         report.unchecked("no row of these results can be run again by itself")
     };
     match done {
-        // What is damaged is one more thing that does not hold.
+        // Damaged files do not hold either.
         Err(
             error @ (Error::Store(retune_store::Error::Input { .. })
             | Error::Study(_)
@@ -110,113 +79,8 @@ fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
     if inner.iter().any(|path| path.is_file() && !files::is_hidden(path)) {
         places.push(path.to_owned());
     }
-    // The shares of a grid are what a merge begins with, and no results.
+    // The shares of a grid are the input of a merge, not results.
     inner.retain(|path| path.is_dir() && !path.ends_with(UNFINISHED) && !path.ends_with(PARTS));
     inner.sort();
     inner.iter().try_for_each(|path| collect(path, places))
-}
-
-fn text(place: &Path, name: &str) -> Result<String, Error> {
-    let path = place.join(name);
-    Ok(std::fs::read_to_string(&path).map_err(|source| retune_store::Error::Input { path, source })?)
-}
-
-fn json(place: &Path, name: &str) -> Result<Value, Error> {
-    let refuse = |error: serde_json::Error| retune_store::Error::Input {
-        path: place.join(name),
-        source: error.into(),
-    };
-    Ok(serde_json::from_str(&text(place, name)?).map_err(refuse)?)
-}
-
-impl Report<'_> {
-    /// Says what does not hold; `name` is the file, or empty.
-    fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
-        let between = if name.is_empty() { "" } else { ", " };
-        self.problems.push(format!("{}{name}{between}{words}", self.place));
-        let line = if name.is_empty() { format!("  {words}") } else { format!("  {name:<22} {words}") };
-        self.watch.result(&line)
-    }
-
-    /// Says what cannot be checked.
-    fn unchecked(&mut self, words: &str) -> Result<(), Error> {
-        self.unchecked.push(format!("{}{words}", self.place));
-        self.watch.result(&format!("  cannot be checked: {words}"))
-    }
-
-    /// Makes all `checks` of a file, of which they are `what`.
-    fn look(&mut self, name: &str, what: &str, checks: &[Check]) -> Result<(), Error> {
-        self.tell(name, &format!("{what} run again"), &run(checks))
-    }
-
-    /// Compares a JSON file, or a part of it, with what is made again.
-    fn compare(&mut self, name: &str, what: &str, said: &Value, again: &Value) -> Result<(), Error> {
-        let tally = values::compare(said, again, self.within);
-        self.tell(name, &format!("{what} made again"), &tally)
-    }
-
-    fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
-        let most = if tally.most.is_finite() {
-            format!(
-                "by at most {:.1e} of {} value",
-                tally.most,
-                if tally.differ == 1 { "its" } else { "their" }
-            )
-        } else {
-            "and not only in digits".to_owned()
-        };
-        let words = match tally.differ {
-            0 => "the same to the last bit".to_owned(),
-            1 => format!("1 differs, {most}"),
-            differ => format!("{differ} differ, {most}"),
-        };
-        if tally.most > self.within {
-            self.problems.push(format!("{}{name}, {words}", self.place));
-        }
-        self.watch.result(&format!("  {name:<22} {what}: {words}"))
-    }
-
-    /// The last word.
-    fn end(self, path: &Path) -> Result<(), Error> {
-        let Self { watch, within, problems, unchecked, .. } = self;
-        let unchecked = unchecked.join("; ");
-        if problems.is_empty() && unchecked.is_empty() {
-            let agrees = if within > 0.0 { format!("agrees within {within:e}") } else { "agrees".to_owned() };
-            return watch.result(&format!(
-                "holds: every file is as it was made, and all that was run or made again {agrees}"
-            ));
-        }
-        if problems.is_empty() {
-            return Err(Error::NotChecked { path: path.to_owned(), problem: unchecked });
-        }
-        let and = if unchecked.is_empty() { "" } else { "; cannot be checked: " };
-        let problem = format!("does not hold: {}{and}{unchecked}", problems.join("; "));
-        Err(Error::NotHeld { path: path.to_owned(), problem })
-    }
-}
-
-/// Runs all again.
-fn run(checks: &[Check]) -> Tally {
-    let found: Vec<f64> = checks.par_iter().map(|check| (check.again)()).collect();
-    let mut tally = Tally::default();
-    for (check, found) in checks.iter().zip(found) {
-        tally.see(check.said, found);
-    }
-    tally
-}
-
-impl Tally {
-    /// Compares two numbers; two that are not finite are the same: no value.
-    fn see(&mut self, said: f64, found: f64) {
-        let none = |value: f64| !value.is_finite();
-        if said.to_bits() != found.to_bits() && !(none(said) && none(found)) {
-            let difference = (said - found).abs() / said.abs().max(found.abs());
-            self.differs(if difference.is_finite() { difference } else { f64::INFINITY });
-        }
-    }
-
-    fn differs(&mut self, by: f64) {
-        self.differ += 1;
-        self.most = self.most.max(by);
-    }
 }

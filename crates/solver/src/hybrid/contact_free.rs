@@ -37,12 +37,6 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
     }
 
-    /// The same at rest at `t` (s) instead.
-    pub fn started(mut self, t: f64) -> Self {
-        (self.now.t, self.now.excitation) = (t, self.system.excitation(t));
-        self
-    }
-
     /// The state reached.
     pub fn state(&self) -> [f64; N] {
         self.now.y

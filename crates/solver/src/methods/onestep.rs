@@ -51,6 +51,11 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         }
     }
 
+    /// The time reached, s.
+    pub fn time(&self) -> f64 {
+        self.now.t
+    }
+
     /// The state reached.
     pub fn state(&self) -> [f64; N] {
         self.now.y

@@ -59,13 +59,13 @@ pub fn settled(
         let Some(from) = ask.walls else { return Ok(closed(steady.e1_max, 0.0)) };
         let mut range = DisplacementRange::new(&system, from);
         let watched = Window { from: from.min(window.to), ..window };
-        follow_coupled(&system, 0.0, watched, settings, &mut Unobserved, &mut range)?;
+        follow_coupled(&system, watched, settings, &mut Unobserved, &mut range)?;
         let [transient, _] = range.stroke_and_force();
         return Ok(closed(steady.e1_max, steady.stroke().max(transient)));
     }
     let mut blocks = Blocks::new(&system, window.from, settle, settings, ask);
     let whole = Window { from: 0.0, ..window };
-    follow_coupled(&system, 0.0, whole, settings, &mut Unobserved, &mut blocks)?;
+    follow_coupled(&system, whole, settings, &mut Unobserved, &mut blocks)?;
     let seen = blocks.verdict();
     energy_bound::energy(scene, whole, settings, seen.e1_max)?;
     Ok(seen)

@@ -1,22 +1,25 @@
-//! Reading a journal, whatever became of it: every record that is whole is kept, and what is not is counted.
+//! Reading a journal, damaged or not: complete records are kept, damaged ones counted.
 
-use super::super::identity::Identity;
-use super::super::plain;
-use super::super::seal::Seal;
-use super::{Key, TITLE, bits, grid_value};
-use crate::Pending;
+use super::record::{Key, bits, grid_value};
 use crate::error::Error;
+use crate::identity::Identity;
+use crate::pending::Pending;
+use crate::plain;
+use crate::seal::Seal;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
 
-/// Longest line that is one, bytes.
+/// The first words of a journal.
+const TITLE: &str = "retune-journal-2";
+
+/// Longest valid line, bytes.
 const LONGEST: usize = 1024;
 
 /// Most points of a grid.
 pub const MOST_POINTS: usize = 10_000_000;
 
-/// What a journal knows.
+/// The contents of a journal.
 #[derive(Debug, Default)]
 pub struct Known {
     pub(super) values: HashMap<Key, f64>,
@@ -25,16 +28,16 @@ pub struct Known {
     pub(super) marks: HashSet<String>,
     /// The directories below that the work has begun searches in.
     pub parts: BTreeSet<String>,
-    /// How much it knows: values and marks.
+    /// Number of its values and marks.
     pub lines: u64,
 }
 
-/// What is wrong with a journal that can be gone on with.
+/// Damage to a journal that can still be continued.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Damage {
-    /// Its first line, which says whose it is.
+    /// Whether its first line, which names its work, is damaged.
     pub head: bool,
-    /// Lines that are not whole.
+    /// Number of damaged lines.
     pub lines: u64,
 }
 
@@ -45,14 +48,14 @@ impl Damage {
     }
 }
 
-/// What was found in the place of a journal.
+/// The state of a journal's file.
 #[derive(Debug)]
 pub enum Found {
     /// Nothing, not even a first line.
     Nothing,
-    /// Something of which cannot be told whose work it is; why.
+    /// A file that cannot be attributed to a work, and why.
     Unclear(&'static str),
-    /// The journal of a work: what made it, what it knows and what is wrong with it.
+    /// The journal of a work: its identity, its contents and its damage.
     Work(Identity, Box<Known>, Damage),
 }
 
@@ -98,7 +101,7 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
     Ok(Found::Work(of, Box::new(known), damage))
 }
 
-/// Writes a damaged journal anew: a first line, and every record that is whole. The old one stays until the new one is.
+/// Replaces a damaged journal: a first line, and every complete record. The old file stays until the new one is complete.
 ///
 /// # Errors
 /// It cannot be read or written.

@@ -1,11 +1,11 @@
 //! The measurements behind a certificate.
 
 use super::certificate::{
-    Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Rung, Sensitivity, WorstRun,
+    Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Run, Sensitivity, WorstRun,
 };
 use crate::Error;
 use rayon::prelude::*;
-use retune_atlas::{Stretch, classify, follow};
+use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Scene};
 use retune_optim::{Ensemble, Goal, PerLimit, Place, Response, Statistic};
 use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
@@ -16,19 +16,19 @@ const ERRORS: [f64; 6] = [-0.01, -0.005, -0.0025, 0.0025, 0.005, 0.01];
 /// The neighbourhood: designs whose k1, k2, c2, D and C are off by at most a thousandth.
 const NEIGHBOURS: Ensemble =
     Ensemble { members: 64, phases: false, errors: 1e-3, seed: 0, statistic: Statistic::Mean };
-/// The ladder: the study's own method at three tolerances, and two methods that share nothing with it but the equations.
-const LADDER: [(Method, f64); 5] = [
+/// The convergence study: the study's own method at three tolerances, and two methods that share nothing with it but the equations.
+const CONVERGENCE: [(Method, f64); 5] = [
     (Method::Hybrid, 1e-8),
     (Method::Hybrid, 1e-10),
     (Method::Hybrid, 1e-12),
     (Method::Dop853, 1e-12),
     (Method::Ode45, 1e-10),
 ];
-/// How long a steady motion is followed by the methods that step in time, s, and when it has settled.
+/// Time over which methods that step in time follow a steady motion, s, and the criterion by which it has settled.
 const LONG: f64 = 2000.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 
-/// All of them.
+/// Makes all measurements and the certificate.
 ///
 /// # Errors
 /// The design itself has no value, or its worst run cannot be followed.
@@ -38,7 +38,7 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
     let mut near = Vec::new();
     let sensitivity = sensitivities(study, &goal, &settings, &mut near);
     let neighbourhood = neighbourhood(&study.scene, &goal, &settings, &mut near);
-    let ladder = ladder(&own.worst, &goal, &settings)?;
+    let convergence = convergence(&own.worst, &goal, &settings)?;
     let finer = finer(&goal).map(|goal| {
         let found = look(&study.scene, &goal, &settings);
         near.push(Near {
@@ -54,7 +54,7 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
     let Place { e1_max, scene, phase, .. } = own.worst;
     let worst_run =
         WorstRun { e1_max, omega: scene.forcing.frequency.get(), k1: scene.primary.stiffness.get(), phase };
-    let measured = Measured { worst_run, ladder, finer, motion, sensitivity, neighbourhood, limits };
+    let measured = Measured { worst_run, convergence, finer, motion, sensitivity, neighbourhood, limits };
     Ok(Certificate::new(study, damper, &own, measured))
 }
 
@@ -70,11 +70,11 @@ fn finer(goal: &Goal) -> Option<Goal> {
     any.then_some(goal)
 }
 
-/// E1max of the worst run by every rung.
-fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, SolverError> {
+/// E1max of the worst run by every method of the convergence study.
+fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Run>, SolverError> {
     let (response, settle) =
         goal.term(worst.term).map_or((Response::Steady, STEADY), |term| (term.response, term.settle));
-    let rung = |&(method, rtol): &(Method, f64)| {
+    let run = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
         let ask = Ask { phase: worst.phase, ..Ask::default() };
         let found = match response {
@@ -84,9 +84,9 @@ fn ladder(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Rung>, 
                 settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?
             }
         };
-        Ok(Rung { method, rtol, e1_max: found.e1_max.value })
+        Ok(Run { method, rtol, e1_max: found.e1_max.value })
     };
-    LADDER.par_iter().map(rung).collect()
+    CONVERGENCE.par_iter().map(run).collect()
 }
 
 /// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to
@@ -130,7 +130,7 @@ fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings, near: &mut Vec
     Neighbourhood::new(NEIGHBOURS.errors, found.iter().map(|found| found.energy).collect())
 }
 
-/// What a scene gives.
+/// The result of a scene.
 struct Look {
     /// J, infinite where there is none.
     energy: f64,

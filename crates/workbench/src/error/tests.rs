@@ -201,7 +201,7 @@ fn errors() -> Vec<Error> {
         Error::Lines { failed: 1, lines: 24 },
         Error::Threads(threads.expect_err("no threads")),
         Error::Run(SolverError::NonFinite { t: 1.5 }),
-        Error::Atlas(retune_atlas::Error::NoPeriod),
+        Error::Motion(retune_dynamics::Error::NoPeriod),
         Error::Unusable(Unusable::Run(SolverError::NonFinite { t: 1.5 })),
         Error::NoStart(Failures::default()),
         Error::NoStart(failures()),
@@ -218,7 +218,7 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
-        each!(errors(), Error: Store Study Setting Rule Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Atlas
+        each!(errors(), Error: Store Study Setting Rule Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),

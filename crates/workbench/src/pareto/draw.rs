@@ -1,6 +1,7 @@
 //! The figures of `fronts`.
 
-use super::{Candidate, Fronts, Row};
+use super::candidate::Candidate;
+use super::fronts::{Fronts, Row};
 use retune_figures::sheet::{BLUE, Chart, GREY, Key, Layer, ORANGE, PURPLE, VERMILION, sheet};
 use retune_study::Sweep;
 
@@ -41,7 +42,7 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
     sheet(&[chart], 1, 700.0, &keys(&words)).wide
 }
 
-/// E1max against stroke, contact force and k2: the designs that no other beats, and pale those that are beaten.
+/// E1max against stroke, contact force and k2: the designs that no other dominates, and pale those that are dominated.
 pub(super) fn front(fronts: &Fronts) -> String {
     let front = fronts.front();
     let all = || fronts.designs.iter().chain(&fronts.given);
@@ -49,8 +50,9 @@ pub(super) fn front(fronts: &Fronts) -> String {
     let chart = |which: usize| {
         let value = |design: &Candidate| [design.stroke, design.force, design.at.k2.get()][which];
         let point = |design: &Candidate| (value(design), design.e1_max);
-        let beaten = fronts.designs.iter().filter(|design| !front.contains(design));
-        let mut layers = vec![Layer::Dots { points: beaten.map(point).collect(), colour: GREY, size: 10.0 }];
+        let dominated = fronts.designs.iter().filter(|design| !front.contains(design));
+        let mut layers =
+            vec![Layer::Dots { points: dominated.map(point).collect(), colour: GREY, size: 10.0 }];
         for damper in 0..fronts.plan.dampers.len() {
             let [colour, _] = COLOURS[damper % COLOURS.len()];
             let points = front.iter().filter(|design| design.damper == damper).map(|design| point(design));
@@ -68,7 +70,7 @@ pub(super) fn front(fronts: &Fronts) -> String {
     };
     let charts: Vec<Chart> = (0..3).map(chart).collect();
     let mut words = legend(fronts, false, |_| true);
-    words.push((Key::Dot(GREY), "found, but beaten in all".to_owned()));
+    words.push((Key::Dot(GREY), "found, but dominated in all".to_owned()));
     sheet(&charts, 1, 520.0, &keys(&words)).wide
 }
 
@@ -95,7 +97,7 @@ fn title(fronts: &Fronts) -> String {
     format!("{}Retune {}", over.unwrap_or_default(), env!("CARGO_PKG_VERSION"))
 }
 
-/// What each colour means; of the dampers in the studies, those that are `shown`.
+/// The entries of the legend; of the dampers in the studies, those that are `shown`.
 fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Candidate) -> bool) -> Vec<(Key, String)> {
     let dampers = fronts.plan.dampers.iter().enumerate();
     let tuned = dampers.map(|(i, (name, _))| {

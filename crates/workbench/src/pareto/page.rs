@@ -1,10 +1,11 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
-use super::{Candidate, Certified, Fronts, Row, SAME};
+use super::candidate::{Candidate, SAME};
+use super::fronts::{Certified, Fronts, Row};
 use retune_study::Sweep;
 use retune_study::short;
 
-/// Why a soft spring does with a stop what a stiff one does without.
+/// Why a soft spring with a stop does as well as a stiff one without.
 const MECHANISM: &str = "A mass that bounces on one stop makes only about half of each swing of its spring, so it comes back up to twice as \
      fast as the spring alone lets it: with one strike a period it is in tune with the structure at down to a quarter of the \
      stiffness that a TMD needs. The stop also cuts the swing off on its side, and the other wall stays out of reach, so that \
@@ -42,7 +43,7 @@ pub(super) fn page(fronts: &Fronts, certified: &[Certified]) -> String {
             text += &format!("| {} | {} | {fields} |\n", row.bound, fronts.name(row.damper));
         }
     }
-    text += "\n## The trade\n\nDesigns that no other beats in all of E1max, stroke, contact force and k2 (`front.csv`); pale, those that are beaten.\n\n";
+    text += "\n## The trade\n\nDesigns that no other dominates in all of E1max, stroke, contact force and k2 (`front.csv`); pale, those that are dominated.\n\n";
     text += "![E1max against stroke, contact force and k2](front.svg)\n\n";
     if certified.is_empty() {
         return text
@@ -57,7 +58,7 @@ pub(super) fn page(fronts: &Fronts, certified: &[Certified]) -> String {
     text
 }
 
-/// What each damper but the first is good for, in words.
+/// The advantage of each damper over the first, in words.
 pub(super) fn answer(fronts: &Fronts) -> String {
     let mut words = Vec::new();
     for given in &fronts.given {
@@ -82,7 +83,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
     let (name, first) = (fronts.name(damper), fronts.name(0));
     let (what, unit) = (sweep.name(), sweep.unit());
     let rows = fronts.rows(sweep);
-    let share = |row: &Row| Some(row.design?.e1_max / fronts.rival(row)?);
+    let share = |row: &Row| Some(row.design?.e1_max / fronts.reference(row)?);
     let own = || rows.iter().filter(|row| row.damper == damper);
     let best =
         own().filter_map(|row| Some((share(row)?, row))).min_by(|(one, _), (other, _)| one.total_cmp(other));
@@ -101,19 +102,19 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         _ => format!("**{what}**: under no bound is the {name} better than the {first} by more than 1 %."),
     };
     let alone: Vec<String> = own()
-        .filter(|row| row.design.is_some() && fronts.rival(row).is_none())
+        .filter(|row| row.design.is_some() && fronts.reference(row).is_none())
         .map(|row| row.bound.to_string())
         .collect();
     if !alone.is_empty() {
         words += &format!(" Only the {name} keeps {what} at most {} {unit}.", alone.join(", "));
     }
     let draws: Vec<String> = own()
-        .filter(|row| row.design.is_some_and(|design| design.verdict == "draw"))
+        .filter(|row| row.design.is_some_and(|design| design.verdict == "single chaotic realisation"))
         .map(|row| row.bound.to_string())
         .collect();
     if !draws.is_empty() {
         words += &format!(
-            " For {what} at most {} {unit} it is a draw: designs that nobody can tell apart from it have much more or \
+            " For {what} at most {} {unit} it is a single chaotic realisation: practically equal designs have much more or \
              less.",
             draws.join(", ")
         );
@@ -132,12 +133,12 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 }
 
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
-    let Certified { row: Row { sweep, bound, damper, design }, rival, file, certificate } = one;
+    let Certified { row: Row { sweep, bound, damper, design }, reference, file, certificate } = one;
     let Some(design) = design else { return String::new() };
     let [k2, c2, d, c] = design.at.values().map(|value| round(value, 4));
-    let rival = rival.map_or("none".to_owned(), |rival| format!("{} J", joule(rival)));
+    let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
     format!(
-        "- {}, {} at most {bound} {}: k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m with {} J (best {} under the same bound: {rival}). \
+        "- {}, {} at most {bound} {}: k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m with {} J (best {} under the same bound: {reference}). \
          [{file}]({file}):\n\n```text\n{}\n```\n\n",
         fronts.name(*damper),
         sweep.name(),

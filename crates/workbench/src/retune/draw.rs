@@ -1,12 +1,12 @@
-//! The figures of `retune`: what a tuning is worth along k1, and the path of the designs.
+//! The figures of `retune`: E1max along k1, and the designs against k1.
 
-use super::{Curves, Tuned};
+use super::tuned::{Curves, Tuned};
 use crate::tune::Found;
 use retune_figures::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, ORANGE, VERMILION, sheet};
 
 /// A colour for each damper, of its tuning that is kept and of its tuning anew.
 const COLOURS: [[&str; 2]; 2] = [[ORANGE, VERMILION], [GREEN, BLUE]];
-/// How a tuning that is kept is drawn, and no damper.
+/// Dashes of the curve of a tuning that is kept, and of that without a damper.
 const DASHES: [&str; 2] = ["18 8", "6 6"];
 
 /// E1max against k1: none, as tuned for the study's own k1, and tuned anew.
@@ -23,9 +23,9 @@ pub(super) fn retention(tuned: &[Tuned], curves: &Curves) -> String {
             damper.designs.iter().map(|(k1, Found { e1_max, .. })| (*k1, *e1_max)).collect();
         layers.push(Layer::Line { points: points.clone(), colour: anew, width: 4.0, dash: "" });
         layers.push(Layer::Dots { points, colour: anew, size: 14.0 });
-        let Tuned { name, home, .. } = damper;
+        let Tuned { name, nominal, .. } = damper;
         keys.extend([Key::Line(kept, DASHES[0]), Key::Line(anew, "")]);
-        words.extend([format!("{name} tuned for k1 = {home} N/m"), format!("{name} re-tuned")]);
+        words.extend([format!("{name} tuned for k1 = {nominal} N/m"), format!("{name} re-tuned")]);
     }
     let energies = curves.none.iter().chain(curves.kept.iter().flatten());
     let top = energies.copied().filter(|e| e.is_finite()).fold(0.0, f64::max);

@@ -1,6 +1,7 @@
-//! The files of a directory of results beside its manifest.
+//! Comparison of the files of a directory with its manifest.
 
-use super::{Report, text};
+use super::input::text;
+use super::report::Report;
 use crate::Error;
 use crate::resolved;
 use retune_store::identity::{Identity, VERSION, sha256};
@@ -70,7 +71,7 @@ fn was(files: usize) -> &'static str {
     if files == 1 { "it was" } else { "they were" }
 }
 
-/// Whether a file is none of the results: a lock, an editor's.
+/// Whether a file is not a result: a lock, or a hidden file of an editor.
 pub fn is_hidden(path: &Path) -> bool {
     path.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'))
 }

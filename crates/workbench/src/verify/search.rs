@@ -1,7 +1,8 @@
 //! The results of one study: the rows of its search, its band, the design it found, its certificate.
 
+use super::input::json;
+use super::report::{Check, Report};
 use super::table::{Row, Sample};
-use super::{Check, Report, json};
 use crate::Error;
 use crate::certify::{self, certify};
 use crate::summary::Summary;
@@ -16,10 +17,10 @@ use std::path::Path;
 /// The curves of a band: without damper, with that of the study, with the best.
 const CURVES: usize = 3;
 
-/// Tables of designs with what the search saw of them.
+/// Tables of designs with the values that the search gave them.
 const TABLES: [&str; 4] = ["surf.csv", "fminsearch.csv", "fminsearch-starts.csv", "basins.csv"];
 
-/// Looks at the results of a study again, at `most` rows of a table.
+/// Checks the results of a study, at most `most` rows of each table.
 ///
 /// # Errors
 /// They cannot be read.
@@ -47,7 +48,7 @@ pub fn verify(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), 
     Ok(())
 }
 
-/// Looks at the tables of a search, and at what it found.
+/// Checks the tables of a search, and the design that it found.
 fn search(place: &Path, study: &Study, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
     let objective = objective(study, &search, &Variable::ALL);
@@ -79,7 +80,7 @@ fn search(place: &Path, study: &Study, most: usize, report: &mut Report<'_>) -> 
     }
 }
 
-/// What `optimum.json` says of its design, made again.
+/// The contents of `optimum.json` about its design, made again.
 fn again(
     study: &Study,
     objective: &PeakEnergy,
@@ -104,7 +105,7 @@ fn again(
     Ok(again)
 }
 
-/// Makes the certificate of the design in the scene of a study again.
+/// Checks the certificate of the design in the scene of a study by making it again.
 ///
 /// # Errors
 /// Standard output cannot be written.
@@ -120,7 +121,7 @@ pub fn energy(study: &Study, design: &Design) -> f64 {
     study.scene_at(design).and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
-/// The check of a row of a search: the number that it made small, or the E1max of a basin, empty where that breaks a limit.
+/// The check of a row of a search: the minimised value, or the E1max of a basin, which is empty where the design breaks a limit.
 fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
     let text = row.text("E1max");
     let basin = !row.text("basin").is_empty();

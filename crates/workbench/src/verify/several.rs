@@ -1,8 +1,9 @@
 //! The results of several studies: tables of designs (`table2`, `retune`, `fronts`) and curves along k1.
 
+use super::input::json;
+use super::report::{Check, Report};
 use super::search::{self, certificate, energy};
 use super::table::{Row, Sample};
-use super::{Check, Report, json};
 use crate::Error;
 use crate::pareto;
 use crate::resolved::Resolved;
@@ -11,7 +12,7 @@ use retune_study::{Setting, Study};
 use serde_json::Value;
 use std::path::Path;
 
-/// Looks at the tables again, at `most` rows of each.
+/// Checks at most `most` rows of each table.
 ///
 /// # Errors
 /// They cannot be read.
@@ -84,7 +85,7 @@ fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> 
     Some(Check { said, again: Box::new(again) })
 }
 
-/// How many curves along k1 there are, and their checks: without damper, and with each damper as it was tuned for its own k1.
+/// The number of curves along k1, and their checks: without damper, and with each damper as tuned for its own k1.
 fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample) -> (usize, Vec<Check<'a>>) {
     let mut columns = Vec::new();
     if let Some((_, first)) = studies.first() {
@@ -92,11 +93,11 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
         columns.push(("none".to_owned(), first, bare));
     }
     for (name, study) in studies {
-        let home = study.scene.primary.stiffness.get();
-        let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == home);
+        let nominal = study.scene.primary.stiffness.get();
+        let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == nominal);
         let scene = own.and_then(|row| study.scene_at(&row.design()?));
         if let Some(scene) = scene {
-            columns.push((retune::kept(name, home), study, scene));
+            columns.push((retune::kept(name, nominal), study, scene));
         }
     }
     let mut checks = Vec::new();

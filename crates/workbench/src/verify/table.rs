@@ -1,4 +1,4 @@
-//! A table of results as it is looked at again: a sample of its rows, their fields by the names of the columns.
+//! A sample of the rows of a table of results, their fields accessed by the names of the columns.
 
 use crate::Error;
 use retune_model::Design;
@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct Sample {
     names: csv::StringRecord,
     rows: Vec<csv::StringRecord>,
-    /// How many rows there are.
+    /// Number of rows of the file.
     count: usize,
 }
 
@@ -56,7 +56,7 @@ impl Sample {
         self.rows.iter().map(|fields| Row { names: &self.names, fields })
     }
 
-    /// How many rows there are, and how many were run again.
+    /// The number of rows run again and of all rows, in words.
     pub fn of(&self, looked: usize) -> String {
         format!("{looked} of {}", counted(self.count as u64, "row"))
     }
@@ -69,7 +69,7 @@ impl<'a> Row<'a> {
         number.and_then(|number| self.fields.get(number)).unwrap_or_default()
     }
 
-    /// A field as a number; NaN where it is none.
+    /// A field as a number; NaN where it is not a number.
     pub fn number(self, name: &str) -> f64 {
         self.text(name).parse().unwrap_or(f64::NAN)
     }

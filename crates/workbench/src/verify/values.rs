@@ -1,11 +1,10 @@
-//! Two JSON values beside each other.
+//! The comparison of two JSON values.
 
-use super::Tally;
+use super::tally::Tally;
 use serde_json::Value;
 
-/// Compares all that `again` has: numbers by their relative difference, anything else must be equal. Fields that `again` does not
-/// have, and the version of Retune, are not looked at; nor, where numbers may be off by some share `within`, are the words made
-/// of them.
+/// Compares every field of `again`: numbers by their relative difference, anything else must be equal. Fields that `again` does not
+/// have, and the version of Retune, are ignored; so are texts made of numbers where these may differ by a share `within`.
 pub fn compare(said: &Value, again: &Value, within: f64) -> Tally {
     let mut tally = Tally::default();
     visit(said, again, within, &mut tally);
@@ -55,7 +54,7 @@ mod tests {
         assert_eq!(look(with("/a/0", json!(0.5)), 0.0), (1, 0.5));
         assert_eq!(look(with("/a/1", json!(0.5)), 0.0), (1, f64::INFINITY));
         assert_eq!(look(with("/a", json!([1.0])), 0.0), (1, f64::INFINITY));
-        assert_eq!(look(with("/b/verdict", json!("sharp")), 0.1), (1, f64::INFINITY));
+        assert_eq!(look(with("/b/verdict", json!("sensitive")), 0.1), (1, f64::INFINITY));
         assert_eq!(look(with("/b/words", json!("other")), 0.0), (1, f64::INFINITY));
         assert_eq!(look(with("/b/words", json!("other")), 0.1), (0, 0.0));
         assert_eq!(look(with("/b", json!("gone")), 0.0), (2, f64::INFINITY));

@@ -1,4 +1,4 @@
-//! How a design and those near it keep the limits of their study.
+//! The limits of a study, at a design and near it.
 
 use retune_optim::{Limit, Limits, PerLimit};
 use retune_study::short;
@@ -12,7 +12,7 @@ pub struct Kept {
     /// Of each limit that is broken near the design (by a neighbour, with 1 % of one parameter, or on the finer band), the place
     /// that breaks it most.
     broken_near: Vec<Excess>,
-    /// How many of the neighbours break a limit.
+    /// Number of neighbours that break a limit.
     neighbours: usize,
 }
 
@@ -28,7 +28,7 @@ pub struct Excess {
     at: String,
 }
 
-/// What was reached at a place near the design.
+/// The largest values at a design near the certified one.
 pub struct Near {
     /// The place in words.
     pub at: String,
@@ -39,7 +39,7 @@ pub struct Near {
 }
 
 impl Kept {
-    /// None where there is no limit. `own` is what the design reaches.
+    /// None where there is no limit. `own` are the largest values of the design itself.
     pub fn new(limits: &Limits, own: &PerLimit<f64>, near: &[Near]) -> Option<Self> {
         if limits.is_empty() {
             return None;
@@ -56,7 +56,7 @@ impl Kept {
         })
     }
 
-    /// How the design itself breaks limits; none if it keeps them.
+    /// The limits that the design itself breaks, in words; none if it keeps them.
     pub fn broken(&self) -> Option<String> {
         words(&self.broken, |Excess { limit, allowed, reached, over_percent, .. }| {
             let (reached, allowed, over) = (short(*reached), short(*allowed), short(*over_percent));
@@ -64,7 +64,7 @@ impl Kept {
         })
     }
 
-    /// How designs near it break limits; none if all keep them.
+    /// The limits that designs near it break, in words; none if all keep them.
     pub fn broken_near(&self) -> Option<String> {
         words(&self.broken_near, |Excess { limit, allowed, reached, over_percent, at }| {
             let (reached, allowed, over) = (short(*reached), short(*allowed), short(*over_percent));
@@ -73,7 +73,7 @@ impl Kept {
         })
     }
 
-    /// How many of the neighbours break a limit.
+    /// Number of neighbours that break a limit.
     pub fn neighbours(&self) -> usize {
         self.neighbours
     }

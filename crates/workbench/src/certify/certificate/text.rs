@@ -1,6 +1,6 @@
 //! A certificate as text.
 
-use super::{Certificate, FINER, Motion, Neighbourhood, Rung, Sensitivity, Short, WorstRun};
+use super::{Certificate, FINER, Motion, Neighbourhood, Run, Sensitivity, Short, WorstRun};
 use retune_study::short;
 
 impl std::fmt::Display for Short {
@@ -23,7 +23,7 @@ impl std::fmt::Display for Certificate {
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let (omega, k1) = (short(*omega), short(*k1));
         writeln!(f, "worst run     {} J at omega = {omega} rad/s, k1 = {k1} N/m{phase}", short(*e1_max))?;
-        for Rung { method, rtol, e1_max } in &self.ladder {
+        for Run { method, rtol, e1_max } in &self.convergence {
             let method = format!("{} {rtol:e}", method.name());
             writeln!(f, "  {method:<14}{e1_max:.10} J")?;
         }

@@ -1,6 +1,6 @@
 //! The verdict of a certificate, and its rule.
 
-use super::{Certificate, Neighbourhood, Sensitivity};
+use super::measured::{Measured, Neighbourhood, Sensitivity};
 use retune_study::short;
 use serde::Serialize;
 
@@ -8,8 +8,8 @@ use serde::Serialize;
 const PREDICTABLE: f64 = 1e-3;
 /// Width of the neighbours' E1max, as a share of that of the design, above which it is wide; an error bar as wide counts as much.
 const WIDE: f64 = 0.05;
-/// Growth of E1max within 1 % of any one parameter above which an optimum is sharp.
-const SHARP: f64 = 0.1;
+/// Growth of E1max within 1 % of any one parameter above which an optimum is sensitive.
+const SENSITIVE: f64 = 0.1;
 
 /// A verdict. A design that breaks its limits has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -20,9 +20,10 @@ pub enum Verdict {
     /// Small errors change E1max little, but break a limit.
     Edge,
     /// Small errors change much, in a regular way or at an edge.
-    Sharp,
-    /// The motion is irregular, and the value one of many that equal designs have.
-    Draw,
+    Sensitive,
+    /// The motion is irregular, and the value one of many that practically equal designs have.
+    #[serde(rename = "single chaotic realisation")]
+    SingleChaoticRealisation,
 }
 
 impl Verdict {
@@ -31,71 +32,72 @@ impl Verdict {
         match self {
             Self::Robust => "robust",
             Self::Edge => "edge",
-            Self::Sharp => "sharp",
-            Self::Draw => "draw",
+            Self::Sensitive => "sensitive",
+            Self::SingleChaoticRealisation => "single chaotic realisation",
         }
     }
 }
 
 /// Whether an error bar makes E1max of a run predictable, both in J.
-pub(super) fn is_predictable(error_bar: f64, e1_max: f64) -> bool {
+pub fn is_predictable(error_bar: f64, e1_max: f64) -> bool {
     error_bar <= PREDICTABLE * e1_max
 }
 
-impl Certificate {
-    /// The verdict, if there is one, and what to say of it.
-    pub(super) fn judge(&self) -> (Option<Verdict>, String) {
-        let limits = self.limits.as_ref();
-        if let Some(broken) = limits.and_then(|limits| limits.broken()) {
-            return (None, format!("no verdict, for the design breaks {broken}"));
-        }
-        let (verdict, words) = self.judge_energy();
-        match (verdict, limits.and_then(|limits| limits.broken_near())) {
-            (_, None) => (Some(verdict), words),
-            (Verdict::Robust, Some(near)) => {
-                (Some(Verdict::Edge), format!("on the edge of a limit: {near}; E1max alone is {words}"))
-            }
-            (_, Some(near)) => (Some(verdict), format!("{words}; and on the edge of a limit: {near}")),
-        }
+/// The verdict on a design whose E1max is `e1_max` ± `error_bar`, J; none where it breaks a limit. With its words.
+pub fn judge(
+    e1_max: f64,
+    error_bar: f64,
+    predictable: bool,
+    measured: &Measured,
+) -> (Option<Verdict>, String) {
+    let limits = measured.limits.as_ref();
+    if let Some(broken) = limits.and_then(|limits| limits.broken()) {
+        return (None, format!("no verdict, for the design breaks {broken}"));
     }
-
-    /// The verdict on E1max, whatever the limits.
-    fn judge_energy(&self) -> (Verdict, String) {
-        let Self { e1_max, error_bar, neighbourhood, .. } = self;
-        let Neighbourhood { low, high, errors, .. } = neighbourhood;
-        // Not a number is no evidence of anything small.
-        let small = |value: f64| value <= WIDE * e1_max;
-        let narrow = small(neighbourhood.width()) && small(*error_bar);
-        let near =
-            format!("designs within {} % of it have {} to {} J", 100.0 * errors, short(*low), short(*high));
-        if !narrow && (self.motion.irregular || !self.predictable) {
-            let width = short(neighbourhood.width().max(*error_bar));
-            return (Verdict::Draw, format!("a draw from a distribution of width {width} J: {near}"));
+    let (verdict, words) = judge_energy(e1_max, error_bar, predictable, measured);
+    match (verdict, limits.and_then(|limits| limits.broken_near())) {
+        (_, None) => (Some(verdict), words),
+        (Verdict::Robust, Some(near)) => {
+            (Some(Verdict::Edge), format!("on the edge of a limit: {near}; E1max alone is {words}"))
         }
-        if !narrow {
-            return (Verdict::Sharp, format!("sharp: {near}"));
-        }
-        let worst = self.worst_error();
-        let said =
-            worst.map_or(String::new(), |Sensitivity { parameter, worst, worst_at_percent, .. }| {
-                format!("{parameter} off by {worst_at_percent:+} % gives {} J", short(*worst))
-            });
-        match worst {
-            Some(worst) if worst.worst > (1.0 + SHARP) * e1_max => {
-                (Verdict::Sharp, format!("sharp: {said}, {} times as much", short(worst.worst / e1_max)))
-            }
-            _ => (Verdict::Robust, format!("robust: at worst {said}")),
-        }
-    }
-
-    /// The parameter that 1 % of harms most.
-    fn worst_error(&self) -> Option<&Sensitivity> {
-        self.sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst))
+        (_, Some(near)) => (Some(verdict), format!("{words}; and on the edge of a limit: {near}")),
     }
 }
 
-/// The rule, with what it says of limits where there are any.
-pub(super) fn rule(limits: bool) -> String {
+/// The verdict on E1max, whatever the limits.
+fn judge_energy(e1_max: f64, error_bar: f64, predictable: bool, measured: &Measured) -> (Verdict, String) {
+    let Measured { neighbourhood, motion, sensitivity, .. } = measured;
+    let Neighbourhood { low, high, errors, .. } = neighbourhood;
+    // Not a number is no evidence of anything small.
+    let small = |value: f64| value <= WIDE * e1_max;
+    let narrow = small(neighbourhood.width()) && small(error_bar);
+    let near =
+        format!("designs within {} % of it have {} to {} J", 100.0 * errors, short(*low), short(*high));
+    if !narrow && (motion.irregular || !predictable) {
+        let width = short(neighbourhood.width().max(error_bar));
+        return (
+            Verdict::SingleChaoticRealisation,
+            format!("a single chaotic realisation of a distribution of width {width} J: {near}"),
+        );
+    }
+    if !narrow {
+        return (Verdict::Sensitive, format!("sensitive: {near}"));
+    }
+    // The parameter whose error of 1 % raises E1max most.
+    let worst = sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
+    let said = worst.map_or(String::new(), |Sensitivity { parameter, worst, worst_at_percent, .. }| {
+        format!("{parameter} off by {worst_at_percent:+} % gives {} J", short(*worst))
+    });
+    match worst {
+        Some(worst) if worst.worst > (1.0 + SENSITIVE) * e1_max => {
+            (Verdict::Sensitive, format!("sensitive: {said}, {} times as much", short(worst.worst / e1_max)))
+        }
+        _ => (Verdict::Robust, format!("robust: at worst {said}")),
+    }
+}
+
+/// The rule in words; `limits` says whether the study has limits.
+pub fn rule(limits: bool) -> String {
     let edge = if limits {
         "; edge: as robust, but a neighbour, 1 % of one parameter, or a sample more of the band breaks a limit; no verdict: the \
          design itself breaks one"
@@ -103,12 +105,12 @@ pub(super) fn rule(limits: bool) -> String {
         ""
     };
     format!(
-        "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of E1max; draw: wide, and the \
-         motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sharp: \
+        "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of E1max; single chaotic realisation: wide, and the \
+         motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sensitive: \
          wide, or 1 % of one parameter raises E1max by more than {} %; robust: none of these{edge}. predictable: the error bar is at \
          most {} % of the worst run's E1max",
         100.0 * WIDE,
-        100.0 * SHARP,
+        100.0 * SENSITIVE,
         100.0 * PREDICTABLE
     )
 }

@@ -1,0 +1,81 @@
+//! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
+
+use retune_model::{Design, Positive};
+use retune_optim::{Evaluation, Limits};
+use retune_study::{Study, Sweep, joined};
+use std::cmp::Ordering;
+
+/// E1max that differs by less than this share is the same.
+pub const SAME: f64 = 0.01;
+
+/// A design, evaluated on the samples of the study of fronts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The number of its damper.
+    pub damper: usize,
+    /// Its design.
+    pub at: Design,
+    /// The worst E1max over the band, J.
+    pub e1_max: f64,
+    /// The largest stroke (spring deflection |x2 - x1 - D|), m, and contact force, N, in any run.
+    pub stroke: f64,
+    pub force: f64,
+    /// The verdict of its certificate.
+    pub verdict: &'static str,
+}
+
+impl Candidate {
+    /// By how much it is beyond a bound, as a share of it.
+    pub fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
+        let reached = if sweep == Sweep::K2 { self.at.k2.get() } else { self.stroke };
+        (reached / bound - 1.0).max(0.0)
+    }
+
+    /// Whether it is of the same damper and has nearly the same E1max.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.damper == other.damper && (self.e1_max / other.e1_max - 1.0).abs() < SAME
+    }
+
+    /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.
+    pub fn dominates(&self, other: &Self) -> bool {
+        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.k2.get()];
+        let pairs = || all(self).into_iter().zip(all(other));
+        pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
+    }
+
+    /// Its fields in a table.
+    pub fn fields(&self) -> String {
+        let Self { at, e1_max, stroke, force, verdict, .. } = self;
+        format!("{e1_max},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
+    }
+}
+
+/// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
+pub fn energy(study: &Study, samples: usize, at: &Design) -> Option<f64> {
+    Some(look(&finer(study, samples, at)?)?.energy)
+}
+
+/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
+pub fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
+    let mut study = study.clone();
+    study.scene = study.scene_at(at)?;
+    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
+        band.samples = samples;
+    }
+    Some(study)
+}
+
+/// The worst of the scene of a study over its band; none where it cannot be run.
+pub fn look(study: &Study) -> Option<Evaluation> {
+    // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
+    let mut goal = study.goal();
+    let least = Positive::new(f64::MIN_POSITIVE).ok();
+    goal.limits = Limits { stroke: least, force: least, cavity: None, from: goal.limits.from };
+    goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
+}
+
+/// The design that keeps a bound first, then that which is beyond it by less.
+pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Ordering {
+    let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
+    own.total_cmp(&other).then(a.e1_max.total_cmp(&b.e1_max))
+}

@@ -1,0 +1,132 @@
+//! The report of a verification, and the checks that it makes.
+
+use super::tally::Tally;
+use super::values;
+use crate::{Error, Observer};
+use rayon::prelude::*;
+use serde_json::Value;
+use std::path::Path;
+
+/// A number of a result, and the computation that gives it again.
+pub struct Check<'a> {
+    /// The number in the file.
+    pub said: f64,
+    /// The computation.
+    pub again: Box<dyn Fn() -> f64 + Sync + 'a>,
+}
+
+impl Check<'_> {
+    /// A check that fails: of a row that no command writes.
+    pub fn never() -> Self {
+        Self { said: f64::NAN, again: Box::new(|| 0.0) }
+    }
+}
+
+/// A report to the observer; it collects what does not hold and what cannot be checked.
+pub struct Report<'a> {
+    /// The observer.
+    pub watch: &'a dyn Observer,
+    /// The largest relative difference that counts as held.
+    within: f64,
+    /// The prefix of a file's name in a message: its directory, where there are several.
+    pub place: String,
+    /// What does not hold.
+    pub problems: Vec<String>,
+    unchecked: Vec<String>,
+}
+
+impl<'a> Report<'a> {
+    /// A report of nothing yet; numbers that differ by at most the share `within` hold.
+    pub fn new(watch: &'a dyn Observer, within: f64) -> Self {
+        Self { watch, within, place: String::new(), problems: Vec::new(), unchecked: Vec::new() }
+    }
+
+    /// Reports what does not hold; `name` is the file, or empty.
+    ///
+    /// # Errors
+    /// The observer's, as of all reports.
+    pub fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
+        let between = if name.is_empty() { "" } else { ", " };
+        self.problems.push(format!("{}{name}{between}{words}", self.place));
+        let line = if name.is_empty() { format!("  {words}") } else { format!("  {name:<22} {words}") };
+        self.watch.result(&line)
+    }
+
+    /// Reports what cannot be checked.
+    ///
+    /// # Errors
+    /// As [`Self::fail`].
+    pub fn unchecked(&mut self, words: &str) -> Result<(), Error> {
+        self.unchecked.push(format!("{}{words}", self.place));
+        self.watch.result(&format!("  cannot be checked: {words}"))
+    }
+
+    /// Runs all `checks` of the file `name` and reports how many differ; `what` says of which part of the file they are.
+    ///
+    /// # Errors
+    /// As [`Self::fail`].
+    pub fn look(&mut self, name: &str, what: &str, checks: &[Check]) -> Result<(), Error> {
+        self.tell(name, &format!("{what} run again"), &run(checks))
+    }
+
+    /// Compares a JSON file, or a part of it, with the same made again.
+    ///
+    /// # Errors
+    /// As [`Self::fail`].
+    pub fn compare(&mut self, name: &str, what: &str, said: &Value, again: &Value) -> Result<(), Error> {
+        let tally = values::compare(said, again, self.within);
+        self.tell(name, &format!("{what} made again"), &tally)
+    }
+
+    fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
+        let most = if tally.most.is_finite() {
+            format!(
+                "by at most {:.1e} of {} value",
+                tally.most,
+                if tally.differ == 1 { "its" } else { "their" }
+            )
+        } else {
+            "and not only in digits".to_owned()
+        };
+        let words = match tally.differ {
+            0 => "the same to the last bit".to_owned(),
+            1 => format!("1 differs, {most}"),
+            differ => format!("{differ} differ, {most}"),
+        };
+        if tally.most > self.within {
+            self.problems.push(format!("{}{name}, {words}", self.place));
+        }
+        self.watch.result(&format!("  {name:<22} {what}: {words}"))
+    }
+
+    /// The result of all that was reported.
+    ///
+    /// # Errors
+    /// [`Error::NotHeld`], [`Error::NotChecked`], or the observer's.
+    pub fn end(self, path: &Path) -> Result<(), Error> {
+        let Self { watch, within, problems, unchecked, .. } = self;
+        let unchecked = unchecked.join("; ");
+        if problems.is_empty() && unchecked.is_empty() {
+            let agrees = if within > 0.0 { format!("agrees within {within:e}") } else { "agrees".to_owned() };
+            return watch.result(&format!(
+                "holds: every file is as it was made, and all that was run or made again {agrees}"
+            ));
+        }
+        if problems.is_empty() {
+            return Err(Error::NotChecked { path: path.to_owned(), problem: unchecked });
+        }
+        let and = if unchecked.is_empty() { "" } else { "; cannot be checked: " };
+        let problem = format!("does not hold: {}{and}{unchecked}", problems.join("; "));
+        Err(Error::NotHeld { path: path.to_owned(), problem })
+    }
+}
+
+/// Runs all checks in parallel.
+fn run(checks: &[Check]) -> Tally {
+    let found: Vec<f64> = checks.par_iter().map(|check| (check.again)()).collect();
+    let mut tally = Tally::default();
+    for (check, found) in checks.iter().zip(found) {
+        tally.see(check.said, found);
+    }
+    tally
+}

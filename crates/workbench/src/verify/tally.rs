@@ -1,0 +1,27 @@
+//! Differences between numbers, counted.
+
+/// The differences between the numbers of a file and those computed again.
+#[derive(Default)]
+pub struct Tally {
+    /// Number of values that differ.
+    pub differ: usize,
+    /// The largest relative difference.
+    pub most: f64,
+}
+
+impl Tally {
+    /// Compares two numbers; two that are not finite are the same: no value.
+    pub fn see(&mut self, said: f64, found: f64) {
+        let none = |value: f64| !value.is_finite();
+        if said.to_bits() != found.to_bits() && !(none(said) && none(found)) {
+            let difference = (said - found).abs() / said.abs().max(found.abs());
+            self.differs(if difference.is_finite() { difference } else { f64::INFINITY });
+        }
+    }
+
+    /// Counts one more difference.
+    pub fn differs(&mut self, by: f64) {
+        self.differ += 1;
+        self.most = self.most.max(by);
+    }
+}
