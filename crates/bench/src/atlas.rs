@@ -1,4 +1,4 @@
-//! Where methods fail: every method of Retune on every difficulty, and how it broke.
+//! Atlas of failures: every method of Retune on every difficult scene, with the result and its cause.
 
 pub mod difficulties;
 pub mod draw;
@@ -16,7 +16,7 @@ use retune_model::Side;
 use retune_solver::observe::{Observer, Segment};
 use retune_solver::{Contacts, Method, Settings};
 
-/// How a method fared.
+/// The result of a method on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// An error of at most [`WORKS`], every impact counted.
@@ -25,13 +25,13 @@ pub enum Verdict {
     Inaccurate,
     /// An error was returned.
     Says,
-    /// A wrong answer and no word.
+    /// A wrong answer without an error.
     Silent,
 }
 
 /// Largest error of a cell that works.
 pub const WORKS: f64 = 1e-3;
-/// Largest error of a cell that is inaccurate: beyond it the answer is another motion's.
+/// Largest error of a cell that is inaccurate: a larger one means another motion.
 pub const INACCURATE: f64 = 5e-2;
 
 impl Verdict {
@@ -65,7 +65,7 @@ pub struct Way {
     pub name: &'static str,
     /// The method.
     pub method: Method,
-    /// How it meets contacts.
+    /// How it treats contacts.
     pub contacts: Contacts,
     /// Relative tolerance, or step (s).
     pub setting: f64,
@@ -78,7 +78,7 @@ impl Way {
     }
 }
 
-/// The methods at what a careful user sets (rtol 1e-6; a step of 1 ms), and the paper's as MATLAB sets it (rtol 1e-3).
+/// The methods with careful settings (rtol 1e-6; a step of 1 ms), and the paper's with MATLAB's default (rtol 1e-3).
 pub const WAYS: [Way; 10] = {
     const fn way(name: &'static str, method: Method, contacts: Contacts, setting: f64) -> Way {
         Way { name, method, contacts, setting }
@@ -100,19 +100,19 @@ pub const WAYS: [Way; 10] = {
 
 /// One cell.
 pub struct Cell {
-    /// How the method fared.
+    /// The method's result.
     pub verdict: Verdict,
-    /// The larger of the relative errors of E1max and of the final state; of the energy, where that is what is asked.
+    /// The larger of the relative errors of E1max and of the final state; in the energy row, the error of the energy.
     pub error: f64,
     /// Impacts found and expected.
     pub impacts: [usize; 2],
     /// Evaluations.
     pub evaluations: u64,
-    /// What it said, or why it failed; empty where it works.
+    /// Its error message, or the cause of its failure; empty if it works.
     pub cause: String,
 }
 
-/// What a difficulty's cells are judged by.
+/// The reference for the cells of a difficulty.
 pub struct Truth {
     /// The hybrid at rtol 1e-12.
     pub found: Found,
@@ -139,13 +139,13 @@ impl Durations {
 impl Observer<4> for Durations {
     fn segment(&mut self, segment: &impl Segment<4>) {
         let [from, to] = segment.ends();
-        // Time runs evenly in flight only.
+        // Only in flight is time uniform over a segment.
         if from.clock == [1.0, 0.0] && to.t > from.t {
             self.ended(from.t);
         }
     }
     fn touch_down(&mut self, t: f64, _side: Side) {
-        self.ended(t); // from wall to wall there may be no flight
+        self.ended(t); // between the two walls there may be no flight segment
         self.began = Some(t);
     }
 }
@@ -153,7 +153,7 @@ impl Observer<4> for Durations {
 /// The reference of a difficulty.
 ///
 /// # Errors
-/// Why it could not be run.
+/// The reason why it could not be run.
 pub fn truth(difficulty: &Difficulty) -> Result<Truth, String> {
     let settings = own::settings(Method::Hybrid, Contacts::Located, 1e-12);
     let case = &difficulty.case;
@@ -198,7 +198,7 @@ pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
     Cell { verdict, error, impacts, evaluations: found.evaluations, cause }
 }
 
-/// Why a method loses accuracy on a scene.
+/// The reason why a method loses accuracy on a scene.
 fn why(way: &Way, truth: &Truth) -> String {
     let contact = truth.shortest_contact.map(|s| format!("{:.2} ms", s * 1e3));
     match (way.method.has_fixed_step(), contact, way.contacts) {
@@ -228,7 +228,7 @@ fn why(way: &Way, truth: &Truth) -> String {
 /// The row of the energy over 1,000 lossless impacts.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn energy_cell(way: &Way) -> Result<Cell, Box<dyn std::error::Error>> {
     let drift = energy::drift(way.method, way.contacts, way.setting)?;
     let impacts = [drift.impacts as usize, energy::IMPACTS as usize];

@@ -1,4 +1,4 @@
-//! Charts of speed against accuracy, one panel a scene, and of what the smallest exact model saves.
+//! Charts of speed against accuracy, one panel for each scene, and of the saving by the smallest exact model.
 
 use crate::panel::{
     Axis, BLUE, Drawn, GREEN, GREY, INK, Line, Marker, ORANGE, PURPLE, Panel, VERMILION, sheet,
@@ -10,7 +10,7 @@ use crate::scenes::Case;
 use plotters::prelude::*;
 use std::path::Path;
 
-/// What a run costs.
+/// The cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
     /// Time, ms.
@@ -19,7 +19,7 @@ pub enum Cost {
     Evaluations,
 }
 
-/// Colour by whose method it is and marker by which; the hybrid and the paper's method stand out.
+/// Colour by program and marker by method; the hybrid and the paper's method are emphasised.
 fn style(name: &str) -> (RGBColor, u32, Marker) {
     match name {
         "hybrid" => (VERMILION, 4, Marker::Disc),
@@ -39,7 +39,7 @@ fn style(name: &str) -> (RGBColor, u32, Marker) {
     }
 }
 
-/// Retune's methods, both of Octave's, and of every other program the one that served the scene best.
+/// Retune's methods, both of Octave's, and of every other program the best one for the scene.
 fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
     let mut kept: Vec<Curve<'a>> = Vec::new();
     for curve in all {
@@ -54,7 +54,7 @@ fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
             _ => kept.push(curve),
         }
     }
-    // Drawn last, what matters most lies on top.
+    // The most important lines are drawn last, on top.
     kept.sort_by_key(|c| style(&c.name).1);
     kept
 }
@@ -74,7 +74,7 @@ fn line(curve: &Curve<'_>, cost: Cost) -> Line {
     Line { name, points, colour, width, marker }
 }
 
-/// One panel a scene: an error across, a cost up.
+/// One panel for each scene: error on the horizontal axis, cost on the vertical axis.
 ///
 /// # Errors
 /// A file that cannot be written.

@@ -1,4 +1,4 @@
-//! Runs of programs outside this one (GNU Octave, SciPy, SUNDIALS), from the tables that their scripts wrote.
+//! Runs of other programs (GNU Octave, SciPy, SUNDIALS), from the tables that their scripts wrote.
 
 use crate::record::{Found, Row, errors};
 use crate::scenes::Case;
@@ -8,7 +8,7 @@ use std::{fs, io};
 /// The tables, made by `just accuracy-external`.
 const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/reference/external/scipy.csv"];
 
-/// The runs of a scene. The scripts say how many contacts there were, not when.
+/// The runs of a scene. The scripts give the number of contacts, not their times.
 ///
 /// # Errors
 /// A table that cannot be read; a missing one is an empty one.

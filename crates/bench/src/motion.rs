@@ -1,15 +1,15 @@
-//! A scene as other people's integrators are given it, and what is taken from their output.
+//! The interface of a scene to other people's integrators, and the evaluation of their output.
 
 use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 use std::cell::Cell;
 
-/// Evaluations after which a run is given up: a hundred times those of the longest that ended.
+/// Evaluations after which a run is aborted: a hundred times those of the longest completed run.
 pub const MOST_EVALUATIONS: u64 = 20_000_000;
 
 /// Which contact forces act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acting {
-    /// Whichever the state says: steps run over touch-downs.
+    /// Those that the state implies: steps may cross touch-downs.
     Any,
     /// None: in flight.
     None,
@@ -17,7 +17,7 @@ pub enum Acting {
     Only(Side),
 }
 
-/// The right-hand side of a scene with four components (the last two rest where there is no damper).
+/// The right-hand side of a scene with four components (without a damper the last two are constant).
 pub struct Equations {
     bare: Bare,
     coupled: Option<Coupled>,
@@ -28,7 +28,7 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// The equations of a scene, contacts located or stepped over.
+    /// The equations of a scene, with contacts located or stepped over.
     pub fn new(scene: &Scene, located: bool) -> Self {
         let coupled = scene.damper.as_ref().map(|d| Coupled::new(&scene.primary, &scene.forcing, d));
         let acting = if located && coupled.is_some() { Acting::None } else { Acting::Any };
@@ -44,7 +44,7 @@ impl Equations {
     /// `y'`.
     ///
     /// # Panics
-    /// After [`MOST_EVALUATIONS`]: an integrator that never returns can be stopped in no other way.
+    /// After [`MOST_EVALUATIONS`]: there is no other way to stop an integrator that does not return.
     pub fn derivative(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
         self.evaluations.set(self.evaluations.get() + 1);
         assert!(
@@ -79,7 +79,7 @@ impl Equations {
         std::array::from_fn(|i| std::array::from_fn(|j| a[(i, j)]))
     }
 
-    /// What keeps the phase going: an event is a fall of one of these through zero.
+    /// The event functions of the phase: it ends when one of them falls through zero.
     pub fn open(&self, y: &[f64; 4]) -> [f64; 2] {
         let Some(coupled) = &self.coupled else { return [1.0; 2] };
         let z = coupled.indentation(y);
@@ -90,7 +90,7 @@ impl Equations {
         }
     }
 
-    /// Changes the phase at an event, a hair (1e-15 m) beyond the wall; true if it was a touch-down.
+    /// Changes the phase at an event, slightly (1e-15 m) beyond the wall; true if it was a touch-down.
     pub fn change(&mut self, y: &mut [f64; 4]) -> bool {
         let open = self.open(y);
         let nearest = if open[0] <= open[1] { Side::Primary } else { Side::Obstacle };
@@ -121,7 +121,7 @@ impl Equations {
     }
 }
 
-/// The largest E1 and the touch-downs of a motion that is shown moment by moment.
+/// The largest E1 and the touch-downs of a motion that is given point by point.
 pub struct Track {
     spacing: f64,
     last: Option<(f64, [f64; 3])>,
@@ -133,12 +133,12 @@ pub struct Track {
 }
 
 impl Track {
-    /// A track that looks at the interior of steps every `spacing` seconds.
+    /// A track that samples the interior of steps every `spacing` seconds.
     pub fn new(spacing: f64) -> Self {
         Self { spacing, last: None, pressed: [false; 2], e1_max: 0.0, touches: Vec::new() }
     }
 
-    /// Looks into a step, from its dense output.
+    /// Samples a step, from its dense output.
     pub fn step(&mut self, equations: &Equations, [from, to]: [f64; 2], mut at: impl FnMut(f64) -> [f64; 4]) {
         let pieces = ((to - from) / self.spacing).ceil().max(1.0);
         for k in 1..=pieces as usize {
@@ -147,7 +147,7 @@ impl Track {
         }
     }
 
-    /// A moment. Between two of them E1 is the quartic whose slope is the cubic that meets theirs.
+    /// Adds a point. Between two points E1 is the quartic whose slope is the cubic Hermite interpolant.
     pub fn moment(&mut self, equations: &Equations, t: f64, y: &[f64; 4]) {
         let rates = equations.energy(t, y);
         self.e1_max = self.e1_max.max(rates[0]);

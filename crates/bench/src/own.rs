@@ -10,7 +10,7 @@ use retune_solver::{
 };
 use std::time::{Duration, Instant};
 
-/// The shortest of several runs, s: after a warm-up 100 of less than a millisecond, fewer where one takes longer.
+/// The shortest of several runs, s: after a warm-up 100 runs if one takes less than a millisecond, else fewer.
 pub fn shortest_of<T>(mut run: impl FnMut() -> T) -> f64 {
     let timed = |run: &mut dyn FnMut()| {
         let begun = Instant::now();
@@ -40,10 +40,10 @@ pub fn settings(method: Method, contacts: Contacts, setting: f64) -> Settings {
     }
 }
 
-/// Everything of one run; the time is that of finding E1max alone.
+/// All results of one run; the time is that of finding E1max alone.
 ///
 /// # Errors
-/// Why the run failed.
+/// The reason why the run failed.
 pub fn run(case: &Case, settings: &Settings, timed: bool) -> Result<Found, String> {
     let window = Window { from: 0.0, to: case.to };
     let response = simulate(&case.scene, window, settings).map_err(|e| e.to_string())?;
@@ -61,7 +61,8 @@ pub fn run(case: &Case, settings: &Settings, timed: bool) -> Result<Found, Strin
     })
 }
 
-/// Follows a motion from a state of flight at t = 0 to time `to` (s) or until the observer is satisfied; the state reached.
+/// Integrates a motion from a state of flight at t = 0 to time `to` (s) or until the observer is satisfied; returns the state
+/// reached.
 ///
 /// # Errors
 /// As the method's own.
@@ -89,7 +90,7 @@ pub fn follow(
     Ok(run.state())
 }
 
-/// How a method meets contacts, in a word.
+/// How a method treats contacts, in a word.
 pub fn way(settings: &Settings) -> &'static str {
     match (settings.method, settings.contacts) {
         (Method::Hybrid, _) => "exact",

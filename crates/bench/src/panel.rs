@@ -1,5 +1,5 @@
 //! A panel of a chart: axes with SI units, lines, and each line's name at its end. Colours of M. Okabe and K. Ito (2008), which
-//! the colour-blind can tell apart; markers tell apart what shares a colour.
+//! colour-blind readers can distinguish; markers distinguish lines of the same colour.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -8,9 +8,9 @@ use retune_solver::Method;
 use std::error::Error;
 use std::path::Path;
 
-/// What drawing returns.
+/// The result of drawing.
 pub type Drawn = Result<(), Box<dyn Error>>;
-/// A piece of a picture.
+/// A part of a picture.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Black.
@@ -45,7 +45,7 @@ pub enum Marker {
     Nothing,
 }
 
-/// Colour, width in px and marker of a method of Retune's own, the same on every sheet of the atlas.
+/// Colour, width in px and marker of one of Retune's methods, the same on every sheet of the atlas.
 pub fn look(method: Method) -> (RGBColor, u32, Marker) {
     match method {
         Method::Hybrid => (VERMILION, 4, Marker::Disc),
@@ -155,7 +155,7 @@ pub struct Panel {
     pub lines: Vec<Line>,
 }
 
-/// Room about the axes, px: left, right (for names), top, bottom.
+/// Margins of the axes, px: left, right (for names), top, bottom.
 const MARGIN: [i32; 4] = [78, 196, 40, 56];
 /// Height of a name, px.
 const NAME: i32 = 17;
@@ -297,7 +297,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_axes_place_values_and_label_decades() {
+    fn contract_axes_place_values_and_label_decades() {
         let axis = Axis::log("x", 1e-4, 1e4);
         assert!((axis.place(1.0) - 0.5).abs() < 1e-12);
         assert_eq!((axis.place(1e-9), axis.place(1e9)), (0.0, 1.0));

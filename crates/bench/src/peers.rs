@@ -10,8 +10,8 @@ use crate::record::Found;
 use crate::scenes::Case;
 use std::panic::{self, AssertUnwindSafe};
 
-/// Follows the motion from `y` at a time to another; the end reached, and whether an event ended it. With a track, the motion
-/// is shown to it.
+/// Integrates the motion from `y` between two times; returns the state reached, and whether an event ended it. If there is a track,
+/// the motion is passed to it.
 pub type Piece =
     fn(&Equations, (f64, [f64; 4]), f64, f64, Option<&mut Track>) -> Result<(f64, [f64; 4], bool), String>;
 
@@ -21,9 +21,9 @@ pub struct Peer {
     pub program: &'static str,
     /// Method.
     pub method: &'static str,
-    /// Follows one phase.
+    /// Integrates one phase.
     pub piece: Piece,
-    /// Tightest tolerance worth asking for.
+    /// Tightest useful tolerance.
     pub tightest: f64,
 }
 
@@ -58,7 +58,7 @@ pub const PEERS: [Peer; 9] = [
 /// Most events of a run.
 const MOST_EVENTS: usize = 10_000;
 
-/// Runs what may never return: it is stopped by the bound on evaluations, and that is its failure.
+/// Runs an integrator that might not return: the bound on evaluations stops it, which counts as a failure.
 fn guarded<T>(run: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     let loud = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
@@ -101,7 +101,7 @@ fn follow(
 /// A run of a peer. The time is that of the motion alone: unlike Retune's, it does not contain the search for E1max.
 ///
 /// # Errors
-/// Why the run failed.
+/// The reason why the run failed.
 pub fn run(peer: &Peer, case: &Case, located: bool, rtol: f64) -> Result<Found, String> {
     let spacing = if case.name == "near-rigid" { 2e-5 } else { 2e-4 };
     let mut track = Track::new(spacing);

@@ -1,9 +1,9 @@
-//! What a table of runs says: curves of error against cost, and what a level of accuracy costs.
+//! Evaluation of a table of runs: curves of error against cost, and the cost of a level of accuracy.
 
 use crate::record::Row;
 use crate::scenes::Case;
 
-/// Which error is read.
+/// The error that is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Of E1max.
@@ -22,12 +22,12 @@ impl Measure {
     }
 }
 
-/// A method on a scene: its cheapest way to meet contacts, from the tightest setting to the loosest, with the error that no
-/// tighter setting exceeded (a lucky run does not count).
+/// A method on a scene: its cheapest treatment of contacts, from the tightest setting to the loosest, with the error that no
+/// tighter setting exceeds (so that an accidentally small error does not count).
 pub struct Curve<'a> {
     /// Name of the method, with its program unless it is Retune's.
     pub name: String,
-    /// Its way to meet contacts.
+    /// Its treatment of contacts.
     pub contacts: &'static str,
     /// Error, and the run.
     pub points: Vec<(f64, &'a Row)>,
@@ -36,7 +36,7 @@ pub struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// Whose program.
+    /// The name of its program.
     pub fn program(&self) -> &str {
         self.name.split_once(' ').map_or("retune", |(program, _)| program)
     }
@@ -51,7 +51,7 @@ impl Curve<'_> {
     }
 }
 
-/// Smallest error that is told apart from none.
+/// Smallest error that is distinguished from zero.
 const ROUNDING: f64 = 1e-15;
 
 fn curve<'a>(rows: &[&'a Row], measure: Measure) -> Option<Curve<'a>> {
@@ -71,7 +71,7 @@ fn curve<'a>(rows: &[&'a Row], measure: Measure) -> Option<Curve<'a>> {
     Some(Curve { name: first.name(), contacts: first.contacts, points, failed })
 }
 
-/// How well a curve serves: the first of three levels that it reaches, and the cost there; less is better.
+/// Rank of a curve: the first of three levels that it reaches, and the cost there; less is better.
 pub fn rank(curve: &Curve<'_>) -> (usize, f64) {
     [1e-6, 1e-4, 1e-2]
         .into_iter()
@@ -80,7 +80,7 @@ pub fn rank(curve: &Curve<'_>) -> (usize, f64) {
         .unwrap_or((9, f64::INFINITY))
 }
 
-/// The curves of a scene, one a method.
+/// The curves of a scene, one for each method.
 pub fn curves<'a>(rows: &'a [Row], case: &Case, measure: Measure) -> Vec<Curve<'a>> {
     let of_case = || rows.iter().filter(|r| r.scene == case.name);
     let mut names: Vec<String> = Vec::new();
@@ -125,9 +125,9 @@ mod tests {
     }
 
     #[test]
-    fn exact_a_lucky_run_does_not_count_and_a_failed_one_is_counted() {
+    fn contract_a_lucky_run_does_not_count_and_a_failed_one_is_counted() {
         let rows = [
-            row(1e-3, 1.0, 1e-9), // lucky
+            row(1e-3, 1.0, 1e-9), // accidentally small
             row(1e-4, 2.0, 1e-4),
             row(1e-5, 3.0, 1e-5),
             row(1e-6, 9.0, f64::NAN),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// Largest E1, J.
@@ -13,18 +13,18 @@ pub struct Found {
     pub touches: Option<Vec<f64>>,
     /// Number of touch-downs.
     pub impacts: usize,
-    /// Evaluations of the right-hand side and its Jacobian (of the hybrid: with one for each step).
+    /// Evaluations of the right-hand side and its Jacobian (for the hybrid, each step counts as one).
     pub evaluations: u64,
     /// Time of a run, s.
     pub seconds: f64,
 }
 
-/// A run, or why it failed.
+/// A run and its result, or the reason why it failed.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// Scene.
     pub scene: &'static str,
-    /// Whose program.
+    /// Name of the program.
     pub program: String,
     /// Method.
     pub method: String,
@@ -32,9 +32,9 @@ pub struct Row {
     pub contacts: &'static str,
     /// Tolerance, or step of a method of fixed step (s).
     pub setting: f64,
-    /// What it gave.
+    /// Its result.
     pub found: Result<Found, String>,
-    /// How far that is from the reference: E1max, final state, impact times.
+    /// Its errors against the reference: E1max, final state, impact times.
     pub errors: [f64; 3],
     /// Touch-downs of the reference.
     pub expected_impacts: usize,

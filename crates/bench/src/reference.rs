@@ -1,4 +1,4 @@
-//! What runs are compared with, how far that can be trusted, and for how long a motion can be predicted at all.
+//! The reference solutions, their uncertainty, and the horizon over which a motion can be predicted.
 
 use crate::own;
 use crate::record::{Found, errors};
@@ -11,13 +11,13 @@ use std::error::Error;
 pub struct Reference {
     /// The hybrid at rtol 1e-13.
     pub found: Found,
-    /// How far the hybrid at 1e-12 is from it: E1max, final state, impact times (s).
+    /// Difference of the hybrid at 1e-12 from it: E1max, final state, impact times (s).
     pub looser: [f64; 3],
-    /// How far DOP853 with located contacts at 1e-13, another method, is from it.
+    /// Difference of another method from it: DOP853 with located contacts at 1e-13.
     pub independent: [f64; 3],
     /// The largest Lyapunov exponent of the settled motion, 1/s; `None` without a damper (there it is `-c1 / (2 m1)`).
     pub exponent: Option<Exponent>,
-    /// Mean rate (1/s) at which neighbouring motions part over the run itself.
+    /// Mean rate (1/s) at which neighbouring motions diverge over the run itself.
     pub parting: Option<f64>,
 }
 
@@ -41,19 +41,19 @@ impl Reference {
         Ok(Self { found, looser, independent, exponent, parting })
     }
 
-    /// The larger of the two distances, measure by measure: what the reference itself may be wrong by.
+    /// The larger of the two differences for each measure: the uncertainty of the reference.
     pub fn uncertainty(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.looser[i].max(self.independent[i]))
     }
 
-    /// Lyapunov time, s: that in which neighbours part by a factor e, by the larger of the two rates; `None` where they meet.
+    /// Lyapunov time, s: in which neighbours diverge by a factor e, by the larger of the two rates; `None` if they converge.
     pub fn lyapunov_time(&self) -> Option<f64> {
         let rates = [self.parting, self.exponent.map(|e| e.value)];
         let rate = rates.into_iter().flatten().fold(f64::NEG_INFINITY, f64::max);
         (rate > 1e-3).then_some(1.0 / rate)
     }
 
-    /// How long the motion can be predicted to 1e-6 in double precision: `ln 1e10` Lyapunov times, s.
+    /// Time over which the motion can be predicted to 1e-6 in double precision: `ln 1e10` Lyapunov times, s.
     pub fn horizon(&self) -> f64 {
         self.lyapunov_time().map_or(f64::INFINITY, |time| 1e10_f64.ln() * time)
     }

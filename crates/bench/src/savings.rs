@@ -1,4 +1,4 @@
-//! No more model than a scene needs: what the smallest exact model saves over the full contact model, with equal results.
+//! Time saved by the smallest exact model of a scene against the full contact model, with equal results.
 
 use crate::own::shortest_of;
 use crate::scenes::{Case, Numbers, SSVI, TMD, scene};
@@ -19,7 +19,7 @@ pub struct Saving {
     pub e1_max: [f64; 2],
 }
 
-/// What is measured: a label, a scene and a window.
+/// A measured case: a label, a scene and a window.
 type Subject = (&'static str, Scene, Window);
 
 /// The scenes of the comparison over their whole runs, and four over the window of the paper's studies, after the transient.
@@ -37,7 +37,7 @@ fn subjects(cases: &[Case]) -> Result<Vec<Subject>, OutOfRange> {
     Ok(all)
 }
 
-/// Measures the savings. The full model of the bare structure has a damper that nothing holds, out of reach of both walls.
+/// Measures the savings. The full model of the bare structure has a damper without spring and dashpot, out of reach of both walls.
 ///
 /// # Errors
 /// A run that failed.

@@ -1,15 +1,17 @@
 //! The scenes of the comparison: the paper's structure (Table 2, R = 2 m, q = 0.318) with six dampers.
 
-use retune_model::{
-    Contact, Coupled, Damper, Forcing, NonNegative, OutOfRange, PoissonRatio, Positive, Primary, Scene,
-};
+/// The paper's scenes, the same copy as in the tests of every crate.
+#[path = "../../model/tests/scenes/mod.rs"]
+mod paper;
+
+use retune_model::{Contact, Coupled, Damper, NonNegative, OutOfRange, Positive, Scene};
 use retune_solver::{Hybrid, Motion, Phase, SolverError, observe::Unobserved};
 
 /// A scene and the span of time over which its motion can be predicted.
 pub struct Case {
     /// Its name in tables.
     pub name: &'static str,
-    /// What it is, for a chart.
+    /// Its label on a chart.
     pub label: &'static str,
     /// The scene.
     pub scene: Scene,
@@ -33,9 +35,17 @@ pub struct Numbers {
 }
 
 /// Table 2's SSVI NES.
-pub const SSVI: Numbers = Numbers { k2: 215.0, c2: 232.0, d: 0.06, c: 0.36, stiffer: 1.0 };
+pub const SSVI: Numbers = Numbers::of(&paper::SSVI);
 /// Table 2's TMD.
-pub const TMD: Numbers = Numbers { k2: 600.0, c2: 262.0, d: 2.08, c: 4.7, stiffer: 1.0 };
+pub const TMD: Numbers = Numbers::of(&paper::TMD);
+/// Row 1 of Table 1.
+pub const ROW1: Numbers = Numbers::of(&paper::ROW1);
+
+impl Numbers {
+    const fn of(&paper::Numbers { k2, c2, d, c, .. }: &paper::Numbers) -> Self {
+        Self { k2, c2, d, c, stiffer: 1.0 }
+    }
+}
 
 /// The structure and the damper of a scene that has one, as one system.
 pub fn system(scene: &Scene) -> Option<Coupled> {
@@ -45,47 +55,27 @@ pub fn system(scene: &Scene) -> Option<Coupled> {
 /// The paper's structure with a damper.
 ///
 /// # Errors
-/// A number that cannot be.
-#[expect(clippy::approx_constant, reason = "the paper's rounded numbers")]
+/// A value out of range.
 pub fn scene(n: Numbers) -> Result<Scene, OutOfRange> {
-    let steel = (Positive::new(2.1e11)?, PoissonRatio::new(0.3)?);
-    let soft = PoissonRatio::new(0.4)?;
-    Ok(Scene {
-        primary: Primary {
-            mass: Positive::new(1000.0)?,
-            damping: NonNegative::new(452.0)?,
-            stiffness: NonNegative::new(3.95e4)?,
-        },
-        forcing: Forcing { amplitude: NonNegative::new(800.0)?, frequency: NonNegative::new(6.28)? },
-        damper: Some(Damper {
-            mass: Positive::new(60.0)?,
-            stiffness: NonNegative::new(n.k2)?,
-            damping: NonNegative::new(n.c2)?,
-            rest_distance: NonNegative::new(n.d)?,
-            clearance: NonNegative::new(n.c)?,
-            contact: Contact {
-                radius: Positive::new(2.0)?,
-                coefficient: Positive::new(0.318 * n.stiffer)?,
-                young_1: steel.0,
-                poisson_1: steel.1,
-                young_2: Positive::new(2.21e7)?,
-                poisson_2: soft,
-                young_3: steel.0,
-                poisson_3: steel.1,
-                young_4: Positive::new(2.05e7)?,
-                poisson_4: soft,
-            },
-        }),
-    })
+    let paper = paper::SSVI.damper();
+    let damper = Damper {
+        stiffness: NonNegative::new(n.k2)?,
+        damping: NonNegative::new(n.c2)?,
+        rest_distance: NonNegative::new(n.d)?,
+        clearance: NonNegative::new(n.c)?,
+        contact: Contact { coefficient: Positive::new(paper::SSVI.q * n.stiffer)?, ..paper.contact },
+        ..paper
+    };
+    Ok(Scene { damper: Some(damper), ..paper::SSVI.scene() })
 }
 
 /// The six scenes.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn cases() -> Result<Vec<Case>, OutOfRange> {
     let bare = Scene { damper: None, ..scene(TMD)? };
-    let critical = 2.0 * (SSVI.k2 * 60.0_f64).sqrt();
+    let critical = 2.0 * (paper::SSVI.k2 * paper::SSVI.m2).sqrt();
     let case = |name, label, to, numbers| Ok(Case { name, label, scene: scene(numbers)?, to });
     Ok(vec![
         Case { name: "bare", label: "no damper", scene: bare, to: 20.0 },
@@ -97,7 +87,7 @@ pub fn cases() -> Result<Vec<Case>, OutOfRange> {
     ])
 }
 
-/// Rate (1/s) at which two motions of a scene, begun 1e-9 m apart in `x1`, part over the run; `None` without a damper.
+/// Finite-time Lyapunov exponent (1/s) of two motions of a scene that start 1e-9 m apart in `x1`; `None` without a damper.
 ///
 /// # Errors
 /// A run that failed.

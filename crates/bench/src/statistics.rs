@@ -1,7 +1,7 @@
 //! Beyond the predictable horizon: a chaotic motion, where only statistics can be compared.
 
 use crate::own;
-use crate::scenes::{Numbers, SSVI, scene};
+use crate::scenes::{ROW1, scene};
 use retune_model::Scene;
 use retune_solver::{Contacts, Method, Rows, Settings, Window, simulate, trajectory};
 use std::error::Error;
@@ -9,9 +9,9 @@ use std::error::Error;
 /// Table 1's row 1, whose largest Lyapunov exponent is about +0.9 1/s.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn chaotic() -> Result<Scene, Box<dyn Error>> {
-    Ok(scene(Numbers { k2: 150.0, c2: 218.4, d: 0.06, c: 0.11, ..SSVI })?)
+    Ok(scene(ROW1)?)
 }
 
 /// From t = 100 s for 2,000 s: some 2,000 periods and 1,800 Lyapunov times.
@@ -21,7 +21,7 @@ const INTERVAL: f64 = 0.02;
 /// Blocks whose scatter gives the standard error.
 const BLOCKS: usize = 20;
 
-/// What a method says of the motion in the long run.
+/// Long-run statistics of the motion by one method.
 pub struct Statistics {
     /// The method and its settings.
     pub settings: Settings,
@@ -35,7 +35,7 @@ pub struct Statistics {
     pub impacts: f64,
 }
 
-/// Follows the chaotic motion.
+/// Runs the chaotic motion and collects its statistics.
 ///
 /// # Errors
 /// A run that failed.

@@ -1,4 +1,4 @@
-//! What the charts say, in words and numbers: `results/accuracy/README.md`.
+//! The results of the charts in words and numbers: `results/accuracy/README.md`.
 
 use crate::reading::{Curve, Measure, curves};
 use crate::record::Row;
@@ -9,7 +9,7 @@ use crate::statistics::Statistics;
 use retune_solver::Settings;
 use std::fmt::Write;
 
-/// A time, s, as a person writes it.
+/// A time, s, with a readable unit.
 fn time(seconds: f64) -> String {
     match seconds {
         s if s < 1e-3 => format!("{:.3} ms", s * 1e3),
@@ -64,7 +64,7 @@ pub fn text(
     out
 }
 
-/// Cost of the best at a level.
+/// The costs of the best curves at a level.
 fn costs<'a>(curves: &'a [Curve<'a>], level: f64, in_time: bool) -> Vec<(f64, &'a Curve<'a>)> {
     let mut costs: Vec<_> = curves.iter().filter_map(|c| Some((c.cost_at(level, in_time)?.0, c))).collect();
     costs.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -8,7 +8,7 @@ use retune_bench::{external, own, statistics};
 use retune_solver::{Contacts, Method, Settings};
 use std::path::Path;
 
-/// DOP853 with located contacts comes to the same motion, and every run ends inside the predictable horizon.
+/// DOP853 with located contacts gives the same motion, and every run ends within the predictable horizon.
 #[test]
 fn reference_of_every_scene_is_confirmed_and_predictable() {
     for case in cases().expect("valid numbers") {
@@ -21,7 +21,7 @@ fn reference_of_every_scene_is_confirmed_and_predictable() {
 
 /// The certificate asks for E1max to 1e-9.
 #[test]
-fn exact_the_default_tolerance_gives_a_certificate() {
+fn reference_the_default_tolerance_suffices_for_a_certificate() {
     for case in cases().expect("valid numbers") {
         let reference = Reference::of(&case).expect("runs").found;
         let found = own::run(&case, &Settings::default(), false).expect("runs");
@@ -32,14 +32,15 @@ fn exact_the_default_tolerance_gives_a_certificate() {
 }
 
 #[test]
-fn exact_the_smallest_model_and_the_full_one_agree() {
+fn invariant_the_smallest_model_and_the_full_one_agree() {
     for saving in savings(&cases().expect("valid numbers")).expect("runs") {
         let [small, full] = saving.e1_max;
         assert!((small / full - 1.0).abs() < 1e-11, "{}: {small} {full}", saving.label);
     }
 }
 
-/// The committed tables of GNU Octave, SciPy and SUNDIALS hold runs of every scene, and their best come to the reference.
+/// The committed tables of GNU Octave, SciPy and SUNDIALS contain runs of every scene, and their best runs agree with the
+/// reference.
 #[test]
 fn reference_other_programs_come_to_the_same_motion() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -57,7 +58,7 @@ fn reference_other_programs_come_to_the_same_motion() {
     }
 }
 
-/// Where no run can be predicted, two methods still agree on the long run.
+/// Where no run can be predicted, the long-run statistics of two methods still agree.
 #[test]
 fn reference_statistics_of_a_chaotic_motion_do_not_depend_on_the_method() {
     let of = |method, rtol| statistics::of(own::settings(method, Contacts::Located, rtol)).expect("runs");

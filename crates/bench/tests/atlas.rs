@@ -1,4 +1,4 @@
-//! The atlas of failures: its references against another method, the hybrid's cells, and every cell as committed.
+//! The atlas of failures: its references against another method, the hybrid's cells, and every committed cell.
 
 use retune_bench::atlas::difficulties::all;
 use retune_bench::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
@@ -21,7 +21,7 @@ fn reference_of_every_difficulty_is_confirmed_by_another_method() {
 }
 
 #[test]
-fn exact_the_hybrid_works_on_every_difficulty() {
+fn reference_the_hybrid_works_on_every_difficulty() {
     for difficulty in all().expect("valid numbers") {
         let truth = truth(&difficulty).expect("runs");
         let found = cell(&WAYS[0], &difficulty.case, &truth);
@@ -29,7 +29,7 @@ fn exact_the_hybrid_works_on_every_difficulty() {
     }
 }
 
-/// What each contact may change of the energy: the tolerance of its steps.
+/// The allowed change of the energy per contact: the tolerance of its steps.
 #[test]
 fn invariant_energy_of_the_hybrid_drifts_by_less_than_rtol_an_impact() {
     for rtol in [1e-4, 1e-6, 1e-8, 1e-10] {
@@ -52,7 +52,7 @@ fn exact_largest_stable_steps_are_those_of_theory() {
     }
 }
 
-/// A contact lasts as long as `K^(-2/5)`.
+/// The duration of a contact is proportional to `K^(-2/5)`.
 #[test]
 fn order_of_the_approach_to_rigid_walls_is_two_fifths() {
     let [_, near] = rigid::distance(8).expect("runs");
@@ -63,7 +63,7 @@ fn order_of_the_approach_to_rigid_walls_is_two_fifths() {
 }
 
 #[test]
-fn exact_the_hybrid_jumps_over_no_contact() {
+fn contract_the_hybrid_misses_no_contact() {
     for case in &missed::subjects().expect("valid numbers") {
         for step in [1e-3, 1.0] {
             let found = missed::missed(case, Method::Hybrid, Contacts::Located, step).expect("runs");

@@ -1,4 +1,4 @@
-//! The wrapped integrators of others find the motion: what separates them on the chart is theirs, not the wrapping's.
+//! The wrapped integrators of others find the motion: differences on the chart are theirs, not the wrapper's.
 #![cfg(feature = "integrators")]
 
 use retune_bench::own;

@@ -1,14 +1,14 @@
-//! What motions there are: sweeps over frequency or stiffness, impact zones, stroboscopic maps, orbit diagrams, Lyapunov
-//! exponents through contacts, and names for regimes that stand on evidence.
+//! The motions of a scene: sweeps over frequency or stiffness, impact zones, stroboscopic maps, orbit diagrams, Lyapunov
+//! exponents through contacts, and classification of regimes by measured quantities.
 //!
-//! - [`sweep`]: the response at each value of a parameter, every run fresh from rest, in parallel.
-//! - [`poincare`]: the motion once per period of the force, and sweeps that carry the state over.
-//! - [`lyapunov`]: how fast neighbouring motions part, from two trajectories with renormalisation.
-//! - [`record`]: a motion followed for many periods together with its neighbour.
-//! - [`attractor`]: whether two stretches of motion show one motion or two.
-//! - [`regime`]: periodic (`nT, m, k`), amplitude-modulated, chaotic, intermittent, after transient chaos or not.
+//! - [`sweep`]: the response at each value of a parameter, every run from rest, in parallel.
+//! - [`poincare`]: the state once per period of the force, and sweeps by continuation.
+//! - [`lyapunov`]: the rate at which neighbouring motions diverge, from two trajectories with renormalisation.
+//! - [`record`]: a motion recorded over many periods together with a neighbouring one.
+//! - [`attractor`]: whether two stretches of motion belong to one motion or to two.
+//! - [`regime`]: periodic (`nT, m, k`), amplitude-modulated, chaotic or intermittent, with or without transient chaos before.
 //!
-//! Every result depends on its input alone, whatever the number of threads. Nothing is printed, no file is touched.
+//! Every result depends on its input alone, not on the number of threads. Nothing is printed, and no file is read or written.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 pub mod attractor;

@@ -1,8 +1,8 @@
-//! The largest Lyapunov exponent: the mean rate at which a neighbouring motion parts from a motion.
+//! The largest Lyapunov exponent: the mean rate at which a neighbouring motion diverges from a motion.
 //!
 //! Two trajectories with renormalisation (Benettin, Galgani, Giorgilli & Strelcyn, Meccanica 15, 1980): after every step the
-//! neighbour is drawn back to its first distance along the line to the motion, and the logarithm of its growth is kept. Contacts
-//! need nothing special: Hertz's force is continuous, and both trajectories pass through them by themselves.
+//! neighbour is moved back to its initial distance along the line to the motion, and the logarithm of the growth is kept. Contacts
+//! need no special treatment: Hertz's force is continuous, and each trajectory is integrated through its own contacts.
 
 use serde::Serialize;
 
@@ -11,12 +11,12 @@ use serde::Serialize;
 pub struct Exponent {
     /// The largest exponent, 1/s (or per step of a map).
     pub value: f64,
-    /// Standard error of its mean, from the scatter of [`BLOCKS`] blocks of time, same unit. It covers the finite length of the
+    /// Standard error of the mean, from the scatter of [`BLOCKS`] blocks of time, same unit. It covers the finite length of the
     /// run on its attractor, not a change of attractor after it.
     pub error: f64,
 }
 
-/// Blocks of time whose scatter gives the error.
+/// Number of blocks of time from whose scatter the error is estimated.
 pub const BLOCKS: usize = 10;
 
 impl Exponent {
@@ -35,24 +35,24 @@ impl Exponent {
         Self { value, error: (scatter / (BLOCKS * (BLOCKS - 1)) as f64).sqrt() }
     }
 
-    /// `(value - threshold) / error`: how many errors the exponent lies above a threshold.
+    /// `(value - threshold) / error`: how many standard errors the exponent lies above a threshold.
     pub fn margin(&self, threshold: f64) -> f64 {
         (self.value - threshold) / self.error.max(1e-12)
     }
 }
 
-/// A system with two trajectories: what [`growth`] needs to know of it.
+/// The operations on a system and two of its trajectories that [`growth`] needs.
 pub trait Neighbours {
     /// A state.
     type State: Copy;
-    /// Why a step fails.
+    /// The error of a failed step.
     type Error;
-    /// The state a step later.
+    /// The state after one step.
     ///
     /// # Errors
     /// The system's own.
     fn step(&mut self, state: Self::State) -> Result<Self::State, Self::Error>;
-    /// Distance of two states in a norm of the system's choice.
+    /// Distance between two states in a norm chosen by the system.
     fn distance(&self, a: Self::State, b: Self::State) -> f64;
     /// The state at `share` of the way from `a` to `b`.
     fn between(&self, a: Self::State, b: Self::State, share: f64) -> Self::State;
@@ -65,12 +65,13 @@ pub struct Pair<S> {
     pub motion: S,
     /// Its neighbour.
     pub neighbour: S,
-    /// The distance to which the neighbour is drawn back.
+    /// The distance to which the neighbour is reset.
     pub distance: f64,
 }
 
 impl<S: Copy> Pair<S> {
-    /// Given where the motion came to, moves the neighbour on and draws it back; returns the logarithm of its growth.
+    /// Advances the neighbour by one step, given the motion's new state, and resets its distance; returns the logarithm of the
+    /// growth.
     ///
     /// # Errors
     /// The system's own.
@@ -82,7 +83,8 @@ impl<S: Copy> Pair<S> {
             self.neighbour = system.between(motion, neighbour, self.distance / apart);
             return Ok((apart / self.distance).ln());
         }
-        // They met to the last bit: start again beside the motion, and count the least growth that could have been seen.
+        // The two states are equal to the last bit: restart beside the motion, and count the smallest growth that could be
+        // resolved.
         self.neighbour = system.between(
             motion,
             self.neighbour,

@@ -1,4 +1,4 @@
-//! What a sweep runs over.
+//! The parameter of a sweep.
 
 use retune_model::{NonNegative, OutOfRange, Scene};
 use retune_solver::SolverError;
@@ -16,7 +16,7 @@ impl Parameter {
     /// The scene with this parameter at `value`.
     ///
     /// # Errors
-    /// A value that the parameter cannot have.
+    /// The value is out of the parameter's range.
     pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, Error> {
         let value = NonNegative::new(value)?;
         match self {
@@ -27,16 +27,16 @@ impl Parameter {
     }
 }
 
-/// Why something could not be followed.
+/// Why a motion could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// A value that a parameter cannot have.
+    /// A value out of the parameter's range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// A run could not be finished.
     #[error(transparent)]
     Run(#[from] SolverError),
-    /// Without a damper there is nothing to strobe: the steady response says it all.
+    /// A scene without a damper has no stroboscopic map here: its steady response is known in closed form.
     #[error("the scene has no damper: its steady response is known in closed form")]
     NoDamper,
     /// A constant force has no period.
@@ -44,7 +44,8 @@ pub enum Error {
     NoPeriod,
 }
 
-/// `count` evenly spaced values from `from` to `to`, both included. Each is computed by itself, none by adding steps.
+/// `count` evenly spaced values from `from` to `to`, both included. Each is computed from the ends, so that rounding errors do not
+/// accumulate.
 pub fn evenly(from: f64, to: f64, count: usize) -> Vec<f64> {
     let last = count.saturating_sub(1).max(1) as f64;
     (0..count).map(|i| from + (to - from) * (i as f64 / last)).collect()

@@ -1,4 +1,4 @@
-//! The motion looked at once per period of the force: the stroboscopic map, and orbit diagrams.
+//! The stroboscopic map, which samples the motion once per period of the force, and orbit diagrams.
 
 use crate::parameter::{Error, Parameter};
 use rayon::prelude::*;
@@ -22,14 +22,14 @@ pub fn coupled(scene: &Scene) -> Result<Coupled, Error> {
 
 /// The map of the state over one period of the force, from a crest of `P cos ωt` to the next.
 ///
-/// Time starts anew with each period, so the map is the same at every step.
+/// Time starts at 0 in each period, so the map is the same at every step.
 pub struct PoincareMap<'a> {
     follower: Follower<'a>,
     period: f64,
 }
 
 impl<'a> PoincareMap<'a> {
-    /// Prepares the map, by the method that is asked for. A period may take [`Settings::max_steps`] steps.
+    /// Prepares the map with the method in `settings`. A period may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings) -> Self {
         let period = TAU / system.bare().frequency();
         Self { follower: Follower::new(system, settings, period), period }
@@ -40,7 +40,7 @@ impl<'a> PoincareMap<'a> {
         self.period
     }
 
-    /// The motion a period later.
+    /// The motion one period later.
     ///
     /// # Errors
     /// [`SolverError`] with the time reached in the period.
@@ -55,7 +55,7 @@ pub fn at_rest(system: &Coupled) -> Motion {
     Motion { t: 0.0, y: system.rest(), phase: Phase::Flight }
 }
 
-/// The motion that goes on from the state `y` at a crest of the force, for instance the last of an [`Orbit`].
+/// The motion that continues from the state `y` at a crest of the force, for instance the last of an [`Orbit`].
 ///
 /// # Errors
 /// As [`coupled`].
@@ -109,16 +109,16 @@ pub struct Orbit {
     pub impacts: [u64; 2],
 }
 
-/// Periods that are waited, then looked at.
+/// Numbers of periods to settle in and to record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Periods {
-    /// Periods that count for nothing.
+    /// Periods that are discarded.
     pub settle: usize,
     /// Periods that are recorded.
     pub record: usize,
 }
 
-/// Follows one orbit and says where it ends.
+/// Computes one orbit; returns its samples and its final state.
 fn orbit(
     system: &Coupled,
     value: f64,
@@ -146,11 +146,11 @@ fn orbit(
     Ok((Orbit { value, samples, e1_max, impacts }, motion))
 }
 
-/// Sweeps the parameter through `values` in their order; each motion starts where the one before ended, at a crest of the
-/// force, so that a motion is kept as long as it exists.
+/// Sweeps the parameter through `values` in their order by continuation: each motion starts where the previous one ended, at a
+/// crest of the force, so that the sweep stays on one branch as long as it exists.
 ///
 /// # Errors
-/// As [`Error`] says.
+/// See [`Error`].
 pub fn continuation(
     scene: &Scene,
     parameter: Parameter,
@@ -172,10 +172,10 @@ pub fn continuation(
     Ok(orbits)
 }
 
-/// The orbit at each of `values`, every one from rest, in parallel.
+/// The orbit at each of `values`, each from rest, in parallel.
 ///
 /// # Errors
-/// As [`Error`] says.
+/// See [`Error`].
 pub fn independent_orbits(
     scene: &Scene,
     parameter: Parameter,

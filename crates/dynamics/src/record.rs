@@ -1,4 +1,5 @@
-//! A motion followed for many periods of the force, together with a neighbour: what a regime is judged by.
+//! A motion recorded over many periods of the force, together with a neighbouring one: the data from which its regime is
+//! classified.
 
 use crate::lyapunov::{Exponent, Neighbours, Pair};
 use crate::parameter::Error;
@@ -7,12 +8,12 @@ use retune_model::{Coupled, Scene};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings, SolverError};
 
-/// How long a motion is followed, in periods of the force.
+/// How long a motion is recorded, in periods of the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
     /// Periods after which the motion is taken to have settled; they are recorded too, to see transients.
     pub settle: usize,
-    /// Periods after that, from which the regime is read.
+    /// Periods after that, from which the regime is determined.
     pub observe: usize,
 }
 
@@ -27,23 +28,23 @@ impl Default for Stretch {
 pub struct Record {
     /// Period of the force, s.
     pub period: f64,
-    /// States in coordinates of one unit, √J (see [`coordinates`]), one at the end of each period.
+    /// States in coordinates with the common unit √J (see [`coordinates`]), one at the end of each period.
     pub samples: Vec<[f64; 4]>,
     /// Impacts in each period, on the structure and on the obstacle.
     pub impacts: Vec<[u64; 2]>,
     /// Logarithm of the neighbour's growth in each period.
     pub growth: Vec<f64>,
-    /// How many of the first periods are taken for a transient.
+    /// How many of the first periods are treated as transient.
     pub settle: usize,
 }
 
-/// First distance of the neighbour, as a share of the size of the motion.
+/// Initial distance of the neighbour, as a share of the size of the motion.
 const APART: f64 = 1e-7;
 /// Largest tolerance of a step: a thousandth of the distance of the neighbours or less.
 const TOLERANCE: f64 = 1e-11;
 
-/// The state in one unit, √J: `[ω√m1 x1, √m1 v1, ω√m2 (x2 - x1 - D), √m2 v2]`. Its square is twice the kinetic energy plus that
-/// of springs which would resonate at ω; a distance in it weighs all four coordinates by what they do to the motion.
+/// The state in the common unit √J: `[ω√m1 x1, √m1 v1, ω√m2 (x2 - x1 - D), √m2 v2]`. Its square is twice the kinetic energy plus
+/// that of springs that would resonate at ω, so that a distance weighs all four coordinates by their energy.
 pub fn coordinates(scene: &Scene, &[x1, v1, x2, v2]: &[f64; 4]) -> [f64; 4] {
     let omega = scene.forcing.frequency.get();
     let m1 = scene.primary.mass.get().sqrt();
@@ -79,10 +80,10 @@ impl Neighbours for Twins<'_> {
     }
 }
 
-/// Follows the motion of a scene from `start` (at a crest of the force), or from rest.
+/// Records the motion of a scene from `start` (at a crest of the force), or from rest.
 ///
 /// # Errors
-/// As [`Error`] says.
+/// See [`Error`].
 pub fn follow(
     scene: &Scene,
     start: Option<Motion>,
@@ -102,7 +103,7 @@ pub fn follow(
         growth: Vec::with_capacity(count),
         settle: stretch.settle,
     };
-    // The structure's size of motion without its damper at most, a tenth of it at least: the scale need only be right in order.
+    // At most the amplitude of the structure without its damper, and at least a tenth of it: only the order of magnitude matters.
     let size = (system.energy_norm_growth() * record.period).max(f64::MIN_POSITIVE);
     let mut pair = Pair {
         motion: start,
@@ -119,7 +120,7 @@ pub fn follow(
     Ok(record)
 }
 
-/// A neighbour at a distance in no special direction.
+/// A neighbouring state at the given distance, in an arbitrary direction.
 fn beside(scene: &Scene, system: &Coupled, motion: Motion, distance: f64) -> Motion {
     let unit = coordinates(scene, &[1.0, 1.0, 2.0 + system.rest_distance(), 1.0]);
     let share = 0.5 * distance;
@@ -135,7 +136,7 @@ impl Record {
         Exponent::of(&self.growth[self.settle.min(self.growth.len())..], self.period)
     }
 
-    /// Root mean square of the settled samples about zero, √J: what distances are compared with.
+    /// Root mean square of the settled samples about zero, √J: the scale for distances.
     pub fn scale(&self) -> f64 {
         let settled = &self.samples[self.settle.min(self.samples.len())..];
         let sum: f64 = settled.iter().map(|y| y.iter().map(|v| v * v).sum::<f64>()).sum();

@@ -1,49 +1,50 @@
-//! What kind of motion a record shows, from distances of states, impact counts and the largest exponent; never from looks.
+//! Classifies the motion of a record from distances of states, impact counts and the largest Lyapunov exponent.
 //!
 //! 1. *Periodic*, `nT, m, k`: states n periods apart agree over the whole settled stretch, n the least such number; m and k are
-//!    the impacts on the structure and on the obstacle in n periods. Neighbours must not part.
+//!    the impacts on the structure and on the obstacle in n periods. Neighbouring motions must not diverge.
 //! 2. Otherwise the exponent decides: above [`FLOOR`] *chaotic*, within it *amplitude-modulated* (quasi-periodic), below it
-//!    *settling* (the record is too short: a long transient or a period above [`LONGEST`]).
-//! 3. A chaotic motion is *intermittent* where it is nearly periodic (laminar) most of the time, in phases that bursts end and
-//!    begin again and again (Y. Pomeau and P. Manneville, Commun. Math. Phys. 74, 1980).
-//! 4. A periodic motion was reached through *transient chaos* where neighbours parted, on average and by much, before it
+//!    *settling* (the record is too short: a long transient, or a period above [`LONGEST`]).
+//! 3. A chaotic motion is *intermittent* if it is nearly periodic (laminar) most of the time, in phases interrupted again and
+//!    again by bursts (Y. Pomeau and P. Manneville, Commun. Math. Phys. 74, 1980).
+//! 4. A periodic motion was reached through *transient chaos* if neighbours diverged before it, on average and by a large factor
 //!    (C. Grebogi, E. Ott and J. A. Yorke, Physica D 7, 1983).
 
 use crate::lyapunov::Exponent;
 use crate::record::{Record, distance};
 use serde::Serialize;
 
-/// Longest period that is looked for, in periods of the force: the default stretch of 500 holds it seven times.
+/// Longest period that is detected, in periods of the force: the default stretch of 500 contains it seven times.
 pub const LONGEST: usize = 64;
-/// Distance of states, as a share of the motion's size, below which they are the same: far above the error of a run (rtol 1e-11),
-/// far below what can be seen.
+/// Distance, as a share of the motion's size, below which two states are the same: far above the error of a run (rtol 1e-11),
+/// far below any visible difference.
 pub const SAME: f64 = 1e-6;
 /// As [`SAME`] where the distances fall to less than [`FALLING`] of themselves from one half of the stretch to the other: a motion
-/// that is coming to rest on its period. At a thousandth of its size a motion is periodic to any eye.
+/// that still converges to its periodic orbit. A thousandth of the motion's size is below any visible difference.
 pub const NEARING: f64 = 1e-3;
-/// See [`NEARING`]. Neighbours that meet at [`FLOOR`] come e times 2.5 nearer in half the default stretch, to a twelfth; a fifth
-/// leaves room for the last of a faster approach.
+/// See [`NEARING`]. Neighbours that converge at the rate [`FLOOR`] come nearer by a factor exp(2.5), about 12, in half the default
+/// stretch; a fifth leaves a margin for the end of a faster approach.
 pub const FALLING: f64 = 0.2;
-/// An exponent within this of zero cannot be told from zero, 1/s: on a motion whose exponent is zero neighbours may part in
-/// proportion to time, and over the 500 periods of about 1 s of the default stretch that looks like ln(500)/500 s = 0.012 /s.
+/// An exponent within this of zero cannot be distinguished from zero, 1/s: if the exponent is zero, neighbours may diverge in
+/// proportion to time, which over the default 500 periods of about 1 s gives an apparent exponent of ln(500)/500 s = 0.012 /s.
 pub const FLOOR: f64 = 0.01;
-/// Distance, as a share of the motion's size, within which a phase is laminar. States of a chaotic motion lie apart by about the
-/// motion's size, the drift of a laminar phase is a few per cent a period of the motion: this lies between.
+/// Distance, as a share of the motion's size, within which a phase is laminar. States of a chaotic motion differ by about the
+/// motion's size, those of a laminar phase by a few per cent per period of the motion: the limit lies between.
 pub const LAMINAR: f64 = 0.05;
-/// Longest period of a laminar phase, in periods of the force: twice the longest that Figure 4 of the paper can label.
+/// Longest period of a laminar phase, in periods of the force: twice the longest that Figure 4 of the paper labels.
 pub const LAMINAR_PERIOD: usize = 12;
-/// Least periods of the force in a laminar phase, and three times its own period at that: a chaotic motion comes within
-/// [`LAMINAR`] of itself by chance one time in twenty or less, ten times in a row practically never.
+/// Shortest laminar phase, in periods of the force (it also lasts three of its own periods): a chaotic motion comes within
+/// [`LAMINAR`] of itself by chance one time in twenty or less, and ten times in a row practically never.
 pub const LAMINAR_PHASE: usize = 10;
-/// Share of time in laminar phases above which a chaotic motion can be intermittent: most of it.
+/// Share of time in laminar phases above which a chaotic motion can be intermittent.
 pub const MOSTLY: f64 = 0.5;
-/// Distance, as a share of the motion's size, from its period at which a transient ends: the motion is then a hundredth off.
+/// Distance from the periodic orbit, as a share of the motion's size, at which a transient ends.
 pub const ARRIVED: f64 = 0.01;
-/// A transient is chaotic only if it parted neighbours by at least this factor. On the way to a period they part for a while
-/// without chaos too: among the motions of Figure 4 from rest by up to 2e4 (2T, 1, 0 at k1 = 3.95e4 N/m, omega = 5.958 rad/s).
+/// A transient is chaotic only if neighbours diverged by at least this factor. On the way to a periodic orbit they diverge for a
+/// while without chaos too: by up to 2e4 among the motions of Figure 4 from rest (2T, 1, 0 at k1 = 3.95e4 N/m, omega = 5.958
+/// rad/s).
 pub const PARTED: f64 = 1e5;
 
-/// Standard errors by which the exponent of a chaotic transient must lie above zero: 98 of 100 chances.
+/// Number of standard errors by which the exponent of a chaotic transient must exceed zero: a probability of 98 %.
 pub const MARGIN: f64 = 2.0;
 
 /// The kinds of settled motion.
@@ -52,17 +53,17 @@ pub const MARGIN: f64 = 2.0;
 pub enum Kind {
     /// Repeats after a whole number of periods of the force.
     Periodic,
-    /// Quasi-periodic: never repeats, neighbours neither part nor meet.
+    /// Quasi-periodic: never repeats; neighbours neither diverge nor converge.
     AmplitudeModulated,
-    /// Neighbours part exponentially.
+    /// Neighbours diverge exponentially.
     Chaotic,
     /// Chaotic, with long nearly periodic phases between bursts.
     Intermittent,
-    /// Neighbours meet, but no period was seen: a longer record is needed.
+    /// Neighbours converge, but no period was found: a longer record is needed.
     Settling,
 }
 
-/// Chaos that ended.
+/// Transient chaos.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Transient {
     /// When it ended, s from the start.
@@ -71,29 +72,29 @@ pub struct Transient {
     pub exponent: Exponent,
 }
 
-/// A motion's regime and what it rests on.
+/// The regime of a motion and the quantities it follows from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Regime {
     /// The kind of the settled motion.
     pub kind: Kind,
     /// n of `nT, m, k`: periods of the force after which the motion repeats.
     pub period: Option<usize>,
-    /// m and k: impacts on the structure and on the obstacle in a period of the motion; where it has none, of the force.
+    /// m and k: impacts on the structure and on the obstacle per period of the motion or, if it has none, of the force.
     pub impacts: [f64; 2],
     /// Largest exponent of the settled motion, 1/s.
     pub exponent: Exponent,
-    /// The chaos it went through, if any.
+    /// The transient chaos before it, if any.
     pub transient: Option<Transient>,
     /// Share of settled time in laminar phases.
     pub laminar: f64,
     /// Bursts that ended a laminar phase in the settled stretch.
     pub bursts: usize,
-    /// Probability, by the evidence above, that the kind is right: 0.5 is a toss-up.
+    /// Estimated probability that the kind is right; 0.5 is undecided.
     pub confidence: f64,
 }
 
 impl Regime {
-    /// `nT, m, k` or the kind in a word or two.
+    /// `nT, m, k`, or the name of the kind.
     pub fn label(&self) -> String {
         let end = match (self.kind, self.period) {
             (Kind::Periodic, Some(n)) => {
@@ -107,7 +108,7 @@ impl Regime {
 }
 
 impl Kind {
-    /// The kind in words.
+    /// The name of the kind.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Periodic => "periodic",
@@ -119,7 +120,7 @@ impl Kind {
     }
 }
 
-/// The regime of a record.
+/// Classifies a record.
 pub fn classify(record: &Record) -> Regime {
     let from = record.settle.min(record.samples.len());
     let settled = &record.samples[from..];
@@ -151,7 +152,7 @@ pub fn classify(record: &Record) -> Regime {
     }
 }
 
-/// The least n for which states n periods apart agree, with the largest distance seen as a share of the motion's size.
+/// The smallest n for which states n periods apart agree, with the largest distance found, as a share of the motion's size.
 fn repeats(samples: &[[f64; 4]], size: f64) -> Option<(usize, f64)> {
     let worst = |part: &[[f64; 4]], n: usize| {
         part.iter().zip(&part[n..]).map(|(a, b)| distance(a, b)).fold(0.0, f64::max) / size
@@ -167,11 +168,11 @@ fn repeats(samples: &[[f64; 4]], size: f64) -> Option<(usize, f64)> {
     })
 }
 
-/// Impacts in `n` periods: over the last n where the motion repeats, the mean where it does not.
+/// Impacts in `n` periods: those of the last n if the motion repeats, else the mean.
 fn mean_impacts(impacts: &[[u64; 2]], n: usize, repeats: bool) -> [f64; 2] {
     let sum = |part: &[[u64; 2]], side: usize| part.iter().map(|count| count[side]).sum::<u64>() as f64;
     if repeats {
-        // Whole cycles: an impact that happens at a crest of the force may be counted a period early or late.
+        // Whole cycles: an impact at a crest of the force may be counted one period early or late.
         let cycles = impacts.len() / n;
         let part = &impacts[impacts.len() - cycles * n..];
         [0, 1].map(|side| (sum(part, side) / cycles.max(1) as f64).round())
@@ -184,14 +185,14 @@ fn mean_impacts(impacts: &[[u64; 2]], n: usize, repeats: bool) -> [f64; 2] {
 struct Laminar {
     share: f64,
     bursts: usize,
-    /// Independent draws that the share rests on.
+    /// Number of independent samples behind the share.
     draws: f64,
 }
 
 impl Laminar {
-    /// Probability that laminar phases and bursts alternate for good and that the former fill most of the time: that a burst
-    /// came not by chance (if one were expected in the whole stretch, the number of bursts would be Poisson-distributed about 1),
-    /// and that the share is above [`MOSTLY`] (each laminar phase a draw of its own, and each [`LAMINAR_PHASE`] without).
+    /// Probability that laminar phases and bursts keep alternating and that laminar phases fill most of the time: that the bursts
+    /// are not chance (if one were expected in the whole stretch, their number would be Poisson-distributed with mean 1),
+    /// and that the share is above [`MOSTLY`] (each laminar phase, and each [`LAMINAR_PHASE`] periods without one, is one sample).
     fn intermittency(&self) -> f64 {
         let mut term = (-1.0_f64).exp();
         let mut fewer = 0.0;
@@ -227,13 +228,13 @@ fn laminar_share(samples: &[[f64; 4]], size: f64) -> Laminar {
     Laminar { share: count as f64 / samples.len().max(1) as f64, bursts, draws }
 }
 
-/// The stretch before the motion came within [`ARRIVED`] of its period, if neighbours parted in it.
+/// The stretch before the motion came within [`ARRIVED`] of its periodic orbit, if neighbours diverged in it.
 fn transient_chaos(record: &Record, n: usize, size: f64) -> Option<Transient> {
     let samples = &record.samples;
     let far = |i: &usize| distance(&samples[*i], &samples[*i + n]) > ARRIVED * size;
     let end = (0..samples.len() - n).rev().find(far)? + 1;
     let growth = &record.growth[..end];
-    // The last contraction on to the period belongs to the period, not to the chaos before it: take the stretch up to where the
+    // The final contraction on to the periodic orbit is not part of the chaos before it: take the stretch up to where the
     // neighbours were farthest apart.
     let mut sum = 0.0;
     let (mut most, mut at) = (0.0, 0);
@@ -248,7 +249,7 @@ fn transient_chaos(record: &Record, n: usize, size: f64) -> Option<Transient> {
     real.then_some(Transient { until: end as f64 * record.period, exponent })
 }
 
-/// The logistic curve that stays within 0.01 of the normal distribution.
+/// Logistic approximation of the cumulative normal distribution, within 0.01.
 fn normal(margin: f64) -> f64 {
     1.0 / (1.0 + (-1.702 * margin).exp())
 }
@@ -263,7 +264,7 @@ fn confidence(
     let sign = |threshold: f64| normal(exponent.margin(threshold));
     match kind {
         Kind::Periodic => {
-            // A motion still on its way to its period may yet turn out to be on its way to a multiple of it.
+            // A motion that still converges may converge to an orbit of a multiple of this period.
             let closes = if gap.is_some_and(|gap| gap < SAME) { 1.0 } else { 0.8 };
             let chaos = transient.map_or(1.0, |chaos| normal(chaos.exponent.margin(FLOOR)));
             (1.0 - sign(FLOOR)) * closes * chaos

@@ -1,4 +1,4 @@
-//! The response at each value of a parameter, every run fresh from rest.
+//! The response at each value of a parameter, every run from rest.
 
 use crate::parameter::{Error, Parameter};
 use rayon::prelude::*;
@@ -6,7 +6,7 @@ use retune_model::{Scene, energy_ratios};
 use retune_solver::{Settings, Window, simulate};
 use serde::Serialize;
 
-/// Which walls the damper struck.
+/// The walls that the damper struck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Zone {
@@ -21,7 +21,7 @@ pub enum Zone {
 }
 
 impl Zone {
-    /// The zone of a number of impacts on the structure and on the obstacle.
+    /// The zone for given numbers of impacts on the structure and on the obstacle.
     pub fn of([primary, obstacle]: [u64; 2]) -> Self {
         match (primary > 0, obstacle > 0) {
             (true, true) => Self::Bilateral,
@@ -32,7 +32,7 @@ impl Zone {
     }
 }
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// The parameter's value.
@@ -53,17 +53,17 @@ impl Point {
         energy_ratios(self.e1_max, self.e2_max)
     }
 
-    /// Which walls were struck in the window.
+    /// The walls struck in the window.
     pub fn zone(&self) -> Zone {
         Zone::of(self.impacts)
     }
 }
 
-/// Runs the scene at each of `values` from rest, in parallel, in the order of `values`. `done` is told of each finished run,
-/// from any thread.
+/// Runs the scene at each of `values` from rest, in parallel; the points are in the order of `values`. `done` is called after each
+/// run, from any thread.
 ///
 /// # Errors
-/// A value that the parameter cannot have, or a run that could not be finished.
+/// A value out of the parameter's range, or a run that could not be finished.
 pub fn independent(
     scene: &Scene,
     parameter: Parameter,

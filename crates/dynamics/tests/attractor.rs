@@ -1,4 +1,4 @@
-//! One motion or two: stretches whose answer is known.
+//! Counting motions: stretches whose answer is known.
 
 mod common;
 
@@ -30,7 +30,7 @@ fn exact_separation_of_points() {
 }
 
 #[test]
-fn exact_a_period_met_later_is_the_same_motion() {
+fn contract_a_periodic_motion_met_at_another_phase_is_the_same_motion() {
     let one = states(60, |i| (i % 3) as f64);
     let later = states(60, |i| ((i + 1) % 3) as f64);
     assert!(!distinct(&one, &later));
@@ -38,37 +38,37 @@ fn exact_a_period_met_later_is_the_same_motion() {
 }
 
 #[test]
-fn exact_fixed_points_are_told_apart_from_a_hundredth_of_their_size() {
+fn contract_fixed_points_are_distinct_from_a_hundredth_of_their_size() {
     let at = |x: f64| states(20, |_| x);
     assert!(!distinct(&at(0.0), &at(0.009)) && distinct(&at(0.0), &at(0.011)));
 }
 
 #[test]
-fn exact_chaos_is_one_motion_from_any_start_and_not_its_unstable_fixed_point() {
+fn contract_chaos_is_one_motion_from_any_start_and_not_its_unstable_fixed_point() {
     let [one, other] = [0.3, 0.7123].map(|start| logistic(4.0, start, 400));
     assert!(!distinct(&one, &other));
     let fixed = vec![[0.75, 0.0, 0.0, 0.0]; 400];
     assert!(distinct(&one, &fixed));
 }
 
-/// The larger stretch is still on its way to the smaller.
+/// The larger stretch still converges to the smaller.
 #[test]
-fn exact_a_motion_that_still_drifts_is_not_a_second_one() {
+fn contract_a_motion_that_still_drifts_is_not_a_second_one() {
     let settling = states(100, |i| (-0.02 * i as f64).exp());
     assert!(!distinct(&settling, &states(100, |_| 0.0)));
 }
 
 #[test]
-fn exact_motions_are_counted_once_each() {
+fn contract_motions_are_counted_once_each() {
     let [a, b] = [0.0, 1.0].map(|x| states(20, |_| x));
     assert_eq!(motions(&[&a, &b, &a]), [0, 1, 0]);
     assert_eq!(motions(&[&a, &a, &b]), [0, 0, 2]);
     assert!(motions(&[]).is_empty());
 }
 
-/// What a sweep ends in goes on as the same motion.
+/// The last state of a sweep continues as the same motion.
 #[test]
-fn exact_resumed_motions_go_on() {
+fn contract_resumed_motions_continue() {
     let scene = scene(3.95e4, 7.4, Some(SSVI));
     let sweep = |values: &[f64], settle| {
         continuation(
@@ -88,8 +88,8 @@ fn exact_resumed_motions_go_on() {
     assert!(!distinct(&[a, a], &[b, b]));
 }
 
-/// A sweep keeps a motion beyond the frequency where rest leads to another: at k1 = 2.00e4 N/m and ω = 4.079 rad/s the damper
-/// strikes one wall on the way up, and both from rest.
+/// A sweep stays on its branch beyond the frequency where a start from rest leads to another: at k1 = 2.00e4 N/m and ω = 4.079
+/// rad/s the damper strikes one wall in the upward sweep, and both from rest.
 #[test]
 fn regress_a_sweep_carries_its_motion_on() {
     let soft = scene(2.00e4, 4.079, Some(SSVI));

@@ -65,7 +65,7 @@ fn reference_lorenz_equations() {
     assert!(found.error < 0.03, "{found:?}");
 }
 
-/// A linear damper forgets its start as fast as its slowest mode, about -0.353 /s for the paper's TMD.
+/// With a linear damper the transient decays at the rate of the slowest mode, about -0.353 /s for the paper's TMD.
 #[test]
 fn exact_tmd_has_its_slowest_mode() {
     let scene = scene(3.95e4, 6.28, Some(TMD));

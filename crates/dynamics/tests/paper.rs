@@ -1,4 +1,4 @@
-//! Statements of the paper that hold, as inequalities: a change that breaks one is seen.
+//! Statements of the paper that hold, as inequalities.
 //!
 //! Window 50–100 s of runs from rest; R = 2 m and q = 0.318, which the paper leaves out.
 #![allow(clippy::approx_constant, reason = "6.28 and 0.318 are the paper's inputs, not 2π and 1/π")]
@@ -25,7 +25,7 @@ fn highest(points: &[Point]) -> Point {
     *points.iter().max_by(|a, b| a.e1_max.total_cmp(&b.e1_max)).expect("a curve")
 }
 
-/// How many times smaller the damper makes the highest energy.
+/// The factor by which the damper reduces the largest energy.
 fn reduction(k1: f64, design: [f64; 4]) -> f64 {
     highest(&curve(k1, None)).e1_max / highest(&curve(k1, Some(design))).e1_max
 }

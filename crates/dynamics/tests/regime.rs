@@ -48,10 +48,10 @@ fn exact_logistic_intermittency() {
     assert_eq!(regime.kind, Kind::Intermittent, "{regime:?}");
 }
 
-/// In a window of period 3 most starts wander over the remains of the chaotic set first. Starts with long wanderings are few:
-/// take the longest of many.
+/// In a window of period 3 most orbits have a chaotic transient near the former attractor. Long transients are rare:
+/// take many starts.
 #[test]
-fn exact_logistic_transient_chaos() {
+fn contract_transient_chaos_is_recognised() {
     let longest = (1..400).map(|i| f64::from(i) / 400.0).map(|start| logistic(3.8285, start, 3000, 2000));
     let chaotic = longest.filter(|regime| regime.transient.is_some()).count();
     assert!(chaotic > 0);
@@ -59,9 +59,9 @@ fn exact_logistic_transient_chaos() {
     assert_eq!(straight.transient, None, "{straight:?}");
 }
 
-/// A turn by an irrational angle with a beat: never repeats, neighbours keep their distance.
+/// A rotation by an irrational angle: never repeats, and neighbours keep their distance.
 #[test]
-fn exact_turn_is_amplitude_modulated() {
+fn contract_an_irrational_rotation_is_amplitude_modulated() {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let samples: Vec<[f64; 4]> = (0..1000)
         .map(|i| {
@@ -94,7 +94,7 @@ fn reference_row_1_of_table_1_is_chaotic() {
 }
 
 #[test]
-fn exact_too_few_steps_leave_the_error_open() {
+fn contract_too_few_steps_have_an_infinite_error() {
     assert_eq!(Exponent::of(&[1.0; 5], 1.0).error, f64::INFINITY);
     assert_eq!(Exponent::of(&[], 1.0).value, 0.0);
 }

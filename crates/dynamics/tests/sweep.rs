@@ -33,7 +33,7 @@ fn exact_linear_sweeps_meet_the_steady_response() {
 }
 
 #[test]
-fn exact_carried_linear_sweeps_agree_in_both_directions() {
+fn invariant_continued_linear_sweeps_agree_in_both_directions() {
     let scene = scene(3.95e4, 6.28, Some(TMD));
     let up = evenly(5.0, 8.0, 5);
     let down: Vec<f64> = up.iter().rev().copied().collect();
@@ -49,7 +49,7 @@ fn exact_carried_linear_sweeps_agree_in_both_directions() {
 }
 
 #[test]
-fn exact_results_do_not_depend_on_threads() {
+fn contract_results_do_not_depend_on_threads() {
     let scene = scene(3.95e4, 6.28, Some(SSVI));
     let values = evenly(5.5, 7.5, 9);
     let run = |threads: usize| {
@@ -69,7 +69,7 @@ fn exact_results_do_not_depend_on_threads() {
 }
 
 #[test]
-fn exact_zones_tile_the_sweep() {
+fn contract_zones_tile_the_sweep() {
     let scene = scene(3.95e4, 6.28, Some(SSVI));
     let window = Window { from: 50.0, to: 100.0 };
     let points =
@@ -82,7 +82,7 @@ fn exact_zones_tile_the_sweep() {
 }
 
 #[test]
-fn exact_what_cannot_be_swept_is_refused() {
+fn contract_impossible_sweeps_are_refused() {
     let settings = Settings::default();
     let periods = Periods { settle: 1, record: 1 };
     let bare = scene(3.95e4, 6.28, None);

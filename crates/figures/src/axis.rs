@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_ticks_are_round_numbers() {
+    fn contract_ticks_are_round_numbers() {
         assert_eq!(labels(Scale::Linear, 0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(
             labels(Scale::Linear, 0.02, 0.14),
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_empty_and_flat_ranges_have_axes() {
+    fn contract_empty_and_flat_ranges_have_axes() {
         let none = Axis::around(String::new(), Scale::Log, &[f64::NAN]);
         assert!(none.holds(0.5) && !none.ticks(5).is_empty());
         let flat = Axis::around(String::new(), Scale::Linear, &[5.0, 5.0]);

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_ranges_refuse_what_cannot_be() {
+    fn contract_values_out_of_range_are_refused() {
         for bad in [-1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(Positive::new(bad).is_err() && NonNegative::new(bad).is_err(), "{bad}");
         }

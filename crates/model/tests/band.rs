@@ -25,7 +25,7 @@ fn sampled(f: impl Fn(f64) -> f64, [from, to]: [f64; 2], count: usize) -> f64 {
 }
 
 #[test]
-fn exact_worst_is_that_of_dense_sampling_refined() {
+fn reference_worst_is_that_of_dense_sampling_refined() {
     let mut spread = Spread::new(11);
     for _ in 0..60 {
         let numbers = Numbers {
@@ -58,7 +58,7 @@ fn exact_worst_is_that_of_dense_sampling_refined() {
 /// A peak 1e-9 of the band wide, where 600 samples see nothing: without damping of the damper and hardly any of the structure,
 /// `c1 -> 0`, the height of a resonance is that of its own mode.
 #[test]
-fn exact_no_narrow_peak_hides() {
+fn exact_narrow_peaks_are_found_and_grow_as_the_inverse_square_of_damping() {
     for damping in [1e-2, 1e-4, 1e-6] {
         let numbers = Numbers { c1: damping, c2: damping, k2: 2000.0, ..TMD };
         let system = numbers.coupled();
@@ -81,14 +81,14 @@ fn exact_no_narrow_peak_hides() {
 }
 
 #[test]
-fn exact_resonance_of_an_undamped_system_is_beyond_measure() {
+fn exact_resonance_of_an_undamped_system_is_unbounded() {
     let numbers = Numbers { c1: 0.0, c2: 0.0, k2: 2000.0, ..TMD };
     assert!(numbers.coupled().steady_e1_max([5.0, 8.0]).value > 1e20);
     assert!(numbers.bare().steady_e1_max([5.0, 8.0]).value > 1e20);
 }
 
 #[test]
-fn exact_a_band_of_one_frequency_is_that_frequency() {
+fn contract_a_band_of_one_frequency_is_that_frequency() {
     let steady = TMD.coupled().steady(6.25);
     let worst = TMD.coupled().steady_e1_max([6.25, 6.25]);
     assert_eq!(worst, Worst { value: steady.e1_max, frequency: 6.25 });

@@ -147,7 +147,7 @@ fn exact_rates_of_the_bare_energy() {
     let rates =
         |s: f64| bare.primary_energy_rates(bare.excitation(T + s), &std::array::from_fn(|i| y[i] + s * f[i]));
     let (found, differences) = (rates(0.0), slope(1e-3, rates));
-    assert_close(found[0], 0.5 * (1000.0 * 0.16 + 3.95e4 * 0.0025), 1.0, 1e-12, "E1");
+    assert_close(found[0], 0.5 * (SSVI.m1 * 0.16 + SSVI.k1 * 0.0025), 1.0, 1e-12, "E1");
     assert_close(found[1], differences[0], found[1].abs(), 1e-10, "dE1/dt");
     assert_close(found[2], differences[1], found[2].abs(), 1e-10, "d²E1/dt²");
 }

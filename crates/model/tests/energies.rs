@@ -84,7 +84,7 @@ fn exact_dual_energy_norm_is_the_largest_value_of_a_row() {
 
 /// The rate bounds ω, every eigenvalue, and the norm of the linear part in energy coordinates.
 #[test]
-fn exact_rate_bounds_the_linear_part() {
+fn invariant_rate_bounds_the_linear_part() {
     let mut spread = Spread::new(7);
     let mut tightest = f64::INFINITY;
     for _ in 0..400 {

@@ -1,4 +1,4 @@
-//! Time and memory of a `surf` of a million points, each a run of 100 s of the paper's SSVI NES, and what more threads are worth.
+//! Time and memory of a `surf` of a million points, each a run of 100 s of the paper's SSVI NES, and its speed-up by threads.
 //! `just bench-surf`.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
@@ -10,7 +10,7 @@ use retune_solver::{Settings, Window};
 use scenes::SSVI;
 use std::time::Instant;
 
-/// Points along each axis of the large surf, and of the small one that is made with one thread and with all, in turn.
+/// Points along each axis of the large surf, and of the small one that is timed with one thread and with all.
 const LARGE: usize = 32;
 const SMALL: usize = 10;
 const PAIRS: usize = 5;

@@ -1,12 +1,12 @@
-//! Evaluating many things in parallel and stopping early, the same way at any number of threads.
+//! Parallel evaluation with early stopping whose result does not depend on the number of threads.
 
 use rayon::prelude::*;
 
-/// Evaluations that are begun together: enough for the cores of a desk, few enough that stopping early saves most of the rest.
+/// Evaluations in one group: enough for the cores of a workstation, few enough that stopping early saves most of the rest.
 pub(crate) const TOGETHER: usize = 8;
 
-/// `value(i, before)` for `i` in `0..count`, `together` at a time in parallel; `before` are the results of all earlier groups.
-/// Ends early, after a whole group, once `enough` says so of the results so far.
+/// Evaluates `value(i, before)` for `i` in `0..count`, `together` at a time in parallel; `before` are the results of earlier
+/// groups. Ends early, after a whole group, once `enough` is true for the results so far.
 pub(crate) fn in_groups<T: Send + Sync>(
     count: usize,
     together: usize,

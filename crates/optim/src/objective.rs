@@ -1,7 +1,7 @@
-//! What a damper is judged by.
+//! The objective of a damper's design.
 //!
-//! Read `spec` (what a study asks for), `evaluate` (its value for a scene), then what that is made of: `band` (the worst over
-//! frequencies), `ensemble` (a statistic over small errors), `limits`; and `peak_energy`, the function of a design that searches call.
+//! Read `spec` (the specification in a study), `evaluate` (its value for a scene), then its parts: `band` (the worst over
+//! frequencies), `ensemble` (a statistic over small errors), `limits`; and `peak_energy`, the function that searches call.
 
 pub mod band;
 pub mod ensemble;

@@ -1,4 +1,4 @@
-//! Searches for the least value of a function of several parameters. They know nothing of what it computes.
+//! Searches for the minimum of a function of several parameters; they are independent of what it computes.
 
 pub mod fminsearch;
 pub mod global;

@@ -10,7 +10,7 @@ use retune_optim::{Fminsearch, Options, Row, minimize};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
-/// What an argmin observer is told, as (iteration, func_count, procedure, best, value).
+/// The values passed to an argmin observer: (iteration, func_count, procedure, best, value).
 type Seen = (u64, u64, String, Vec<f64>, f64);
 
 #[derive(Clone, Default)]
@@ -39,7 +39,7 @@ impl Observe<State> for Recorder {
 }
 
 #[test]
-fn exact_argmin_observers_see_the_same_rows() {
+fn contract_argmin_observers_see_the_same_rows() {
     for (name, objective, start) in PROBLEMS {
         let objective = |x: &[f64], _cutoff: f64| objective(x);
         let mut rows = Vec::new();

@@ -34,7 +34,7 @@ fn goal(window: Option<Window>, band: Option<Band>) -> Goal {
     }
 }
 
-/// Its value, and where it is.
+/// Its value and frequency.
 fn e1_max(scene: &Scene, window: Option<Window>, band: Option<Band>) -> Result<Worst, Unusable> {
     let found = goal(window, band).evaluate(scene, &Settings::default(), f64::INFINITY)?;
     Ok(Worst { value: found.value, frequency: found.worst.scene.forcing.frequency.get() })
@@ -58,7 +58,7 @@ fn exact_peaks_between_samples_are_found() {
 }
 
 #[test]
-fn exact_the_higher_of_two_peaks_wins_though_its_sample_is_lower() {
+fn contract_the_higher_of_two_peaks_is_found_though_its_sample_is_lower() {
     let worst = over(BAND, |omega: f64| {
         let peak = |at: f64, width: f64| 1.0 / (1.0 + ((omega - at) / width).powi(2));
         0.9 * peak(5.5, 0.2) + peak(7.024, 0.02)
@@ -67,13 +67,13 @@ fn exact_the_higher_of_two_peaks_wins_though_its_sample_is_lower() {
 }
 
 #[test]
-fn exact_ends_of_the_band_count() {
+fn contract_ends_of_the_band_are_included() {
     assert_eq!(over(BAND, |omega| omega), Worst { value: 8.0, frequency: 8.0 });
     assert_eq!(over(BAND, |omega| -omega), Worst { value: -5.0, frequency: 5.0 });
 }
 
 #[test]
-fn exact_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
+fn contract_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
     let count = AtomicUsize::new(0);
     let rugged = |omega: f64| {
         count.fetch_add(1, Relaxed);
@@ -86,7 +86,7 @@ fn exact_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
     assert_eq!(count.load(Relaxed), 8, "one group of samples is enough");
 }
 
-/// Nothing at a cutoff is above it: a search that comes upon just that value goes on.
+/// A value equal to the cutoff is not above it: the search continues.
 #[test]
 fn contract_a_search_ends_above_its_cutoff_not_at_it() {
     let band = Band { from: 5.0, to: 8.0, samples: 7 };
@@ -105,7 +105,7 @@ fn contract_a_search_ends_above_its_cutoff_not_at_it() {
     assert!(found.value > first, "{found:?} {first}");
 }
 
-/// The places that a search looks at: few where the function is smooth, and never more than 12 more than the samples.
+/// The points that a search evaluates: few where the function is smooth, and never more than 12 in addition to the samples.
 #[test]
 fn regress_places_that_a_search_looks_at() {
     let band = Band { from: 5.0, to: 8.0, samples: 4 };
@@ -131,7 +131,7 @@ fn regress_places_that_a_search_looks_at() {
         let (count, sum) = *looked.lock().expect("no panic");
         (count, (1e6 * sum).round() / 1e6, (1e6 * told.expect("no failures").frequency).round() / 1e6)
     });
-    // How many, their sum and the largest: the last function rises to the end of the band.
+    // Their number, their sum and the largest: the last function increases up to the end of the band.
     let expected = [
         (7, 44.333, 6.111),
         (16, 101.89636, 6.3),
@@ -144,13 +144,13 @@ fn regress_places_that_a_search_looks_at() {
 }
 
 #[test]
-fn exact_the_first_failure_in_the_order_of_the_band_is_told() {
+fn contract_the_first_failure_in_the_order_of_the_band_is_returned() {
     let failing = |omega: f64| if omega > 6.0 { Err(omega) } else { Ok(1.0) };
     assert_eq!(worst_over(&BAND, failing, f64::INFINITY), Err(BAND.at(21)));
 }
 
 #[test]
-fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
+fn contract_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
     let band = Band { from: 6.0, to: 6.6, samples: 7 };
     let window = Window { from: 5.0, to: 15.0 };
     let on = |threads: usize| {
@@ -161,7 +161,7 @@ fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
     };
     let one = on(1);
     assert_eq!([on(2), on(3)], [one; 2]);
-    // The worst is the value of a run at the frequency that is named, and no sample is above it.
+    // The worst value is that of a run at the returned frequency, and no sample exceeds it.
     let at = |omega: f64| {
         let scene = Numbers { omega, ..SSVI }.scene();
         e1_max(&scene, Some(window), None).expect("a run").value
@@ -171,7 +171,7 @@ fn exact_runs_over_a_band_are_the_same_bits_at_any_number_of_threads() {
     assert!((0..7).all(|i| at(band.at(i)) <= value));
 }
 
-/// Two ways to one number: runs in a late window, and the closed form.
+/// Runs in a late window, and the closed form.
 #[test]
 fn exact_late_runs_over_a_band_agree_with_the_steady_response() {
     let scene = TMD.scene();
@@ -182,7 +182,7 @@ fn exact_late_runs_over_a_band_agree_with_the_steady_response() {
 }
 
 #[test]
-fn exact_a_steady_motion_that_reaches_a_wall_has_no_value() {
+fn contract_a_steady_motion_that_reaches_a_wall_has_no_value() {
     let steady = |numbers: Numbers| e1_max(&numbers.scene(), None, Some(BAND));
     let stroke = TMD.coupled().steady_stroke_max([BAND.from, BAND.to]);
     let refused = steady(Numbers { d: 0.999 * stroke.value, ..TMD });
@@ -207,7 +207,7 @@ fn best(numbers: Numbers, band: Band, start: [f64; 2]) -> [f64; 3] {
     let mut x = start.to_vec();
     let mut value = f64::INFINITY;
     for _ in 0..4 {
-        // Once more from where the last ended: on the edge of two level peaks a simplex may collapse early.
+        // Once more from the previous end: on the ridge line of two equal peaks a simplex may collapse early.
         let options = Options {
             tol_x: 1e-12,
             tol_fun: 1e-12,

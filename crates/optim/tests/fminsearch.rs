@@ -23,7 +23,7 @@ fn bounded(bounds: &[Bounds]) -> Options {
 }
 
 #[test]
-fn exact_log_starts_and_runs_as_matlabs_does() {
+fn contract_log_starts_and_runs_as_matlabs_does() {
     let (_, rows) = run(|x, _| rosenbrock(x), &[-1.2, 1.0], Options::default());
     let head: Vec<_> = rows[..3].iter().map(|r| (r.iteration, r.func_count, r.procedure.label())).collect();
     assert_eq!(head, [(0, 1, ""), (1, 3, "initial simplex"), (2, 5, "expand")]);
@@ -54,7 +54,7 @@ fn reference_matlabs_own_run() {
 
 /// The values that decide each kind of step on the line, and the cutoff each evaluation is given.
 #[test]
-fn exact_decisions_and_cutoffs_of_every_step() {
+fn contract_decisions_and_cutoffs_of_every_step() {
     use Procedure::{ContractInside, ContractOutside, Expand, Reflect, Shrink};
     let inf = f64::INFINITY;
     // The vertices 10, 10.5 have the values 1, 2; then the values of the step, its label and its cutoffs.
@@ -85,7 +85,7 @@ fn exact_decisions_and_cutoffs_of_every_step() {
 
 /// In two dimensions the second worst value differs from the best: reflections between them are kept as they are.
 #[test]
-fn exact_reflection_between_best_and_second_worst() {
+fn contract_reflection_between_best_and_second_worst() {
     for (reflected, procedure) in [
         (1.5, Procedure::Reflect),
         (1.0, Procedure::Reflect), // a tie with the best is no reason to expand
@@ -121,7 +121,7 @@ fn invariant_early_stopping_changes_no_row() {
 }
 
 #[test]
-fn exact_limits_end_the_run() {
+fn contract_limits_end_the_run() {
     let limited = |max_iter, max_fun_evals| Options { max_iter, max_fun_evals, ..Options::default() };
     let stop = |options| {
         let (found, rows) = run(|x, _| quadratic(x), &[1.0; 4], options);
@@ -139,14 +139,14 @@ fn exact_limits_end_the_run() {
         let (found, _) = run(|x, _| rosenbrock(x), &[-1.2, 1.0], limited(max_iter, Some(max_fun_evals)));
         assert_eq!((found.stop, found.iterations, found.func_count), (Stop::MaxFunEvals, 13, 27));
     }
-    // An objective that falls for ever has no other end than 200 iterations for each coordinate.
+    // An objective without a lower bound ends only after 200 iterations for each coordinate.
     let (found, _) = run(|x, _| -x[0], &[1.0], Options { max_fun_evals: Some(10_000), ..Options::default() });
     assert_eq!((found.stop, found.iterations), (Stop::MaxIter, 200));
 }
 
 #[test]
-fn exact_tolerances_must_both_hold() {
-    // Flat in value from the start, so that TolX alone decides; and the reverse.
+fn contract_tolerances_must_both_hold() {
+    // A constant objective, so that TolX alone decides; and the reverse.
     let (found, _) = run(|_, _| 1.0, &[100.0, 0.0], Options::default());
     assert_eq!(found.stop, Stop::Converged);
     assert!(found.iterations > 10, "5 must shrink below 1e-4: {}", found.iterations);
@@ -156,7 +156,7 @@ fn exact_tolerances_must_both_hold() {
 }
 
 #[test]
-fn exact_failed_evaluations_are_never_taken() {
+fn contract_failed_evaluations_are_never_accepted() {
     for failure in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         // The lower half plane, which contains the bowl's middle, has no value.
         let objective =
@@ -173,7 +173,7 @@ fn exact_failed_evaluations_are_never_taken() {
 }
 
 #[test]
-fn exact_bounds_hold_at_every_evaluation() {
+fn contract_bounds_hold_at_every_evaluation() {
     // The bowl's middle (3, −1) is outside; the best point of the box is its corner (2, 0).
     let calls = Cell::new(0);
     let bowl = |x: &[f64], _: f64| {
@@ -196,7 +196,7 @@ fn exact_bounds_hold_at_every_evaluation() {
 }
 
 #[test]
-fn exact_start_in_a_corner_of_its_box() {
+fn contract_start_in_a_corner_of_its_box() {
     let first = RefCell::new(Vec::new());
     let recorded = |x: &[f64], _: f64| {
         first.borrow_mut().push(x.to_vec());
@@ -207,7 +207,7 @@ fn exact_start_in_a_corner_of_its_box() {
 }
 
 #[test]
-fn exact_invalid_input_is_refused_by_index_and_value() {
+fn contract_invalid_input_is_refused_by_index_and_value() {
     let refused =
         |start: &[f64], options| minimize(|x, _| x[0], start, options, |_| ControlFlow::Continue(()));
     let error = |start: &[f64], options| refused(start, options).expect_err("invalid");
@@ -233,7 +233,7 @@ fn exact_invalid_input_is_refused_by_index_and_value() {
 }
 
 #[test]
-fn exact_a_start_without_a_value_leaves_the_run_as_new() {
+fn contract_a_start_without_a_value_leaves_the_run_as_new() {
     let mut solver = Fminsearch::new(&[1.0], Options::default()).expect("a valid start");
     let new = solver.clone();
     let failed = solver.run(|_, _| f64::INFINITY, |row| panic!("told {row:?}"));

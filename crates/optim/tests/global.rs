@@ -33,7 +33,7 @@ fn exact_the_deepest_of_four_wells_is_found_and_all_are_told_apart() {
 
 /// Ends far apart on one level stretch are one basin; on either side of a ridge they are two.
 #[test]
-fn exact_a_level_stretch_is_one_basin_and_a_ridge_makes_two() {
+fn contract_a_level_stretch_is_one_basin_and_a_ridge_makes_two() {
     let at = |x: f64, y: f64| Point { x: vec![x, y], value: x * x };
     let ends = [at(0.001, 4.0), at(0.0, -4.0), at(0.002, 1.0)];
     let all = basins(|x, _| x[0] * x[0], &unit(2), &ends, 0.01);
@@ -45,7 +45,7 @@ fn exact_a_level_stretch_is_one_basin_and_a_ridge_makes_two() {
 }
 
 #[test]
-fn exact_the_same_bits_at_any_number_of_threads_and_others_for_another_seed() {
+fn contract_the_same_bits_at_any_number_of_threads_and_others_for_another_seed() {
     let global = Global { samples: 64, searches: 4, evaluations: 200, ..Global::default() };
     let on = |threads: usize, global: Global| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -58,9 +58,9 @@ fn exact_the_same_bits_at_any_number_of_threads_and_others_for_another_seed() {
     assert!(one.iter().all(|search| search.found.value < search.start.value));
 }
 
-/// Every evaluation lies in the box, and their number is bounded: the look, and whole generations of the searches.
+/// Every evaluation lies in the box, and their number is bounded: the samples, and whole generations of the searches.
 #[test]
-fn exact_searches_stay_in_the_box_and_within_their_evaluations() {
+fn contract_searches_stay_in_the_box_and_within_their_evaluations() {
     let space = Space(vec![Side::natural(10.0, 5000.0), Side::natural(0.0, 2.0)]);
     assert_eq!([space.0[0].scale, space.0[1].scale], [Scale::Log, Scale::Linear]);
     let count = AtomicU64::new(0);
@@ -89,9 +89,9 @@ fn exact_coordinates_are_the_inverse_of_values() {
     assert!((space.distance(&[10.0, 0.0], &[100.0, 0.3]) - 10_f64.ln() / 500_f64.ln()).abs() < 1e-14);
 }
 
-/// Ratios where a side spans a decade above zero, wherever that decade lies.
+/// Logarithmic if a side spans a decade above zero, at any magnitude.
 #[test]
-fn exact_a_side_is_logarithmic_from_a_decade_on() {
+fn contract_a_side_is_logarithmic_from_a_decade_on() {
     for from in [1e-3, 0.1, 1.0, 250.0] {
         assert_eq!(Side::natural(from, 10.0 * from).scale, Scale::Log, "{from}");
         assert_eq!(Side::natural(from, 9.99 * from).scale, Scale::Linear, "{from}");
@@ -102,7 +102,7 @@ fn exact_a_side_is_logarithmic_from_a_decade_on() {
 }
 
 #[test]
-fn exact_designs_without_a_value_start_no_search() {
+fn contract_designs_without_a_value_start_no_search() {
     let nothing = explore(|_, _| f64::NAN, &unit(2), &Global { samples: 8, ..Global::default() }, || {});
     assert!(nothing.expect_err("no start").to_string().contains("of the 8 that were spread"));
     let half = |x: &[f64], _: f64| if x[0] < 0.0 { f64::INFINITY } else { x[0] + x[1].abs() };

@@ -1,4 +1,4 @@
-//! Objectives composed: stiffnesses, ensembles and sums give what their runs give one by one, and a cutoff changes nothing below it.
+//! Composed objectives: stiffnesses, ensembles and sums agree with their single runs, and a cutoff changes no value below it.
 
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
@@ -45,7 +45,7 @@ fn ensemble(statistic: Statistic) -> Ensemble {
 #[test]
 fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
     let term = Objective { omega: band(), ..Objective::default() };
-    let stiffnesses = [3e4, 5e4, 3.95e4];
+    let stiffnesses = [3e4, 5e4, SSVI.k1];
     let each = stiffnesses.map(|k1| value(&term, &Numbers { k1, ..SSVI }.scene()));
     let found = evaluate(Objective { k1: set(&stiffnesses), ..term.clone() }, &SSVI.scene(), f64::INFINITY);
     let worst = each.iter().copied().fold(0.0, f64::max);
@@ -55,7 +55,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
     );
     let k1 = found.worst.scene.primary.stiffness.get();
     assert_eq!(each[stiffnesses.iter().position(|other| *other == k1).expect("one of them")], worst);
-    // A range holds its ends and refines what is between: of the bare structure at ω = 6, in closed form, k1 = m1 ω².
+    // A range includes its ends and is refined between them: of the bare structure at ω = 6, in closed form, k1 = m1 ω².
     let range = Stiffnesses::Range(StiffnessRange { from: positive(3e4), to: positive(5e4), samples: 5 });
     let bare = Numbers { omega: 6.0, ..TMD }.bare_scene();
     let found = evaluate(
@@ -63,7 +63,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
         &bare,
         f64::INFINITY,
     );
-    let near = 0.5 * (800.0_f64 / (452.0 * 6.0)).powi(2) * 3.6e4;
+    let near = 0.5 * (TMD.p / (TMD.c1 * 6.0)).powi(2) * 3.6e4;
     assert!((found.value / near - 1.0).abs() < 0.01 && found.value >= near, "{} {near}", found.value);
     assert!((found.worst.scene.primary.stiffness.get() / 3.6e4 - 1.0).abs() < 0.02);
 }
@@ -71,7 +71,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
 #[test]
 fn exact_a_relative_band_moves_with_the_structure() {
     let relative = FrequencyBand { from: positive(0.9), to: positive(1.1), samples: 3, relative: true };
-    for k1 in [2e4, 3.95e4] {
+    for k1 in [2e4, TMD.k1] {
         let scene = Numbers { k1, ..TMD }.scene();
         let natural = (k1 / TMD.m1).sqrt();
         let found = value(
@@ -106,7 +106,7 @@ fn exact_statistics_are_those_of_the_members() {
 }
 
 #[test]
-fn exact_members_fill_their_space_and_stay_within_their_errors() {
+fn invariant_members_fill_their_space_and_stay_within_their_errors() {
     let all = Ensemble { members: 64, ..ensemble(Statistic::Mean) };
     let mut phases = Vec::new();
     for i in 0..64 {
@@ -131,7 +131,7 @@ fn exact_members_fill_their_space_and_stay_within_their_errors() {
 }
 
 #[test]
-fn exact_a_sum_is_weighted_and_nothing_is_hidden_below_a_cutoff() {
+fn contract_a_sum_is_weighted_and_exact_below_a_cutoff() {
     let [one, two] = [band(), None].map(|omega| Objective { omega, ..Objective::default() });
     let robust = |statistic| Objective { ensemble: Some(ensemble(statistic)), ..Objective::default() };
     let scene = SSVI.scene();
@@ -161,7 +161,7 @@ fn exact_a_sum_is_weighted_and_nothing_is_hidden_below_a_cutoff() {
     }
 }
 
-/// A settled objective without contacts is the steady one; with them it counts what has not settled.
+/// A settled objective without contacts equals the steady one; with contacts it counts the runs that have not settled.
 #[test]
 fn exact_settled_is_steady_where_nothing_touches() {
     let window = Window { from: 20.0, to: 60.0 };
@@ -183,7 +183,7 @@ fn exact_settled_is_steady_where_nothing_touches() {
     assert!(found.unsettled == found.runs && found.runs >= 4, "{found:?}");
 }
 
-/// What is known to be above a cutoff is not looked at further: a stiffness at a time, members in groups of eight.
+/// Evaluation stops once a value is known to exceed the cutoff: after each stiffness, and after each group of eight members.
 #[test]
 fn contract_nothing_is_run_beyond_a_cutoff() {
     let set = Objective { k1: set(&[3e4, 4e4, 5e4]), ..Objective::default() };

@@ -19,7 +19,7 @@ fn exact_linear_axis_keeps_round_steps_round() {
 }
 
 #[test]
-fn exact_ends_are_hit_and_values_rise() {
+fn invariant_axes_hit_their_ends_and_increase() {
     for scale in [Scale::Linear, Scale::Log] {
         for points in [2, 3, 7, 20, 1001] {
             for (from, to) in [(0.1, 0.7), (1.0 / 3.0, 3e5), (1e-280, 1e280)] {
@@ -41,13 +41,13 @@ fn exact_log_axis_has_equal_ratios() {
 }
 
 #[test]
-fn exact_single_point_axis() {
+fn contract_single_point_axis() {
     assert_eq!(values(&linear(0.36, 0.36, 1)), [0.36]);
     assert_eq!(Axis::new(5.0, 5.0, 1, Scale::Log).map(|axis| axis.value(0)), Ok(5.0));
 }
 
 #[test]
-fn exact_bad_axes_are_refused_by_name_and_value() {
+fn contract_bad_axes_are_refused_by_name_and_value() {
     let refused = |from, to, points, scale| Axis::new(from, to, points, scale).expect_err("a bad axis");
     let (inf, linear, log) = (f64::INFINITY, Scale::Linear, Scale::Log);
     assert!(matches!(refused(f64::NAN, 1.0, 2, linear), AxisError::NotANumber { name: "from", .. }));
@@ -65,7 +65,7 @@ fn exact_bad_axes_are_refused_by_name_and_value() {
 }
 
 #[test]
-fn exact_points_are_numbered_with_the_last_axis_fastest() {
+fn contract_points_are_numbered_with_the_last_axis_fastest() {
     let grid = Grid::new(vec![linear(1.0, 2.0, 2), linear(7.0, 7.0, 1), linear(10.0, 30.0, 3)], 6)
         .expect("6 points");
     let expected = [[1.0, 7.0, 10.0], [1.0, 7.0, 20.0], [1.0, 7.0, 30.0], [2.0, 7.0, 10.0], [2.0, 7.0, 20.0]];
@@ -80,20 +80,20 @@ fn exact_points_are_numbered_with_the_last_axis_fastest() {
 }
 
 #[test]
-fn exact_grids_above_the_limit_are_refused_before_anything_is_made() {
+fn contract_grids_above_the_limit_are_refused_before_anything_is_made() {
     let axes = |n: usize, points: usize| vec![linear(0.0, 1.0, points); n];
     assert!(Grid::new(axes(2, 10), 100).is_ok());
     assert_eq!(Grid::new(axes(2, 10), 99), Err(GridError::TooLarge { points: 100, limit: 99 }));
     let million_million = Grid::new(axes(2, 1_000_000), 10_000_000).expect_err("too large");
     assert_eq!(million_million.to_string(), "the grid has 1e12 points: at most 10000000 are allowed");
-    // 10¹⁹⁰ points fit no integer; a wrapped product would be 0.
+    // 10¹⁹⁰ points overflow any integer; a wrapped product would be 0.
     let overflow = Grid::new(axes(10, usize::MAX), usize::MAX);
     assert_eq!(overflow, Err(GridError::TooLarge { points: u128::MAX, limit: usize::MAX }));
     assert_eq!(Grid::new(vec![], 10), Err(GridError::NoAxes));
 }
 
 #[test]
-fn exact_an_axis_tells_what_it_was_made_of() {
+fn contract_an_axis_returns_its_ends_and_points() {
     let axis = Axis::new(2.0, 50.0, 7, Scale::Log).expect("an axis");
     assert_eq!((axis.from(), axis.to(), axis.points()), (2.0, 50.0, 7));
 }

@@ -1,4 +1,4 @@
-//! Limits: the order they put designs in, what they are measured against, and that a cutoff changes nothing below it.
+//! Limits: the ranking of designs, the values that limits apply to, and that a cutoff changes no value below it.
 
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
@@ -40,14 +40,14 @@ fn evaluate(goal: &Goal, scene: &Scene, cutoff: f64) -> retune_optim::Evaluation
 }
 
 #[test]
-fn exact_any_feasible_design_is_better_than_any_other() {
+fn contract_any_feasible_design_is_better_than_any_infeasible_one() {
     assert_eq!(ranked(1e90, 0.0), 1e90);
     assert!(ranked(1e90, 0.0) < ranked(0.0, 1e-15));
     assert!(ranked(900.0, 0.2) < ranked(1.0, 0.2 + 1e-12), "the energy does not matter, the violation does");
     assert!(energy(ranked(5.0, 0.1)).is_nan() && energy(5.0) == 5.0 && energy(f64::INFINITY).is_nan());
 }
 
-/// The limits are measured against what a run shows, and the violation is the sum of shares.
+/// The limits apply to the values of a run, and the violation is the sum of the relative excesses.
 #[test]
 fn exact_violations_are_shares_of_the_limits() {
     let scene = SSVI.scene();
@@ -64,7 +64,7 @@ fn exact_violations_are_shares_of_the_limits() {
     assert_eq!(broken.value, INFEASIBLE * (1.0 + broken.violation));
     let limits = limits(Some(stroke * 1.005), Some(force * 1.5), None);
     assert_eq!(limits.active(&free.reached), [Limit::Stroke]);
-    // Nothing is watched that no limit asks for.
+    // Quantities without a limit are not observed.
     assert_eq!(evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached.0, [0.0, 0.0, 0.42]);
 }
 
@@ -81,7 +81,7 @@ fn exact_a_steady_stroke_is_limited_in_closed_form() {
 
 /// At any cutoff a value is either the full one, or both are above the cutoff.
 #[test]
-fn exact_a_cutoff_hides_nothing_below_it() {
+fn invariant_values_below_a_cutoff_are_exact() {
     let designs = [SSVI, Numbers { k2: 400.0, ..SSVI }, Numbers { c: 0.1, ..SSVI }].map(|n| n.scene());
     let stroke =
         evaluate(&goal(Some(1.0), None, None), &designs[0], f64::INFINITY).reached.get(Limit::Stroke);
@@ -100,13 +100,13 @@ fn exact_a_cutoff_hides_nothing_below_it() {
     }
 }
 
-/// The best c2 of a TMD whose steady stroke may not pass a limit lies on the limit: the same by halving on the closed form.
+/// The best c2 of a TMD whose steady stroke may not pass a limit lies on the limit: compared with bisection of the closed form.
 #[test]
 fn exact_a_search_ends_on_an_active_limit() {
     let of = |c2: f64| Numbers { k2: 2083.0, c2, ..TMD };
     let stroke = |c2: f64| of(c2).coupled().steady_stroke_max([5.0, 8.0]).value;
     let value = |c2: f64| of(c2).coupled().steady_e1_max([5.0, 8.0]).value;
-    let (mut low, mut high) = (120.0, 500.0); // more damping moves less, and serves worse than the tuned one
+    let (mut low, mut high) = (120.0, 500.0); // more damping reduces the stroke, but E1max is worse than with the tuned damping
     let limit = 0.7 * stroke(low);
     assert!(stroke(high) < limit && value(low) < value(high));
     for _ in 0..60 {

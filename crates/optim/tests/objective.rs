@@ -12,7 +12,7 @@ fn objective(variables: Vec<Variable>, to: f64, settings: Settings) -> PeakEnerg
 }
 
 #[test]
-fn exact_design_sets_the_named_parameters_and_no_other() {
+fn contract_design_sets_the_named_parameters_and_no_other() {
     let objective = objective(Variable::ALL.to_vec(), 1.0, Settings::default());
     let damper = objective.damper(&[1.0, 2.0, 3.0, 4.0]).expect("a damper");
     assert_eq!(Variable::ALL.map(|variable| variable.get(&damper)), [1.0, 2.0, 3.0, 4.0]);
@@ -21,7 +21,7 @@ fn exact_design_sets_the_named_parameters_and_no_other() {
 }
 
 #[test]
-fn exact_value_is_that_of_a_run_of_the_scene() {
+fn contract_value_is_that_of_a_run_of_the_scene() {
     let objective = objective(vec![Variable::C2], 5.0, Settings::default());
     let window = Window { from: 0.0, to: 5.0 };
     let run =
@@ -31,7 +31,7 @@ fn exact_value_is_that_of_a_run_of_the_scene() {
 }
 
 #[test]
-fn exact_failures_are_infinite_counted_and_one_is_kept() {
+fn contract_failures_are_infinite_counted_and_one_is_kept() {
     let objective = objective(vec![Variable::C2, Variable::D], 5.0, Settings::default());
     for design in [[1.0, -2.0], [-1.0, 0.0], [f64::NAN, 1.0]] {
         assert_eq!(objective.value(&design, f64::INFINITY), f64::INFINITY);
@@ -43,9 +43,9 @@ fn exact_failures_are_infinite_counted_and_one_is_kept() {
     assert_eq!(reason.to_string(), "c2: -1 is not allowed here: give a finite number not below 0");
 }
 
-/// What keeps its limits is at most [`INFEASIBLE`], what is recalled counts as what was found.
+/// A feasible value is at most [`INFEASIBLE`]; a recalled value counts like a computed one.
 #[test]
-fn exact_recalled_values_are_counted_as_when_they_were_found() {
+fn contract_recalled_values_are_counted_as_when_they_were_found() {
     let objective = objective(vec![Variable::C2], 5.0, Settings::default());
     for value in [1.0, INFEASIBLE, 1.5 * INFEASIBLE, f64::INFINITY] {
         objective.recall(value);

@@ -43,7 +43,8 @@ fn paper_table1_row3() {
     assert_eq!(visited.borrow()[5][0], 204.25, "the reflected k2 is 2 · 215 − 225.75");
 }
 
-/// Rows 3 and 4, refined, are better than rows 1 and 2: by medians over designs within ±0.1 %, for single values are draws.
+/// Rows 3 and 4, refined, are better than rows 1 and 2: by medians over designs within ±0.1 %, since a single value is one chaotic
+/// realisation.
 #[test]
 fn paper_table1_refined_rows_are_better() {
     let window = Window { from: 50.0, to: 100.0 };

@@ -1,4 +1,4 @@
-//! Interrupted runs: what they keep, and how they go on from memory or from a save.
+//! Interrupted runs: what they keep, and how they continue from memory or from a save.
 
 mod problems;
 
@@ -35,7 +35,7 @@ fn unbroken() -> (Minimum, Vec<Row>) {
     (found.expect("a valid start"), rows)
 }
 
-/// Breaks the run at every row and goes on with what `continued` makes of the solver.
+/// Breaks the run at every row and continues with the solver that `continued` returns.
 fn interrupted_at_every_row(
     solver: Fminsearch,
     continued: impl Fn(Fminsearch) -> Fminsearch,
@@ -59,7 +59,7 @@ fn interrupted_at_every_row(
 }
 
 #[test]
-fn exact_interruption_keeps_what_was_found() {
+fn contract_interruption_keeps_what_was_found() {
     let (_, whole) = unbroken();
     for broken_at in [0, 1, 17] {
         let mut rows = Vec::new();
@@ -102,7 +102,7 @@ fn invariant_saved_run_continues_as_if_unbroken() {
 }
 
 #[test]
-fn exact_damaged_saves_are_refused() {
+fn contract_damaged_saves_are_refused() {
     let options = Options { bounds: vec![Bounds::default(); 2], ..Options::default() };
     let mut solver = Fminsearch::new(&START, options).expect("a valid start");
     let third =

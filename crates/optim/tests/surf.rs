@@ -40,7 +40,7 @@ fn invariant_same_bytes_with_one_and_two_threads() {
 }
 
 #[test]
-fn exact_progress_counts_every_point_once() {
+fn contract_progress_counts_every_point_once() {
     let seen = Mutex::new(Vec::new());
     let grid = grid(&[10, 10]);
     on_threads(2, || surf(&grid, |x| x[0], |done| seen.lock().expect("no panic").push(done)));
@@ -50,7 +50,7 @@ fn exact_progress_counts_every_point_once() {
 }
 
 #[test]
-fn exact_best_points_of_a_line() {
+fn contract_best_points_of_a_line() {
     let grid = grid(&[8]);
     let values = [5.0, 1.0, 2.0, 3.0, f64::NEG_INFINITY, 4.0, f64::NAN, 6.0];
     assert_eq!(best_separated(&grid, &values, 1, 3), [1]);
@@ -67,12 +67,12 @@ fn exact_best_points_of_a_line() {
 }
 
 #[test]
-fn exact_ties_go_to_the_lowest_number() {
+fn contract_ties_go_to_the_lowest_number() {
     assert_eq!(best_separated(&grid(&[5]), &[1.0, 0.0, -0.0, 0.0, -0.0], 4, 1), [1, 2, 3, 4]);
 }
 
 #[test]
-fn exact_distance_is_along_the_farthest_axis() {
+fn contract_distance_is_along_the_farthest_axis() {
     let grid = grid(&[3, 3]); // numbers 0 1 2 / 3 4 5 / 6 7 8
     let values = [0.0, 9.0, 9.0, 9.0, 1.0, 9.0, 9.0, 2.0, 9.0];
     assert_eq!(best_separated(&grid, &values, 2, 1), [0, 4], "diagonal neighbours are 1 apart");

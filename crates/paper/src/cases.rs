@@ -1,4 +1,4 @@
-//! Figure 7: three irregular motions, and what they are.
+//! Figure 7: three irregular motions and their regimes.
 
 use super::item::{Grid, Item, Verdict, numbers};
 use super::judgement::definitions;
@@ -43,10 +43,10 @@ const CASES: [Case; 3] = [
     },
 ];
 
-/// Radii with which the judgement is repeated, m: the paper does not give its own.
+/// Radii for which the classification is repeated, m: the paper does not give its own.
 const RADII: [f64; 5] = [0.1, 0.5, 2.0, 5.0, 10.0];
 const INTERVAL: f64 = 0.0025;
-/// How much longer than the paper's studies the motions are shown, s: bursts are rare.
+/// Time for which the motions are shown beyond the end of the paper's studies, s: bursts are rare.
 const MORE: f64 = 100.0;
 
 impl Case {
@@ -55,7 +55,7 @@ impl Case {
         Ok(Parameter::Omega.at(scene, self.omega)?)
     }
 
-    /// Whether a regime is what the paper calls it.
+    /// Whether a regime agrees with the paper's name for it.
     fn agrees(&self, regime: &Regime) -> bool {
         match self.letter {
             "a" => regime.kind == Kind::Intermittent,
@@ -141,7 +141,7 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-/// A slow approach to a period can be taken for a transient that ends: says how slow it is.
+/// A slow approach to a periodic orbit can look like a transient: states its rate.
 fn creeping(case: &Case, regime: &Regime) -> Option<String> {
     let slow = regime.kind == Kind::Periodic && regime.transient.is_none() && regime.exponent.value < 0.0;
     slow.then(|| {

@@ -1,4 +1,4 @@
-//! What the paper says of Figure 3: how far a damper keeps its tuning when the stiffness of the structure changes.
+//! The paper's statements on Figure 3: detuning of the dampers when the stiffness of the structure changes.
 
 use super::family::{Family, SMOOTH};
 use super::item::{Item, Verdict};
@@ -8,7 +8,7 @@ const SSVI: usize = 1;
 const TMD: usize = 2;
 const DAMPERS: [usize; 2] = [SSVI, TMD];
 
-/// Depths of the dip between two peaks for which they are counted: where the count is the same for all, it does not hang on the
+/// Depths of the dip between two peaks for which peaks are counted: if the count is the same for all, it does not depend on the
 /// depth. The scatter of a chaotic stretch from one frequency to the next is a few per cent, which sets the least.
 const DEPTHS: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
 

@@ -11,7 +11,7 @@ use retune_figures::sheet::{
 
 /// Height of the strip on top of the orbit diagram, as a share of the chart's.
 const STRIP: f64 = 0.05;
-/// Where the labels of regimes stand, in two rows in turn: shares of the chart's height.
+/// Heights of the two alternating rows of regime labels, as shares of the chart's height.
 const ROWS: [f64; 2] = [0.89, 0.83];
 /// Width of a letter of a label, as a share of the chart's width.
 const LETTER: f64 = 0.019;
@@ -103,7 +103,7 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
     Chart {
         title: "x₂ at the crests of the force; regimes nT, m, k".into(),
         labels: ["ω, rad/s".into(), "x₂, m".into()],
-        // Room on top for the strip and two rows of labels.
+        // Space on top for the strip and two rows of labels.
         ranges: [omega, (low - 0.05 * (high - low), high + 0.3 * (high - low))],
         log: false,
         layers,
@@ -124,7 +124,7 @@ fn strip(motions: &Motions) -> Vec<Layer> {
     motions.regimes.iter().enumerate().map(band).collect()
 }
 
-/// Names of periodic motions where there is room for them, the widest windows first.
+/// Names of periodic motions where there is space for them, the widest windows first.
 fn labels(motions: &Motions, (first, last): (f64, f64)) -> Vec<Layer> {
     let mut windows = motions.windows();
     windows
@@ -136,7 +136,7 @@ fn labels(motions: &Motions, (first, last): (f64, f64)) -> Vec<Layer> {
         let half = 0.5 * LETTER * (text.chars().count() + 1) as f64 * (last - first);
         let middle = 0.5 * (motions.omega[from] + motions.omega[to]);
         let x = middle.clamp(first + half, last - half);
-        // A label stands over its own window, or not at all.
+        // A label is placed above its own window, or omitted.
         if !(motions.omega[from]..=motions.omega[to]).contains(&x) {
             continue;
         }

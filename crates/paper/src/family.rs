@@ -1,4 +1,4 @@
-//! The responses at one stiffness of the structure, and the peaks of their curves: what Figures 3 to 5 are made of.
+//! The responses at one stiffness of the structure, and the peaks of their curves: the data of Figures 3 to 5.
 
 use super::plan::Plan;
 use retune_dynamics::{Parameter, Point, independent};
@@ -55,19 +55,19 @@ impl Family {
         best.map_or(Peak { omega: f64::NAN, energy: f64::NAN }, |p| Peak { omega: p.value, energy: p.e1_max })
     }
 
-    /// How many times smaller the damper makes the highest energy.
+    /// The factor by which the damper reduces the largest energy.
     pub fn reduction(&self, scene: usize) -> f64 {
         self.highest(0).energy / self.highest(scene).energy
     }
 
-    /// How many maxima a curve has: points above both neighbours.
+    /// Number of maxima of a curve: points above both neighbours.
     pub fn maxima(&self, scene: usize) -> usize {
         let higher = |three: &&[Point]| three[1].e1_max > three[0].e1_max.max(three[2].e1_max);
         self.points[scene].windows(3).filter(higher).count()
     }
 
-    /// Humps of a curve: maxima of its running median over [`SMOOTH`] frequencies with a dip of `depth` (a share) between them.
-    /// The median takes away the jumps from one frequency to the next where the motion is chaotic.
+    /// Peaks of a curve: maxima of its running median over [`SMOOTH`] frequencies with a dip of `depth` (a share) between them.
+    /// The median removes the scatter from one frequency to the next where the motion is chaotic.
     pub fn humps(&self, scene: usize, depth: f64) -> Vec<Peak> {
         let median = |part: &[Point]| {
             let mut energies: Vec<f64> = part.iter().map(|p| p.e1_max).collect();
@@ -96,6 +96,6 @@ impl Family {
     }
 }
 
-/// Frequencies of the running median of [`Family::humps`]: in the paper's study 0.09 rad/s, a fifth of the half-power width
-/// c1/m1 = 0.452 rad/s of the structure's resonance. What is narrower is no resonant peak.
+/// Number of frequencies in the running median of [`Family::humps`]: in the paper's study 0.09 rad/s, a fifth of the half-power
+/// width c1/m1 = 0.452 rad/s of the structure's resonance. A narrower maximum is not a resonant peak.
 pub const SMOOTH: usize = 9;

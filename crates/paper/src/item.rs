@@ -1,9 +1,9 @@
-//! A table or figure of the paper, made again: what the paper says, what was found, and a verdict on each statement.
+//! A table or figure of the paper, reproduced: the paper's statements, our results, and a verdict on each statement.
 
 use retune_figures::sheet::Drawing;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of a statement.
+/// The verdict on a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -40,23 +40,23 @@ impl Verdict {
     }
 }
 
-/// A statement of the paper beside what was found.
+/// A statement of the paper and our result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Statement {
     /// The paper's words, or nearly.
     pub paper: String,
-    /// When it counts as holding, and why then: where the paper has only words, this says what is measured.
+    /// The criterion for the verdict and its reason: where the paper is only verbal, this says what is measured.
     pub rule: String,
-    /// What becomes of it.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The numbers it rests on.
+    /// The numbers behind the verdict.
     pub found: String,
 }
 
-/// A table to be read.
+/// A table for readers.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Grid {
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
     /// Names and units of its columns.
     pub head: Vec<String>,
@@ -88,27 +88,27 @@ impl Grid {
     }
 }
 
-/// A picture with its words.
+/// A picture with its caption.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Picture {
     /// File name without its ending.
     pub name: String,
     /// As SVG.
     pub drawing: Drawing,
-    /// What there is to see, and how it was made.
+    /// The contents of the picture, and how it was made.
     pub caption: String,
 }
 
-/// A table or figure of the paper, made again.
+/// A table or figure of the paper, reproduced.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Item {
     /// `table1`, `figure4`.
     pub name: String,
     /// "Table 1. ..."
     pub title: String,
-    /// What the paper shows here.
+    /// The content of the paper's table or figure.
     pub paper: String,
-    /// The settings that made ours.
+    /// The settings of our results.
     pub made_by: String,
     /// Ours.
     pub pictures: Vec<Picture>,
@@ -116,7 +116,7 @@ pub struct Item {
     pub grids: Vec<Grid>,
     /// The paper's statements, one by one.
     pub statements: Vec<Statement>,
-    /// What a reader should know besides.
+    /// Further remarks.
     pub notes: Vec<String>,
     /// Data files: name and content.
     pub data: Vec<(String, String)>,

@@ -1,4 +1,4 @@
-//! How motions are named, in words, with the numbers of the classifier and the reason for each.
+//! The names of motions in words, with the thresholds of the classifier and the reason for each.
 
 use super::item::Grid;
 use retune_dynamics::regime::{

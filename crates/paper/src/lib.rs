@@ -1,4 +1,4 @@
-//! Every table and figure of the paper, made again beside what it says, with a verdict on each of its statements.
+//! Every table and figure of the paper, reproduced beside its statements, with a verdict on each.
 
 mod cases;
 mod curves;
@@ -24,7 +24,7 @@ use retune_store::{Directory, Extent, Identity, manifest};
 use retune_workbench::request::{open, where_results_are};
 use retune_workbench::{Error, Observer, Request, resolved};
 
-/// What makes an item.
+/// The function that makes an item.
 type Maker = fn(&Plan) -> Result<Item, Error>;
 
 /// Every item, in the order of the page.
@@ -78,7 +78,7 @@ pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) ->
     })
 }
 
-/// An item of a run that was interrupted, or else made now and kept in case that this run is.
+/// An item kept by an interrupted run, or made now and kept in case this run is interrupted.
 fn kept_or_made(name: &str, make: Maker, plan: &Plan, results: &Directory) -> Result<Item, Error> {
     let (file, journal) = (format!("{name}.item"), results.journal());
     if journal.is_marked(name) {

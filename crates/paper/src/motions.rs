@@ -1,4 +1,4 @@
-//! What Figure 4 is drawn from: the motions of the SSVI NES over the frequencies around a resonance.
+//! The data of Figure 4: the motions of the SSVI NES over the frequencies around a resonance.
 
 use super::plan::Plan;
 use rayon::prelude::*;
@@ -12,11 +12,11 @@ use retune_model::Scene;
 use retune_workbench::Error;
 use retune_workbench::Progress;
 
-/// Where motions come from: from rest, from the frequency below, from the frequency above.
+/// The starts of motions: from rest, from the frequency below, from the frequency above.
 pub const STARTS: [&str; 3] = ["rest", "up", "down"];
-/// Periods that are drawn, and in which motions are first told apart.
+/// Periods that are drawn, and from which motions are first compared.
 const RECORD: usize = 120;
-/// Periods to settle in, from rest and from the frequency before. A linear damper forgets its start in twenty.
+/// Periods to settle in, from rest and from the previous frequency. With a linear damper the transient has decayed after twenty.
 const SETTLE: [usize; 2] = [400, 150];
 /// Runs at each frequency: the record, the orbit from rest, both sweeps.
 pub const RUNS: usize = 4;
@@ -25,9 +25,9 @@ pub const RUNS: usize = 4;
 pub struct Motions {
     /// Frequencies, rad/s.
     pub omega: Vec<f64>,
-    /// What each motion from rest is.
+    /// The regime of each motion from rest.
     pub regimes: Vec<Regime>,
-    /// From rest; carried upwards; carried downwards.
+    /// From rest; continued upwards; continued downwards.
     pub orbits: [Vec<Orbit>; 3],
     /// Frequencies at which there is more than one motion.
     pub coexisting: Vec<Coexisting>,
@@ -35,14 +35,14 @@ pub struct Motions {
 
 /// Motions that exist at the same frequency.
 pub struct Coexisting {
-    /// The number of the frequency.
+    /// Index of the frequency.
     pub index: usize,
     /// Each motion once, with the first of [`STARTS`] that leads to it.
     pub motions: Vec<(usize, Regime)>,
 }
 
 impl Motions {
-    /// Follows all motions of `scene` at the plan's ratios to the frequency `natural`.
+    /// Computes all motions of `scene` at the plan's ratios to the frequency `natural`.
     pub fn compute(plan: &Plan, scene: &Scene, natural: f64, bar: &dyn Progress) -> Result<Self, Error> {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
@@ -92,8 +92,8 @@ impl Motions {
     }
 }
 
-/// Where the three orbits of a frequency differ, each is followed on as long as the record from rest, and told apart again by
-/// that: what was a transient has then gone.
+/// Where the three orbits of a frequency differ, each is continued for as long as the record from rest, and compared again:
+/// transients have then decayed.
 fn coexisting(
     plan: &Plan,
     scene: &Scene,

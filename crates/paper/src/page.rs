@@ -1,4 +1,4 @@
-//! The page: every item beside what the paper says, in one file that needs no network.
+//! The page: every item beside the paper's statements, in one file that needs no network.
 
 use super::item::{Grid, Item, Picture, Statement, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -1,4 +1,4 @@
-//! Figure 5: the share of the energy that the damper holds.
+//! Figure 5: the damper's share of the energy.
 
 use super::family::Family;
 use super::item::{Item, Verdict, numbers};

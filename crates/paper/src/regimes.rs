@@ -1,4 +1,4 @@
-//! Figure 4: where the damper strikes what, and what motions there are.
+//! Figure 4: zones of impacts, and the motions in them.
 
 use super::diagrams;
 use super::family::Family;

@@ -41,7 +41,7 @@ const SSVI: [Surface; 2] = [
     },
 ];
 
-/// What was found on a surface.
+/// The result for a surface.
 struct Found {
     best: [f64; 2],
     best_value: f64,

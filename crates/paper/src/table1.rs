@@ -1,4 +1,4 @@
-//! Table 1: the log of fminsearch, and what each of the paper's rows is worth.
+//! Table 1: the log of fminsearch, and the energies of the paper's rows.
 
 use super::item::{Grid, Item, Verdict};
 use super::plan::Plan;
@@ -156,8 +156,8 @@ fn worth(
     Ok(())
 }
 
-/// The medians of the four rows under ±0.1 % for other radii and for the whole run: what the paper leaves out moves them by more
-/// than its digits.
+/// The medians of the four rows under ±0.1 % for other radii and for the whole run: values that the paper does not state change
+/// them by more than the printed digits.
 fn left_out(plan: &Plan, damper: Damper) -> Grid {
     let head = ["R, m", "window, s", "row 1, J", "row 2, J", "row 3, J", "row 4, J"];
     let mut grid = Grid::new("Medians of E1max under ±0.1 %, for other radii and windows", &head);
@@ -185,7 +185,8 @@ fn left_out(plan: &Plan, damper: Damper) -> Grid {
     grid
 }
 
-/// A design moved by up to 0.1 % in each parameter, in a fixed low-discrepancy sequence (additive recurrence); the first is itself.
+/// A design moved by up to 0.1 % in each parameter, in a fixed low-discrepancy sequence (additive recurrence); the first is the
+/// design itself.
 pub fn perturbed(design: &[f64; 4], n: usize) -> [f64; 4] {
     const STEPS: [f64; 4] =
         [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_719_147_146_4, 0.538_597_247_228_474_5];
@@ -231,7 +232,7 @@ fn log(rows: &[Row], found: &Minimum, name: &str, item: &mut Item) {
     item.data.push((format!("table1-from-{}.csv", name.replace(' ', "-")), format!("{CSV_HEADER}\n{lines}")));
 }
 
-/// Row 3 from the published optimum, by a stub objective whose order of values puts the k2-vertex last.
+/// Row 3 from the published optimum, by a stub objective for which the k2-vertex is the worst.
 fn row_3(item: &mut Item) -> Result<(), Error> {
     let values = [563.0, 640.0, 570.0, 571.0, 572.0, 650.0, 560.0];
     let count = RefCell::new(0);

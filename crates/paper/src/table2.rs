@@ -12,7 +12,7 @@ use retune_study::Study;
 use retune_workbench::Error;
 use std::ops::ControlFlow;
 
-/// Frequencies of the worst case, rad/s, for the impacting damper; the linear one is looked at in closed form, finely.
+/// Frequencies of the worst case, rad/s, for the impacting damper; the linear one is evaluated in closed form on a fine grid.
 const COARSE: Range = Range { from: 5.6, to: 7.0, points: 57 };
 const FINE: Range = Range { from: 5.0, to: 8.0, points: 1501 };
 
@@ -100,7 +100,7 @@ pub fn table2(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-/// What is smaller by no more than this share counts as equal: the rows are printed to two or three digits.
+/// Values that differ by no more than this share count as equal: the rows are printed to two or three digits.
 const ROUNDING: f64 = 0.01;
 /// Designs within ±0.1 % whose worst cases show the scatter.
 const SCATTER: usize = 21;
@@ -172,7 +172,7 @@ fn damper(study: &Study) -> Result<Damper, Error> {
     study.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))
 }
 
-/// The scene with some parameters of its damper changed; none where they cannot be.
+/// The scene with some parameters of its damper changed; `None` if a value is out of range.
 fn at(study: &Study, variables: &[Variable], design: &[f64]) -> Option<Scene> {
     let mut damper = study.scene.damper?;
     for (variable, value) in variables.iter().zip(design) {

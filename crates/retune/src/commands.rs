@@ -1,4 +1,4 @@
-//! What each command does: from arguments to a job, and from what the job found to the screen.
+//! The commands: from arguments to a job, and from its results to the screen.
 
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
@@ -111,7 +111,7 @@ fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<()
     evaluate::evaluate(&study::read(study)?, *json, &request, streams)
 }
 
-/// Checks a study file and shows what it asks for.
+/// Checks a study file and prints a description of it.
 fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
     screen.line(if study::is_table2(path)? {
         describe::table2(&study::read_table2(path)?)

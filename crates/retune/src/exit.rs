@@ -1,20 +1,20 @@
-//! What the exit code of the program says. One list: for the code, `--help` and the README.
+//! The exit codes of the program. One list: for the code, `--help` and the README.
 
 use retune_workbench::Error;
 
 /// The computation failed; results do not hold (`verify`); a line had no value (`evaluate`).
 pub const FAILED: u8 = 1;
-/// What was given is wrong, or a place cannot be read or written.
+/// The input is wrong, or a file or directory cannot be read or written.
 pub const WRONG: u8 = 2;
 /// No design that keeps the limits: results are written, and there is no verdict.
 pub const INFEASIBLE: u8 = 3;
-/// `verify` could not check everything, and what it could holds.
+/// `verify` could not check everything, and everything it could check holds.
 pub const UNCHECKED: u8 = 4;
-/// Stopped by Ctrl-C or SIGTERM; `--resume` goes on.
+/// Stopped by Ctrl-C or SIGTERM; `--resume` continues.
 #[cfg(unix)]
 pub const STOPPED: u8 = 130;
 
-/// The exit code of a command that ends without its result: what the user can mend is [`WRONG`].
+/// The exit code of a command that ends without its result: an error that the user can correct is [`WRONG`].
 pub fn code_of(error: &Error) -> u8 {
     match error {
         Error::Store(_)
@@ -53,8 +53,8 @@ Exit codes:
 mod tests {
     use super::*;
 
-    /// What the user can mend has exit code 2, what failed in the computation 1; limits that are not kept, and what cannot be
-    /// checked, have their own.
+    /// An error that the user can correct has exit code 2, a failed computation 1; broken limits, and results that cannot be
+    /// checked, have their own codes.
     #[test]
     fn contract_exit_codes_say_whose_fault_it_is() {
         let source = || std::io::Error::from(std::io::ErrorKind::StorageFull);

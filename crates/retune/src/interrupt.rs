@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_the_command_that_goes_on_is_one_that_a_shell_takes() {
+    fn contract_the_command_that_resumes_is_valid_in_a_shell() {
         assert_eq!(said(None, &[b"retune", b"optimize", b"a.json"]), "retune optimize a.json --resume");
         assert_eq!(
             said(

@@ -1,6 +1,6 @@
-//! How far a stage is: a bar where standard error is a terminal, a line now and then where it is none.
+//! Progress of a stage: a bar if standard error is a terminal, else a line every half minute.
 //!
-//! Rate and time left count new work only: what the journal of an interrupted run knows is answered in no time.
+//! Rate and remaining time count new work only: values from the journal of an interrupted run take no time.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
@@ -8,31 +8,31 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-/// Time between two lines where there is no terminal.
+/// Time between two lines if there is no terminal.
 const TELL_EVERY: Duration = Duration::from_secs(30);
 
 /// The progress of a stage.
 pub struct Stage {
     bar: ProgressBar,
     count: Arc<Count>,
-    /// Whether lines take the place of the bar.
+    /// Whether lines replace the bar.
     lines: bool,
 }
 
-/// What has been done.
+/// The work done so far.
 struct Count {
     what: &'static str,
     all: u64,
     begun: Instant,
     done: AtomicU64,
-    /// Of these, those that were known from before.
+    /// Of these, those that were already known.
     known: AtomicU64,
-    /// When the last line was told, ms after the beginning.
+    /// Time of the last line, ms after the beginning.
     told: AtomicU64,
 }
 
 impl Stage {
-    /// That of `all` evaluations; nothing is shown if `quiet`.
+    /// A stage of `all` evaluations; nothing is shown if `quiet`.
     pub fn new(what: &'static str, all: u64, quiet: bool) -> Self {
         let [done, known, told] = [0; 3].map(AtomicU64::new);
         let count = Arc::new(Count { what, all, begun: Instant::now(), done, known, told });
@@ -50,7 +50,7 @@ impl retune_workbench::Progress for Stage {
         self.count.done.fetch_add(more, Relaxed);
         self.bar.inc(more);
         if let Some(line) = self.lines.then(|| self.count.tell(self.count.begun.elapsed())).flatten() {
-            let _ = writeln!(std::io::stderr(), "{line}"); // nobody reads: no reason to end
+            let _ = writeln!(std::io::stderr(), "{line}"); // a closed standard error does not end the run
         }
     }
 
@@ -74,7 +74,7 @@ fn bar(count: &Arc<Count>) -> ProgressBar {
 }
 
 impl Count {
-    /// The line to tell, if one is due.
+    /// The line to print, if one is due.
     fn tell(&self, elapsed: Duration) -> Option<String> {
         let (now, last) = (elapsed.as_millis() as u64, self.told.load(Relaxed));
         let due = now >= last + TELL_EVERY.as_millis() as u64;
@@ -92,7 +92,7 @@ impl Count {
         new as f64 / elapsed.as_secs_f64().max(1e-9)
     }
 
-    /// How much longer it takes, in words.
+    /// The remaining time, in words.
     fn left(&self, elapsed: Duration) -> String {
         let rest = self.all.saturating_sub(self.done.load(Relaxed)) as f64;
         match Duration::try_from_secs_f64(rest / self.rate(elapsed)) {
@@ -113,13 +113,13 @@ mod tests {
     use retune_workbench::Progress as _;
 
     #[test]
-    fn exact_rates_have_few_digits() {
+    fn contract_rates_have_few_digits() {
         assert_eq!([0.0, 3.4219, 1249.8].map(words), ["0.0/s", "3.4/s", "1250/s"]);
     }
 
-    /// 900 of 1000 were known, so 50 new ones in 25 s are 2/s, and the other 50 take as long again.
+    /// 900 of 1000 were known, so 50 new ones in 25 s are 2/s, and the remaining 50 take another 25 s.
     #[test]
-    fn exact_what_was_known_makes_no_rate() {
+    fn contract_known_values_do_not_count_in_the_rate() {
         let progress = Stage::new("surf", 1000, true);
         progress.inc(950);
         (0..900).for_each(|_| progress.known());

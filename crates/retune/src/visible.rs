@@ -31,7 +31,7 @@ mod tests {
     use super::visible;
 
     #[test]
-    fn exact_control_characters_are_seen_not_obeyed() {
+    fn contract_control_characters_are_escaped() {
         assert_eq!(visible("a\tb\nÄ √ N·s/m"), "a\tb\nÄ √ N·s/m");
         assert_eq!(
             visible("\u{1b}[2Jx\r\u{7}\u{9b}\u{7f}\u{202e}"),

@@ -50,7 +50,7 @@ fn reference_the_study_of_the_tmd_over_the_band_finds_the_closed_form_optimum() 
     assert!(desk.read("results/tmd-band/band.svg").contains("tuned for the band: 160.605 J"));
 }
 
-/// A short band of the impacting damper, by runs.
+/// A short band of the impacting damper, evaluated by runs.
 fn ssvi_band() -> Value {
     let mut study = tiny();
     study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 5 } });
@@ -58,7 +58,7 @@ fn ssvi_band() -> Value {
 }
 
 #[test]
-fn exact_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
+fn contract_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
     let desk = Desk::new();
     desk.write_json("band.json", &ssvi_band());
     for threads in ["1", "2"] {
@@ -69,7 +69,7 @@ fn exact_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
     for name in &names {
         assert_eq!(desk.read(&format!("1/{name}")), desk.read(&format!("2/{name}")), "{name}");
     }
-    // What the search reports is the run of the best design at its worst frequency, and no sample is above it.
+    // The search reports the run of the best design at its worst frequency, and no sample exceeds it.
     let optimum = desk.read_json("1/optimum.json");
     let [found, run] =
         [&optimum["E1max"], &optimum["simulation"]["E1max"]].map(|e| e.as_f64().expect("a number"));
@@ -83,19 +83,19 @@ fn exact_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
 }
 
 #[test]
-fn exact_the_resolved_study_of_a_band_repeats_its_results() {
+fn contract_the_resolved_study_of_a_band_repeats_its_results() {
     let desk = Desk::new();
     desk.write_json("band.json", &ssvi_band());
     desk.good(&["optimize", "band.json", "--quiet", "--out", "first"]);
     desk.good(&["optimize", "first/study.json", "--quiet", "--out", "again"]);
-    // The manifest says which file was the study.
+    // The manifest names the study file.
     for name in desk.names("first").into_iter().filter(|name| name != "manifest.json") {
         assert_eq!(desk.read(&format!("first/{name}")), desk.read(&format!("again/{name}")), "{name}");
     }
 }
 
 #[test]
-fn exact_check_says_what_is_made_small() {
+fn contract_check_says_what_is_minimised() {
     let desk = Desk::new();
     desk.write_json("band.json", &ssvi_band());
     let said = desk.good(&["check", "band.json"]);
@@ -108,7 +108,7 @@ fn exact_check_says_what_is_made_small() {
 
 /// A start whose steady motion reaches a wall has no value, and the message says where and what to do.
 #[test]
-fn exact_a_steady_motion_that_reaches_a_wall_is_told() {
+fn contract_a_steady_motion_that_reaches_a_wall_is_an_error() {
     let desk = Desk::new();
     let mut study = tmd_band();
     study["scene"]["damper"]["D"] = json!(0.01);

@@ -1,5 +1,5 @@
-//! Journals that a disk, a power cut or a person has damaged: every record that is whole is kept, what is lost is told and computed
-//! again, and what nobody can tell is refused.
+//! Journals damaged by a disk, a power cut or a person: every whole record is kept, lost ones are reported and computed
+//! again, and a journal of unknown origin is refused.
 
 mod common;
 
@@ -8,7 +8,7 @@ use common::{Answer, Desk, assert_same, begun, longer};
 const RUN: [&str; 5] = ["optimize", "study.json", "--quiet", "--out", "out"];
 const JOURNAL: &str = "out/unfinished/journal";
 
-/// A desk with the results of a study in `whole`, the journal of a run of it that was killed, and how much that holds.
+/// A desk with the results of a study in `whole`, the journal of a killed run of it, and the number of its records.
 fn desk() -> (Desk, Vec<u8>, usize) {
     let desk = Desk::new();
     desk.write_json("study.json", &longer());
@@ -20,7 +20,7 @@ fn desk() -> (Desk, Vec<u8>, usize) {
     (desk, journal, kept)
 }
 
-/// The run goes on, says `words` of the damage, and ends in the bytes of an unbroken one.
+/// The run resumes, reports the damage with `words`, and ends in the bytes of an uninterrupted one.
 #[track_caller]
 fn goes_on(desk: &Desk, words: &str) {
     let with = |option| [&RUN[..], &[option]].concat();
@@ -95,7 +95,7 @@ fn contract_a_journal_that_is_nobodys_is_refused_and_left_alone() {
     assert_same(&desk, "whole", "out");
 }
 
-/// A directory that happens to be called `unfinished` is no work of Retune's, and nor is what a link points to.
+/// A foreign directory named `unfinished` is not work of Retune's, and neither is the target of a link.
 #[test]
 fn contract_a_directory_of_that_name_is_left_alone() {
     let desk = Desk::new();

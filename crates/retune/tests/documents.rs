@@ -1,4 +1,4 @@
-//! What the documents name is there.
+//! The files, commands and studies that the documents name exist.
 
 mod common;
 #[path = "../../model/tests/scenes/mod.rs"]
@@ -16,7 +16,7 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What stands between backticks; every second piece.
+/// The texts between backticks: every second piece.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
@@ -25,7 +25,7 @@ const DOCUMENTS: [&str; 5] =
     ["README.md", "ARCHITECTURE.md", "docs/decisions.md", "docs/tuning.md", "docs/scale.md"];
 
 #[test]
-fn exact_every_path_of_the_documents_exists() {
+fn contract_every_path_of_the_documents_exists() {
     for (document, least) in DOCUMENTS.into_iter().zip([3, 15, 1, 1, 2]) {
         let text = text(document);
         let places = ["crates/", "deploy/", "docs/", "results/", "studies/", "tests/"];
@@ -45,7 +45,7 @@ fn exact_every_path_of_the_documents_exists() {
 }
 
 #[test]
-fn exact_every_recipe_of_the_documents_exists() {
+fn contract_every_recipe_of_the_documents_exists() {
     let justfile = text("justfile");
     let recipes: Vec<&str> = justfile
         .lines()
@@ -65,7 +65,7 @@ fn exact_every_recipe_of_the_documents_exists() {
     assert!(seen >= 12, "{seen}");
 }
 
-/// Whoever runs a command through just can give it options, `--resume` among them; and the command that goes on with a run, which
+/// A command run through just accepts options, `--resume` among them; and the command that resumes a run, which
 /// then begins with `just`, is a recipe.
 #[test]
 fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_with() {
@@ -92,7 +92,7 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
 
 /// The tests' own scene of the paper is that of the studies.
 #[test]
-fn exact_the_scene_of_the_tests_is_that_of_the_studies() {
+fn contract_the_scene_of_the_tests_is_that_of_the_studies() {
     for (name, numbers) in [("ssvi.json", scenes::SSVI), ("tmd.json", scenes::TMD)] {
         let text = std::fs::read_to_string(studies().join(name)).expect(name);
         let study: Value = serde_json::from_str(&text).expect("JSON");

@@ -1,11 +1,11 @@
-//! What an engineer asks for: limits, other objectives, a global search, a certificate, retention. From the study to the results.
+//! Limits, other objectives, a global search, a certificate, retention: from the study to the results.
 
 mod common;
 
 use common::{Answer, Desk, studies, tiny};
 use serde_json::{Value, json};
 
-/// The tiny study with a global search in the place of its grid.
+/// The tiny study with a global search instead of its grid.
 fn with(objective: Value, limits: Value) -> Value {
     let mut study = tiny();
     study["optimize"] = json!({
@@ -24,7 +24,7 @@ fn number(json: &Value, path: &str) -> f64 {
 }
 
 #[test]
-fn exact_a_global_search_is_the_same_at_any_number_of_threads_and_tells_its_basins() {
+fn contract_a_global_search_is_the_same_at_any_number_of_threads_and_lists_its_basins() {
     let desk = Desk::new();
     desk.write_json("global.json", &with(json!({}), json!({})));
     let said = desk.good(&["optimize", "global.json", "--out", "1", "--threads", "1"]);
@@ -46,9 +46,9 @@ fn exact_a_global_search_is_the_same_at_any_number_of_threads_and_tells_its_basi
     assert_eq!(desk.read("1/optimum.json"), desk.read("3/optimum.json"));
 }
 
-/// A limit that the free optimum breaks is kept, and told to be active; one that cannot be kept is said not to be.
+/// A limit that the unconstrained optimum breaks is kept and reported as active; one that cannot be kept is reported as broken.
 #[test]
-fn exact_limits_are_kept_and_told() {
+fn contract_limits_are_kept_and_reported() {
     let desk = Desk::new();
     desk.write_json("free.json", &with(json!({}), json!({ "stroke": 1e3, "force": 1e9 })));
     desk.good(&["optimize", "free.json", "--quiet"]);
@@ -98,7 +98,7 @@ fn exact_limits_are_kept_and_told() {
 }
 
 #[test]
-fn exact_check_says_every_part_of_an_objective() {
+fn contract_check_says_every_part_of_an_objective() {
     let desk = Desk::new();
     let robust = json!({
         "omega": { "from": 0.9, "to": 1.1, "samples": 3, "relative": true },
@@ -123,7 +123,7 @@ fn exact_check_says_every_part_of_an_objective() {
 }
 
 #[test]
-fn exact_a_robust_objective_is_tuned_and_its_worst_place_told() {
+fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
     let desk = Desk::new();
     let objective = json!({
         "omega": { "from": 6.0, "to": 6.6, "samples": 2 },
@@ -150,7 +150,7 @@ fn exact_a_robust_objective_is_tuned_and_its_worst_place_told() {
 }
 
 #[test]
-fn exact_objectives_that_are_none_are_refused() {
+fn contract_invalid_objectives_are_refused() {
     let desk = Desk::new();
     for (objective, message) in [
         (
@@ -193,7 +193,7 @@ fn exact_objectives_that_are_none_are_refused() {
     );
 }
 
-/// Table 2's SSVI NES: predictable by every method, and yet a single chaotic realisation; the TMD beside it is robust.
+/// Table 2's SSVI NES: predictable by every method, and yet a single chaotic realisation; the TMD is robust.
 #[test]
 fn paper_table_2_is_certified() {
     let desk = Desk::new();
@@ -215,7 +215,7 @@ fn paper_table_2_is_certified() {
         assert!(said.contains("verdict ") && said.contains("rule ") && said.contains("c2 "), "{said}");
     }
     let tmd = desk.read_json("results/certify/tmd/certificate.json");
-    // Without contacts C changes nothing, and the slope in k2 is that of two runs.
+    // Without contacts C has no effect, and the slope in k2 is that of two runs.
     let row = |name: &str| {
         let rows = tmd["sensitivity"].as_array().expect("rows");
         rows.iter().find(|row| row["parameter"] == name).cloned().expect("a row")
@@ -232,7 +232,7 @@ fn paper_table_2_is_certified() {
 }
 
 #[test]
-fn exact_what_a_search_found_is_certified_where_it_lies() {
+fn contract_results_of_a_search_are_certified_in_place() {
     let desk = Desk::new();
     let mut study = with(json!({}), json!({}));
     study["optimize"]["global"] = Value::Null;
@@ -265,9 +265,9 @@ fn exact_what_a_search_found_is_certified_where_it_lies() {
     assert!(code == Some(2) && stderr.contains("nothing.json: cannot be read"), "{stderr}");
 }
 
-/// The curves of `retune`: at its own k1 a kept tuning is the re-tuned one.
+/// The curves of `retune`: at the nominal k1 the original tuning is the re-tuned one.
 #[test]
-fn exact_retention_begins_at_the_tuned_design() {
+fn contract_retention_begins_at_the_tuned_design() {
     let desk = Desk::new();
     let mut study =
         with(json!({ "omega": { "from": 0.9, "to": 1.1, "samples": 2, "relative": true } }), json!({}));

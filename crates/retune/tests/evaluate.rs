@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
-/// What `evaluate` says to `input`, given as a whole.
+/// The output of `evaluate` for the whole `input`.
 fn said(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Answer {
     let mut command = desk.command(&[&["evaluate", study], options].concat());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -29,7 +29,7 @@ fn answers(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Vec<Stri
 }
 
 #[test]
-fn exact_values_are_those_of_the_logs_at_any_number_of_threads() {
+fn contract_values_are_those_of_the_logs_at_any_number_of_threads() {
     let desk = Desk::new();
     desk.write_json("tiny.json", &tiny());
     desk.good(&["optimize", "tiny.json", "--quiet"]);
@@ -46,7 +46,7 @@ fn exact_values_are_those_of_the_logs_at_any_number_of_threads() {
 }
 
 #[test]
-fn exact_a_line_is_answered_before_the_next_is_sent() {
+fn contract_a_line_is_answered_before_the_next_is_sent() {
     let study = studies().join("tmd-band.json");
     let mut child = Command::new(env!("CARGO_BIN_EXE_retune"))
         .args(["evaluate".as_ref(), study.as_os_str()])
@@ -66,7 +66,7 @@ fn exact_a_line_is_answered_before_the_next_is_sent() {
 }
 
 #[test]
-fn exact_a_bad_line_is_answered_in_words_and_the_next_is_served() {
+fn contract_a_bad_line_is_answered_by_an_error_and_the_next_is_evaluated() {
     let desk = Desk::new();
     let study = studies().join("tmd-band.json");
     let study = study.to_str().expect("UTF-8");
@@ -88,14 +88,14 @@ fn exact_a_bad_line_is_answered_in_words_and_the_next_is_served() {
     ]) {
         assert!(line.starts_with(words), "{line}, not {words}");
     }
-    // The same, with the number of the line, where a person sees it.
+    // The same on standard error, with the line number.
     let told: Vec<&str> = stderr.lines().collect();
     assert_eq!(told.len(), 10, "{stderr}");
     assert_eq!(told[2], "error: line 3: k2: \"soft\" is not a number");
     assert_eq!(told[9], "error: standard input: 9 of 10 lines had no value");
 }
 
-/// What nobody would write is neither kept nor said back.
+/// An absurdly long line is neither stored nor echoed.
 #[test]
 fn contract_a_line_without_end_and_a_word_of_megabytes_cost_nothing() {
     let desk = Desk::new();
@@ -119,7 +119,7 @@ fn contract_a_line_without_end_and_a_word_of_megabytes_cost_nothing() {
     assert!(stderr.len() < 1000 && !stderr.contains('\x1b'), "{stderr}");
 }
 
-/// Who does not read standard error is not held up by it.
+/// A full pipe of standard error does not block the answers.
 #[test]
 fn contract_standard_error_names_the_first_hundred_lines() {
     let desk = Desk::new();
@@ -131,7 +131,7 @@ fn contract_standard_error_names_the_first_hundred_lines() {
 }
 
 #[test]
-fn exact_a_design_beyond_a_limit_is_infinite_or_told_by_how_much_and_a_study_must_tune() {
+fn contract_a_design_beyond_a_limit_is_infinite_or_reported_by_how_much_and_a_study_must_tune() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["limits"] = serde_json::json!({ "cavity": 0.2 });

@@ -1,4 +1,4 @@
-//! What dampers are good for: the least E1max under bounds on the spring and on the stroke.
+//! Pareto fronts of dampers: the least E1max under bounds on the spring and on the stroke.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn desk() -> Desk {
     desk
 }
 
-/// The columns of a table: the bound, the damper, E1max, k2, stroke.
+/// The columns of a table: bound, damper, E1max, k2, stroke.
 fn rows(desk: &Desk, name: &str) -> Vec<(f64, String, f64, f64, f64)> {
     let number = |text: &str| text.parse().unwrap_or(f64::NAN);
     let row = |line: &str| {
@@ -67,7 +67,7 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
 }
 
 #[test]
-fn exact_the_fronts_are_the_same_with_one_thread_and_two() {
+fn contract_the_fronts_are_the_same_with_one_thread_and_two() {
     let desk = desk();
     for threads in ["1", "2"] {
         desk.good(&["fronts", "fronts.json", "--quiet", "--threads", threads, "--out", threads]);
@@ -78,7 +78,7 @@ fn exact_the_fronts_are_the_same_with_one_thread_and_two() {
 }
 
 #[test]
-fn exact_a_wrong_study_of_fronts_is_told_what_to_change() {
+fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     let desk = desk();
     assert!(desk.good(&["check", "fronts.json"]).contains("each for k2 at most 100, 400 N/m"));
     let good = desk.read_json("fronts.json");

@@ -1,5 +1,5 @@
-//! Runs that are stopped, killed, locked out or cut off from the disk: nothing is lost, and the results that come in the end
-//! have the bytes of an unbroken run.
+//! Runs that are stopped, killed, locked out or out of disk space: nothing is lost, and the final results
+//! have the bytes of an uninterrupted run.
 
 mod common;
 
@@ -19,7 +19,7 @@ fn desk() -> Desk {
 const RUN: [&str; 5] = ["optimize", "study.json", "--quiet", "--out", "out"];
 
 #[test]
-fn exact_a_killed_run_goes_on_and_ends_in_the_same_bytes() {
+fn contract_a_killed_run_resumes_and_ends_in_the_same_bytes() {
     let desk = desk();
     let mut child = begun(&desk, &RUN, "out", 200);
     child.kill().and_then(|()| child.wait()).expect("killed");
@@ -36,9 +36,9 @@ fn exact_a_killed_run_goes_on_and_ends_in_the_same_bytes() {
     assert_same(&desk, "whole", "out");
 }
 
-/// A loop that tries again until a run succeeds may try once more.
+/// A loop that retries until a run succeeds may run once more after it.
 #[test]
-fn exact_to_go_on_with_what_is_finished_costs_nothing() {
+fn contract_resuming_finished_work_computes_nothing() {
     let desk = desk();
     let before =
         std::fs::metadata(desk.path("whole/surf.csv")).and_then(|file| file.modified()).expect("a time");
@@ -56,10 +56,10 @@ fn exact_to_go_on_with_what_is_finished_costs_nothing() {
     assert!(said.starts_with("surf: "), "another study is not finished: {said}");
 }
 
-/// Not even the superuser may write there.
+/// Not even root can write there.
 #[cfg(target_os = "linux")]
 #[test]
-fn exact_a_directory_that_cannot_be_written_is_named() {
+fn contract_a_directory_that_cannot_be_written_is_named() {
     let desk = Desk::new();
     desk.write_json("study.json", &longer());
     let Answer { code, stdout, stderr } = desk.run(&["optimize", "study.json", "--out", "/sys/kernel"]);
@@ -68,7 +68,7 @@ fn exact_a_directory_that_cannot_be_written_is_named() {
 }
 
 #[test]
-fn exact_unfinished_work_can_be_thrown_away() {
+fn contract_unfinished_work_can_be_discarded() {
     let desk = desk();
     let mut child = begun(&desk, &RUN, "out", 50);
     child.kill().and_then(|()| child.wait()).expect("killed");
@@ -77,9 +77,9 @@ fn exact_unfinished_work_can_be_thrown_away() {
     assert_same(&desk, "whole", "out");
 }
 
-/// The unfinished work of one study is not mixed with another, nor thrown away for it.
+/// The unfinished work of one study is neither mixed with that of another nor discarded for it.
 #[test]
-fn exact_unfinished_work_of_another_study_is_left_alone() {
+fn contract_unfinished_work_of_another_study_is_left_alone() {
     let desk = desk();
     let mut child = begun(&desk, &RUN, "out", 50);
     child.kill().and_then(|()| child.wait()).expect("killed");
@@ -97,7 +97,7 @@ fn exact_unfinished_work_of_another_study_is_left_alone() {
 }
 
 #[test]
-fn exact_two_runs_into_one_directory_are_refused() {
+fn contract_two_runs_into_one_directory_are_refused() {
     let desk = desk();
     let mut child = begun(&desk, &RUN, "out", 20);
     for option in ["--quiet", "--resume", "--restart"] {
@@ -112,9 +112,9 @@ fn exact_two_runs_into_one_directory_are_refused() {
     assert_same(&desk, "whole", "out");
 }
 
-/// Until new results are whole, those of an earlier run stay as they are.
+/// Until new results are complete, those of an earlier run stay unchanged.
 #[test]
-fn exact_earlier_results_outlive_a_run_that_is_killed_or_refused() {
+fn contract_earlier_results_outlive_a_run_that_is_killed_or_refused() {
     let desk = desk();
     let mut other = longer();
     other["scene"]["primary"]["k1"] = json!(3e4);
@@ -135,7 +135,7 @@ fn exact_earlier_results_outlive_a_run_that_is_killed_or_refused() {
 
 #[cfg(unix)]
 #[test]
-fn exact_ctrl_c_stops_within_a_second_and_says_how_to_go_on() {
+fn contract_ctrl_c_stops_within_a_second_and_says_how_to_resume() {
     for signal in ["INT", "TERM"] {
         let desk = desk();
         let mut child = begun(&desk, &RUN, "out", 100);
@@ -156,7 +156,7 @@ fn exact_ctrl_c_stops_within_a_second_and_says_how_to_go_on() {
     }
 }
 
-/// A run that just has started goes on with just, whose recipes are named like the commands.
+/// A run started through just resumes through just, whose recipes are named like the commands.
 #[cfg(unix)]
 #[test]
 fn contract_a_run_through_just_goes_on_through_just() {
@@ -177,7 +177,7 @@ fn contract_a_run_through_just_goes_on_through_just() {
 /// A file size limit stands for a full disk: both make a write fail half-way through a line.
 #[cfg(unix)]
 #[test]
-fn exact_a_full_disk_is_named_and_costs_nothing() {
+fn contract_a_full_disk_is_named_and_costs_nothing() {
     let desk = desk();
     let mut other = longer();
     other["scene"]["primary"]["k1"] = json!(3e4);
@@ -206,7 +206,7 @@ fn exact_a_full_disk_is_named_and_costs_nothing() {
 }
 
 #[test]
-fn exact_table2_goes_on_where_it_was_killed() {
+fn contract_table2_resumes_where_it_was_killed() {
     let desk = Desk::new();
     for name in ["ssvi.json", "tmd.json", "table2.json"] {
         desk.write(name, std::fs::read_to_string(common::studies().join(name)).expect(name));
@@ -230,9 +230,9 @@ fn exact_table2_goes_on_where_it_was_killed() {
     assert_eq!(desk.read("whole/table2.csv"), desk.read("out/table2.csv"));
 }
 
-/// The global search goes on as well, and counts what it looked at as if it had not been broken off.
+/// The global search resumes as well, with the counts of an uninterrupted one.
 #[test]
-fn exact_a_global_search_goes_on_where_it_was_killed() {
+fn contract_a_global_search_resumes_where_it_was_killed() {
     let desk = Desk::new();
     let mut study = longer();
     study["optimize"]["surf"] = json!(null);

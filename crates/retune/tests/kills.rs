@@ -1,7 +1,7 @@
-//! Runs that are killed (SIGKILL) at random moments, again and again, until one comes to its end: its results have the bytes of
-//! an unbroken run, no line is lost or doubled, and no temporary file is left.
+//! Runs that are killed (SIGKILL) at random moments, repeatedly, until one completes: its results have the bytes of
+//! an uninterrupted run, no line is lost or doubled, and no temporary file is left.
 //!
-//! `just test` makes a few kills; `just test-kills` makes hundreds and says in which stage each fell (`RETUNE_KILLS` is their
+//! `just test` makes a few kills; `just test-kills` makes hundreds and reports the stage of each (`RETUNE_KILLS` is their
 //! number).
 
 mod common;
@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// A generator of numbers in [0, 1) (Vigna's SplitMix64): the moments are drawn alike in every run of the tests.
+/// A generator of numbers in [0, 1) (Vigna's SplitMix64): the moments are the same in every run of the tests.
 struct Draw(u64);
 
 impl Draw {
@@ -29,7 +29,7 @@ impl Draw {
 struct Work {
     name: &'static str,
     arguments: &'static [&'static str],
-    /// Directories with results, those that searches write.
+    /// Directories of results that searches write.
     places: &'static [&'static str],
     /// Share of all kills.
     share: f64,
@@ -80,7 +80,7 @@ fn desk() -> Desk {
     desk
 }
 
-/// Every file below a directory with its bytes, but for parts, which stay beside what was merged.
+/// Every file below a directory with its bytes, except parts, which remain beside the merged results.
 fn everything(desk: &Desk, below: &str) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for name in desk.names(below) {
@@ -97,7 +97,7 @@ fn everything(desk: &Desk, below: &str) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-/// The stage that a killed run was in, by what it left.
+/// The stage of a killed run, from the files it left.
 fn stage(desk: &Desk, work: &Work) -> &'static str {
     let mut stage = "before anything was kept";
     for place in work.places {
@@ -155,7 +155,7 @@ fn ends_before(child: &mut Child, moment: Duration) -> bool {
     }
 }
 
-/// Makes the parts that `merge` needs; they are killed on the way as well.
+/// Makes the parts that `merge` needs; these runs are killed as well.
 fn make_parts(desk: &Desk, draw: &mut Draw, limit: Duration, count: &mut impl FnMut(&Desk)) {
     for shard in ["1/2", "2/2"] {
         loop {
@@ -172,7 +172,7 @@ fn make_parts(desk: &Desk, draw: &mut Draw, limit: Duration, count: &mut impl Fn
 }
 
 #[test]
-fn exact_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
+fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
     let asked: usize = std::env::var("RETUNE_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
     let desk = desk();
     let mut draw = Draw(20_261_121);
@@ -196,7 +196,7 @@ fn exact_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
         let wanted = (asked as f64 * work.share).ceil() as usize;
         let mut kills = 0;
         while kills < wanted {
-            // Moments go from the start of the program over its whole time and somewhat beyond, each as likely.
+            // Moments are uniform from the start of the program to somewhat beyond its whole duration.
             if is_merge {
                 make_parts(&desk, &mut draw, usual, &mut |desk| {
                     kills += 1;

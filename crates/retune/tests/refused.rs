@@ -1,4 +1,4 @@
-//! Bad input: one clear message each, exit code 2, and nothing left behind.
+//! Bad input: one clear message each, exit code 2, and no file left.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn refused_text(text: &str, message: &str) {
 }
 
 #[test]
-fn exact_unknown_fields_are_named_with_a_suggestion() {
+fn contract_unknown_fields_are_named_with_a_suggestion() {
     let mut study = tiny();
     study["scene"]["primary"]["k3"] = json!(1);
     refused_text(
@@ -48,7 +48,7 @@ fn exact_unknown_fields_are_named_with_a_suggestion() {
 }
 
 #[test]
-fn exact_missing_fields_are_named() {
+fn contract_missing_fields_are_named() {
     for (pointer, field, path) in [
         ("/scene/primary", "k1", "scene.primary.k1"),
         ("", "window", "window"),
@@ -63,7 +63,7 @@ fn exact_missing_fields_are_named() {
 }
 
 #[test]
-fn exact_values_out_of_range_are_named_with_what_is_allowed() {
+fn contract_values_out_of_range_are_named_with_what_is_allowed() {
     refused(
         "/scene/primary/m1",
         json!(-1),
@@ -105,7 +105,7 @@ fn exact_values_out_of_range_are_named_with_what_is_allowed() {
 }
 
 #[test]
-fn exact_wrong_types_are_named() {
+fn contract_wrong_types_are_named() {
     refused(
         "/scene/damper/k2",
         json!("215"),
@@ -127,7 +127,7 @@ fn exact_wrong_types_are_named() {
 }
 
 #[test]
-fn exact_contradictions_in_a_search_are_named() {
+fn contract_contradictions_in_a_search_are_named() {
     let from_to = |from: f64, to: f64, points: u64| json!({ "from": from, "to": to, "points": points });
     refused(
         "/optimize/surf/k2",
@@ -167,7 +167,7 @@ fn exact_contradictions_in_a_search_are_named() {
 }
 
 #[test]
-fn exact_bands_that_are_none_are_refused() {
+fn contract_invalid_bands_are_refused() {
     let refused = |objective: Value, message: &str| {
         let mut study = tiny();
         study["optimize"]["objective"] = objective;
@@ -205,7 +205,7 @@ fn exact_bands_that_are_none_are_refused() {
 }
 
 #[test]
-fn exact_a_million_million_points_are_refused_at_once() {
+fn contract_a_million_million_points_are_refused_at_once() {
     let mut study = tiny();
     for axis in ["k2", "c2", "D", "C"] {
         study["optimize"]["surf"][axis]["points"] = json!(1000);
@@ -214,7 +214,7 @@ fn exact_a_million_million_points_are_refused_at_once() {
 }
 
 #[test]
-fn exact_text_that_is_not_json_is_refused() {
+fn contract_text_that_is_not_json_is_refused() {
     let text = tiny().to_string();
     let number = |replacement: &str| text.replace("\"m1\":1000", replacement);
     refused_text(
@@ -235,14 +235,14 @@ fn exact_text_that_is_not_json_is_refused() {
 }
 
 #[test]
-fn exact_a_byte_order_mark_is_no_harm() {
+fn contract_a_byte_order_mark_is_accepted() {
     let desk = Desk::new();
     desk.write("study.json", format!("\u{feff}{}", tiny()));
     desk.good(&["check", "study.json"]);
 }
 
 #[test]
-fn exact_files_that_are_not_there_and_places_that_cannot_be_written_are_named() {
+fn contract_missing_files_and_places_that_cannot_be_written_are_named() {
     let desk = Desk::new();
     let Answer { code, stderr, .. } = desk.run(&["check", "none.json"]);
     assert_eq!(code, Some(2));
@@ -261,7 +261,7 @@ fn exact_files_that_are_not_there_and_places_that_cannot_be_written_are_named() 
 }
 
 #[test]
-fn exact_settings_are_checked_like_the_file() {
+fn contract_settings_are_checked_like_the_file() {
     let desk = Desk::new();
     desk.write_json("study.json", &tiny());
     for (setting, message) in [
@@ -294,7 +294,7 @@ fn exact_settings_are_checked_like_the_file() {
 }
 
 #[test]
-fn exact_a_run_that_fails_is_no_fault_of_the_input() {
+fn contract_a_failed_run_exits_with_1_not_2() {
     let mut study = tiny();
     study["solver"] = json!({ "max_steps": 3 });
     let desk = Desk::new();
@@ -309,7 +309,7 @@ fn exact_a_run_that_fails_is_no_fault_of_the_input() {
     assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
 }
 
-/// One cause, and one thing to do, at once: no run of a day for a slip of the keyboard.
+/// One cause and one remedy, immediately: a typing error must not start a run of a day.
 #[test]
 fn contract_values_that_nobody_means_are_told_with_what_helps() {
     let desk = Desk::new();

@@ -1,4 +1,4 @@
-//! What may be replaced: what Retune made of the same study with the same command. Everything else only if it is told to.
+//! Replacement of results: without an option, only those that the same command made of the same study are replaced.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{Answer, Desk, studies, tiny};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Runs what must be refused; the sentence.
+/// Runs a command that must be refused; returns its message.
 #[track_caller]
 fn refused(desk: &Desk, arguments: &[&str]) -> String {
     let Answer { code, stdout, stderr } = desk.run(arguments);
@@ -14,7 +14,7 @@ fn refused(desk: &Desk, arguments: &[&str]) -> String {
     stderr
 }
 
-/// All below a directory with its bytes.
+/// Every file below a directory with its bytes.
 fn everything(path: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in std::fs::read_dir(path).expect("a directory").flatten() {
@@ -29,7 +29,7 @@ fn everything(path: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// A study with one number changed, as a person edits it.
+/// The study with one number changed.
 fn edited(k1: f64) -> Value {
     let mut study = tiny();
     study["scene"]["primary"]["k1"] = json!(k1);
@@ -85,7 +85,7 @@ fn contract_results_of_another_study_are_not_replaced_unasked() {
     assert_eq!(desk.names(out), names, "nothing of the replaced, all of the others");
 }
 
-/// The same study, copied: its results are the same, and still those of the first.
+/// A copy of the study: its results are the same, and remain those of the original.
 #[test]
 fn contract_a_copy_is_another_study_once_it_differs() {
     let desk = Desk::new();
@@ -125,7 +125,7 @@ fn contract_files_that_retune_did_not_make_are_kept() {
         "{said}"
     );
     desk.good(&["optimize", "study.json", "--quiet", "--out", "out", "--replace"]);
-    // No results of that name: a later search does not need the place of a picture of this one.
+    // This file is not replaced: a later search does not write a picture of that name.
     desk.write("out/surf-k2-D.svg", "changed");
     let mut other = tiny();
     other["optimize"] = json!({ "vary": ["c2"], "refine": { "MaxFunEvals": 5 } });
@@ -134,7 +134,7 @@ fn contract_files_that_retune_did_not_make_are_kept() {
     assert_eq!(desk.read("out/surf-k2-D.svg"), "changed");
 }
 
-/// Results made before manifests named their study: those of the repository.
+/// Results from before manifests named their study: those of the repository.
 #[test]
 fn contract_committed_results_are_replaced_without_a_word() {
     let desk = Desk::new();
@@ -184,7 +184,7 @@ fn contract_results_of_a_run_are_exactly_its_own() {
     refused(&desk, &["table2", "mine.json", "--quiet"]);
 }
 
-/// Work on other stiffnesses that was broken off is unfinished work, in whatever directory below.
+/// Interrupted work on other stiffnesses is unfinished work, in any directory below.
 #[test]
 fn contract_unfinished_searches_below_are_found() {
     let desk = Desk::new();
@@ -209,7 +209,7 @@ fn contract_unfinished_searches_below_are_found() {
     assert_eq!(desk.names("out"), desk.names("whole"));
 }
 
-/// A figure that is made anew leaves the others in the books.
+/// A figure that is made again keeps the others in the manifest.
 #[test]
 fn contract_figures_made_one_by_one_stay_retunes() {
     let desk = Desk::new();
@@ -274,7 +274,7 @@ fn contract_a_trajectory_replaces_only_trajectories() {
     }
 }
 
-/// A lock, a journal and temporary files have names that anyone can guess.
+/// The names of locks, journals and temporary files are predictable.
 #[cfg(unix)]
 #[test]
 fn contract_no_link_is_followed() {
@@ -304,7 +304,7 @@ fn contract_no_link_is_followed() {
     assert_eq!(desk.read("treasure"), "mine");
 }
 
-/// A terminal takes orders from whoever names a file or a field.
+/// File and field names must not send control sequences to a terminal.
 #[test]
 fn contract_no_message_carries_control_characters() {
     let desk = Desk::new();

@@ -39,7 +39,7 @@ fn targets(page: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn exact_reproduce_makes_one_page_that_needs_nothing_else() {
+fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     let desk = Desk::new();
     small_plan(&desk);
     let screen = desk.good(&["reproduce", "--study", "paper.json", "--threads", "1", "--out", "one"]);
@@ -103,7 +103,7 @@ fn exact_reproduce_makes_one_page_that_needs_nothing_else() {
 }
 
 #[test]
-fn exact_one_figure_or_table_makes_its_own_files_only() {
+fn contract_one_figure_or_table_makes_its_own_files_only() {
     let desk = Desk::new();
     small_plan(&desk);
     desk.write("out/figure6-old.csv", "of an earlier run");
@@ -139,7 +139,7 @@ fn exact_one_figure_or_table_makes_its_own_files_only() {
 }
 
 #[test]
-fn exact_numbers_that_the_paper_does_not_have_are_refused() {
+fn contract_figures_and_tables_that_the_paper_does_not_have_are_refused() {
     let desk = Desk::new();
     for (arguments, sentence) in [
         (["figure", "8"], "invalid value '8' for '<NUMBER>': 8 is not in 2..=7"),
@@ -155,7 +155,7 @@ fn exact_numbers_that_the_paper_does_not_have_are_refused() {
 }
 
 #[test]
-fn exact_wrong_plans_are_refused_with_the_field() {
+fn contract_wrong_plans_are_refused_with_the_field() {
     let desk = Desk::new();
     let plan = small_plan(&desk);
     for (field, value, sentence) in [

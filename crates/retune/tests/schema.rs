@@ -1,4 +1,4 @@
-//! The committed JSON Schemas: current, and true of every study.
+//! The committed JSON Schemas: they are current, and every study is valid.
 
 mod common;
 
@@ -11,7 +11,7 @@ fn committed(name: &str) -> Value {
 }
 
 #[test]
-fn exact_committed_schemas_are_current() {
+fn contract_committed_schemas_are_current() {
     let desk = Desk::new();
     for kind in ["study", "table2", "paper", "fronts"] {
         let printed = desk.good(&["schema", kind]);
@@ -22,7 +22,7 @@ fn exact_committed_schemas_are_current() {
 }
 
 #[test]
-fn exact_every_study_of_the_repository_is_valid() {
+fn contract_every_study_of_the_repository_is_valid() {
     let desk = Desk::new();
     let mut seen = 0;
     for entry in std::fs::read_dir(studies()).expect("studies") {
@@ -44,7 +44,7 @@ fn exact_every_study_of_the_repository_is_valid() {
 }
 
 #[test]
-fn exact_schema_refuses_what_the_program_refuses() {
+fn contract_schema_refuses_what_the_program_refuses() {
     let validator = jsonschema::validator_for(&committed("study.schema.json")).expect("a schema");
     assert!(validator.is_valid(&tiny()));
     for (pointer, bad) in [

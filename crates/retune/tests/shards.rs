@@ -1,4 +1,4 @@
-//! A grid in parts: the bytes of a single process, and every way in which parts may be wrong.
+//! A grid in parts: the bytes of a single process, and the errors of wrong parts.
 
 mod common;
 
@@ -36,7 +36,7 @@ fn refused(desk: &Desk, sentence: &str) {
 }
 
 #[test]
-fn exact_parts_put_together_are_the_bytes_of_one_process() {
+fn contract_merged_parts_are_the_bytes_of_one_process() {
     let desk = desk();
     for shards in [vec!["1/1"], vec!["3/3", "1/3", "2/3"], vec!["1/4", "2/4", "4/4", "3/4"]] {
         make(&desk, "study.json", &shards);
@@ -51,9 +51,9 @@ fn exact_parts_put_together_are_the_bytes_of_one_process() {
     }
 }
 
-/// More shares than points, and parts of two divisions that fit together.
+/// More shares than points, and parts from two divisions that are complementary.
 #[test]
-fn exact_shares_may_be_empty_or_of_different_sizes() {
+fn contract_shares_may_be_empty_or_of_different_sizes() {
     let desk = desk();
     make(&desk, "study.json", &["1/2", "3/4", "4/4"]);
     desk.good(&["merge", "study.json", "--quiet", "--out", "out"]);
@@ -66,7 +66,7 @@ fn exact_shares_may_be_empty_or_of_different_sizes() {
 }
 
 #[test]
-fn exact_a_part_is_made_once_and_is_the_same_from_any_number_of_threads() {
+fn contract_a_part_is_made_once_and_is_the_same_from_any_number_of_threads() {
     let desk = desk();
     make(&desk, "study.json", &["2/3"]);
     let name = part(&desk, 2);
@@ -81,7 +81,7 @@ fn exact_a_part_is_made_once_and_is_the_same_from_any_number_of_threads() {
 }
 
 #[test]
-fn exact_missing_parts_are_named() {
+fn contract_missing_parts_are_named() {
     let desk = desk();
     make(&desk, "study.json", &["1/4", "3/4"]);
     let sentence = "out/parts: no part holds points 6 to 11, 18 to 23 of 24: \
@@ -90,7 +90,7 @@ fn exact_missing_parts_are_named() {
 }
 
 #[test]
-fn exact_parts_that_overlap_are_named() {
+fn contract_parts_that_overlap_are_named() {
     let desk = desk();
     make(&desk, "study.json", &["1/2", "2/2", "2/3"]);
     let [half, third] = [part(&desk, 1), part(&desk, 2)];
@@ -104,7 +104,7 @@ fn exact_parts_that_overlap_are_named() {
 }
 
 #[test]
-fn exact_a_part_that_is_there_twice_is_named() {
+fn contract_a_duplicate_part_is_named() {
     let desk = desk();
     make(&desk, "study.json", &["1/2", "2/2"]);
     let name = part(&desk, 1);
@@ -118,7 +118,7 @@ fn exact_a_part_that_is_there_twice_is_named() {
 }
 
 #[test]
-fn exact_parts_of_another_study_or_version_are_named() {
+fn contract_parts_of_another_study_or_version_are_named() {
     let desk = desk();
     let mut other = tiny();
     other["scene"]["primary"]["k1"] = json!(3e4);
@@ -129,13 +129,13 @@ fn exact_parts_of_another_study_or_version_are_named() {
     assert_eq!(code, Some(2));
     let words = format!("error: out/parts/{}: it is of another study (SHA-256 ", part(&desk, 2));
     assert!(stderr.starts_with(&words), "{stderr}");
-    // Nor is the part of another study taken for one's own.
+    // The part of another study is not accepted either.
     let Answer { code, stderr, .. } = desk.run(&["optimize", "study.json", "--out", "out", "--shard", "2/2"]);
     assert!(code == Some(2) && stderr.starts_with(&words), "{stderr}");
 }
 
 #[test]
-fn exact_a_damaged_part_is_named() {
+fn contract_a_damaged_part_is_named() {
     let desk = desk();
     make(&desk, "study.json", &["1/2", "2/2"]);
     let name = part(&desk, 2);
@@ -163,7 +163,7 @@ fn exact_a_damaged_part_is_named() {
 }
 
 #[test]
-fn exact_shares_that_are_none_are_refused() {
+fn contract_invalid_shares_are_refused() {
     let desk = desk();
     for shard in ["0/3", "4/3", "3", "a/b"] {
         let Answer { code, stderr, .. } = desk.run(&["optimize", "study.json", "--shard", shard]);

@@ -1,4 +1,4 @@
-//! `verify`: results are run again, and what does not hold is said.
+//! `verify`: results are computed again, and differences are reported.
 
 mod common;
 
@@ -13,7 +13,7 @@ fn desk() -> Desk {
 }
 
 #[test]
-fn exact_results_hold_to_the_last_bit() {
+fn contract_results_are_verified_to_the_last_bit() {
     let desk = desk();
     let said = desk.good(&["verify", "out", "--sample", "7"]);
     let lines: Vec<&str> = said.lines().collect();
@@ -29,7 +29,7 @@ fn exact_results_hold_to_the_last_bit() {
 }
 
 #[test]
-fn exact_a_changed_row_is_found_twice() {
+fn contract_a_changed_row_is_found_by_hash_and_by_value() {
     let desk = desk();
     let surf = desk.read("out/surf.csv");
     let row = surf.lines().nth(5).expect("a row");
@@ -53,7 +53,7 @@ fn exact_a_changed_row_is_found_twice() {
 }
 
 #[test]
-fn exact_another_study_beside_results_is_found() {
+fn contract_another_study_beside_results_is_found() {
     let desk = desk();
     let study = desk.read("out/study.json").replace("\"k1\": 39500.0", "\"k1\": 39501.0");
     desk.write("out/study.json", study);
@@ -66,7 +66,7 @@ fn exact_another_study_beside_results_is_found() {
 }
 
 #[test]
-fn exact_a_band_and_a_table_are_run_again_too() {
+fn contract_a_band_and_a_directory_of_results_are_verified() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 5 } });
@@ -81,7 +81,7 @@ fn exact_a_band_and_a_table_are_run_again_too() {
 }
 
 #[test]
-fn exact_what_is_no_result_is_refused() {
+fn contract_directories_without_results_are_refused() {
     let desk = Desk::new();
     desk.write("none/a.txt", "");
     let Answer { code, stderr, .. } = desk.run(&["verify", "none"]);
@@ -109,7 +109,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     let none = "there is no manifest.json: what made these files, and whether they are as it made them";
     assert_eq!(verify(), (Some(4), format!("error: out: cannot be checked: {none}\n")));
 
-    // A verdict that was touched up, and the manifest gone with it.
+    // A changed verdict, without the manifest.
     assert!(certificate.contains("\"verdict\": \"robust\""), "{certificate}");
     desk.write(
         "out/certificate.json",
@@ -123,7 +123,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert_eq!(verify(), (Some(1), expected));
     desk.write("out/certificate.json", &certificate);
 
-    // A file that the manifest does not name, though it is among what Retune writes.
+    // A file that Retune writes but the manifest does not name.
     let line = manifest.lines().find(|line| line.contains("\"convergence.svg\"")).expect("a line");
     desk.write("out/manifest.json", manifest.replace(&format!("{line}\n"), ""));
     let expected = "error: out: cannot be checked: convergence.svg is not in the manifest\n";
@@ -132,7 +132,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert!(verify().1.starts_with("error: out: does not hold: manifest.json, is no manifest: "));
     desk.write("out/manifest.json", &manifest);
 
-    // Without the optimum its certificate still is of a design of its own.
+    // Without the optimum the certificate still has its own design.
     let optimum = desk.read("out/optimum.json");
     std::fs::remove_file(desk.path("out/optimum.json")).expect("an optimum");
     let expected = "error: out: does not hold: optimum.json is missing; cannot be checked: there is no optimum.json: the design \
@@ -152,7 +152,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert!(code == Some(1) && said.contains("study.json is missing"), "{said}");
 }
 
-/// Results below that have lost all that said what they are.
+/// Results below a directory without a manifest or study.
 #[test]
 fn contract_a_directory_without_a_manifest_below_is_named() {
     let desk = desk();
@@ -162,9 +162,9 @@ fn contract_a_directory_without_a_manifest_below_is_named() {
     assert!(stderr.starts_with("error: out: cannot be checked: below/there is no manifest.json"), "{stderr}");
 }
 
-/// The penalty of a design that breaks its limits stands in the tables of its search; its energy in `optimum.json`.
+/// The tables of a search have the penalty of a design that breaks its limits; `optimum.json` has its energy.
 #[test]
-fn exact_results_that_break_their_limits_hold_too() {
+fn contract_results_that_break_their_limits_are_verified() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["limits"] = json!({ "stroke": 1e-6 });
@@ -178,9 +178,9 @@ fn exact_results_that_break_their_limits_hold_too() {
     assert!(value.parse::<f64>().is_ok_and(|value| value > 1e100), "{value}");
 }
 
-/// A table has the energy of a start that breaks the limits, and its command says that they are not kept.
+/// A table has the energy of a start that breaks the limits, and its command reports the broken limits.
 #[test]
-fn exact_a_table_of_designs_that_break_their_limits_holds_too() {
+fn contract_a_table_of_designs_that_break_their_limits_is_verified() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["limits"] = json!({ "stroke": 1e-6 });
@@ -200,9 +200,9 @@ fn exact_a_table_of_designs_that_break_their_limits_holds_too() {
     );
 }
 
-/// `certify`, `fronts` and `retune` say of their own results, too, what made them, and have their rows run again.
+/// The results of `certify`, `fronts` and `retune` name their studies as well, and their rows are computed again.
 #[test]
-fn exact_results_of_several_studies_and_certificates_hold_and_a_changed_digit_is_found() {
+fn contract_results_of_several_studies_and_certificates_are_verified_and_a_changed_digit_is_found() {
     let desk = Desk::new();
     let mut study = tiny();
     study["optimize"]["surf"] = json!(null);

@@ -29,7 +29,7 @@ fn columns(text: &str) -> Vec<Vec<&str>> {
 }
 
 #[test]
-fn exact_optimize_writes_every_result_with_its_columns() {
+fn contract_optimize_writes_every_result_with_its_columns() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
     let screen = desk.good(&["optimize", "small.json"]);
@@ -82,7 +82,7 @@ fn paper_the_log_has_the_look_of_table_1() {
 }
 
 #[test]
-fn exact_results_are_the_same_bytes_with_one_thread_and_two() {
+fn contract_results_are_the_same_bytes_with_one_thread_and_two() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
     let one = desk.good(&["optimize", "small.json", "--threads", "1", "--out", "one"]);
@@ -96,7 +96,7 @@ fn exact_results_are_the_same_bytes_with_one_thread_and_two() {
 }
 
 #[test]
-fn exact_the_resolved_study_repeats_its_results() {
+fn contract_the_resolved_study_repeats_its_results() {
     let desk = Desk::new();
     let mut study = tiny();
     study["name"] = json!("small");
@@ -114,7 +114,7 @@ fn exact_the_resolved_study_repeats_its_results() {
 }
 
 #[test]
-fn exact_a_later_run_leaves_nothing_of_an_earlier_one() {
+fn contract_a_later_run_leaves_nothing_of_an_earlier_one() {
     let desk = Desk::new();
     desk.write_json("study.json", &tiny());
     desk.good(&["optimize", "study.json", "--quiet", "--out", "out"]);
@@ -144,7 +144,7 @@ fn exact_a_later_run_leaves_nothing_of_an_earlier_one() {
 }
 
 #[test]
-fn exact_simulate_prints_one_object_with_the_promised_keys() {
+fn contract_simulate_prints_one_object_with_the_promised_keys() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
     let answer: Value =
@@ -172,7 +172,7 @@ fn exact_simulate_prints_one_object_with_the_promised_keys() {
 }
 
 #[test]
-fn exact_settings_and_options_reach_the_run() {
+fn contract_settings_and_options_reach_the_run() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
     let json = |arguments: &[&str]| -> Value {
@@ -205,7 +205,7 @@ fn exact_settings_and_options_reach_the_run() {
 }
 
 #[test]
-fn exact_the_trajectory_has_a_row_for_each_interval() {
+fn contract_the_trajectory_has_a_row_for_each_interval() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
     desk.good(&["simulate", "small.json", "--trajectory", "motion.csv", "--interval", "0.5"]);
@@ -258,7 +258,7 @@ fn paper_table2_puts_our_rows_beside_the_papers() {
 }
 
 #[test]
-fn exact_retune_tunes_both_dampers_for_each_stiffness() {
+fn contract_retune_tunes_both_dampers_for_each_stiffness() {
     let desk = Desk::new();
     short_table2(&desk);
     desk.good(&["retune", "30000", "5e4", "--study", "table2.json", "--quiet"]);
@@ -276,7 +276,7 @@ fn exact_retune_tunes_both_dampers_for_each_stiffness() {
 
 /// The pipe has no reader from the start, so the first byte written meets a broken pipe.
 #[test]
-fn exact_a_reader_that_leaves_is_no_error() {
+fn contract_a_closed_pipe_is_no_error() {
     let desk = Desk::new();
     desk.write_json("small.json", &tiny());
     for arguments in [["completions", "bash"].as_slice(), &["optimize", "small.json"]] {
@@ -295,7 +295,7 @@ fn exact_a_reader_that_leaves_is_no_error() {
 }
 
 #[test]
-fn exact_every_command_explains_itself() {
+fn contract_every_command_explains_itself() {
     let desk = Desk::new();
     for command in [
         "optimize",

@@ -89,7 +89,7 @@ mod tests {
     const FLIGHT: Pace = Pace::Flight { step: 1e-5, fastest: "k2/m2" };
 
     #[test]
-    fn exact_a_run_is_refused_when_its_steps_are_spent_or_cannot_suffice() {
+    fn contract_a_run_is_refused_when_its_steps_are_spent_or_cannot_suffice() {
         let budget = Budget::new(FLIGHT, 1_000_000, 0, [10.0, 20.0]);
         assert_eq!(budget.check(1_000_000, 10.2), Ok(()));
         let spent = SolverError::TooManySteps { t: 19.0, limit: 1_000_000 };
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_the_remedy_is_what_is_out_of_proportion() {
+    fn contract_the_remedy_is_what_is_out_of_proportion() {
         for (to, mean, expected) in [
             (100.0, 1e-5, Remedy::Slower("k2/m2")),
             (100.0, 1e-9, Remedy::LessForce),
@@ -122,7 +122,7 @@ mod tests {
 
     /// The progress of a stretch is judged by its own steps, not by those before it.
     #[test]
-    fn exact_a_budget_counts_the_steps_of_its_stretch() {
+    fn contract_a_budget_counts_the_steps_of_its_stretch() {
         let budget = Budget::new(FLIGHT, 1_000_000, 200_000, [10.0, 20.0]);
         assert_eq!(budget.check(200_000 + LOOK, 10.0), Ok(()), "too early to tell");
         assert!(budget.check(200_001 + LOOK, 10.0).is_err(), "no way made");
@@ -133,7 +133,7 @@ mod tests {
 
     /// A limit that is too low for any run leads to `TooManySteps`, which advises a higher one.
     #[test]
-    fn exact_few_steps_tell_nothing_of_a_run() {
+    fn contract_few_steps_are_no_evidence_of_a_slow_run() {
         let budget = Budget::new(FLIGHT, 3, 0, [0.0, 100.0]);
         assert_eq!(budget.check(4, 0.0), Err(SolverError::TooManySteps { t: 0.0, limit: 3 }));
     }

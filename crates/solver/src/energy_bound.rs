@@ -105,7 +105,7 @@ mod tests {
 
     /// 2 kg pushed by 4 N for 3 s have 36 J at most.
     #[test]
-    fn exact_energy_that_the_force_cannot_give_is_refused_of_the_exact_method() {
+    fn contract_energy_that_the_force_cannot_supply_is_refused_of_the_exact_method() {
         let number = |value| NonNegative::new(value).expect("a number");
         let mass = Positive::new(2.0).expect("a mass");
         let scene = Scene {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_a_wall_that_was_never_touched_is_indented_by_rounding_alone() {
+    fn contract_a_wall_that_was_never_touched_is_indented_by_rounding_alone() {
         assert_eq!(untouched(-0.5, 1.0, 3.0), Ok(-0.5));
         assert_eq!(untouched(1e-16, 1.0, 3.0), Ok(0.0));
         assert_eq!(untouched(1e-12, 1.0, 3.0), Err(SolverError::Missed { t: 3.0, depth: 1e-12 }));

@@ -131,7 +131,7 @@ fn exact_grazes_down_to_rounding() {
 
 /// A damper laid against a wall by its spring, with and without room: it bounces, sticks and slides off, as ode45 sees it.
 #[test]
-fn exact_resting_on_a_wall() {
+fn reference_resting_on_a_wall() {
     let soft = Numbers { k2: 600.0, c2: 200.0, ..SSVI };
     for numbers in [
         Numbers { d: 0.0, c: 5.0, ..soft },
@@ -162,7 +162,7 @@ fn exact_coming_to_rest_on_a_wall() {
 
 /// Windows and runs that begin and end inside contacts.
 #[test]
-fn exact_windows_that_cut_contacts() {
+fn reference_windows_that_cut_contacts() {
     let numbers = Numbers { r: 1e-4, ..TWO_SIDED };
     let whole = run(&numbers, 6.0, &HYBRID);
     let mut pressed = Vec::new();
@@ -220,7 +220,7 @@ fn rigid(numbers: &Numbers, to: f64) -> ([f64; 4], u32) {
 
 /// The stiffer the contact, the nearer to rigid impacts: the difference is the time spent in contact, `K^(-2/5)`.
 #[test]
-fn exact_rigid_limit() {
+fn order_of_convergence_to_rigid_impacts() {
     let mut errors = Vec::new();
     for factor in [1e4, 1e6, 1e8, 1e12] {
         let young = SSVI.young.map(|e| e * factor);
@@ -241,7 +241,7 @@ fn exact_rigid_limit() {
 
 /// Parameters that vanish or are very large, each against ode45.
 #[test]
-fn exact_corners_of_the_parameters() {
+fn reference_corners_of_the_parameters() {
     let critical = 2.0 * (SSVI.k2 * SSVI.m2).sqrt();
     for (numbers, to) in [
         (Numbers { c2: critical, ..SSVI }, 6.0),
@@ -273,7 +273,7 @@ fn exact_corners_of_the_parameters() {
 
 /// The lighter the damper, the less the structure feels it.
 #[test]
-fn exact_a_speck_of_dust_does_not_matter() {
+fn exact_a_vanishing_damper_leaves_the_bare_structure() {
     let bare =
         simulate(&SSVI.bare_scene(), Window { from: 0.0, to: 10.0 }, &HYBRID).expect("a run").e1_max.value;
     for m2 in [1e-3, 1e-6, 1e-9] {
@@ -287,7 +287,7 @@ fn exact_a_speck_of_dust_does_not_matter() {
 
 /// Bad corners give a typed error, and give it soon.
 #[test]
-fn exact_errors_are_typed() {
+fn contract_errors_are_typed() {
     let steps = Settings { max_steps: 1000, ..HYBRID };
     for settings in
         [steps, Settings { method: Method::Ode45, ..steps }, Settings { method: Method::Ode23s, ..steps }]
@@ -334,7 +334,7 @@ fn contract_a_wall_that_steps_do_not_see_is_no_error() {
 }
 
 #[test]
-fn exact_wild_parameters_never_give_nonsense() {
+fn invariant_extreme_parameters_give_finite_values_or_errors() {
     let mut spread = problems::scenes::Spread::new(10);
     let mut finished = 0;
     for case in 0..400 {
@@ -401,7 +401,7 @@ fn assert_few_looks(system: &Coupled, quantity: impl Quantity<4>) {
 
 /// A quantity that is level to rounding over a whole segment is not searched without end.
 #[test]
-fn exact_a_search_takes_a_bounded_number_of_looks() {
+fn contract_a_search_takes_a_bounded_number_of_evaluations() {
     let resting = Numbers { k2: 600.0, c2: 200.0, d: 0.0, ..SSVI };
     // A speck between two walls 5 nm apart, thrown about by next to nothing.
     let rattling = Numbers { p: 1.7e-4, m2: 0.04, k2: 0.0, c2: 0.0, d: 0.0, c: 4.6e-9, omega: 2.0, ..SSVI };

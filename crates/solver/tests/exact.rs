@@ -98,7 +98,7 @@ fn exact_bare_structure_with_its_transient() {
 }
 
 #[test]
-fn exact_bare_structure_by_the_other_methods() {
+fn reference_bare_structure_by_the_other_methods() {
     let expected = run(&SSVI.bare_scene(), 0.0, 20.0);
     for (method, rtol, allowed) in [(Method::Ode45, 1e-11, 1e-8), (Method::Ode23s, 1e-7, 1e-4)] {
         let settings = Settings { method, rtol, atol: 1e-2 * rtol, ..Settings::default() };
@@ -177,7 +177,7 @@ fn exact_late_windows_are_the_steady_response() {
 
 /// A run and the same run looked at in two windows see the same things.
 #[test]
-fn exact_windows_join() {
+fn invariant_windows_join() {
     for numbers in [TMD, ROW3, SSVI, TWO_SIDED] {
         let whole = run(&numbers.scene(), 0.0, 20.0);
         for cut in [TAU / numbers.omega, 7.77, 19.99] {
@@ -205,7 +205,7 @@ fn exact_windows_join() {
 }
 
 #[test]
-fn exact_empty_window() {
+fn contract_empty_window() {
     for scene in [SSVI.scene(), TMD.scene(), SSVI.bare_scene()] {
         let found = run(&scene, 0.0, 0.0);
         assert_eq!((found.impacts, found.final_state[..2].to_vec()), ([0, 0], vec![0.0, 0.0]));
@@ -217,7 +217,7 @@ fn exact_empty_window() {
 
 /// Samples are the motion: each is where a run that ends there ends, in flight and in contact.
 #[test]
-fn exact_samples_are_the_motion() {
+fn invariant_samples_are_the_motion() {
     for numbers in [TMD, ROW3, TWO_SIDED] {
         let system: Coupled = numbers.coupled();
         let all = samples(&numbers.scene(), 0.0, 12.0, 0.01);
@@ -248,7 +248,7 @@ fn exact_samples_are_the_motion() {
 
 /// No maximum is missed: none of many samples exceeds it, and the largest of them comes close.
 #[test]
-fn exact_maxima_are_maxima_of_the_motion() {
+fn invariant_maxima_are_maxima_of_the_motion() {
     let mut spread = Spread::new(8);
     let mut in_contact = 0;
     for case in 0..24 {
@@ -298,7 +298,7 @@ fn exact_maxima_are_maxima_of_the_motion() {
 
 /// With a cutoff the answer is the exact maximum, or a value above the cutoff.
 #[test]
-fn exact_cutoff() {
+fn contract_a_cutoff_gives_the_maximum_or_a_value_above_it() {
     for (scene, method) in [
         (SSVI.scene(), Method::Hybrid),
         (TMD.scene(), Method::Hybrid),

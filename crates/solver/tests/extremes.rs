@@ -19,7 +19,7 @@ fn seen(scene: &Scene, method: Method, phase: f64, walls: bool) -> Extremes {
 }
 
 #[test]
-fn exact_stroke_and_force_are_those_of_the_motion() {
+fn contract_stroke_and_force_are_those_of_the_motion() {
     for scene in [SSVI.scene(), TMD.scene()] {
         let found = seen(&scene, Method::Hybrid, 0.0, true);
         let run = simulate(&scene, SHORT, &Settings::default()).expect("a run");
@@ -38,7 +38,7 @@ fn exact_stroke_and_force_are_those_of_the_motion() {
 
 /// Half a turn of the force mirrors a motion without contacts; a whole turn changes nothing.
 #[test]
-fn exact_phases_of_the_force_turn_the_motion() {
+fn exact_half_a_period_of_the_force_mirrors_a_linear_motion() {
     let bare = Scene { damper: None, ..TMD.scene() };
     for scene in [bare, TMD.scene()] {
         for method in [Method::Hybrid, Method::Dop853] {
@@ -90,7 +90,7 @@ fn exact_a_linear_motion_settles_at_its_steady_response() {
 
 /// Table 2's damper repeats after two periods of this force, with one impact.
 #[test]
-fn exact_a_motion_with_contacts_settles_at_what_a_late_window_shows() {
+fn contract_a_motion_with_contacts_settles_at_what_a_late_window_shows() {
     let scene = Numbers { omega: 5.958, ..SSVI }.scene();
     let found = rest(&scene, Method::Hybrid, Settle::default());
     assert!(found.settled && found.force > 0.0, "{found:?}");
@@ -103,7 +103,7 @@ fn exact_a_motion_with_contacts_settles_at_what_a_late_window_shows() {
 
 /// More blocks than there are must agree: the value is that of the window, and the answer says that it has not settled.
 #[test]
-fn exact_a_motion_that_has_not_settled_says_so() {
+fn contract_a_motion_that_has_not_settled_is_marked_so() {
     let numbers = Numbers { omega: 5.958, ..SSVI };
     let scene = numbers.scene();
     let never = rest(&scene, Method::Hybrid, Settle { blocks: 1000, ..Settle::default() });
@@ -134,7 +134,7 @@ fn contract_a_phase_is_no_error() {
 
 /// Stroke and force are those from any moment on: before the window, in it, inside a step or a contact.
 #[test]
-fn exact_stroke_and_force_are_watched_from_when_it_is_asked() {
+fn contract_stroke_and_force_are_observed_from_the_time_asked_for() {
     let scene = SSVI.scene();
     let mut largest = f64::INFINITY;
     let mut falls = 0;
@@ -155,7 +155,7 @@ fn exact_stroke_and_force_are_watched_from_when_it_is_asked() {
 
 /// A damper that stays off its walls settles in closed form, but its stroke on the way there is that of the run.
 #[test]
-fn exact_the_stroke_before_a_closed_form_counts() {
+fn contract_the_stroke_before_a_closed_form_counts() {
     let numbers = Numbers { omega: 5.0, c2: 40.0, k2: 2000.0, ..TMD };
     let scene = numbers.scene();
     let stroke = |walls| {
@@ -170,7 +170,7 @@ fn exact_the_stroke_before_a_closed_form_counts() {
 
 /// Off resonance the transient is above what follows: a window that begins later knows nothing of it, with a damper or without.
 #[test]
-fn exact_a_window_is_watched_and_nothing_before_it() {
+fn contract_a_window_is_observed_and_nothing_before_it() {
     let numbers = Numbers { omega: 5.0, ..TMD };
     for scene in [numbers.scene(), numbers.bare_scene()] {
         for method in [Method::Hybrid, Method::Dop853] {

@@ -1,9 +1,12 @@
 //! Orders of ode23, DOP853, RK4 and semi-implicit Euler and of their dense outputs, and the motions they make with contacts.
 
+#[path = "../../model/tests/scenes/mod.rs"]
+mod scenes;
+
 use nalgebra::SMatrix;
-use retune_model::{Contact, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary, Scene};
 use retune_solver::methods::{Attempt, Dop853, Euler, Ode23, OneStep, Rk4, ode23};
 use retune_solver::{Contacts, Method, Response, Settings, SolverError, System, Window, simulate};
+use scenes::{Numbers, SSVI};
 
 /// `x'' = -x (x² + v²) + sin 3t (x - cos t)`, solved by `x = cos t`: not linear, not autonomous.
 struct Circle;
@@ -121,45 +124,14 @@ fn exact_semi_implicit_euler_keeps_the_area_of_phase_space() {
     assert_eq!(a, [1.0 - h * h, -h]);
 }
 
-/// The paper's system with the SSVI damper of Table 2.
-#[expect(clippy::approx_constant, reason = "the paper's rounded numbers")]
-fn ssvi() -> Scene {
-    let positive = |v| Positive::new(v).expect("positive");
-    let number = |v| NonNegative::new(v).expect("not negative");
-    let poisson = |v| PoissonRatio::new(v).expect("a Poisson ratio");
-    Scene {
-        primary: Primary { mass: positive(1000.0), damping: number(452.0), stiffness: number(3.95e4) },
-        forcing: Forcing { amplitude: number(800.0), frequency: number(6.28) },
-        damper: Some(Damper {
-            mass: positive(60.0),
-            stiffness: number(215.0),
-            damping: number(232.0),
-            rest_distance: number(0.06),
-            clearance: number(0.36),
-            contact: Contact {
-                radius: positive(2.0),
-                coefficient: positive(0.318),
-                young_1: positive(2.1e11),
-                poisson_1: poisson(0.3),
-                young_2: positive(2.21e7),
-                poisson_2: poisson(0.4),
-                young_3: positive(2.1e11),
-                poisson_3: poisson(0.3),
-                young_4: positive(2.05e7),
-                poisson_4: poisson(0.4),
-            },
-        }),
-    }
-}
-
 fn run(method: Method, contacts: Contacts, rtol: f64, step: Option<f64>) -> Result<Response, SolverError> {
     let settings = Settings { method, contacts, rtol, atol: rtol * 1e-3, step, ..Settings::default() };
-    simulate(&ssvi(), Window { from: 0.0, to: 10.0 }, &settings)
+    simulate(&SSVI.scene(), Window { from: 0.0, to: 10.0 }, &settings)
 }
 
 /// Every method comes to the hybrid's motion, to what its order and step allow.
 #[test]
-fn exact_all_methods_agree_through_impacts() {
+fn reference_all_methods_agree_through_impacts() {
     let reference = run(Method::Hybrid, Contacts::Located, 1e-12, None).expect("runs");
     assert!(reference.impacts[0] > 5);
     for (method, contacts, rtol, step, allowed) in [
@@ -180,7 +152,7 @@ fn exact_all_methods_agree_through_impacts() {
 }
 
 #[test]
-fn exact_a_fixed_step_is_kept() {
+fn contract_a_fixed_step_is_kept() {
     for method in [Method::Rk4, Method::Euler] {
         let work = run(method, Contacts::Stepped, 1e-6, Some(1e-3)).expect("runs").work;
         assert!((10_000..=10_001).contains(&work.steps), "{method:?}: {} steps", work.steps);
@@ -191,7 +163,7 @@ fn exact_a_fixed_step_is_kept() {
 }
 
 #[test]
-fn exact_no_step_is_longer_than_allowed() {
+fn contract_no_step_is_longer_than_allowed() {
     for method in [Method::Ode23, Method::Ode45, Method::Ode23s, Method::Dop853] {
         let work = run(method, Contacts::Stepped, 1e-2, Some(1e-3)).expect("runs").work;
         assert!(work.steps >= 9_090, "{method:?}: {} steps", work.steps); // the last of a run may be 10 % longer
@@ -200,10 +172,9 @@ fn exact_no_step_is_longer_than_allowed() {
 
 /// Beyond the limit of stability a method of fixed step has no error estimate to warn it, but infinity is noticed.
 #[test]
-fn exact_a_motion_that_blows_up_is_reported() {
+fn contract_a_motion_that_blows_up_is_reported() {
     for method in [Method::Rk4, Method::Euler] {
-        let mut scene = ssvi();
-        scene.primary.stiffness = NonNegative::new(1e9).expect("not negative");
+        let scene = Numbers { k1: 1e9, ..SSVI }.scene();
         let settings = Settings { method, step: Some(0.1), ..Settings::default() };
         let end = simulate(&scene, Window { from: 0.0, to: 1000.0 }, &settings);
         assert!(

@@ -128,7 +128,7 @@ fn searched(wave: &Wave) -> (f64, f64, u32, f64) {
 
 /// Where the quantity is concave its maximum is found to rounding by a handful of looks, with any of the bounds.
 #[test]
-fn exact_a_single_maximum_takes_few_looks() {
+fn contract_a_single_maximum_takes_few_evaluations() {
     for (rate, phase) in [(1.0, 0.8), (1.0, 1.5), (2.0, 0.0), (0.5, 1.1), (0.3, 1.569)] {
         let bound = f64::powi(rate, 6) / 46080.0;
         for errors in [None, Some([bound, bound]), Some([f64::INFINITY, bound]), Some([10.0 * bound, bound])]
@@ -166,7 +166,7 @@ fn regress_looks_at_a_piece_with_many_maxima() {
 
 /// Bounds that only short stretches have: the search halves until they tell.
 #[test]
-fn exact_stretches_are_halved_until_their_bounds_tell() {
+fn contract_stretches_are_halved_until_their_bounds_decide() {
     struct OnlyShort(Wave);
     impl Segment<2> for OnlyShort {
         fn ends(&self) -> [&Knot<2>; 2] {

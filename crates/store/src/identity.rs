@@ -98,12 +98,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_sha256_is_that_of_everyone() {
+    fn reference_sha256_of_the_standards_example() {
         assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }
 
     #[test]
-    fn exact_an_identity_is_read_as_it_was_written() {
+    fn contract_an_identity_is_read_as_it_was_written() {
         let identity = Identity::of("a study");
         assert_eq!(Identity::parse(&identity.words()).as_ref(), Some(&identity));
         assert_eq!(identity.difference(&identity), None);

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_a_second_is_refused_until_the_first_is_gone() {
+    fn contract_a_second_lock_is_refused_until_the_first_is_released() {
         let directory = tempfile::tempdir().expect("a directory");
         std::fs::write(directory.path().join(NAME), "4711 what a killed run left\n").expect("a file");
         let first = Lock::take(directory.path()).expect("a lock");

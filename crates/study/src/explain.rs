@@ -1,8 +1,8 @@
-//! Serde's messages in an engineer's words: the field, what is wrong, what is allowed, and what was probably meant.
+//! Serde's messages in plain words: the field, the error, the allowed values, and a suggestion.
 
 use serde_json::error::Category;
 
-/// Says what is wrong at the field `path` (`scene.damper.k2`), if the text came as far as a field.
+/// Describes the error at the field `path` (`scene.damper.k2`), if parsing reached a field.
 pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
     let message = message_only(error);
     let field =
@@ -31,7 +31,7 @@ pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
     }
 }
 
-/// The message without serde_json's " at line 3 column 5", which stands before it already.
+/// The message without serde_json's " at line 3 column 5", which is already given before it.
 fn message_only(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let position = format!(" at line {} column {}", error.line(), error.column());
@@ -51,11 +51,11 @@ fn quoted(message: &str) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).collect()
 }
 
-/// What was probably meant by `name`, and all that is allowed.
+/// A suggestion for `name`, and all allowed names.
 pub(super) fn suggestion(name: &str, allowed: &[&str]) -> String {
     let typed = name.to_lowercase();
     let slips = |other: &str| strsim::damerau_levenshtein(&typed, &other.to_lowercase());
-    // Of two that are equally near the one of the same length: c3 meant c2, not C.
+    // Of two equally near names the one of the same length: for c3 suggest c2, not C.
     let nearest = allowed.iter().min_by_key(|other| (slips(other), other.len().abs_diff(name.len())));
     let meant = match nearest {
         Some(nearest) if slips(nearest) <= 1.max(name.len() / 3) => format!("did you mean `{nearest}`? "),
@@ -82,7 +82,7 @@ fn plain(message: &str) -> String {
     ] {
         text = text.replace(rust, words);
     }
-    // "expected struct Damper with 6 elements" names what is no concern of the reader's.
+    // "expected struct Damper with 6 elements" is of no use to the reader.
     match text.split_once("expected struct") {
         Some((before, _)) => format!("{before}expected an object"),
         None => text,

@@ -1,7 +1,7 @@
-//! Study files: what a person wants to know, in JSON with the paper's symbols and SI units.
+//! Study files: the input of Retune, in JSON with the paper's symbols and SI units.
 //!
-//! [`read`] makes a checked [`Study`] of a file, or an error that names the field, its value and what is allowed. [`Study::search`]
-//! says what is searched, [`Study::goal`] what is made small.
+//! [`read`] turns a file into a checked [`Study`], or an error that names the field, its value and the allowed values.
+//! [`Study::search`] returns the search and [`Study::goal`] the objective with its limits.
 //!
 //! ```
 //! let study = retune_study::read::from_text(
@@ -15,7 +15,7 @@
 //!     "bare.json",
 //! )?;
 //! assert_eq!(study.name(), "bare");
-//! // At rest at first, the structure without a damper comes to hundreds of joules near its resonance.
+//! // From rest, the structure without a damper reaches hundreds of joules near its resonance.
 //! assert!(study.energy(&study.scene).is_some_and(|energy| energy > 500.0));
 //! let refused = retune_study::read::from_text(r#"{ "scene": { "primary": { "m1": -1 } } }"#, "bad.json");
 //! assert!(refused.is_err_and(|error| error.to_string().contains("m1: -1 is not allowed here")));

@@ -1,4 +1,4 @@
-//! The rules of an objective and of limits that their types cannot hold, and what a study makes small.
+//! The rules for objectives and limits that their types cannot express, and the objective of a study.
 
 use super::format::Study;
 use super::rule::Rule;
@@ -8,10 +8,10 @@ use retune_optim::{
 };
 use retune_solver::Settle;
 
-/// Most samples of a band: at a third of a millisecond each, three seconds for a design.
+/// Most samples of a band: at a third of a millisecond each, three seconds for each design.
 const MOST_SAMPLES: usize = 10_000;
 
-/// Checks what serde cannot: `path` is that of this objective in the study.
+/// Checks the rules that serde cannot; `path` is that of this objective in the study.
 ///
 /// # Errors
 /// The first [`Rule`] that is broken.
@@ -81,7 +81,7 @@ pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(),
     }
 }
 
-/// Checks what serde cannot; `end` is that of the run, s.
+/// Checks the rules that serde cannot; `end` is the end of the run, s.
 ///
 /// # Errors
 /// The [`Rule`] that is broken.
@@ -97,18 +97,18 @@ pub(super) fn check_limits(limits: &Limits, end: f64) -> Result<(), Rule> {
 }
 
 impl Study {
-    /// Which E1max its search makes small.
+    /// The objective of its search.
     pub fn objective(&self) -> Objective {
         self.optimize.as_ref().map(|optimize| optimize.objective.clone()).unwrap_or_default()
     }
 
-    /// What its search makes small, and under which limits.
+    /// The objective of its search with its window and limits.
     pub fn goal(&self) -> Goal {
         let limits = self.optimize.as_ref().map(|optimize| optimize.limits).unwrap_or_default();
         Goal { objective: self.objective(), window: self.window.window(), limits }
     }
 
-    /// E1max of a scene by its objective, whatever the limits, J; none where it cannot be run.
+    /// E1max of a scene by its objective, regardless of the limits, J; `None` if it cannot be run.
     pub fn energy(&self, scene: &Scene) -> Option<f64> {
         Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.energy)
     }

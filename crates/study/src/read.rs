@@ -1,4 +1,4 @@
-//! From a file to a checked study, or to one message that says what to change.
+//! From a file to a checked study, or to one message with the correction.
 
 use super::explain::explain;
 use super::format::Study;
@@ -9,10 +9,10 @@ use serde_json::Value;
 use std::path::Path;
 use thiserror::Error;
 
-/// What is wrong with a study file.
+/// The error of a study file.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// There is no such file, or it may not be read.
+    /// The file does not exist or cannot be read.
     #[error("{file}: cannot be read: {source}")]
     Unreadable {
         /// The file.
@@ -25,7 +25,7 @@ pub enum StudyError {
     NotText {
         /// The file.
         file: String,
-        /// Where it ceases to be text.
+        /// Offset of the first byte that is not UTF-8.
         byte: usize,
     },
     /// The text is not JSON, or does not have the fields of a study.
@@ -37,7 +37,7 @@ pub enum StudyError {
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// The field's path and what is wrong there.
+        /// The field's path and the error.
         problem: String,
     },
     /// Values without their names.
@@ -48,7 +48,7 @@ pub enum StudyError {
         /// The field's path.
         field: String,
     },
-    /// Each field is right but they contradict one another.
+    /// Each field is valid but they contradict one another.
     #[error("{file}: {rule}")]
     Rule {
         /// The file.
@@ -56,20 +56,20 @@ pub enum StudyError {
         /// The rule that is broken.
         rule: Rule,
     },
-    /// The plan of the whole paper asks for what cannot be.
+    /// A value of the paper's plan is not allowed.
     #[error("{file}: {problem}")]
     Paper {
         /// The file.
         file: String,
-        /// The field and what is allowed.
+        /// The field and the allowed values.
         problem: String,
     },
 }
 
-/// Reads the plan of the whole paper.
+/// Reads the plan of the paper's reproduction.
 ///
 /// # Errors
-/// [`StudyError`]: the file, the field, its value and what is allowed.
+/// [`StudyError`]: the file, the field, its value and the allowed values.
 pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, StudyError> {
     parse(&read_text(path)?, &path.display().to_string())
 }
@@ -77,7 +77,7 @@ pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, Stu
 /// Reads and checks a study. Its name is filled in from that of the file.
 ///
 /// # Errors
-/// [`StudyError`]: the file, the field, its value and what is allowed.
+/// [`StudyError`]: the file, the field, its value and the allowed values.
 pub fn read(path: &Path) -> Result<Study, StudyError> {
     from_text(&read_text(path)?, &path.display().to_string())
 }
@@ -106,7 +106,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
-/// Parses the text of `file`, naming the field that is wrong.
+/// Parses the text of `file`; an error names the field.
 ///
 /// # Errors
 /// [`StudyError::Field`].
@@ -135,7 +135,7 @@ pub(super) fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
     Ok(json.is_ok_and(|json| json.get(field).is_some()))
 }
 
-/// The first field that was given as a list of values where they should be named. (Serde takes both.)
+/// The first field given as a list instead of an object. (Serde accepts both.)
 fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
     match (given, meant) {
         (Value::Array(_), Value::Object(_)) => Some(String::new()),

@@ -20,25 +20,25 @@ pub enum Rule {
         /// End as given, s.
         end: f64,
     },
-    /// The relative tolerance is none.
+    /// The relative tolerance is out of range.
     #[error("solver.rtol: {value} is not allowed here: give a number above 0 and at most 0.1")]
     Rtol {
         /// The tolerance as given.
         value: f64,
     },
-    /// The absolute tolerance is none.
+    /// The absolute tolerance is out of range.
     #[error("solver.atol: {value} is not allowed here: give a finite number not below 0")]
     Atol {
         /// The tolerance as given.
         value: f64,
     },
-    /// Nothing to tune in a scene without a damper.
+    /// The scene has no damper to tune.
     #[error("scene.damper: missing, but `optimize` tunes the damper")]
     NoDamper,
-    /// The study does not say what to tune.
+    /// The study has no `optimize`.
     #[error("optimize: missing; it says what to tune, for instance {{ \"vary\": [\"k2\", \"c2\"] }}")]
     NoOptimize,
-    /// Nothing to share out.
+    /// There is no grid to divide into parts.
     #[error("optimize.surf: missing, but only the grid can be made in parts")]
     NoGrid,
     /// No parameter is tuned.
@@ -80,7 +80,7 @@ pub enum Rule {
         /// The parameter.
         variable: Variable,
     },
-    /// Bounds that leave no room, or allow what cannot be.
+    /// Bounds that are empty, or allow values out of range.
     #[error(
         "optimize.bounds.{variable}: {bounds} is not allowed here: give [smallest, largest] with 0 <= smallest < largest"
     )]
@@ -90,15 +90,15 @@ pub enum Rule {
         /// Its bounds.
         bounds: Bounds,
     },
-    /// An axis that is none.
+    /// An invalid axis.
     #[error("optimize.surf.{variable}: {source}")]
     Axis {
         /// The parameter.
         variable: Variable,
-        /// What is wrong with its axis.
+        /// The error of its axis.
         source: AxisError,
     },
-    /// A grid that reaches out of the bounds.
+    /// A grid that exceeds the bounds.
     #[error("optimize.surf.{variable}: from {from} to {to} leaves the bounds {bounds}")]
     GridOutside {
         /// The parameter.
@@ -137,7 +137,7 @@ pub enum Rule {
         /// The name.
         name: String,
     },
-    /// A tolerance that is none.
+    /// An invalid tolerance.
     #[error("optimize.refine.{name}: {value} is not allowed here: give a finite number not below 0")]
     Tolerance {
         /// `TolX` or `TolFun`.
@@ -145,17 +145,17 @@ pub enum Rule {
         /// The tolerance as given.
         value: f64,
     },
-    /// A value that a field cannot have.
+    /// A value that is not allowed.
     #[error("{field}: {value} is not allowed here: give {allowed}")]
     NotAllowed {
         /// Its path.
         field: String,
         /// The value as given.
         value: String,
-        /// What is allowed, in words.
+        /// The allowed values, in words.
         allowed: &'static str,
     },
-    /// A sum beside what it takes the place of.
+    /// A sum together with fields that it replaces.
     #[error(
         "{path}.sum: stands in the place of omega, k1, response, settle and ensemble: move them into its parts"
     )]
@@ -163,7 +163,7 @@ pub enum Rule {
         /// The path of the objective.
         path: String,
     },
-    /// A global search over a parameter without an end.
+    /// A global search over an unbounded parameter.
     #[error(
         "optimize.global.box.{variable}: missing, and optimize.bounds.{variable} has no largest value: give one of them"
     )]

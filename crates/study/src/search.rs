@@ -1,4 +1,4 @@
-//! From what a study says to what is searched; the rules that hold between its fields.
+//! From a study to its search; the rules between its fields.
 
 use super::format::{GridAxis, Optimize, Study};
 use super::global::GlobalSearch;
@@ -11,29 +11,29 @@ use retune_optim::{Axis, Bounds, Global, Grid, Options, Scaling, Space, Variable
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
 pub const MOST_GRID_POINTS: usize = 10_000_000;
 
-/// What is searched, and how.
+/// A search and its settings.
 #[derive(Clone, Debug)]
 pub struct Search {
-    /// The damper that the search starts from; what is not tuned stays as it is here.
+    /// The damper that the search starts from; parameters that are not tuned keep these values.
     pub damper: Damper,
     /// The tuned parameters, in the order of the paper's tables.
     pub variables: Vec<Variable>,
     /// The coarse grid and its parameters, if any.
     pub surf: Option<(Vec<Variable>, Grid)>,
-    /// How many of the grid's points start a refinement.
+    /// Number of points of the grid from which refinements start.
     pub starts: usize,
-    /// Grid steps between any two starts.
+    /// Least number of grid steps between any two starts.
     pub apart: usize,
-    /// The global search, its box, and how near its ends are to be one basin; if any.
+    /// The global search, its box, and the distance below which two ends are one basin; if any.
     pub global: Option<(Global, Space, f64)>,
-    /// Designs that start a refinement each beside those that were found.
+    /// Given designs from which further refinements start.
     pub given: Vec<Vec<f64>>,
     /// The settings of a refinement.
     pub options: Options,
 }
 
 impl Study {
-    /// Checks what holds between the fields.
+    /// Checks the rules between the fields.
     ///
     /// # Errors
     /// The first [`Rule`] that is broken.
@@ -57,7 +57,7 @@ impl Study {
         self.name.as_deref().unwrap_or_default()
     }
 
-    /// What the study searches.
+    /// The search of the study.
     ///
     /// # Errors
     /// The first [`Rule`] that is broken.
@@ -141,7 +141,7 @@ fn varied(vary: &[Variable]) -> Result<Vec<Variable>, Rule> {
     }
 }
 
-/// A start that the study gives: what it leaves out is that of the damper.
+/// A start given in the study; omitted parameters are those of the damper.
 fn given_start(
     i: usize,
     start: &PerVariable<f64>,

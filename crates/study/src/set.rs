@@ -6,7 +6,7 @@ use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// What may be set, in the order of the list.
+/// The names that may be set.
 const NAMES: [&str; 13] = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "P", "omega", "R", "T", "t0"];
 
 /// A parsed `NAME=VALUE`.
@@ -39,32 +39,32 @@ pub enum SettingError {
         /// The text as given.
         text: String,
     },
-    /// A number that the parameter cannot have.
+    /// A number out of the parameter's range.
     #[error("{name}: {source}")]
     OutOfRange {
         /// The parameter.
         name: &'static str,
-        /// Its value and what is allowed.
+        /// Its value and the allowed values.
         source: OutOfRange,
     },
-    /// A parameter of a damper that is not there.
+    /// A parameter of the damper in a scene without one.
     #[error("{name}: the scene has no damper")]
     NoDamper {
         /// The parameter.
         name: &'static str,
     },
-    /// The study does not hold together any more.
+    /// The changed study breaks a rule.
     #[error(transparent)]
     Rule(#[from] Rule),
 }
 
 impl Setting {
-    /// Sets the parameter `name`, one of those that the command line knows.
+    /// Sets the parameter `name`, one of those of the command line.
     pub fn new(name: &'static str, value: f64) -> Self {
         Self { name, value }
     }
 
-    /// The number that is set, in the parameter's SI unit.
+    /// The new value, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value
     }
@@ -92,7 +92,7 @@ impl Study {
     /// The same study with `settings` applied, first to last, and checked like a file.
     ///
     /// # Errors
-    /// The first setting that is refused, or the [`Rule`] that they break together.
+    /// The first setting that is refused, or the [`Rule`] that the changed study breaks.
     pub fn with(&self, settings: &[Setting]) -> Result<Self, SettingError> {
         let mut study = self.clone();
         settings.iter().try_for_each(|setting| study.set(setting))?;
@@ -100,7 +100,7 @@ impl Study {
         Ok(study)
     }
 
-    /// The scene with `settings` applied, first to last. Bounds and other rules of the search are not looked at.
+    /// The scene with `settings` applied, first to last. Bounds and other rules of the search are not checked.
     ///
     /// # Errors
     /// The first setting that is refused.
@@ -110,12 +110,12 @@ impl Study {
         Ok(study.scene)
     }
 
-    /// The scene with another design of its damper; none where there is no damper.
+    /// The scene with another design of its damper; `None` if there is no damper.
     pub fn scene_at(&self, design: &Design) -> Option<Scene> {
         Some(Scene { damper: Some(design.on(self.scene.damper?)), ..self.scene })
     }
 
-    /// The number that a setting of this name would change; none of a damper that is not there.
+    /// The number that a setting of this name would change; `None` for a damper's parameter in a scene without one.
     pub fn value_of(&self, name: &str) -> Option<f64> {
         let (primary, forcing) = (&self.scene.primary, &self.scene.forcing);
         let damper = self.scene.damper.as_ref();

@@ -3,7 +3,7 @@
 use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
 use std::fmt::Display;
 
-/// Over what the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
+/// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
 pub fn over(objective: &Objective, omega: f64) -> String {
     if !objective.sum.is_empty() {
         return format!("weighted sum of {}", counted(objective.sum.len() as u64, "objective"));
@@ -44,7 +44,7 @@ fn ensemble(of: &Ensemble) -> String {
     format!("{of} of {} ({phases}errors to {} %)", counted((*members).into(), "member"), 100.0 * errors)
 }
 
-/// So many of something: `1 design`, `2 searches`.
+/// A count with its noun: `1 design`, `2 searches`.
 pub fn counted(count: u64, noun: &str) -> String {
     let ending = match count {
         1 => "",
@@ -54,7 +54,7 @@ pub fn counted(count: u64, noun: &str) -> String {
     format!("{count} {noun}{ending}")
 }
 
-/// So many of something are: `1 design is`, `2 designs are`.
+/// A count with its noun and verb: `1 design is`, `2 designs are`.
 pub fn are(count: u64, noun: &str) -> String {
     format!("{} {}", counted(count, noun), if count == 1 { "is" } else { "are" })
 }
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_one_is_one_and_not_many() {
+    fn contract_singular_and_plural() {
         let said = |count| [counted(count, "design"), counted(count, "CMA-ES search"), are(count, "value")];
         assert_eq!(said(1), ["1 design", "1 CMA-ES search", "1 value is"]);
         assert_eq!(said(0), ["0 designs", "0 CMA-ES searches", "0 values are"]);
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_short_numbers_have_six_digits() {
+    fn contract_short_numbers_have_six_digits() {
         assert_eq!(short(215.0), "215");
         assert_eq!(short(0.060_333_333_3), "0.0603333");
         assert_eq!(short(1_234.567_89), "1234.57");

@@ -1,14 +1,14 @@
-//! What a study file asks for, in words: `check`.
+//! Descriptions of study files in words, for `check`.
 
 use retune_optim::{Limit, Part, Response};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, Sweep, counted, joined, over, short};
 
-/// What a table of studies asks for.
+/// Describes a table of studies.
 pub fn table2(rows: &[PaperStudy]) -> String {
     rows.iter().map(|row| format!("{}: {}", row.damper, study(&row.study))).collect::<Vec<_>>().join("\n")
 }
 
-/// What a study of fronts asks for.
+/// Describes a study of Pareto fronts.
 pub fn fronts(plan: &FrontsPlan) -> String {
     let dampers = plan.dampers.iter().map(|(damper, of)| format!("{damper}: {}", study(of)));
     let sweeps = Sweep::ALL.into_iter().map(|sweep| {
@@ -18,7 +18,7 @@ pub fn fronts(plan: &FrontsPlan) -> String {
     dampers.chain(sweeps).collect::<Vec<_>>().join("\n")
 }
 
-/// What a study asks for.
+/// Describes a study.
 pub fn study(study: &Study) -> String {
     let (primary, forcing) = (study.scene.primary, study.scene.forcing);
     let mut lines = vec![format!(
@@ -67,7 +67,7 @@ fn starts(search: &Search) -> String {
     if from.is_empty() { "the damper of the scene".to_owned() } else { from.join(" and ") }
 }
 
-/// What is made small, where it is not E1max in the window at the scene's omega, and the limits.
+/// The objective, if it is not E1max in the window at the scene's omega, and the limits.
 fn goal(study: &Study) -> Vec<String> {
     let mut lines = Vec::new();
     let objective = study.objective();

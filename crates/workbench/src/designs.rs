@@ -1,4 +1,4 @@
-//! A table of designs: what `table2` and `retune` make.
+//! A table of designs, as `table2` and `retune` make it.
 
 use crate::request::{open, where_results_are};
 use crate::resolved::{self, Resolved};
@@ -14,17 +14,17 @@ pub struct Table {
     directory: Directory,
     resolved: String,
     solvers: Vec<Solver>,
-    /// The results of its searches, which are finished with it: until then a run that goes on reads their journals.
+    /// The results of its searches, which are finished together with it: until then a resumed run reads their journals.
     parts: Vec<Directory>,
-    /// The first of its searches that found no design within its limits.
+    /// The error of the first search that found no design within its limits.
     infeasible: Option<Error>,
     csv: Vec<String>,
     text: Vec<String>,
 }
 
 impl Table {
-    /// Begins the table `name`, whose first column is `column`, in the directory `out`. It is made of searches of the studies of
-    /// `rows`, for all that `plan` says; `others` are more files that the command writes there.
+    /// Begins the table `name`, whose first column is `column`, in the directory `out`. It combines searches of the studies of
+    /// `rows` under `plan`; `others` are further files that the command writes there.
     ///
     /// # Errors
     /// The directory cannot be written to.
@@ -59,21 +59,21 @@ impl Table {
         self.text.push(format!("{label:<14}{:<84}{}", table2_row(damper, &found), short(e1_max)));
     }
 
-    /// Takes the results of a search of a study, to be finished with the table.
+    /// Keeps the results of a study's search, to be finished together with the table.
     pub fn keep(&mut self, study: &Study, optimum: &Optimum, results: Directory) {
         self.parts.push(results);
         self.infeasible = self.infeasible.take().or(optimum.check_limits(study.name()).err());
     }
 
-    /// Where the table goes.
+    /// The directory of the table.
     pub fn directory(&self) -> &Directory {
         &self.directory
     }
 
-    /// Writes the table and shows it.
+    /// Writes and prints the table.
     ///
     /// # Errors
-    /// It cannot be written, or a design in it breaks the limits of its study; it is written then all the same.
+    /// It cannot be written, or a design in it breaks the limits of its study (the table is written all the same).
     pub fn finish(self, watch: &dyn Observer) -> Result<(), Error> {
         let Self { name, directory, resolved, solvers, parts, infeasible, csv, text } = self;
         directory.write(&format!("{name}.csv"), &(csv.join("\n") + "\n"))?;

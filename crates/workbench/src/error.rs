@@ -1,4 +1,4 @@
-//! Everything that can go wrong in a job.
+//! The errors of jobs.
 
 use retune_optim::{Failures, Unusable};
 use retune_solver::SolverError;
@@ -18,7 +18,7 @@ pub enum Error {
     /// A number given on the command line is wrong.
     #[error("command line: {0}")]
     Setting(#[from] SettingError),
-    /// A study does not ask for what the command does, or an option contradicts it.
+    /// A study does not fit the command, or an option contradicts it.
     #[error("study {name}: {rule}")]
     Rule {
         /// The study.
@@ -26,7 +26,7 @@ pub enum Error {
         /// The rule that is broken.
         rule: Rule,
     },
-    /// The interval of a trajectory is none, or makes a file that nobody can read.
+    /// The interval of a trajectory is invalid, or gives too many rows.
     #[error(
         "--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows"
     )]
@@ -36,15 +36,15 @@ pub enum Error {
         /// Most rows of a trajectory.
         most: u32,
     },
-    /// A part of a grid is not what it must be.
+    /// A part of a grid is invalid.
     #[error("{}: {problem}", path.display())]
     Part {
         /// The part.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
-    /// Points that no part holds.
+    /// Points are missing from the parts.
     #[error(
         "{}: no part holds points {points} of {len}: make what is missing with `retune optimize {} --shard i/N`{}",
         place.display(),
@@ -54,32 +54,32 @@ pub enum Error {
     MissingParts {
         /// The points.
         points: String,
-        /// How many the grid has.
+        /// The number of points of the grid.
         len: usize,
-        /// The shares that hold them, if that can be told.
+        /// The shares that contain them, if these can be determined.
         shards: Option<String>,
         /// The study.
         study: PathBuf,
-        /// Where parts are looked for.
+        /// The directory of the parts.
         place: PathBuf,
     },
-    /// Results that do not hold.
+    /// Results that fail verification.
     #[error("{}: {problem}", path.display())]
     NotHeld {
         /// The directory of the results.
         path: PathBuf,
-        /// What does not hold.
+        /// The differences.
         problem: String,
     },
-    /// Results of which something cannot be checked; all that can be holds.
+    /// Results that cannot be verified completely; everything that can be checked holds.
     #[error("{}: cannot be checked: {problem}", path.display())]
     NotChecked {
         /// The directory of the results.
         path: PathBuf,
-        /// What cannot be checked.
+        /// The parts that cannot be checked.
         problem: String,
     },
-    /// No design that keeps the limits: the results are of the nearest.
+    /// No design keeps the limits: the results are those of the nearest one.
     #[error(
         "study {name}: the limits are not kept: {words}; loosen a limit, widen a bound, or look at more designs"
     )]
@@ -92,9 +92,9 @@ pub enum Error {
     /// Lines that `evaluate` could not answer with a value.
     #[error("standard input: {failed} of {} had no value", counted(*lines, "line"))]
     Lines {
-        /// How many.
+        /// Their number.
         failed: u64,
-        /// How many there were.
+        /// The number of all lines.
         lines: u64,
     },
     /// The threads could not be started.
@@ -103,7 +103,7 @@ pub enum Error {
     /// A run could not be finished.
     #[error("the run failed: {0}")]
     Run(#[from] SolverError),
-    /// A motion could not be followed.
+    /// A motion could not be computed.
     #[error("the run failed: {0}")]
     Motion(#[from] retune_dynamics::Error),
     /// A design that was found cannot be run.
@@ -112,10 +112,10 @@ pub enum Error {
     /// No point of the grid has a value.
     #[error("no point of the grid could be computed{}", example(.0))]
     NoStart(Failures),
-    /// A global search found nothing to start from.
+    /// A global search failed.
     #[error("the global search failed: {source}{}", example(.failures))]
     Global {
-        /// What it says.
+        /// Its error.
         source: retune_optim::GlobalError,
         /// The evaluations that failed.
         failures: Failures,
@@ -123,7 +123,7 @@ pub enum Error {
     /// A refinement could not be started.
     #[error("the refinement failed: {source}{}", example(.failures))]
     Search {
-        /// What it says.
+        /// Its error.
         source: retune_optim::Error,
         /// The evaluations that failed.
         failures: Failures,
@@ -133,7 +133,7 @@ pub enum Error {
     Figure {
         /// The figure.
         name: String,
-        /// What the drawing library says.
+        /// The error of the drawing library.
         problem: String,
     },
 }

@@ -34,7 +34,7 @@ under violation <= 0. One that takes none, and has to find its way to designs th
 is 0 and 1e6 * (1 + violation) elsewhere, with a number above every E1max in the place of 1e6. One that stops at inf (a fit, a \
 gradient) needs the same.";
 
-/// How many lines without a value standard error names: who reads it not must not be held up by it.
+/// Number of lines without a value that are reported on standard error: if nobody reads it, a full pipe must not block the answers.
 const TOLD: u64 = 100;
 
 /// Why a line has no value.
@@ -43,7 +43,7 @@ pub enum LineError {
     /// Too few numbers, or too many.
     #[error("give one number for each of {}; found {found}", words(.wanted))]
     Count {
-        /// How many there are.
+        /// Their number.
         found: usize,
         /// The tuned parameters.
         wanted: Vec<Variable>,
@@ -56,10 +56,10 @@ pub enum LineError {
         /// The text as given.
         text: String,
     },
-    /// A line that nobody would write.
+    /// The line is too long.
     #[error("the line is longer than {} bytes", input::MOST)]
     Long,
-    /// A design without a value.
+    /// The design has no value.
     #[error(transparent)]
     Unusable(#[from] Unusable),
 }
@@ -68,25 +68,25 @@ fn words(variables: &[Variable]) -> String {
     variables.iter().map(|variable| variable.symbol()).collect::<Vec<_>>().join(" ")
 }
 
-/// The beginning of a text, as a terminal may show it.
+/// The beginning of a text, safe for a terminal.
 fn shown(text: &str) -> String {
     const MOST: usize = 40;
     let begin: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();
     if text.chars().nth(MOST).is_some() { begin + "..." } else { begin }
 }
 
-/// Where designs come from and answers go.
+/// The input of designs and the outputs.
 pub struct Streams<'a, I> {
-    /// Designs, one a line.
+    /// Designs, one per line.
     pub input: I,
-    /// An answer for each.
+    /// One answer for each.
     pub answers: &'a mut (dyn Write + Send),
-    /// What is said of lines without a value: a line each.
+    /// Receives a message for each line without a value.
     pub complaints: &'a mut (dyn FnMut(&str) + Send),
 }
 
-/// Reads designs, one a line, and answers each; see [`PROTOCOL`]. Ends with its input, or when nobody reads any more. At most as many
-/// lines as there are `threads` (all cores, if none are given) are evaluated side by side.
+/// Reads designs, one per line, and answers each; see [`PROTOCOL`]. Ends with its input, or when the answers are no longer read. At
+/// most `threads` lines (by default as many as there are cores) are evaluated in parallel.
 ///
 /// # Errors
 /// The study does not say what to tune, the input cannot be read, the answers cannot be written, or a line had no value.
@@ -141,7 +141,7 @@ fn answer<I: BufRead + Send + 'static>(
     if failed == 0 { Ok(()) } else { Err(Error::Lines { failed, lines: count }) }
 }
 
-/// Says that a line has no value, of the first [`TOLD`].
+/// Reports a line without a value, for the first [`TOLD`] of them.
 fn complain(line: u64, failed: u64, reason: &LineError, complaints: &mut dyn FnMut(&str)) {
     if failed <= TOLD {
         complaints(&format!("error: line {line}: {reason}"));
@@ -164,7 +164,7 @@ fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> Stri
         Err(reason) => return json!({ "error": reason.to_string() }).to_string(),
     };
     let limits = objective.goal().limits;
-    // The sum of no excess is -0.
+    // An empty sum of excesses is -0.
     let mut fields = vec![("E1max", found.energy), ("violation", found.violation + 0.0)];
     let set = Limit::ALL.into_iter().filter(|limit| limits.get(*limit).is_some());
     fields.extend(set.map(|limit| (limit.name(), found.reached.get(limit))));
@@ -173,7 +173,7 @@ fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> Stri
     format!("{{{}}}", fields.join(", "))
 }
 
-/// What a design is worth that is given as numbers between blanks or commas.
+/// Evaluates a design given as numbers separated by blanks or commas.
 fn value(objective: &PeakEnergy, line: &Line) -> Result<Evaluation, LineError> {
     let Line::Text(line) = line else { return Err(LineError::Long) };
     let texts: Vec<&str> =

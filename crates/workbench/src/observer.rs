@@ -1,38 +1,38 @@
-//! Who follows a job.
+//! Observers of a job.
 
 use crate::Error;
 
-/// Follows a job: what it says, and how far it is. A command line shows it, a page may draw it, [`Silent`] drops it.
+/// Receives the output and the progress of a job. A command line prints them, a page may draw them, [`Silent`] ignores them.
 pub trait Observer: Sync {
-    /// A line of the result, as soon as it is known.
+    /// Receives a line of the result, as soon as it is known.
     ///
     /// # Errors
     /// It could not be shown; the job ends.
     fn result(&self, line: &str) -> Result<(), Error>;
-    /// A line of the log.
+    /// Receives a line of the log.
     ///
     /// # Errors
     /// As [`Self::result`].
     fn log(&self, line: &str) -> Result<(), Error>;
-    /// What a person should know of a job that goes on.
+    /// Receives a warning; the job continues.
     fn warn(&self, words: &str);
     /// A stage of `count` evaluations begins.
     fn progress(&self, stage: &'static str, count: u64) -> Box<dyn Progress>;
-    /// From now on the process may end at any moment and the job be gone on with.
+    /// From now on the job can be resumed if the process ends.
     fn resumable(&self);
 }
 
-/// How far a stage is.
+/// The progress of a stage.
 pub trait Progress: Sync {
-    /// One evaluation is to be answered from before, in no time; [`Self::inc`] counts it, too.
+    /// One evaluation is known from an earlier run and takes no time; [`Self::inc`] counts it as well.
     fn known(&self);
-    /// So many more are done.
+    /// Another `more` evaluations are done.
     fn inc(&self, more: u64);
-    /// All is done.
+    /// The stage is finished.
     fn finish(&self);
 }
 
-/// Nobody follows.
+/// Ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

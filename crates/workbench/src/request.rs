@@ -1,45 +1,45 @@
-//! What is asked of a job beside its study, and what every job does first and last.
+//! The request for a job beside its study, and the steps that every job begins and ends with.
 
 use crate::{Error, Observer};
 use retune_store::{Begin, Directory, Extent, Identity, Order};
 use retune_study::{Study, StudyError, check_name};
 use std::path::{Path, PathBuf};
 
-/// How a job is run.
+/// The options of a job.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// The study file.
     pub study: PathBuf,
-    /// Directory of the results; that of the job, if none is given.
+    /// Directory of the results; by default that of the job.
     pub out: Option<PathBuf>,
-    /// Threads; all cores, if none are given. The results are the same for any number.
+    /// Number of threads; by default all cores. The results are the same for any number.
     pub threads: Option<u16>,
-    /// What becomes of unfinished work that is found.
+    /// The treatment of existing unfinished work.
     pub begin: Begin,
-    /// Whether results of others may be replaced.
+    /// Whether other results may be replaced.
     pub replace: bool,
 }
 
 impl Request {
-    /// Of a study file, with results where the job has them and all cores.
+    /// A request for a study file, with the job's directory of results and all cores.
     pub fn new(study: &Path) -> Self {
         Self { study: study.to_owned(), ..Self::default() }
     }
 
-    /// What a directory of results is asked for.
+    /// The order to open a directory of results for `command`.
     pub fn order(&self, command: &'static str) -> Order {
         Order { command, study: self.study.clone(), begin: self.begin, replace: self.replace }
     }
 
-    /// Where the results of one study go: `results/` and its name, unless told otherwise.
+    /// The directory of the results of one study: by default `results/` and its name.
     pub fn out_of(&self, study: &Study) -> PathBuf {
         self.out.clone().unwrap_or_else(|| Path::new("results").join(study.name()))
     }
 
-    /// Where the results of a study of several dampers go: `results/` and its file's own name, unless told otherwise.
+    /// The directory of the results of a study of several dampers: by default `results/` and the name of its file.
     ///
     /// # Errors
-    /// The file's name is none for a directory.
+    /// The file's name cannot be that of a directory.
     pub fn out_of_file(&self) -> Result<PathBuf, Error> {
         if let Some(out) = &self.out {
             return Ok(out.clone());
@@ -60,7 +60,7 @@ impl Request {
     }
 }
 
-/// Opens a directory of results and tells the observer of it.
+/// Opens a directory of results and reports it to the observer.
 ///
 /// # Errors
 /// As [`Directory::open`].
@@ -80,7 +80,7 @@ pub fn open(
     Ok(directory)
 }
 
-/// Says where the results are, and lists them.
+/// A message with the directory of the results and their list.
 ///
 /// # Errors
 /// The directory cannot be read.

@@ -1,4 +1,4 @@
-//! All that results follow from, with every default written out: `study.json` of one study, `resolved.json` of several.
+//! The complete input of results, with every default written out: `study.json` of one study, `resolved.json` of several.
 
 use crate::Error;
 use retune_store::{Identity, json_text};
@@ -10,7 +10,7 @@ use std::path::Path;
 /// The text of `study.json`.
 ///
 /// # Errors
-/// None that is known.
+/// Serialisation fails, which no known study causes.
 pub fn study_text(study: &Study) -> Result<String, Error> {
     Ok(json_text(&study.resolved(), "study.json")?)
 }
@@ -18,7 +18,7 @@ pub fn study_text(study: &Study) -> Result<String, Error> {
 /// The identity of the search of a study.
 ///
 /// # Errors
-/// None that is known.
+/// Serialisation fails, which no known study causes.
 pub fn identity_of(study: &Study) -> Result<Identity, Error> {
     Ok(Identity::of(&study_text(study)?))
 }
@@ -26,10 +26,10 @@ pub fn identity_of(study: &Study) -> Result<Identity, Error> {
 /// The name of the file that several studies are written to.
 pub const NAME: &str = "resolved.json";
 
-/// What was asked for, and the study of each damper.
+/// The plan and the study of each damper.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Resolved {
-    /// What was asked for beside the studies.
+    /// The input beside the studies.
     pub plan: Value,
     dampers: Vec<Damper>,
 }
@@ -41,7 +41,7 @@ struct Damper {
 }
 
 impl Resolved {
-    /// Of a plan and the studies of the dampers that it names.
+    /// From a plan and the studies of the dampers that it names.
     pub fn new<'a>(plan: Value, studies: impl Iterator<Item = (&'a str, &'a Study)>) -> Self {
         let damper = |(name, study): (&str, &Study)| Damper {
             damper: name.to_owned(),
@@ -53,7 +53,7 @@ impl Resolved {
     /// The text of the file.
     ///
     /// # Errors
-    /// None that is known.
+    /// Serialisation fails, which no known study causes.
     pub fn text(&self) -> Result<String, Error> {
         Ok(json_text(self, NAME)?)
     }
@@ -61,7 +61,7 @@ impl Resolved {
     /// Reads the file in a directory of results.
     ///
     /// # Errors
-    /// It cannot be read, or is none.
+    /// It cannot be read, or is not such a file.
     pub fn read(place: &Path) -> Result<Self, Error> {
         let path = place.join(NAME);
         let refuse = |source| retune_store::Error::Input { path: path.clone(), source };
@@ -72,7 +72,7 @@ impl Resolved {
     /// The name and the study of each damper.
     ///
     /// # Errors
-    /// A study is none.
+    /// A study is invalid.
     pub fn studies(&self) -> Result<Vec<(String, Study)>, Error> {
         let study =
             |damper: &Damper| Ok((damper.damper.clone(), from_text(&damper.study.to_string(), NAME)?));

@@ -10,10 +10,10 @@ use std::path::Path;
 /// Most rows of a trajectory.
 const MOST_ROWS: u32 = 100_000_000;
 
-/// What every trajectory begins with, of this and of earlier versions: by it a file is known as one.
+/// The first characters of every trajectory, of this and of earlier versions, by which a file is recognised as one.
 const HEAD: &str = "t,x1,v1,x2,v2,";
 
-/// Where the motion of a run is written to.
+/// The output of the motion of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Trajectory<'a> {
     /// The file.
@@ -39,8 +39,8 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Summary
     Ok(Summary::new(study, study.scene, &response))
 }
 
-/// Writes the motion in the window: a row each `interval` seconds, and one for each moment that lies between (column `moment`).
-/// A row says which it is in its last column, so that `df[df.moment == "grid"]` are the equidistant ones.
+/// Writes the motion in the window: a row every `interval` seconds, and one for each event between them (column `moment`).
+/// The last column names the kind of row, so that `df[df.moment == "grid"]` are the equidistant ones.
 fn write_trajectory(study: &Study, file: &Path, interval: f64) -> Result<(), Error> {
     let window = study.window.window();
     let rows = (window.to - window.from) / interval;

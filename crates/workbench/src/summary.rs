@@ -1,4 +1,4 @@
-//! What a run gave: one type, from which JSON and text are made.
+//! The results of a run: one type, from which JSON and text are made.
 
 use retune_model::{Damper, Design, Positive, Scene, energy_ratios};
 use retune_optim::Objective;
@@ -7,7 +7,7 @@ use retune_study::counted;
 use retune_study::{Solver, Span, Study, over};
 use serde::Serialize;
 
-/// What was observed in the window of a run. SI units; a ratio of nothing to nothing is null.
+/// The observations in the window of a run. SI units; a ratio 0/0 is null.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     #[serde(flatten)]
@@ -50,7 +50,7 @@ pub struct TunedDamper {
 }
 
 impl TunedDamper {
-    /// That of a scene.
+    /// From a damper of a scene.
     pub const fn of(damper: &Damper) -> Self {
         Self { mass: damper.mass, design: Design::of(damper) }
     }
@@ -62,7 +62,7 @@ impl TunedDamper {
     }
 }
 
-/// What made a result.
+/// The origin of a result.
 #[derive(Clone, Debug, Serialize)]
 pub struct MadeBy {
     retune: &'static str,
@@ -70,12 +70,12 @@ pub struct MadeBy {
     omega: f64,
     window: Span,
     solver: Solver,
-    /// What was made small; of a run, the default.
+    /// The objective; for a run, the default.
     #[serde(skip)]
     objective: Objective,
 }
 
-/// Something for each wall of the cavity.
+/// A value for each wall of the cavity.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Walls<T> {
     primary: T,
@@ -91,7 +91,7 @@ struct FinalState {
 }
 
 impl MadeBy {
-    /// What makes the results of `study`.
+    /// The origin of the results of `study`.
     pub fn new(study: &Study) -> Self {
         let (window, solver) = (study.window, study.solver);
         let omega = study.scene.forcing.frequency.get();
@@ -99,7 +99,7 @@ impl MadeBy {
         Self { retune: env!("CARGO_PKG_VERSION"), study, omega, window, solver, objective }
     }
 
-    /// What makes a run of `scene` under `study`.
+    /// The origin of a run of `scene` under `study`.
     fn run(study: &Study, scene: &Scene) -> Self {
         let omega = scene.forcing.frequency.get();
         Self { omega, objective: Objective::default(), ..Self::new(study) }

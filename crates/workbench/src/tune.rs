@@ -25,11 +25,11 @@ use retune_study::{Search, Study, are};
 use shard::Shard;
 use std::path::Path;
 
-/// What became of a search.
+/// The result of a search.
 pub enum Tuned {
-    /// It came to its end: the best design.
+    /// It is finished: the best design.
     Found(Box<Optimum>),
-    /// The search was to be gone on with, and had come to its end before.
+    /// The search was to be resumed, but was already finished.
     FinishedBefore,
 }
 
@@ -42,7 +42,7 @@ pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Tuned, Error> {
     finished(&study, request, watch, |out, order| optimize(&study, out, order, watch))
 }
 
-/// Makes a search with `search`, unless it is to be gone on with and is finished; shows what it found.
+/// Makes a search with `search`, unless it is to be resumed and is already finished; reports its result.
 fn finished(
     study: &Study,
     request: &Request,
@@ -74,11 +74,11 @@ pub fn tune_share(request: &Request, shard: Shard, watch: &dyn Observer) -> Resu
     request.on_threads(|| shard::shard(&study, shard, &out, &order, watch))
 }
 
-/// Searches the best design of a study and writes all results to the directory `out`. The work can go on until the directory
-/// is finished.
+/// Searches for the best design of a study and writes all results to the directory `out`. The work can be resumed until the
+/// directory is finished.
 ///
 /// # Errors
-/// The study does not say what to tune, nothing can be computed, or the results cannot be written.
+/// The study has nothing to tune, nothing can be computed, or the results cannot be written.
 pub fn optimize(
     study: &Study,
     out: &Path,
@@ -88,7 +88,7 @@ pub fn optimize(
     optimize_from(study, out, order, watch, |_| Ok(()))
 }
 
-/// As [`optimize`], with what `prepare` teaches the directory beforehand.
+/// As [`optimize`], after `prepare` has added known values to the directory.
 ///
 /// # Errors
 /// As [`optimize`].
@@ -111,7 +111,7 @@ fn optimize_from(
     {
         Ok(optimum) => Ok((optimum, results)),
         Err(error) => {
-            // What cannot be written may go on once it can; what cannot be computed never will.
+            // Work that cannot be written can be resumed later; work that cannot be computed cannot.
             if !matches!(error, Error::Store(_)) {
                 results.discard();
             }

@@ -1,4 +1,4 @@
-//! The difficulties: scenes made to break methods.
+//! The difficulties: scenes designed to make methods fail.
 
 use crate::scenes::{Case, Numbers, SSVI, TMD, scene, system};
 use retune_model::{NonNegative, Positive, Scene};
@@ -6,7 +6,7 @@ use retune_solver::observe::{RelativePosition, RunningMaximum};
 use retune_solver::{Hybrid, Motion, Phase};
 use std::error::Error;
 
-/// A scene made to break methods, with its row in the atlas.
+/// A scene designed to make methods fail, with its row in the atlas.
 pub struct Difficulty {
     /// The group it belongs to.
     pub group: &'static str,
@@ -27,7 +27,7 @@ impl List {
 /// All of them, but the energy over 1,000 impacts.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn all() -> Any<Vec<Difficulty>> {
     let mut list = List(Vec::new());
     stiffness(&mut list)?;
@@ -52,7 +52,7 @@ fn stiffness(list: &mut List) -> Any<()> {
     Ok(())
 }
 
-/// How far the damper of `numbers` would come from its rest toward the structure, m, were there no walls.
+/// Largest displacement of the damper of `numbers` from its rest position towards the structure without walls, m.
 ///
 /// # Errors
 /// A run that failed.
@@ -105,8 +105,8 @@ fn damper(list: &mut List) -> Any<()> {
     Ok(())
 }
 
-/// A heavy damper on a stiff structure: in one flight step of the hybrid, concave at both ends, E1 has two maxima with a dip between;
-/// to take it for a step with one lost 0.2 % of E1max. Found by an adversary.
+/// A heavy damper on a stiff structure: in one flight step of the hybrid, concave at both ends, E1 has two maxima with a minimum
+/// between; treating it as a step with one maximum lost 0.2 % of E1max. Found by adversarial search.
 fn two_maxima() -> Any<Scene> {
     let mut scene = scene(Numbers {
         k2: 1662.5681305782794,

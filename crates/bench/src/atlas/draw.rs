@@ -9,7 +9,7 @@ use std::path::Path;
 const CELL: (i32, i32) = (96, 27);
 const LEFT: i32 = 380;
 const TOP: i32 = 138;
-/// Room between two groups of rows.
+/// Space between two groups of rows.
 const GAP: i32 = 12;
 
 /// A row: group, difficulty, cells.

@@ -12,9 +12,9 @@ use std::path::Path;
 
 /// Impacts.
 pub const IMPACTS: u64 = 1000;
-/// A method that has not had them by then has lost its energy, s.
+/// Time limit, s: a method that has not made the impacts by then has lost energy.
 const PATIENCE: f64 = 1000.0;
-/// The damper's first speed, m/s.
+/// The damper's initial speed, m/s.
 const SPEED: f64 = 4.0;
 
 struct Touched(u64);
@@ -29,7 +29,7 @@ impl Observer<4> for Touched {
     }
 }
 
-/// What became of the energy.
+/// The drift of the energy.
 pub struct Drift {
     /// The method and its setting.
     pub settings: Settings,
@@ -41,7 +41,7 @@ pub struct Drift {
     pub change: Result<f64, String>,
 }
 
-/// The two-sided SSVI without damping or force, its damper thrown at a wall.
+/// The two-sided SSVI without damping or force, with an initial speed of the damper towards a wall.
 fn lossless() -> Result<Coupled, Box<dyn Error>> {
     let mut scene = scene(SSVI)?;
     scene.primary.damping = NonNegative::new(0.0)?;
@@ -55,7 +55,7 @@ fn lossless() -> Result<Coupled, Box<dyn Error>> {
 /// Follows the lossless motion through its impacts.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn drift(method: Method, contacts: Contacts, setting: f64) -> Result<Drift, Box<dyn Error>> {
     let system = lossless()?;
     let settings = Settings { max_steps: 4_000_000, ..own::settings(method, contacts, setting) };
@@ -85,7 +85,7 @@ fn runs() -> Vec<(Method, Vec<f64>)> {
 /// The table, and its chart.
 ///
 /// # Errors
-/// A number that cannot be, or a file that cannot be written.
+/// A value out of range, or a file that cannot be written.
 pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
     let mut all = Vec::new();
     for (method, settings) in runs() {

@@ -1,4 +1,4 @@
-//! Contacts jumped over: steps that begin and end in flight although the exact motion from their beginning touches a wall and
+//! Missed contacts: steps that begin and end in flight although the exact motion from their beginning touches a wall and
 //! leaves it again before they end.
 
 use crate::own;
@@ -11,7 +11,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Counts impacts seen and jumped over.
+/// Counts impacts found and missed.
 struct Watch<'a> {
     system: &'a Coupled,
     exact: Hybrid<'a>,
@@ -38,7 +38,7 @@ impl Observer<4> for Watch<'_> {
         }
         let mut touches = Touches::default();
         let begin = Motion { t: from.t, y: from.y, phase: Phase::Flight };
-        // A step that ends in a located touch-down is not one that jumped over it.
+        // A step that ends at a located touch-down has not missed it.
         let until = to.t - 1e-6 * (to.t - from.t);
         if let Ok(end) = self.exact.propagate(begin, until, &mut touches) {
             let unfinished = matches!(end.phase, Phase::InContact(_));
@@ -50,24 +50,24 @@ impl Observer<4> for Watch<'_> {
     }
 }
 
-/// What a run with a longest step saw.
+/// The impacts of a run with a given longest step.
 pub struct Missed {
-    /// Impacts seen.
+    /// Impacts found.
     pub seen: u64,
-    /// Impacts jumped over.
+    /// Impacts missed.
     pub jumped: u64,
-    /// What the method said, if it noticed anything.
+    /// The error of the method, if any.
     pub said: Option<String>,
 }
 
 impl Missed {
-    /// Share of the impacts that were jumped over.
+    /// Share of the impacts that were missed.
     pub fn share(&self) -> f64 {
         self.jumped as f64 / (self.jumped + self.seen).max(1) as f64
     }
 }
 
-/// Follows a scene from rest at MATLAB's default tolerance with steps no longer than `step` (s).
+/// Runs a scene from rest at MATLAB's default tolerance with steps no longer than `step` (s).
 ///
 /// # Errors
 /// A scene without damper.
@@ -81,10 +81,10 @@ pub fn missed(case: &Case, method: Method, contacts: Contacts, step: f64) -> Res
     Ok(Missed { seen: watch.seen, jumped: watch.jumped, said: said.map(|error| error.to_string()) })
 }
 
-/// The SSVI, the same with stiffer contacts, and the TMD whose wall stands at a share of its free steady swing.
+/// The SSVI, the same with stiffer contacts, and the TMD with a wall at a share of its steady stroke without walls.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn subjects() -> Result<Vec<Case>, Box<dyn Error>> {
     let free = system(&scene(TMD)?).ok_or("no damper")?;
     let swing = free.steady(free.bare().frequency()).stroke();
@@ -106,7 +106,7 @@ type Shares = (&'static str, Method, Contacts, Vec<(f64, f64)>);
 /// The table, and its chart.
 ///
 /// # Errors
-/// A scene that cannot be, or a file that cannot be written.
+/// An invalid scene, or a file that cannot be written.
 pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
     let mut text =
         String::from("scene,method,contacts,longest_step_s,seen,jumped_over,missed_share,noticed\n");

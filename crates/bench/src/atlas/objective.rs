@@ -1,4 +1,4 @@
-//! The objective itself: how E1max, and the optimum that fminsearch reports, move with the tolerance and with ±0.1 % of the
+//! The objective: how E1max, and the optimum that fminsearch reports, change with the tolerance and with ±0.1 % of the
 //! parameters about Table 2's SSVI.
 
 use crate::own;
@@ -32,7 +32,7 @@ fn stepped(method: Method, rtol: f64) -> Settings {
     own::settings(method, Contacts::Stepped, rtol)
 }
 
-/// What fminsearch makes of the objective under some settings, from a start.
+/// The optimum that fminsearch finds under some settings, from a start.
 ///
 /// # Errors
 /// A start that cannot be evaluated.
@@ -109,7 +109,7 @@ pub fn tables(chart: &Path) -> Result<[String; 2], Box<dyn Error>> {
     Ok([values, optima()?])
 }
 
-/// The optima that fminsearch reports, and what they are worth under the tightest run.
+/// The optima that fminsearch reports, and their energies under the tightest settings.
 fn optima() -> Result<String, Box<dyn Error>> {
     let mut runs: Vec<(String, Settings, [f64; 4])> = Vec::new();
     for rtol in [1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12] {

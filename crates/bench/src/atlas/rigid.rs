@@ -1,7 +1,7 @@
 //! The rigid limit: contacts of stiffness K × 10^n against instantaneous elastic impacts.
 //!
-//! A contact lasts as long as `K^(-2/5)` at a given speed (W. Goldsmith, Impact, 1960, ch. IV), so the motion must come to the
-//! rigid one at that rate.
+//! The duration of a contact is proportional to `K^(-2/5)` at a given speed (W. Goldsmith, Impact, 1960, ch. IV), so the motion
+//! must converge to the rigid one at that rate.
 
 use super::{WAYS, Way};
 use crate::own;
@@ -25,7 +25,7 @@ pub struct Rigid {
     pub impacts: usize,
 }
 
-/// Flight up to a touch-down; what follows is not looked at.
+/// Flight up to a touch-down; the rest is ignored.
 struct Flight<'a> {
     peak: RunningMaximum<PrimaryEnergy<'a>>,
     last: Option<(f64, [f64; 4])>,
@@ -48,14 +48,15 @@ impl Observer<4> for Flight<'_> {
     }
 }
 
-/// Velocities after an instantaneous elastic impact of `m1` and `m2`: momentum and energy are kept, the relative velocity turns.
+/// Velocities after an instantaneous elastic impact of `m1` and `m2`: momentum and energy are conserved, the relative velocity
+/// changes its sign.
 fn bounce([m1, m2]: [f64; 2], y: &mut [f64; 4]) {
     let closing = y[3] - y[1];
     y[1] += 2.0 * m2 / (m1 + m2) * closing;
     y[3] -= 2.0 * m1 / (m1 + m2) * closing;
 }
 
-/// Follows a scene from rest to `to` (s): exact flight, instantaneous elastic impacts.
+/// Runs a scene from rest to `to` (s): exact flight, instantaneous elastic impacts.
 ///
 /// # Errors
 /// No damper; a run that failed; more than 10,000 impacts.
@@ -81,7 +82,7 @@ pub fn rigid(scene: &Scene, to: f64) -> Result<Rigid, Box<dyn Error>> {
 /// The two-sided SSVI with its contacts 10^n times as stiff, 10 s.
 ///
 /// # Errors
-/// A number that cannot be.
+/// A value out of range.
 pub fn case(n: i32) -> Result<Case, Box<dyn Error>> {
     let numbers = Numbers { stiffer: 10f64.powi(n), ..SSVI };
     Ok(Case { name: "stiff", label: "", scene: scene(numbers)?, to: 10.0 })
@@ -90,7 +91,7 @@ pub fn case(n: i32) -> Result<Case, Box<dyn Error>> {
 /// Exponents of the stiffness.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -2..=8;
 
-/// How far the Hertzian motion at K × 10^n is from the rigid one: E1max and final state, relative.
+/// Distance of the Hertzian motion at K × 10^n from the rigid one: E1max and final state, relative.
 ///
 /// # Errors
 /// A run that failed.

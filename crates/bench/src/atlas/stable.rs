@@ -29,7 +29,7 @@ impl System<4> for Frozen {
     }
 }
 
-/// A growth of less than this in a step is let pass.
+/// Growth per step that is tolerated as rounding.
 const SLACK: f64 = 1e-7;
 
 /// Whether steps of length `h` grow, by the spectral radius of the step itself.
@@ -81,7 +81,7 @@ fn polynomial(method: Method) -> &'static [f64] {
     }
 }
 
-/// Whether theory says that steps of length `h` of semi-implicit Euler grow. It treats positions and velocities differently and has
+/// Whether steps of length `h` of semi-implicit Euler grow in theory. It treats positions and velocities differently and has
 /// no stability function of one eigenvalue: its step is `I + h A + h² E A`, where `E` gives each position its velocity's rate. (An
 /// oscillator of damping ratio ζ alone: `hω <= 2 (√(1 + ζ²) - ζ)`.)
 fn euler_grows_in_theory(a: &Matrix, h: f64) -> bool {
@@ -90,7 +90,7 @@ fn euler_grows_in_theory(a: &Matrix, h: f64) -> bool {
     step.complex_eigenvalues().iter().any(|z| z.norm() > 1.0 + SLACK)
 }
 
-/// Whether theory says that steps of length `h` of another method grow along an eigenvalue.
+/// Whether steps of length `h` of any other method grow in theory, for an eigenvalue.
 fn grows_in_theory(method: Method, lambda: Complex<f64>, h: f64) -> bool {
     let z = lambda * h;
     let factor = match method {
@@ -104,9 +104,9 @@ fn grows_in_theory(method: Method, lambda: Complex<f64>, h: f64) -> bool {
     factor > 1.0 + SLACK
 }
 
-/// A scene frozen at a moment.
+/// A scene linearised at a moment.
 pub struct Moment {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its matrix.
     pub matrix: Matrix,
@@ -119,7 +119,7 @@ impl Moment {
     }
 }
 
-/// The flight of each scene, and the contacts of two of them frozen at their deepest.
+/// The flight of each scene, and the contacts of two of them at their largest indentation.
 ///
 /// # Errors
 /// A scene that cannot be run.

@@ -15,7 +15,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A setting that takes longer than this, all its runs together, is a method's last.
+/// A method's series of settings ends with the first whose runs together take longer than this.
 const PATIENCE: Duration = Duration::from_millis(2000);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::write("tests/reference/external/scenes.json", scenes_json(&cases)?)?;
     let references = cases.iter().map(Reference::of).collect::<Result<Vec<_>, _>>()?;
     let table = folder.join("runs.csv");
-    // `accuracy draw`: the runs of other programs and the pictures again, from the runs made before.
+    // `accuracy draw`: updates the runs of other programs and the pictures from the existing runs.
     let mut rows: Vec<Row> = if std::env::args().nth(1).as_deref() == Some("draw") {
         let names: Vec<&'static str> = cases.iter().map(|c| c.name).collect();
         let outside = |row: &Row| ["Octave", "SciPy", "SUNDIALS"].iter().any(|p| row.program.starts_with(p));

@@ -106,7 +106,7 @@ fn heading(rows: &[Row]) -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// With a capital letter.
+/// The text with a capital first letter.
 fn sentence(cause: &str) -> String {
     let mut letters = cause.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())

@@ -19,7 +19,7 @@ impl ODE<f64, State> for Equations {
     }
 }
 
-/// The end of a phase: the first of its gaps to close.
+/// The end of a phase: the first zero of its event functions.
 struct Opening<'a>(&'a Equations);
 
 impl Event<f64, State> for Opening<'_> {
@@ -32,7 +32,7 @@ impl Event<f64, State> for Opening<'_> {
     }
 }
 
-/// Shows each step to a track and keeps its end.
+/// Passes each step to a track and keeps its end.
 struct Watch<'a, 'b> {
     equations: &'a Equations,
     track: Option<&'b mut Track>,
@@ -54,7 +54,7 @@ impl Solout<f64, State> for Watch<'_, '_> {
     {
         if let (Some(track), true) = (self.track.as_deref_mut(), t > self.shown) {
             let open = self.equations.open(y);
-            // A step over the end of the phase is cut there by the event, and shown to there.
+            // A step beyond the end of the phase is cut by the event, and passed on up to there.
             if open[0] >= 0.0 && open[1] >= 0.0 {
                 track.step(self.equations, [self.shown, t], |s| {
                     interpolator.interpolate(s).unwrap_or([f64::NAN; 4])

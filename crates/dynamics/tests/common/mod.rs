@@ -1,4 +1,4 @@
-//! The paper's scenes with a stiffness, a frequency and a damper of one's choice, for every test of this crate.
+//! The paper's scenes with a given stiffness, frequency and damper, for every test of this crate.
 #![allow(dead_code)] // each test file uses what it needs
 
 #[path = "../../../model/tests/scenes/mod.rs"]

@@ -11,7 +11,7 @@ pub struct Band {
     pub from: f64,
     /// Highest, above the lowest, rad/s.
     pub to: f64,
-    /// How many evenly spaced frequencies are looked at first, both ends included, at least 2.
+    /// Number of evenly spaced frequencies that are evaluated first, both ends included, at least 2.
     pub samples: usize,
 }
 
@@ -23,20 +23,20 @@ impl Band {
     }
 }
 
-/// Most evaluations that one maximum of the samples is refined by. A smooth peak needs about eight.
+/// Most evaluations in the refinement of one maximum of the samples. A smooth peak needs about eight.
 const REFINEMENTS: usize = 12;
 
-/// Some quantities at a frequency; the first is the one that cutoffs are for.
+/// Some quantities at a frequency; cutoffs apply to the first.
 #[derive(Clone, Copy)]
 struct Look<const N: usize> {
     frequency: f64,
     values: [f64; N],
 }
 
-/// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is
-/// not below them. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any
-/// number of them. It is a lower bound: a peak that shows at no sample is missed. Samples are taken in groups, each spread over the
-/// band; once one of a group is above `cutoff`, the largest sample so far is the answer.
+/// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is not
+/// below them. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any number of
+/// them. It is a lower bound: a peak between samples that none of them shows is missed. Samples are taken in groups, each spread
+/// over the band; once one of a group is above `cutoff`, the largest sample so far is the answer.
 ///
 /// # Errors
 /// The first failure in the order of the frequencies, samples before searches, of the groups that were taken.
@@ -51,8 +51,8 @@ pub fn worst_over<E: Send + Sync>(
 
 /// The largest of each of some quantities over a band, as [`worst_over`] finds that of one; `cutoff` is for the first.
 ///
-/// Each quantity has peaks of its own. Where `limits` has none for it, all of them are searched; else those that could be above
-/// the limit and above all samples: four times as far above the sample as a parabola through it and its neighbours would rise.
+/// Each quantity has its own peaks. If `limits` has no limit for it, all peaks are searched; otherwise those that could exceed
+/// the limit and all samples, if the peak rose four times as far above its sample as the parabola through it and its neighbours.
 ///
 /// # Errors
 /// As [`worst_over`].
@@ -98,13 +98,13 @@ fn worst_of<const N: usize>(&Look { frequency, values }: &Look<N>) -> [Worst; N]
     values.map(|value| Worst { frequency, value })
 }
 
-/// The larger of each quantity; of equals the first.
+/// The larger of each quantity; of equal ones the first.
 fn larger<const N: usize>(a: [Worst; N], b: [Worst; N]) -> [Worst; N] {
     std::array::from_fn(|q| if b[q].value > a[q].value { b[q] } else { a[q] })
 }
 
-/// A local maximum of a quantity between two places, from one between them that is not below either, and the largest of the
-/// others on the way: parabolas, and golden sections where they do not serve (R. P. Brent, Algorithms for Minimization without
+/// A local maximum of a quantity between two points, given one between them that is not below either, and the largest values of the
+/// others met on the way: parabolic steps, with golden sections where these fail (R. P. Brent, Algorithms for Minimization without
 /// Derivatives, 1973, chapter 5), from three known points.
 fn local_maximum<E, const N: usize>(
     look: &impl Fn(f64) -> Result<Look<N>, E>,
@@ -173,9 +173,9 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
     /// The second quantity is a parabola that rises from its sample at 6 by 0.04 to 1: a search allows for four times what the
-    /// samples show of that, and looks only if it could break the limit so.
+    /// samples show of that rise, and runs only if that could break the limit.
     #[test]
-    fn exact_peaks_that_cannot_break_a_limit_are_not_searched() {
+    fn contract_peaks_that_cannot_break_a_limit_are_not_searched() {
         let band = Band { from: 5.0, to: 8.0, samples: 4 };
         let looks = |limit| {
             let count = AtomicUsize::new(0);

@@ -1,7 +1,7 @@
-//! What a search makes small: E1max composed over frequencies, stiffnesses, an ensemble and several terms, under limits.
+//! The value that a search minimises: E1max composed over frequencies, stiffnesses, an ensemble and several terms, under limits.
 //!
 //! `value = Σ weight · statistic over the ensemble of (largest over k1 of (largest over ω of E1max))`. Each level is one
-//! function of a cutoff, above which it may stop; every rule for stopping is exact: a value at most at the cutoff is computed in
+//! function of a cutoff, above which it may stop; every stopping rule is exact: a value not above the cutoff is computed in
 //! full.
 
 use super::band::{Band, all_worst_over};
@@ -14,14 +14,14 @@ use retune_model::{Bare, Coupled, NonNegative, Scene, Worst};
 use retune_solver::{Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
-/// What is made small, when, and the limits that are kept.
+/// The objective of a search, the window of its runs, and the limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goal {
-    /// What is made small.
+    /// The objective.
     pub objective: Objective,
-    /// The window of the objective's runs; one that is steady has none.
+    /// The window of the objective's runs; a steady response has none.
     pub window: Window,
-    /// The limits, on the largest over all runs of all terms.
+    /// The limits, which apply to the largest values over all runs of all terms.
     pub limits: Limits,
 }
 
@@ -32,12 +32,12 @@ impl From<Window> for Goal {
     }
 }
 
-/// The run with the largest E1max among those that a value was made of.
+/// The run with the largest E1max among those behind a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Its E1max, J.
     pub e1_max: f64,
-    /// Its scene, an error of its parameters included.
+    /// Its scene, with the parameter errors of its ensemble member.
     pub scene: Scene,
     /// Phase of its force, rad.
     pub phase: f64,
@@ -45,28 +45,28 @@ pub struct Place {
     pub term: usize,
 }
 
-/// A design's value and what it was made of.
+/// The value of a design and the quantities behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
-    /// What searches make small: the energy of a feasible design, more than [`INFEASIBLE`] of any other.
+    /// The value that searches minimise: the energy of a feasible design, above [`INFEASIBLE`] for any other.
     pub value: f64,
     /// The weighted sum of the terms, J.
     pub energy: f64,
-    /// By how much limits are broken; see [`Limits::violation`].
+    /// Total violation of the limits; see [`Limits::violation`].
     pub violation: f64,
-    /// The largest stroke and force from [`Limits::from`] on, and the cavity; stroke and force are 0 where no limit asks for them.
+    /// The largest stroke and force from [`Limits::from`] on, and the cavity; stroke and force are 0 if no limit needs them.
     pub reached: PerLimit<f64>,
     /// The worst run.
     pub worst: Place,
     /// Runs made; a steady response in closed form counts as one.
     pub runs: u64,
-    /// Runs that were to settle and did not.
+    /// Runs that should have settled and did not.
     pub unsettled: u64,
 }
 
 impl Evaluation {
-    /// The scene of a single run that shows it: `scene` at the ω and the k1 of the worst run, without the error of a member of an
-    /// ensemble and with the force at a crest.
+    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
+    /// with the force starting at a crest.
     pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
         scene.forcing.frequency = self.worst.scene.forcing.frequency;
         if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
@@ -82,7 +82,7 @@ impl Goal {
         self.objective.terms().get(number).map(|(_, term)| *term)
     }
 
-    /// The value of a scene. Any value above `cutoff` as soon as it is known to be above: the rest is then incomplete.
+    /// Evaluates a scene. The value may be any number above `cutoff` once it is known to exceed it; the rest is then incomplete.
     ///
     /// # Errors
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
@@ -93,7 +93,7 @@ impl Goal {
         reached.set(Limit::Cavity, cavity);
         let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
         let watch = Watch { settings, window: self.window, limits: &self.limits, seen: Mutex::new(seen) };
-        // Too large a cavity needs no run to be worse than anything feasible.
+        // A cavity above its limit makes the design infeasible without any run.
         let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
             f64::INFINITY
         } else {
@@ -131,7 +131,7 @@ impl Goal {
     }
 }
 
-/// The largest values so far. Only maxima and counts: the order in which threads bring them does not matter.
+/// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 struct Seen {
     reached: PerLimit<f64>,
     worst: Place,
@@ -139,7 +139,7 @@ struct Seen {
     unsettled: u64,
 }
 
-/// How runs of a goal are made, and what is kept of them.
+/// The settings of a goal's runs, and the values that are kept of them.
 struct Watch<'a> {
     settings: &'a Settings,
     window: Window,
@@ -150,7 +150,7 @@ struct Watch<'a> {
 /// A term with its number.
 type Numbered<'a> = (usize, &'a Objective);
 
-/// The largest E1max (J), stroke (m) and contact force (N) of some runs; all but the first 0 where no limit asks for them.
+/// The largest E1max (J), stroke (m) and contact force (N) of some runs; all but the first are 0 if no limit needs them.
 type Largest = [f64; 3];
 
 impl Watch<'_> {
@@ -206,7 +206,7 @@ impl Watch<'_> {
         }
     }
 
-    /// The largest of each over a band. Peaks of stroke and force are searched where they could break a limit.
+    /// The largest of each over a band. Peaks of stroke and force are searched only where they could break a limit.
     fn worst_over(
         &self,
         band: &Band,
@@ -272,7 +272,7 @@ impl Watch<'_> {
             let Scene { primary, forcing, .. } = place.scene;
             [-place.e1_max, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]
         };
-        // Of equals the first by term, ω, k1 and phase.
+        // Of equal ones the first by term, ω, k1 and phase.
         let order =
             key(&place).iter().zip(&key(&seen.worst)).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne());
         if order.is_some_and(|order| order.is_lt()) {

@@ -1,4 +1,4 @@
-//! The objective as a function of a design: what searches make small.
+//! The objective as a function of a design, as searches call it.
 
 use super::evaluate::{Evaluation, Goal};
 use super::limits::INFEASIBLE;
@@ -18,19 +18,19 @@ pub struct Failures {
     pub example: Option<Box<(Vec<f64>, Unusable)>>,
 }
 
-/// How many designs were looked at.
+/// Numbers of designs evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Values asked for.
+    /// Evaluations of the objective.
     pub evaluations: u64,
-    /// Of these, values of designs that were found to break a limit. One that was given up as too energetic before that is
-    /// not among them.
+    /// Of these, designs that were found to break a limit. A design whose evaluation stopped at the cutoff before that is
+    /// not counted.
     pub infeasible: u64,
 }
 
-/// The goal of a search as a function of a design: a value for each varied parameter of the damper. It may be shared by threads.
+/// The goal of a search as a function of a design, which has a value for each varied parameter of the damper. Threads may share it.
 ///
-/// A design that cannot be evaluated counts as +∞, and is kept in [`Self::failures`].
+/// A design that cannot be evaluated has the value +∞ and is recorded in [`Self::failures`].
 #[derive(Debug)]
 pub struct PeakEnergy {
     scene: Scene,
@@ -43,7 +43,7 @@ pub struct PeakEnergy {
 }
 
 impl PeakEnergy {
-    /// The objective over `variables` of `damper`, hung on the structure of `scene` in the place of its own, if any.
+    /// The objective over `variables` of `damper`, which replaces the damper of `scene`, if any.
     pub fn new(
         scene: Scene,
         damper: Damper,
@@ -56,7 +56,7 @@ impl PeakEnergy {
         Self { scene, damper, variables, goal, settings, failures, counts }
     }
 
-    /// What is made small.
+    /// The goal.
     pub fn goal(&self) -> &Goal {
         &self.goal
     }
@@ -66,10 +66,10 @@ impl PeakEnergy {
         &self.variables
     }
 
-    /// The damper of `design`: one value for each of [`Self::variables`], SI units; the rest as given at first.
+    /// The damper of `design`: one value for each of [`Self::variables`], SI units; the other parameters are unchanged.
     ///
     /// # Errors
-    /// A value that no damper can have.
+    /// A value out of its parameter's range.
     pub fn damper(&self, design: &[f64]) -> Result<Damper, Unusable> {
         let mut damper = self.damper;
         for (&variable, &value) in self.variables.iter().zip(design) {
@@ -81,13 +81,13 @@ impl PeakEnergy {
     /// The scene of `design`.
     ///
     /// # Errors
-    /// A value that no damper can have.
+    /// A value out of its parameter's range.
     pub fn scene(&self, design: &[f64]) -> Result<Scene, Unusable> {
         Ok(Scene { damper: Some(self.damper(design)?), ..self.scene })
     }
 
-    /// What searches make small: the goal's energy of `design`, J, or above [`INFEASIBLE`] if it breaks a
-    /// limit; any number above `cutoff` as soon as it is known to be above; +∞ where there is none.
+    /// The value that searches minimise: the goal's energy of `design`, J, or a number above [`INFEASIBLE`] if it breaks a
+    /// limit; any number above `cutoff` once the value is known to exceed it; +∞ if there is no value.
     pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
         self.counts[0].fetch_add(1, Relaxed);
         match self.scene(design).and_then(|scene| self.evaluate(&scene, cutoff)) {
@@ -102,14 +102,14 @@ impl PeakEnergy {
         }
     }
 
-    /// Takes note of a value that [`Self::value`] gave in an earlier run of the same search, so that [`Self::counts`] are those of an
-    /// unbroken one.
+    /// Counts a value that [`Self::value`] returned in an earlier run of the same search, so that [`Self::counts`] are those of an
+    /// uninterrupted one.
     pub fn recall(&self, value: f64) {
         self.counts[0].fetch_add(1, Relaxed);
         self.counts[1].fetch_add(u64::from(value > INFEASIBLE), Relaxed);
     }
 
-    /// The value of a scene as this objective takes it, and what it was made of; see [`Goal::evaluate`].
+    /// Evaluates a scene with this objective's goal and settings; see [`Goal::evaluate`].
     ///
     /// # Errors
     /// As [`Goal::evaluate`].
@@ -117,12 +117,12 @@ impl PeakEnergy {
         self.goal.evaluate(scene, &self.settings, cutoff)
     }
 
-    /// The evaluations that failed so far.
+    /// The failed evaluations so far.
     pub fn failures(&self) -> Failures {
         self.failures.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// How many designs were looked at so far.
+    /// The numbers of designs evaluated so far.
     pub fn counts(&self) -> Counts {
         let [evaluations, infeasible] = [0, 1].map(|i| self.counts[i].load(Relaxed));
         Counts { evaluations, infeasible }

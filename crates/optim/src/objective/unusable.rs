@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Why a design has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Unusable {
-    /// A parameter that no damper can have.
+    /// A parameter of the damper is out of range.
     #[error("{variable}: {source}")]
     OutOfRange {
         /// The parameter.
@@ -15,13 +15,13 @@ pub enum Unusable {
         /// Its value and what is allowed.
         source: OutOfRange,
     },
-    /// A stiffness that no structure can have.
+    /// The stiffness k1 is out of range.
     #[error("k1: {0}")]
     Stiffness(OutOfRange),
-    /// A member of an ensemble with a parameter out of its range.
+    /// A member of an ensemble has a parameter out of range.
     #[error("a member of the ensemble: {0}")]
     Member(OutOfRange),
-    /// A frequency that no force can have.
+    /// The frequency of the force is out of range.
     #[error("omega: {0}")]
     Frequency(OutOfRange),
     /// The run could not be finished.

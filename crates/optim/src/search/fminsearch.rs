@@ -6,18 +6,18 @@
 //! - Points outside the box are not evaluated. They, and points where the objective is NaN or infinite (either
 //!   sign), count as +∞: they are never accepted and push the simplex back.
 //! - A run stops once the simplex is small in *both* x and value, or at MaxIter or MaxFunEvals iterations and
-//!   evaluations. As in MATLAB the limits are looked at between iterations, so the last one may pass MaxFunEvals.
+//!   evaluations. As in MATLAB the limits are checked between iterations, so the last one may exceed MaxFunEvals.
 //! - The objective is given a cutoff and may stop early above it; see [`minimize`].
 //!
 //! # With argmin
 //! [`Fminsearch`] is an [`argmin::core::Solver`] over [`State`]; [`minimize`] and [`Fminsearch::run`] drive it with
 //! argmin's `Executor`. Observers of an `Executor` of your own receive the same rows: the parameters and cost of
-//! the state are the best vertex, and the key-value store holds `iteration`, `func_count` and `procedure`. They must
+//! the state are the best vertex, and the key-value store has `iteration`, `func_count` and `procedure`. They must
 //! be `'static` and cannot end a run, which is why `run` has a `watch` closure instead: it may borrow and may break.
 //!
 //! # Saving a run
-//! The solver is the whole state of a run and serialises. [`Fminsearch::run`] continues where it was: break from
-//! `watch`, save the solver, and run it again, now or in another process. The rows are those of an unbroken run.
+//! The solver is the whole state of a run and can be serialised. [`Fminsearch::run`] continues where it stopped: break from
+//! `watch`, save the solver, and run it again, now or in another process. The rows are those of an uninterrupted run.
 //! (In an `Executor` of your own the observers' `observe_init` sees the last row of a continued run again.)
 
 mod log;
@@ -59,10 +59,10 @@ pub struct Minimum {
 /// `objective(parameters, cutoff)` returns the value at `parameters` (as many as `start`, in its order and units).
 /// As soon as it knows that the value exceeds `cutoff` it may stop and return any larger number instead, NaN and
 /// infinities included: the run is the same to the last bit. A value of at most `cutoff` must be exact. `cutoff` is
-/// +∞ where the value is needed whatever it is.
+/// +∞ where the value is needed in any case.
 ///
-/// `watch` sees each [`Row`] as it happens and may end the run with [`ControlFlow::Break`]. A break on the row that
-/// ends the run anyway leaves that row's own reason.
+/// `watch` receives each [`Row`] as it is made and may end the run with [`ControlFlow::Break`]. A break on the row that
+/// ends the run anyway keeps the reason of that row.
 ///
 /// # Errors
 /// Invalid options, a start that is empty, not finite or outside its bounds ([`Fminsearch::new`]), or one where the
@@ -91,10 +91,10 @@ pub fn minimize(
 impl Fminsearch {
     /// Runs, or continues, until a stop test holds or `watch` breaks; see [`minimize`] for both closures.
     ///
-    /// After an interruption the solver can be saved, and run again to go on with the next row.
+    /// After an interruption the solver can be saved, and run again to continue with the next row.
     ///
     /// # Errors
-    /// [`Error::StartValue`] where the objective is not finite at the start; the solver is then as new.
+    /// [`Error::StartValue`] where the objective is not finite at the start; the solver is then unchanged.
     pub fn run(
         &mut self,
         objective: impl Fn(&[f64], f64) -> f64,
@@ -117,7 +117,7 @@ impl Fminsearch {
     }
 }
 
-/// A run that tells `watch` each new row and ends once it has broken.
+/// A run that passes each new row to `watch` and ends once that breaks.
 struct Watched<'a, W> {
     solver: &'a mut Fminsearch,
     watch: W,

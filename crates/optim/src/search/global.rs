@@ -1,10 +1,11 @@
-//! Global search: an even look at the whole box, then CMA-ES from the best places that lie apart.
+//! Global search: low-discrepancy samples of the whole box, then CMA-ES from the best of them that lie apart.
 //!
-//! - The look: an Owen-scrambled Sobol sequence (`sobol_burley`), evaluated in parallel.
+//! - The samples: an Owen-scrambled Sobol sequence (`sobol_burley`), evaluated in parallel.
 //! - CMA-ES (N. Hansen, The CMA Evolution Strategy: A Tutorial, arXiv:1604.00772) with Hansen's boundary penalty, from the crate
-//!   `basin`, in the coordinates of [`Space`]. Searches run beside one another, each with its own stream of random numbers, so
+//!   `basin`, in the coordinates of [`Space`]. Searches run in parallel, each with its own stream of random numbers, so
 //!   that the result is the same at any number of threads.
-//! - [`basins`]: how many searches came to the same place. An optimum that one of many reached is a lonely one.
+//! - [`basins`]: groups the searches that reached the same basin. An optimum that only one of many searches reached is less
+//!   certain.
 
 use crate::search::space::Space;
 use basin::{
@@ -16,12 +17,12 @@ use std::convert::Infallible;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use thiserror::Error;
 
-/// How a global search is made.
+/// The settings of a global search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Global {
-    /// Points of the first look, at least 1 and at most 65536.
+    /// Number of samples, at least 1 and at most 65536.
     pub samples: u32,
-    /// Searches, each from one of the best of them, at least 1.
+    /// Number of searches, each from one of the best samples, at least 1.
     pub searches: usize,
     /// Least distance between two starts, in coordinates of [`Space`].
     pub apart: f64,
@@ -29,9 +30,9 @@ pub struct Global {
     pub spread: f64,
     /// A search ends once its standard deviation is below this along every axis.
     pub tolerance: f64,
-    /// Evaluations after which a search ends with its generation.
+    /// Evaluations after which a search ends, at the end of the generation that reaches them.
     pub evaluations: u64,
-    /// Chooses the points and the random numbers.
+    /// Seed of the samples and of the random numbers.
     pub seed: u32,
 }
 
@@ -54,7 +55,7 @@ impl Default for Global {
 pub struct Point {
     /// The parameters, in their own units.
     pub x: Vec<f64>,
-    /// The objective there.
+    /// The value of the objective there.
     pub value: f64,
 }
 
@@ -63,7 +64,7 @@ pub struct Point {
 pub struct Descent {
     /// Where it started.
     pub start: Point,
-    /// The best it met.
+    /// The best point it evaluated.
     pub found: Point,
     /// Evaluations it made.
     pub evaluations: u64,
@@ -72,10 +73,10 @@ pub struct Descent {
 /// Why a global search failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum GlobalError {
-    /// No point of the first look has a value.
+    /// None of the samples has a value.
     #[error("no design could be computed of the {samples} that were spread over the whole box")]
     NoStart {
-        /// How many were looked at.
+        /// The number of samples.
         samples: u32,
     },
     /// CMA-ES did not accept its box.
@@ -83,8 +84,8 @@ pub enum GlobalError {
     Cma(String),
 }
 
-/// Searches the whole of `space`. `objective(parameters, cutoff)` is that of [`crate::minimize`]; CMA-ES ranks all designs of a
-/// generation, so the cutoff is always +∞. `progress` is told of each evaluation, from any thread.
+/// Searches the whole of `space`. `objective(parameters, cutoff)` is as in [`crate::minimize`]; CMA-ES ranks all designs of a
+/// generation, so the cutoff is always +∞. `progress` is called after each evaluation, from any thread.
 ///
 /// # Errors
 /// [`GlobalError`].
@@ -171,19 +172,19 @@ impl<F: Fn(&[f64]) -> f64> CostFunction for Cost<F> {
     }
 }
 
-/// A place that searches came to.
+/// A basin of the objective that searches reached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basin {
-    /// The best design of it.
+    /// The best design in it.
     pub best: Point,
-    /// The numbers of the searches that came here, in their order.
+    /// The indices of the searches that ended in it, ascending.
     pub reached_by: Vec<usize>,
 }
 
-/// Gathers what searches found: each belongs to the best one that is less than `apart` away in the coordinates of `space`, or from
-/// which no ridge parts it. There is no ridge where the objective, at [`ON_THE_WAY`] places evenly spaced between the two, is
-/// nowhere above the worse of both by more than a share [`RIDGE`] (the hill-valley test of R. K. Ursem, Multinational
-/// evolutionary algorithms, CEC 1999). So a level stretch is one basin however long it is. The basins are sorted, best first.
+/// Groups the ends of searches by basin: each joins the best end that is less than `apart` away in the coordinates of `space`, or
+/// from which no ridge separates it. There is no ridge if the objective, at [`ON_THE_WAY`] points evenly spaced between the two, is
+/// nowhere above the worse of both by more than a share [`RIDGE`] (the hill-valley test of R. K. Ursem, Multinational evolutionary
+/// algorithms, CEC 1999). So a level stretch is one basin, whatever its length. The basins are sorted, best first.
 pub fn basins(
     objective: impl Fn(&[f64], f64) -> f64,
     space: &Space,
@@ -216,7 +217,7 @@ pub fn basins(
     basins
 }
 
-/// Places between two designs at which a ridge is looked for.
+/// Number of points between two designs at which the objective is evaluated to find a ridge.
 pub const ON_THE_WAY: usize = 3;
-/// Share by which a ridge is above the worse of the designs that it parts.
+/// Share by which a ridge exceeds the worse of the two designs that it separates.
 pub const RIDGE: f64 = 1e-3;

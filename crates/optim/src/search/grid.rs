@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Largest magnitude of an axis end. It leaves room for any number of points in [`Axis::value`] without
+/// Largest magnitude of an axis end, so that [`Axis::value`] works for any number of points without
 /// overflow: 1e280 · 2⁶⁴ < 1e300.
 pub const LARGEST_END: f64 = 1e280;
 
@@ -21,7 +21,7 @@ pub enum Scale {
 /// Why an axis cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum AxisError {
-    /// An end is NaN, infinite or absurdly large.
+    /// An end is NaN, infinite or too large.
     #[error("`{name}` is {value}: it must be a number of magnitude at most {LARGEST_END:e}")]
     NotANumber {
         /// `from` or `to`.
@@ -45,7 +45,7 @@ pub enum AxisError {
         /// Last end as given.
         to: f64,
     },
-    /// Fewer points than ends, or several points on one value.
+    /// Too few points for two different ends, or several points for equal ends.
     #[error(
         "`points` is {points} between {from} and {to}: an axis has at least 2 points, \
          or exactly 1 where `from` equals `to`"
@@ -73,7 +73,7 @@ impl Axis {
     /// An axis of `points` values from `from` up to `to`, in the parameter's own unit.
     ///
     /// # Errors
-    /// An end that is no ordinary number (or not above zero on a [`Scale::Log`] axis), `from > to`, or a number
+    /// An end that is NaN, infinite or too large (or not above zero on a [`Scale::Log`] axis), `from > to`, or a number
     /// of points other than 1 where `from == to` and other than 2 or more elsewhere.
     pub fn new(from: f64, to: f64, points: usize, scale: Scale) -> Result<Self, AxisError> {
         for (name, value) in [("from", from), ("to", to)] {
@@ -115,7 +115,7 @@ impl Axis {
 
     /// Value number `i`, counted from 0; `i` beyond the last gives the last.
     ///
-    /// Each value is computed from the ends alone, so errors do not add up along the axis. The ends are exact.
+    /// Each value is computed from the ends alone, so errors do not accumulate along the axis. The ends are exact.
     pub fn value(&self, i: usize) -> f64 {
         if i == 0 {
             return self.from;
@@ -176,7 +176,7 @@ impl Grid {
         }
     }
 
-    /// The axes, first the one that runs slowest.
+    /// The axes, the slowest one first.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }

@@ -1,4 +1,4 @@
-//! A box of parameters in coordinates from 0 to 1, in which equal distances mean as much along every axis.
+//! A box of parameters in coordinates from 0 to 1, in which distances are comparable along all axes.
 
 use crate::search::grid::Scale;
 
@@ -14,7 +14,7 @@ pub struct Side {
 }
 
 impl Side {
-    /// A side with the scale that is natural for it: ratios, where it spans a decade or more above zero.
+    /// A side with its natural scale: logarithmic if it is above zero and spans a decade or more, else linear.
     pub fn natural(from: f64, to: f64) -> Self {
         let scale = if from > 0.0 && to >= 10.0 * from { Scale::Log } else { Scale::Linear };
         Self { from, to, scale }
@@ -63,7 +63,7 @@ impl Space {
         self.0.iter().zip(x).map(|(side, &x)| side.coordinate(x)).collect()
     }
 
-    /// The largest difference of coordinates, over all sides, of two designs.
+    /// The largest difference between the coordinates of two designs, over all sides.
     pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let (a, b) = (self.coordinates(a), self.coordinates(b));
         a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

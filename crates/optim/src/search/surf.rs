@@ -1,4 +1,4 @@
-//! The `surf` stage: an objective on every point of a grid, and the best points of it.
+//! The `surf` stage: an objective at every point of a grid, and its best points.
 
 use crate::search::grid::Grid;
 use rayon::prelude::*;
@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// The objective at every point of `grid`, in the grid's order.
 ///
-/// Points are shared among the threads of the current rayon pool. Each value depends on its point alone and goes
-/// to its own place, so the result is the same to the last bit at any number of threads. NaN and infinite values
+/// Points are shared among the threads of the current rayon pool. Each value depends on its point alone and is written
+/// to its own element, so the result is the same to the last bit at any number of threads. NaN and infinite values
 /// are kept as they are.
 ///
-/// `progress` is told the number of points done, once for each point and from any thread, so numbers may arrive
+/// `progress` is called with the number of points done, once for each point and from any thread, so numbers may arrive
 /// out of order; each of `1..=grid.len()` arrives once.
 pub fn surf(
     grid: &Grid,
@@ -22,7 +22,7 @@ pub fn surf(
     surf_part(grid, 0..grid.len(), |_, point| objective(point), progress)
 }
 
-/// As [`surf`] on some of the points alone; the objective is also given the number of the point.
+/// As [`surf`] for a range of the points; the objective also receives the index of the point.
 ///
 /// # Panics
 /// If the grid has no such points.
@@ -37,7 +37,7 @@ pub fn surf_part(
     points
         .into_par_iter()
         .map_init(
-            || vec![0.0; grid.dim()], // once for a run of points, not once for a point
+            || vec![0.0; grid.dim()], // once for a range of points, not for each point
             |point, i| {
                 grid.point(i, point);
                 let value = objective(i, point);
@@ -52,7 +52,7 @@ pub fn surf_part(
 /// some axis (the Chebyshev distance).
 ///
 /// Each next point is the smallest finite value far enough from those already taken; of equal values the one with
-/// the lowest number. Points that are not finite are never taken. The list is shorter than `count` where the grid
+/// the lowest number. Points that are not finite are never taken. The list is shorter than `count` if the grid
 /// has no more such points.
 ///
 /// # Panics

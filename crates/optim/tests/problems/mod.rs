@@ -21,7 +21,7 @@ pub fn rosenbrock(x: &[f64]) -> f64 {
     a * a + 100.0 * b * b
 }
 
-/// 3-D, flat steps around (2, 2, −2): runs into ties, failed contractions and shrinks.
+/// 3-D, flat steps around (2, 2, −2): causes ties, failed contractions and shrinks.
 pub fn terraces(x: &[f64]) -> f64 {
     let (a, b, c) = ((x[0] - x[1]).abs(), (x[1] + x[2]).abs(), (x[0] - 2.0).abs());
     (64.0 * (a + b + c)).trunc()

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 /// A directory to work in.
 pub struct Desk(TempDir);
 
-/// What the program answered.
+/// The output of the program.
 pub struct Answer {
     pub code: Option<i32>,
     pub stdout: String,
@@ -68,7 +68,7 @@ impl Desk {
         Answer { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
     }
 
-    /// Runs what must succeed.
+    /// Runs a command that must succeed.
     pub fn good(&self, arguments: &[&str]) -> String {
         let Answer { code, stdout, stderr } = self.run(arguments);
         assert_eq!((code, stderr.as_str()), (Some(0), ""), "{arguments:?}");
@@ -97,7 +97,7 @@ pub fn tiny() -> Value {
     study
 }
 
-/// A text whose first number with six decimals or more has another third decimal.
+/// The text with the third decimal changed in its first number of six decimals or more.
 pub fn altered(text: &str) -> String {
     let decimals = |rest: &str| rest.bytes().take_while(u8::is_ascii_digit).count();
     let mut points = text.match_indices('.').map(|(at, _)| at + 1);
@@ -134,7 +134,7 @@ pub fn begun(desk: &Desk, arguments: &[&str], out: &str, lines: usize) -> Child 
     started(desk.command(arguments), desk, out, lines)
 }
 
-/// The same of any command.
+/// The same for any command.
 pub fn started(mut command: Command, desk: &Desk, out: &str, lines: usize) -> Child {
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program");
     let journal = desk.path(out).join("unfinished/journal");

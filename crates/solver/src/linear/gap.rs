@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_leaving_a_wall_is_not_a_contact_but_returning_is() {
+    fn contract_leaving_a_wall_is_not_a_contact_but_returning_is() {
         assert_eq!(first(polynomial(&[0.0, 1.0]), 1.0), None);
         let back = first(polynomial(&[0.0, 1.0, -4.0]), 1.0).expect("returns");
         assert!((back - 0.25).abs() < 1e-15);
@@ -217,7 +217,7 @@ mod tests {
 
     /// Once searched without end: a bound that is NaN decides nothing about any half, however short.
     #[test]
-    fn exact_a_gap_beyond_numbers_or_a_search_without_end_is_said_to_be_lost() {
+    fn contract_a_gap_beyond_numbers_or_an_endless_search_is_lost() {
         for beyond in [f64::INFINITY, f64::NAN, 1e308] {
             assert_eq!(first_contact(Polynomial::<2>::new(&[1.0, -1.0, 0.0, 0.0, beyond]), 1.0), Err(Lost));
         }

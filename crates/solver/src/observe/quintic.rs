@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_two_maxima_are_not_taken_for_one() {
+    fn contract_two_maxima_are_not_taken_for_one() {
         // 1 - (4 t (1 - t) - 0.6)²: concave at both ends, a dip in the middle.
         let (a, b) = ([0.64, 4.8, -41.6], [0.64, -4.8, -41.6]);
         assert!(matches!(shape(through(1.0, a, b), 0.0), Shape::Unknown));

@@ -76,7 +76,7 @@ fn ask(journal: &Journal, count: usize) -> usize {
 }
 
 #[test]
-fn exact_what_is_known_is_not_computed_again() {
+fn contract_known_values_are_not_computed_again() {
     let desk = Desk::new();
     assert_eq!(ask(&desk.open(), 5), 20);
     let before = desk.bytes();
@@ -204,7 +204,7 @@ fn contract_the_work_of_another_study_is_never_believed() {
 }
 
 #[test]
-fn exact_what_could_not_be_computed_is_tried_again_but_written_once() {
+fn contract_failed_values_are_computed_again_but_written_once() {
     let desk = Desk::new();
     let fail = |journal: &Journal| {
         let tries = Cell::new(0);
@@ -223,7 +223,7 @@ fn exact_what_could_not_be_computed_is_tried_again_but_written_once() {
 }
 
 #[test]
-fn exact_marks_are_kept() {
+fn contract_marks_are_kept() {
     let desk = Desk::new();
     desk.open().mark("figure3");
     let again = desk.open();

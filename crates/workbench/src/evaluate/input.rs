@@ -1,4 +1,4 @@
-//! Lines of an input, read beside the work so that it is known whether more than one is there.
+//! Lines of an input, read in a thread of their own so that several can be evaluated together.
 
 use std::io::{BufRead, Error, Result};
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -9,24 +9,24 @@ pub const MOST: usize = 4096;
 /// A line.
 #[derive(Debug, PartialEq)]
 pub enum Line {
-    /// Its text; what is no UTF-8 is replaced.
+    /// Its text; invalid UTF-8 is replaced.
     Text(String),
     /// One that is longer than [`MOST`]; its text is not kept.
     Long,
 }
 
-/// The lines of an input, at most `ahead` of them read before they are wanted.
+/// The lines of an input, at most `ahead` of them read in advance.
 pub fn lines(mut input: impl BufRead + Send + 'static, ahead: usize) -> Receiver<Result<Line>> {
     let (sender, receiver) = sync_channel(ahead);
     let read = move || {
         while let Some(line) = next(&mut input).transpose() {
             let broken = line.is_err();
             if sender.send(line).is_err() || broken {
-                break; // nobody wants more
+                break; // the receiver is gone
             }
         }
     };
-    // The thread is not waited for: when nobody reads the answers, it may still wait for a line.
+    // The thread is not joined: when the answers are no longer read, it may still wait for a line.
     let started = std::thread::Builder::new().name("input".to_owned()).spawn(read);
     if let Err(error) = started {
         let (sender, receiver) = sync_channel(1);
@@ -36,7 +36,7 @@ pub fn lines(mut input: impl BufRead + Send + 'static, ahead: usize) -> Receiver
     receiver
 }
 
-/// The next line; none at the end.
+/// The next line; `None` at the end.
 fn next(input: &mut impl BufRead) -> Result<Option<Line>> {
     let mut line = Vec::new();
     let (mut any, mut long) = (false, false);
@@ -68,7 +68,7 @@ mod tests {
     use std::io::BufReader;
 
     #[test]
-    fn exact_lines_are_taken_apart_and_long_ones_not_kept() {
+    fn contract_lines_are_taken_apart_and_long_ones_not_kept() {
         let most = "1".repeat(MOST);
         let input = format!("1 2\n\n{most}\n{most}1\nlast");
         for capacity in [1, 7, 1 << 16] {

@@ -10,13 +10,13 @@ use retune_store::Directory;
 use retune_study::Study;
 use retune_study::short;
 
-/// Frequencies of the curves where each costs next to nothing.
+/// Number of frequencies of the curves if each is a closed form.
 const FINE: usize = 601;
-/// How many times the samples of the search the curves have where each is a run.
+/// Factor on the number of the search's samples if each frequency is a run.
 const FINER: usize = 4;
 
-/// Writes `band.csv` and `band.svg`; `tuned` is the scene with the damper that was found. What has no value (a steady motion
-/// that reaches a wall, a run that fails) is an empty field and a gap.
+/// Writes `band.csv` and `band.svg`; `tuned` is the scene with the damper that was found. Missing values (a steady motion
+/// that reaches a wall, a run that fails) are empty fields and gaps.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -60,7 +60,7 @@ fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
     Some(scene)
 }
 
-/// E1max of a scene as a term takes it, without limits, J; NaN where it has none.
+/// E1max of a scene as in a term, without limits, J; NaN if it has none.
 fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
     let goal = Goal { objective: term.clone(), window: study.window.window(), limits: Limits::default() };
     let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
@@ -72,7 +72,7 @@ fn first(objective: &Objective) -> Option<&Objective> {
     objective.terms().first().map(|(_, term)| *term)
 }
 
-/// E1max of a scene at its own frequency, J, as `band.csv` has it; NaN where it has none.
+/// E1max of a scene at its own frequency, J, as in `band.csv`; NaN if it has none.
 pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
     let objective = study.objective();
     first(&objective)

@@ -13,26 +13,26 @@ use retune_study::{counted, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 
-/// What a global search found.
+/// The results of a global search.
 pub struct Explored {
     /// The searches, in the order of their starts.
     pub searches: Vec<Descent>,
-    /// Where they came to.
+    /// The basins they reached.
     pub basins: Vec<Basin>,
     /// The box.
     pub space: Space,
-    /// How near two ends are that are one basin.
+    /// The distance below which two ends are one basin.
     pub apart: f64,
     /// The designs that could not be computed.
     pub failures: Failures,
-    /// How many designs were looked at.
+    /// The numbers of designs evaluated.
     pub counts: Counts,
 }
 
 /// Makes the global search of a study, if it asks for one.
 ///
 /// # Errors
-/// Not one design could be computed.
+/// No design could be computed.
 pub(super) fn global(
     study: &Study,
     search: &Search,
@@ -89,17 +89,17 @@ impl Explored {
 /// Basins after the refinements, and how often each was reached.
 #[derive(Clone, Debug, Serialize)]
 pub struct Basins {
-    /// Designs that the first look and the searches evaluated.
+    /// Designs evaluated as samples and by the searches.
     evaluations: u64,
-    /// How many searches there were.
+    /// Number of searches.
     searches: usize,
-    /// How many of them came to the basin of the optimum.
+    /// Number of them that ended in the basin of the optimum.
     reached_optimum: usize,
     /// Best first.
     basins: Vec<BasinNote>,
 }
 
-/// A basin: the best design of it, and what led there.
+/// A basin: its best design, and the searches and refinements that ended in it.
 #[derive(Clone, Debug, Serialize)]
 struct BasinNote {
     #[serde(flatten)]
@@ -107,15 +107,15 @@ struct BasinNote {
     /// null if it breaks a limit.
     #[serde(rename = "E1max")]
     e1_max: f64,
-    /// Searches that came here.
+    /// Searches that ended here.
     searches: usize,
     /// Refinements that ended here.
     refinements: usize,
 }
 
 impl Basins {
-    /// Gathers what searches and refinements found: the end of a search whose basin was refined is what the refinement made of
-    /// it. Refinements come first in `runs` in the order of the basins, after `skip` others.
+    /// Groups the ends of searches and refinements: the end of a search whose basin was refined is the end of that
+    /// refinement. In `runs` the refinements of basins follow `skip` others, in the order of the basins.
     pub(super) fn new(
         explored: &Explored,
         search: &Search,

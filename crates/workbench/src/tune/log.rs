@@ -1,4 +1,4 @@
-//! The log of a refinement, in the forms it is written in.
+//! The formats of a refinement's log.
 
 use retune_optim::{Row, energy};
 use retune_study::{joined, short};
@@ -19,7 +19,7 @@ pub fn csv(row: &Row, values: &[f64; 4]) -> String {
     format!("{iteration},{func_count},{procedure},{},{value}", joined(values, ","))
 }
 
-/// A row of `fminsearch.txt`, with the look of the paper's Table 1.
+/// A row of `fminsearch.txt`, in the format of the paper's Table 1.
 pub fn table1(row: &Row, values: &[f64; 4]) -> String {
     let [k2, c2, d, c] = values.map(scientific);
     format!("{k2}   {c2}   {d}   {c}   {}", scientific(row.value))

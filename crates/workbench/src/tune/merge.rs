@@ -1,4 +1,4 @@
-//! `merge`: the parts of a grid that many machines computed, put together, and the rest of the search.
+//! `merge`: merges the parts of a grid that many machines computed, and completes the search.
 
 use super::shard::{self, Head, PARTS};
 use super::{Tuned, finished, optimize_from};
@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 /// Most shares that a message names.
 const NAMED: usize = 5;
 
-/// Checks that the parts are of one study, one version and one arithmetic, disjoint and complete, and goes on to what [`tune`]
-/// would have written. `parts` are files; if none are given, all in the directory of parts.
+/// Checks that the parts are of one study, one version and one arithmetic, disjoint and complete, and completes the search as
+/// [`tune`] would have done. `parts` are files; by default all in the directory of parts.
 ///
 /// # Errors
-/// The study is wrong, the parts are not what they must be, nothing can be computed, or the results cannot be written.
+/// The study or a part is wrong, nothing can be computed, or the results cannot be written.
 ///
 /// [`tune`]: super::tune()
 pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Result<Tuned, Error> {
@@ -47,7 +47,7 @@ pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Resu
     })
 }
 
-/// Whether the parts are disjoint and hold every point.
+/// Checks that the parts are disjoint and contain every point.
 fn check(heads: &mut [Head], len: usize, study: &Path, out: &Path) -> Result<(), Error> {
     heads.sort_by_key(|head| (head.points.start, head.points.end));
     let mut missing = Vec::new();
@@ -84,7 +84,7 @@ fn check(heads: &mut [Head], len: usize, study: &Path, out: &Path) -> Result<(),
     })
 }
 
-/// The shares that are not there, where all are of the same number of shares.
+/// The missing shares, if all parts are of the same number of shares.
 fn missing_shards(heads: &[Head]) -> Option<Vec<String>> {
     let count = heads.first()?.shard.count;
     let is_there = |index: usize| heads.iter().any(|head| head.shard.index == index);

@@ -4,7 +4,7 @@ use retune_optim::{PeakEnergy, Variable};
 use retune_store::Journal;
 use retune_study::{Search, Study};
 
-/// An objective as searches call it: what the journal knows of it is not computed again; then `on_known` is called.
+/// An objective as searches call it: values in the journal are not computed again; `on_known` is called for each of them.
 pub(super) fn kept<'a>(
     objective: &'a PeakEnergy,
     journal: &'a Journal,

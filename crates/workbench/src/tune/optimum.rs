@@ -1,4 +1,4 @@
-//! What a search found: one type, from which `optimum.json` and the last lines on screen are made.
+//! The result of a search: one type, from which `optimum.json` and the last lines on screen are made.
 
 mod notes;
 
@@ -22,15 +22,15 @@ pub struct Optimum {
     damper: TunedDamper,
     #[serde(rename = "E1max")]
     e1_max: f64,
-    /// What E1max is, where it is not that of a window at the scene's omega.
+    /// The meaning of E1max, if it is not that of a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
     objective: Option<Goal>,
     on_bound: Vec<Met>,
-    /// How the limits of the study are kept, where it has any.
+    /// The state of the study's limits, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<LimitNote>,
     surf: Option<GridBest>,
-    /// What the global search found, where there was one.
+    /// The result of the global search, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     global: Option<Basins>,
     refine: Refinement,
@@ -44,7 +44,7 @@ pub struct Optimum {
     made_by: MadeBy,
 }
 
-/// What came before the refinement.
+/// The stages before the refinement.
 pub(super) struct Searched<'a> {
     pub surf: Option<&'a Surf>,
     pub explored: Option<&'a Explored>,
@@ -104,7 +104,7 @@ struct FailureNote {
 }
 
 impl Optimum {
-    /// Collects what a search found; `summary` is of a run of the best design at the worst frequency of `evaluation`.
+    /// Collects the results of a search; `summary` is of a run of the best design at the worst frequency of `evaluation`.
     pub(super) fn new(
         study: &Study,
         search: &Search,
@@ -226,7 +226,7 @@ pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 
-/// Where the best run started, with its energy whether it keeps the limits or not.
+/// The start of the best run, with its energy whether it keeps the limits or not.
 fn start(search: &Search, refined: &Refined) -> Found {
     let first = refined.best().rows.first();
     let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);

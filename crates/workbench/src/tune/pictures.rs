@@ -1,4 +1,4 @@
-//! The figures of a search: Figure 2's surfaces, and the way of the refinement.
+//! The figures of a search: Figure 2's surfaces, and the convergence of the refinement.
 
 use super::log::worth;
 use super::refine::Refined;
@@ -40,7 +40,7 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// The surface over two axes of the grid: the least E1max over all others.
+/// The surface over two axes of the grid: the least E1max over all other axes.
 fn heat_map(
     surf: &Surf,
     [x, y]: [usize; 2],
@@ -54,7 +54,7 @@ fn heat_map(
     for (i, &value) in surf.values.iter().enumerate() {
         surf.grid.steps(i, &mut steps);
         let cell = &mut least[steps[y] * columns + steps[x]];
-        *cell = cell.min(energy(value)); // NaN, of an infeasible design, is never the smaller
+        *cell = cell.min(energy(value)); // NaN (an infeasible design) is never the smaller
     }
     let best = surf.point(surf.best);
     let found = |axis: usize| {
@@ -121,7 +121,7 @@ pub fn label(variable: Variable) -> String {
     format!("{}, {}", symbol(variable), variable.unit())
 }
 
-/// A parameter's symbol as figures set it.
+/// A parameter's symbol in figures.
 fn symbol(variable: Variable) -> &'static str {
     match variable {
         Variable::K2 => "k_{2}",

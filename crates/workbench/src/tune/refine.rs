@@ -1,4 +1,4 @@
-//! The fine stage: `fminsearch` from each start, logged as it happens.
+//! The fine stage: `fminsearch` from each start, with its log.
 
 use super::log::{self, CSV_HEADER, TXT_HEADER};
 use super::objective::{kept, objective};
@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// All refinements of a study.
 pub struct Refined {
-    /// The objective that was made small; it keeps the evaluations that failed.
+    /// The objective that was minimised; it keeps the failed evaluations.
     pub objective: PeakEnergy,
     /// A run for each start, in the order of the starts.
     pub runs: Vec<Run>,
@@ -25,12 +25,12 @@ pub struct Refined {
 pub struct Run {
     /// Its log.
     pub rows: Vec<Row>,
-    /// What it found.
+    /// Its result.
     pub minimum: Minimum,
 }
 
 impl Refined {
-    /// The run that found the smallest value; the first of equals.
+    /// The run that found the smallest value; of equal ones the first.
     pub fn best(&self) -> &Run {
         &self.runs[self.winner]
     }
@@ -78,7 +78,7 @@ pub(super) fn refine(
     Ok(refined)
 }
 
-/// One run. `tell` gets each row with its whole design; its error ends the run.
+/// One run. `tell` receives each row with its whole design; its error ends the run.
 fn run(
     objective: &PeakEnergy,
     search: &Search,

@@ -1,5 +1,5 @@
 //! A share of the grid, for many machines: `optimize --shard 3/64` computes the third of sixty-four shares and writes it as one
-//! part, whose name holds the hash of its content. A part never changes: it is there and whole, or not there.
+//! part, whose name holds the hash of its content. A part never changes: it exists complete, or not at all.
 
 use super::objective::objective;
 use crate::request;
@@ -34,7 +34,7 @@ pub const ENDING: &str = ".part";
 pub struct Shard {
     /// Its number, from 1.
     pub index: usize,
-    /// How many shares there are.
+    /// Number of shares.
     pub count: usize,
 }
 
@@ -57,7 +57,7 @@ impl std::fmt::Display for Shard {
 }
 
 impl Shard {
-    /// The points of a grid of `len` that are this share.
+    /// The points of this share in a grid of `len` points.
     fn points(self, len: usize) -> Range<usize> {
         let end = |shares: usize| (shares as u128 * len as u128 / self.count as u128) as usize;
         end(self.index - 1)..end(self.index)
@@ -69,14 +69,14 @@ impl Shard {
     }
 }
 
-/// What the first line of a part says.
+/// The first line of a part.
 #[derive(Clone, Debug)]
 pub struct Head {
-    /// Where the part is.
+    /// The file of the part.
     pub path: PathBuf,
-    /// What made it.
+    /// The identity of its study and program.
     pub identity: Identity,
-    /// Which share it is.
+    /// Its share.
     pub shard: Shard,
     /// Its points.
     pub points: Range<usize>,
@@ -102,7 +102,7 @@ pub fn shard(
     if let Some(path) = find(&parts, shard)? {
         return match identity.difference(&read(&path, |_, _| {})?.identity) {
             None => {
-                // What made it may have been killed before it had put its work away.
+                // The process that made it may have been killed before it removed its work.
                 if let Some(work) = place.exists().then(|| {
                     open(&place, &Order { begin: Begin::Restart, ..order.clone() }, &identity, watch)
                 }) {
@@ -153,18 +153,18 @@ pub fn shard(
     watch.result(&format!("wrote {}", path.display()))
 }
 
-/// The directory in which a part comes about; it has no results of its own.
+/// Opens the working directory of a part; it has no results of its own.
 fn open(place: &Path, order: &Order, identity: &Identity, watch: &dyn Observer) -> Result<Directory, Error> {
     request::open(place, order, identity, Extent::Share, |_| false, watch)
 }
 
-/// Removes the directory in which a part came about.
+/// Removes the working directory of a part.
 fn put_away(work: Directory, place: &Path) {
     work.discard();
-    let _ = std::fs::remove_dir(place); // empty by now; if it is not, it is not ours
+    let _ = std::fs::remove_dir(place); // empty by now; otherwise it is not ours
 }
 
-/// The part of a shard, if it is there.
+/// The part of a shard, if it exists.
 fn find(parts: &Path, shard: Shard) -> Result<Option<PathBuf>, Error> {
     let prefix = format!("{}-", shard.name());
     Ok(list(parts)?.into_iter().find(|path| {
@@ -172,7 +172,7 @@ fn find(parts: &Path, shard: Shard) -> Result<Option<PathBuf>, Error> {
     }))
 }
 
-/// The parts in a directory, sorted; none if there is no directory.
+/// The parts in a directory, sorted; an empty list if there is no directory.
 ///
 /// # Errors
 /// It cannot be read.
@@ -192,10 +192,10 @@ pub fn list(parts: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(found)
 }
 
-/// Reads a part and hands over each of its points with its value.
+/// Reads a part and calls `visit` with each of its points and its value.
 ///
 /// # Errors
-/// It cannot be read, or is not whole.
+/// It cannot be read, or is incomplete.
 pub fn read(path: &Path, mut visit: impl FnMut(usize, f64)) -> Result<Head, Error> {
     let refuse = |source| retune_store::Error::Input { path: path.to_owned(), source };
     let broken = |problem: &str| Error::Part { path: path.to_owned(), problem: problem.to_owned() };
@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_shares_are_disjoint_and_complete() {
+    fn invariant_shares_are_disjoint_and_complete() {
         for (len, count) in [(10, 3), (7, 7), (3, 5), (10_000_000, 999), (0, 2)] {
             let mut next = 0;
             for index in 1..=count {
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_shares_that_are_none_are_refused() {
+    fn contract_invalid_shares_are_refused() {
         assert_eq!("3/64".parse(), Ok(Shard { index: 3, count: 64 }));
         for text in ["0/3", "4/3", "3", "a/b", "1/0", "-1/3", ""] {
             assert!(text.parse::<Shard>().is_err(), "{text}");

@@ -23,14 +23,14 @@ pub struct Surf {
     pub best: usize,
     /// The points that could not be computed.
     pub failures: Failures,
-    /// How many were looked at.
+    /// The numbers of designs evaluated.
     pub counts: Counts,
 }
 
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
 ///
 /// # Errors
-/// Not one point could be computed, or the file cannot be written.
+/// No point could be computed, or the file cannot be written.
 pub(super) fn surf(
     study: &Study,
     search: &Search,

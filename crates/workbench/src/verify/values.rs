@@ -39,7 +39,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn exact_every_leaf_is_compared() {
+    fn contract_every_leaf_is_compared() {
         let again = json!({ "a": [1.0, null], "retune": "2", "b": { "verdict": "robust", "words": "so" } });
         let look = |said: Value, within: f64| {
             let Tally { differ, most } = compare(&said, &again, within);

@@ -1,4 +1,4 @@
-//! What a run tells of itself: its state as argmin keeps it, a row for each iteration, why it ended.
+//! The output of a run: argmin's state, a row for each iteration, and the reason it ended.
 
 use argmin::core::IterState;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// The argmin state of a run: its parameters and cost are the best vertex.
 pub type State = IterState<Vec<f64>, (), (), (), (), f64>;
 
-/// What an iteration did, by MATLAB's name.
+/// The step of an iteration, by MATLAB's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Procedure {
     /// Evaluated the start (iteration 0).
@@ -15,16 +15,16 @@ pub enum Procedure {
     /// Evaluated the other vertices of the first simplex (iteration 1).
     #[serde(rename = "initial simplex")]
     InitialSimplex,
-    /// Took the reflected point, be it because it was good enough or because expanding it did not help.
+    /// Accepted the reflected point, because it was good enough or because expanding it did not help.
     #[serde(rename = "reflect")]
     Reflect,
-    /// Took the expanded point.
+    /// Accepted the expanded point.
     #[serde(rename = "expand")]
     Expand,
-    /// Took a point between the centroid and the worst vertex.
+    /// Accepted a point between the centroid and the worst vertex.
     #[serde(rename = "contract inside")]
     ContractInside,
-    /// Took a point between the centroid and the reflected point.
+    /// Accepted a point between the centroid and the reflected point.
     #[serde(rename = "contract outside")]
     ContractOutside,
     /// Moved all vertices halfway to the best one.
@@ -61,7 +61,7 @@ pub struct Row {
     pub iteration: u64,
     /// Evaluations of the objective so far.
     pub func_count: u64,
-    /// What the iteration did.
+    /// The step of the iteration.
     pub procedure: Procedure,
     /// The best parameters so far, as the objective receives them (never scaled).
     pub best: Vec<f64>,
@@ -78,6 +78,6 @@ pub enum Stop {
     MaxIter,
     /// The number of evaluations reached `MaxFunEvals`.
     MaxFunEvals,
-    /// `watch` broke off before any of the other reasons held.
+    /// `watch` ended the run before any of the other reasons applied.
     Interrupted,
 }

@@ -1,4 +1,4 @@
-//! What a run of [`fminsearch`](super) may be told, and what is wrong with it.
+//! The options of a run of [`fminsearch`](super), and their errors.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ pub enum Error {
     /// A coordinate of the start is NaN or infinite.
     #[error("coordinate {index} of the start is {value}: it must be finite")]
     StartNotFinite {
-        /// Which coordinate.
+        /// Index of the coordinate.
         index: usize,
         /// Its value.
         value: f64,
@@ -19,7 +19,7 @@ pub enum Error {
     /// The start lies outside the box.
     #[error("coordinate {index} of the start is {value}, outside its bounds {bounds}")]
     StartOutside {
-        /// Which coordinate.
+        /// Index of the coordinate.
         index: usize,
         /// Its value.
         value: f64,
@@ -29,10 +29,10 @@ pub enum Error {
     /// The objective has no finite value at the start.
     #[error("the objective is {value} at the start: it must be finite there")]
     StartValue {
-        /// What the objective returned.
+        /// The value of the objective.
         value: f64,
     },
-    /// Bounds were given for another number of coordinates.
+    /// The number of bounds differs from the number of coordinates.
     #[error("{given} bounds for {expected} coordinates: give one for each, or none")]
     BoundsCount {
         /// Coordinates of the start.
@@ -40,10 +40,10 @@ pub enum Error {
         /// Bounds given.
         given: usize,
     },
-    /// Bounds that leave no room: the lower is not below the upper, or one is NaN or infinite.
+    /// Invalid bounds: the lower is not below the upper, or one is NaN or infinite.
     #[error("the bounds of coordinate {index} are {bounds}: the lower must be below the upper, both finite")]
     EmptyBounds {
-        /// Which coordinate.
+        /// Index of the coordinate.
         index: usize,
         /// Its bounds.
         bounds: Bounds,
@@ -56,12 +56,12 @@ pub enum Error {
         /// The tolerance.
         value: f64,
     },
-    /// argmin's executor failed in a way this solver does not know.
+    /// Any other failure of argmin's executor.
     #[error("argmin: {0}")]
     Executor(String),
 }
 
-/// The range a coordinate may take, both ends included; `None` is no bound.
+/// The range a coordinate may take, both ends included; `None` means no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bounds {
@@ -106,7 +106,7 @@ impl std::fmt::Display for Bounds {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scaling {
-    /// The parameters as given, as MATLAB does it: one absolute `tol_x` for all of them, whatever their sizes.
+    /// The parameters as given, as in MATLAB: one absolute `tol_x` for all of them, regardless of their magnitudes.
     #[default]
     None,
     /// Each parameter divided by the magnitude of its start (by 1 where that is zero): `tol_x` is relative.
@@ -121,9 +121,9 @@ pub struct Options {
     pub tol_x: f64,
     /// TolFun: largest difference of a vertex's value from the best one at which a run may stop.
     pub tol_fun: f64,
-    /// MaxIter: iterations after which a run stops; `None` is 200 for each coordinate.
+    /// MaxIter: iterations after which a run stops; `None` means 200 for each coordinate.
     pub max_iter: Option<u64>,
-    /// MaxFunEvals: evaluations after which a run stops, at the end of the iteration that reaches them; `None` is
+    /// MaxFunEvals: evaluations after which a run stops, at the end of the iteration that reaches them; `None` means
     /// 200 for each coordinate.
     pub max_fun_evals: Option<u64>,
     /// The box to stay in: bounds for each coordinate, or empty for none.

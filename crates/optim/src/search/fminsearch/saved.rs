@@ -1,4 +1,4 @@
-//! Saving a run: serde for [`Fminsearch`], which refuses a file that cannot be a run's state.
+//! Saving a run: serde for [`Fminsearch`], which refuses a file that is not the state of a run.
 
 use super::solver::Fminsearch;
 use serde::de::Error as _;
@@ -19,7 +19,7 @@ impl<'de> Deserialize<'de> for Fminsearch {
 }
 
 impl Fminsearch {
-    /// Checks what the solver relies on, and says what is wrong.
+    /// Checks the invariants of the solver.
     fn check(&self) -> Result<(), String> {
         let n = self.scale.len();
         let vertices = if self.iteration == 0 { 1 } else { n + 1 };

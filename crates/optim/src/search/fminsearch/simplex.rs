@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::cmp::Ordering;
 
-/// A point and the objective there.
+/// A point and the value of the objective there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Vertex {
     /// Coordinates the simplex moves in: parameters over their scale.
@@ -22,7 +22,7 @@ fn null_is_infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
-/// Sorts from best to worst; equal values keep their order, so a newcomer comes after the vertex it ties with.
+/// Sorts from best to worst; equal values keep their order, so a new vertex comes after the one it ties with.
 pub(super) fn sort(simplex: &mut [Vertex]) {
     simplex.sort_by(|a, b| a.value.partial_cmp(&b.value).unwrap_or(Ordering::Equal));
 }
@@ -42,7 +42,7 @@ pub(super) fn along(centroid: &[f64], worst: &[f64], t: f64) -> Vec<f64> {
     centroid.iter().zip(worst).map(|(xbar, w)| (1.0 + t) * xbar - t * w).collect()
 }
 
-/// The point v₁ + σ·(v − v₁): `x` drawn towards the best vertex.
+/// The point v₁ + σ·(v − v₁): `x` moved towards the best vertex.
 pub(super) fn shrunk(best: &[f64], x: &[f64], sigma: f64) -> Vec<f64> {
     best.iter().zip(x).map(|(v1, v)| v1 + sigma * (v - v1)).collect()
 }
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_converged_needs_both_tolerances() {
+    fn contract_converged_needs_both_tolerances() {
         let simplex = |dx: f64, df: f64| [vertex(&[1.0], 3.0), vertex(&[1.0 - dx], 3.0 + df)];
         assert!(converged(&simplex(0.25, 0.5), 0.25, 0.5), "both limits are included");
         assert!(!converged(&simplex(0.26, 0.5), 0.25, 0.5), "too wide");
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_converged_with_zero_tolerances_allows_ten_roundings() {
+    fn contract_converged_with_zero_tolerances_allows_ten_roundings() {
         let f = 1e6_f64;
         let simplex =
             |roundings: f64| [vertex(&[-8.0, 2.0], f), vertex(&[-8.0, 2.0], f + roundings * eps(f))];
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_ties_keep_their_order() {
+    fn contract_ties_keep_their_order() {
         let mut simplex =
             vec![vertex(&[1.0], 2.0), vertex(&[2.0], 0.0), vertex(&[3.0], -0.0), vertex(&[4.0], 0.0)];
         sort(&mut simplex);

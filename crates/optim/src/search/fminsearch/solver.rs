@@ -13,19 +13,19 @@ const CHI: f64 = 2.0;
 const PSI: f64 = 0.5;
 const SIGMA: f64 = 0.5;
 
-/// Iterations, and evaluations, allowed for each coordinate unless told otherwise.
+/// Default limit of iterations, and of evaluations, for each coordinate.
 const LIMIT_PER_COORDINATE: u64 = 200;
 
 /// A run of `fminsearch`: an argmin solver for objectives `Fn(&[f64], cutoff: f64) -> f64`.
 ///
-/// It holds everything a run needs to go on, and serialises; see the [module](super).
+/// It holds everything a run needs to continue, and can be serialised; see the [module](super).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct Fminsearch {
     pub(super) options: Options,
     /// Parameters are the simplex's coordinates times these.
     pub(super) scale: Vec<f64>,
-    /// Only the start until the initial simplex is made, then n + 1 vertices from best to worst.
+    /// Only the start before the initial simplex is made, then n + 1 vertices from best to worst.
     pub(super) simplex: Vec<Vertex>,
     pub(super) iteration: u64,
     pub(super) func_count: u64,
@@ -36,7 +36,7 @@ impl Fminsearch {
     /// A run from `start` (any unit, length n ≥ 1) that has evaluated nothing yet.
     ///
     /// # Errors
-    /// A tolerance, bound or coordinate that makes no sense, by name and value; see [`Error`].
+    /// An invalid tolerance, bound or coordinate, by name and value; see [`Error`].
     pub fn new(start: &[f64], options: Options) -> Result<Self, Error> {
         options.check(start)?;
         let scale: Vec<f64> = match options.scaling {
@@ -70,11 +70,11 @@ impl Fminsearch {
         }
     }
 
-    /// Why this run ends here, if it does. The limits come before convergence, as in MATLAB.
+    /// The reason why this run ends here, if it does. The limits are tested before convergence, as in MATLAB.
     pub fn stop(&self) -> Option<Stop> {
         let n = self.scale.len();
         if self.simplex.len() <= n {
-            return None; // the initial simplex is made whatever the limits
+            return None; // the initial simplex is made regardless of the limits
         }
         let limit = LIMIT_PER_COORDINATE * n as u64;
         if self.func_count >= self.options.max_fun_evals.unwrap_or(limit) {
@@ -88,12 +88,12 @@ impl Fminsearch {
         }
     }
 
-    /// The parameters at a point of the simplex's coordinates.
+    /// The parameters at a point in the simplex's coordinates.
     fn parameters(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.scale).map(|(x, scale)| x * scale).collect()
     }
 
-    /// Calls the objective, wherever that is and whatever it returns.
+    /// Calls the objective at any point and counts the evaluation.
     fn call<O>(
         &mut self,
         problem: &mut Problem<O>,
@@ -107,7 +107,7 @@ impl Fminsearch {
         problem.problem("cost_count", |objective| Ok(objective(parameters, cutoff)))
     }
 
-    /// The vertex at `x`: +∞ without a call outside the box, and where the objective is not finite.
+    /// The vertex at `x`: +∞ outside the box (without a call), and where the objective is not finite.
     fn vertex<O>(&mut self, problem: &mut Problem<O>, x: Vec<f64>, cutoff: f64) -> Result<Vertex, ArgminError>
     where
         O: Fn(&[f64], f64) -> f64,
@@ -135,15 +135,15 @@ impl Fminsearch {
 
     /// One step of the method. Vertices are sorted: `simplex[0]` is the best, `simplex[n]` the worst.
     ///
-    /// # Why the cutoffs change nothing
-    /// A value v above its cutoff may come back as any v′ above it, and v′ must then lead to the same vertices:
+    /// # Why the cutoffs do not change the result
+    /// A value v above its cutoff may be returned as any v′ above it, and v′ must then lead to the same vertices:
     /// - *reflected* (cutoff: worst): v is compared with best ≤ second worst ≤ worst and kept only if below the
-    ///   second worst. Any number above worst fails all three comparisons and contracts inside, which uses v no more.
+    ///   second worst. Any number above worst fails all three comparisons and leads to an inside contraction, which does not use v.
     /// - *expanded* (cutoff: the reflected value) and *outside* (the same): compared with the reflected value alone,
     ///   kept only if below it, or at most equal; any number above it is dropped.
     /// - *inside* (cutoff: worst): compared with worst alone, kept only if below it.
     ///
-    /// None could be lower: just under these cutoffs a value decides, or is kept. The values of the initial simplex
+    /// None of the cutoffs could be lower: a value just below them affects a decision or is kept. The values of the initial simplex
     /// and of a shrink are all kept, so they have no cutoff.
     fn step<O>(&mut self, problem: &mut Problem<O>) -> Result<Procedure, ArgminError>
     where
@@ -182,7 +182,7 @@ impl Fminsearch {
         Ok(procedure)
     }
 
-    /// Moves every vertex halfway to the best one, and evaluates them anew in their order.
+    /// Moves every vertex halfway to the best one, and evaluates them again in their order.
     fn shrink<O>(&mut self, problem: &mut Problem<O>) -> Result<Procedure, ArgminError>
     where
         O: Fn(&[f64], f64) -> f64,
@@ -194,7 +194,7 @@ impl Fminsearch {
         Ok(Procedure::Shrink)
     }
 
-    /// The last row as argmin's observers read it.
+    /// The last row in the form that argmin's observers read.
     fn report(&self, state: State) -> (State, Option<KV>) {
         let Row { iteration, func_count, procedure, best, value } = self.row();
         let log = kv!(

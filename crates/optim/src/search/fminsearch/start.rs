@@ -8,7 +8,7 @@ const STEP: f64 = 0.05;
 const STEP_AT_ZERO: f64 = 0.00025;
 
 /// Coordinate `x` of the start moved for its vertex of the initial simplex: to (1 + 0.05) x, or to 0.00025 if it is
-/// zero. Where that leaves `bounds` (on the parameter `x · scale`) it steps the other way; where both ways leave it,
+/// zero. If that is outside `bounds` (on the parameter `x · scale`) it steps the other way; if both are outside,
 /// halfway to the farther bound.
 pub(super) fn stepped(x: f64, scale: f64, bounds: Bounds) -> f64 {
     let (there, back) =
@@ -29,7 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_five_percent_or_matlabs_step_at_zero() {
+    fn contract_five_percent_or_matlabs_step_at_zero() {
         let free = Bounds::default();
         assert_eq!(stepped(215.0, 1.0, free), 225.75);
         assert_eq!(stepped(-2.0, 1.0, free), -2.1);
@@ -37,7 +37,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_steps_inward_at_a_bound() {
+    fn contract_steps_inward_at_a_bound() {
         let below = |upper| Bounds { lower: None, upper: Some(upper) };
         assert_eq!(stepped(100.0, 1.0, below(105.0)), 105.0, "the bound itself is allowed");
         assert_eq!(stepped(100.0, 1.0, below(104.0)), 95.0);
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_halves_the_way_in_a_box_narrower_than_the_step() {
+    fn contract_halves_the_way_in_a_box_narrower_than_the_step() {
         assert_eq!(stepped(100.0, 1.0, Bounds::between(99.0, 102.0)), 101.0);
         assert_eq!(stepped(100.0, 1.0, Bounds::between(96.0, 102.0)), 98.0);
         assert_eq!(stepped(-1.0, 100.0, Bounds::between(-100.0, -98.0)), -0.99);

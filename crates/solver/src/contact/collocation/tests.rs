@@ -141,7 +141,7 @@ fn reference_the_inside_of_a_contact_is_what_stepping_finds() {
 }
 
 #[test]
-fn exact_what_is_no_collision_is_declined() {
+fn contract_states_that_are_no_collision_are_declined() {
     let system = SSVI.coupled();
     let flow = Flow::new(LinearSystem::linear(&system), 1.0);
     let collisions = Collisions::new(&system, Side::Primary, &flow, 1e-8);

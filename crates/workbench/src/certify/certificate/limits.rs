@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_what_breaks_a_limit_most_is_told_with_its_place() {
+    fn contract_the_worst_broken_limit_is_reported_with_its_place() {
         let limit = |value| retune_model::Positive::new(value).ok();
         let limits = Limits { stroke: limit(0.2), cavity: limit(0.5), ..Limits::default() };
         let near =

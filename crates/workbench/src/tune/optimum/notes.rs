@@ -1,4 +1,4 @@
-//! What was made small and how limits were kept, as `optimum.json` tells it.
+//! The objective and the limits in `optimum.json`.
 
 use super::super::global::Explored;
 use super::super::refine::{Refined, Run};
@@ -8,24 +8,24 @@ use retune_optim::{Bounds, Evaluation, Limit, Limits, Objective, Response, Varia
 use retune_study::{Search, Study, counted, joined, short};
 use serde::Serialize;
 
-/// What was made small, and the ω at which E1max of the best design is reached, rad/s.
+/// The objective, and the ω at which E1max of the best design is reached, rad/s.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Goal {
     #[serde(flatten)]
     objective: Objective,
     worst_omega: f64,
-    /// The stiffness k1 at which it is reached, N/m, where several were looked at.
+    /// The stiffness k1 at which it is reached, N/m, if the objective has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     worst_k1: Option<f64>,
-    /// Of the runs of the best design, those that were to settle and did not; their E1max is that of the window.
+    /// Of the runs of the best design, those that should have settled and did not; their E1max is that of the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unsettled: Option<u64>,
-    /// Runs that its value is made of; a steady response in closed form counts as one.
+    /// Number of runs behind its value; a steady response in closed form counts as one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) runs: Option<u64>,
 }
 
-/// How the limits are kept by the best design.
+/// The limits and the best design.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LimitNote {
     allowed: Limits,
@@ -36,9 +36,9 @@ pub(super) struct LimitNote {
     feasible: bool,
     /// The sum of reached / limit - 1 over the limits that are broken.
     violation: f64,
-    /// The limits that are broken, or reached to within 1 %: they decide the optimum.
+    /// The limits that are broken, or reached to within 1 %: they determine the optimum.
     active: Vec<Limit>,
-    /// Designs that were evaluated, and those among them that were seen to break a limit.
+    /// Designs that were evaluated, and those among them that were found to break a limit.
     evaluations: u64,
     infeasible: u64,
 }
@@ -110,7 +110,7 @@ impl LimitNote {
     }
 }
 
-/// Parameters that ended on a bound: to a thousandth of the larger of what they started with and ended at, or to within rounding
+/// Parameters that ended on a bound: to a thousandth of the larger of their first and last value, or to within rounding
 /// of the distance between the bounds.
 pub(super) fn on_bound(search: &Search, run: &Run) -> Vec<Met> {
     let Some(first) = run.rows.first() else { return Vec::new() };
@@ -122,17 +122,17 @@ pub(super) fn on_bound(search: &Search, run: &Run) -> Vec<Met> {
     (0..search.variables.len()).filter_map(ended).collect()
 }
 
-/// The bound that a value which came from `start` has met.
+/// The bound that a value lies on, if any, after a search from `start`.
 fn met(value: f64, start: f64, Bounds { lower, upper }: Bounds) -> Option<f64> {
-    /// A share of a distance that is rounding.
+    /// Share of a distance that counts as rounding.
     const ROUNDING: f64 = 1e-9;
-    // Without an upper bound 1 (N/m, N·s/m or m) stands for the distance: what is smaller by nine digits is nothing in any of them.
+    // Without an upper bound the distance is taken as 1 (N/m, N·s/m or m): 1e-9 of that is negligible in each of these units.
     let apart = upper.zip(lower).map_or(1.0, |(upper, lower)| upper - lower);
     let near = (1e-3 * value.abs().max(start.abs())).max(ROUNDING * apart);
     [lower, upper].into_iter().flatten().find(|bound| (value - bound).abs() <= near)
 }
 
-/// The notes on the screen: what ended at zero can go no further, another bound can be widened.
+/// The notes on the screen: a value at zero is at a physical limit, another bound can be widened.
 pub(super) fn on_bound_words(met: &[Met]) -> Vec<String> {
     let (zero, wider): (Vec<&Met>, Vec<&Met>) = met.iter().partition(|met| met.bound == 0.0);
     let names = |met: &[&Met]| joined(&met.iter().map(|met| met.variable).collect::<Vec<_>>(), ", ");
@@ -152,10 +152,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_a_bound_met_to_within_rounding_is_met() {
+    fn contract_a_bound_met_to_within_rounding_is_met() {
         let open = Bounds { lower: Some(0.0), upper: None };
         let closed = Bounds { lower: Some(10.0), upper: Some(600.0) };
-        // A search that was given a start on the bound: neither the start nor the end is of any size.
+        // A search that was given a start on the bound: both the start and the end are zero to within rounding.
         assert_eq!(met(1.3388507403093525e-16, 2.6e-16, open), Some(0.0));
         assert_eq!(met(7.6e-16, 1e-16, Bounds { upper: Some(2.0), ..open }), Some(0.0));
         assert_eq!(met(599.83, 600.0, closed), Some(600.0));
