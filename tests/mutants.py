@@ -17,7 +17,7 @@ CRATES = {
     "retune-model": (["crates/model/src/*"], ["--tests"]),
     "retune-solver": (["crates/solver/src/*"], [
         "--test extremes --test reference --test work",
-        "--lib --test allocation --test bounds --test exact --test extreme_values --test general_methods --test invariant --test observers --test order --test paper --test running_maximum --test settled --test trajectory",
+        "--lib --test allocation --test bounds --test bounds_in_flight --test exact --test extreme_values --test general_methods --test invariant --test observers --test order --test paper --test running_maximum --test settled --test trajectory",
         "--test any_scene --test edge --test hunt"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
     "retune-store": (["crates/store/src/*"], ["--tests", "@retune --tests"]),

@@ -152,3 +152,33 @@ fn finite<const M: usize>(positions: [Complex<f64>; M], omega: f64) -> Option<[[
         .all(|x| x.re.is_finite() && x.im.is_finite())
         .then(|| positions.map(|x| [x, velocity * x]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::{Forcing, NonNegative, Positive, Primary};
+
+    /// A light and soft structure, whose norms are far from 1.
+    #[test]
+    fn contract_the_energy_norms_of_a_linear_system_are_those_of_the_model() {
+        let mass = Positive::new(3e-4).expect("above 0");
+        let number = |value| NonNegative::new(value).expect("not below 0");
+        let primary = Primary { mass, damping: number(0.1), stiffness: number(7.0) };
+        let forcing = Forcing { amplitude: number(5.0), frequency: number(2.0) };
+        let bare = Bare::new(&primary, &forcing);
+        let found = [
+            LinearSystem::energy_norm(&bare, &[0.3, -2.0]),
+            LinearSystem::energy_norm_growth(&bare),
+            LinearSystem::dual_energy_norm(&bare, &[4.0, 0.5]),
+        ];
+        // sqrt(m1 v² + k1 x²), P / sqrt(m1), sqrt(4² / k1 + 0.5² / m1).
+        let expected = [
+            (3e-4_f64 * 4.0 + 7.0 * 0.09).sqrt(),
+            5.0 / 3e-4_f64.sqrt(),
+            (16.0_f64 / 7.0 + 0.25 / 3e-4).sqrt(),
+        ];
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
+        }
+    }
+}

@@ -172,3 +172,38 @@ fn steady_state<const N: usize>(flow: &Flow<N>, amplitudes: &[Complex<f64>; N], 
     let turn = Complex::from_polar(1.0, flow.linear().frequency * t);
     std::array::from_fn(|i| flow.linear().origin[i] + (amplitudes[i] * turn).re)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::{Bare, Forcing, NonNegative, Positive, Primary};
+
+    /// Holds every state that is handed over against the energy that is handed over with it.
+    struct Energies<'a> {
+        system: &'a Bare,
+        steps: usize,
+    }
+
+    impl Observer<2> for Energies<'_> {
+        fn segment(&mut self, _segment: &impl Segment<2>) {}
+        fn steps(&mut self, steps: &Steps<'_, 2>) {
+            for number in 0..=steps.count() {
+                let norm = LinearSystem::energy_norm(self.system, &steps.knot(number).y);
+                assert!(norm <= steps.energy(), "{norm} {}", steps.energy());
+                self.steps += 1;
+            }
+        }
+    }
+
+    #[test]
+    fn invariant_no_step_has_more_energy_than_its_bound() {
+        let number = |value| NonNegative::new(value).expect("not below 0");
+        let mass = Positive::new(1000.0).expect("above 0");
+        let primary = Primary { mass, damping: number(452.0), stiffness: number(3.95e4) };
+        let forcing = Forcing { amplitude: number(800.0), frequency: number(6.28) };
+        let system = Bare::new(&primary, &forcing);
+        let mut seen = Energies { system: &system, steps: 0 };
+        ContactFree::new(&system, 20.0, 100_000).propagate(20.0, &mut seen).expect("a run");
+        assert!(seen.steps > 50, "{}", seen.steps);
+    }
+}

@@ -176,6 +176,14 @@ mod tests {
         }
     }
 
+    /// Falling at both ends, and yet not all the way: one crossing is proven only by the slope between the ends.
+    #[test]
+    fn exact_first_of_three_crossings() {
+        // (0.2 - s) (s - 0.5) (s - 0.8).
+        let s = first(polynomial(&[0.08, -0.66, 1.5, -1.0]), 1.0).expect("a crossing");
+        assert!((s - 0.2).abs() < 1e-15, "{s}");
+    }
+
     #[test]
     fn exact_no_contact_when_the_gap_only_nearly_closes() {
         let p = polynomial(&[0.09 + 1e-14, -0.6, 1.0]);
