@@ -43,8 +43,10 @@ table2 *OPTIONS:
     {{retune}} table2 "$@"
 
 # Re-tune both dampers for other stiffnesses k1 in N/m, and draw how long a tuning lasts, for instance `just retune 30000 50000`
-retune +K1:
-    {{retune}} retune "$@"
+track +K1:
+    {{retune}} track "$@"
+
+alias retune := track
 
 # What the SSVI NES is good for: the best of each damper under bounds on k2 and on the stroke, into results/fronts
 fronts *OPTIONS:

@@ -38,8 +38,8 @@ pub enum Command {
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
-    /// Tune both dampers anew for other stiffnesses k1 of the structure, and show how long a tuning lasts
-    Retune(Retune),
+    /// Track the optimum along k1: tune both dampers anew for other stiffnesses of the structure, and show how long a tuning lasts
+    Track(Track),
     /// Tune dampers under ever looser bounds on k2 and on the stroke, and draw what each is good for
     Fronts(Fronts),
     /// Make every table and figure of the paper, on one page beside what the paper says
@@ -207,9 +207,9 @@ pub struct Table2 {
     pub running: Running,
 }
 
-/// `retune`.
+/// `track`.
 #[derive(Debug, Args)]
-pub struct Retune {
+pub struct Track {
     /// Stiffnesses of the primary structure, N/m
     #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
     pub k1: Vec<Setting>,

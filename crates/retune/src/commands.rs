@@ -9,7 +9,7 @@ use retune_workbench::evaluate::Streams;
 use retune_workbench::simulate::Trajectory;
 use retune_workbench::tune::Tuned;
 use retune_workbench::{
-    Error, Observer, Request, Silent, certify, describe, evaluate, pareto, retune, table2, tune, verify,
+    Error, Observer, Request, Silent, certify, describe, evaluate, pareto, table2, track, tune, verify,
 };
 use std::io::BufReader;
 use std::path::Path;
@@ -40,9 +40,9 @@ pub fn run(command: Command) -> Result<(), Error> {
             let (request, screen) = running.request(&study);
             table2::table2(&request, &screen)
         }
-        Command::Retune(cli::Retune { k1, study, running }) => {
+        Command::Track(cli::Track { k1, study, running }) => {
             let (request, screen) = running.request(&study);
-            retune::retune(&request, &k1, &screen)
+            track::track(&request, &k1, &screen)
         }
         Command::Fronts(cli::Fronts { study, running }) => {
             let (request, screen) = running.request(&study);

@@ -82,7 +82,7 @@ mod tests {
             ),
             "'/opt/my tools/retune' optimize 'my study.json' --out 'it'\\''s' --resume"
         );
-        assert_eq!(said(None, &[b"retune", b"retune", b"3e4", b"--resume"]), "retune retune 3e4 --resume");
+        assert_eq!(said(None, &[b"retune", b"track", b"3e4", b"--resume"]), "retune track 3e4 --resume");
         assert_eq!(
             said(
                 Some("just"),

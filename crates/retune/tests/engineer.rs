@@ -275,7 +275,7 @@ fn contract_retention_begins_at_the_tuned_design() {
     desk.write_json("one.json", &study);
     let row = json!({ "damper": "SSVI NES", "study": "one.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
     desk.write_json("retune.json", &json!({ "rows": [row] }));
-    let said = desk.good(&["retune", "3e4", "5e4", "--study", "retune.json", "--out", "out"]);
+    let said = desk.good(&["track", "3e4", "5e4", "--study", "retune.json", "--out", "out"]);
     assert!(
         said.contains(
             "worst over omega = 0.9 to 1.1 times √(k1/m1), and from the design of the k1 beside it"

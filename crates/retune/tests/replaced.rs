@@ -68,7 +68,7 @@ fn contract_results_of_another_study_are_not_replaced_unasked() {
         &["optimize", "other/small.json", "--quiet", "--restart"],
         &["certify", "other/small.json", "--quiet", "--out", out],
         &["table2", "table2.json", "--quiet", "--out", out],
-        &["retune", "3e4", "--study", "table2.json", "--quiet", "--out", out],
+        &["track", "3e4", "--study", "table2.json", "--quiet", "--out", out],
     ] {
         let said = refused(&desk, arguments);
         assert!(said.contains("results/small: "), "{said}");
@@ -167,7 +167,7 @@ fn short_table2(desk: &Desk, name: &str) {
 fn contract_results_of_a_run_are_exactly_its_own() {
     let desk = Desk::new();
     short_table2(&desk, "mine.json");
-    desk.good(&["retune", "30000", "5e4", "--study", "mine.json", "--quiet"]);
+    desk.good(&["track", "30000", "5e4", "--study", "mine.json", "--quiet"]);
     let out = "results/mine";
     let parts = |desk: &Desk| {
         let mut names = desk.names(out);
@@ -177,7 +177,7 @@ fn contract_results_of_a_run_are_exactly_its_own() {
     assert_eq!(parts(&desk), ["k1-30000", "k1-39500", "k1-50000"], "named after the study");
     desk.write("results/mine/k1-30000/tmd/notes.txt", "mine");
     desk.write("results/mine/k1-77/notes.txt", "mine");
-    desk.good(&["retune", "2e4", "--study", "mine.json", "--quiet"]);
+    desk.good(&["track", "2e4", "--study", "mine.json", "--quiet"]);
     assert_eq!(parts(&desk), ["k1-20000", "k1-30000", "k1-39500", "k1-77"]);
     assert_eq!(desk.names("results/mine/k1-30000"), ["tmd"]);
     assert_eq!(desk.names("results/mine/k1-30000/tmd"), ["notes.txt"]);
@@ -193,10 +193,10 @@ fn contract_unfinished_searches_below_are_found() {
     study["window"] = json!({ "t0": 50, "T": 150 });
     study["optimize"]["refine"] = json!({ "MaxFunEvals": 400, "TolX": 1e-9, "TolFun": 1e-9 });
     desk.write_json("ssvi.json", &study);
-    let run = ["retune", "30000", "--study", "mine.json", "--quiet", "--out", "out"];
+    let run = ["track", "30000", "--study", "mine.json", "--quiet", "--out", "out"];
     let mut child = common::begun(&desk, &run, "out/k1-30000/ssvi", 20);
     child.kill().and_then(|()| child.wait()).expect("killed");
-    let other = ["retune", "2e4", "--study", "mine.json", "--quiet", "--out", "out"];
+    let other = ["track", "2e4", "--study", "mine.json", "--quiet", "--out", "out"];
     for option in ["--quiet", "--resume"] {
         let arguments = if option == "--resume" { [&other[..], &[option]].concat() } else { other.to_vec() };
         let said = refused(&desk, &arguments);
@@ -205,7 +205,7 @@ fn contract_unfinished_searches_below_are_found() {
     }
     desk.good(&[&other[..], &["--restart"]].concat());
     assert!(!desk.path("out/k1-30000").exists());
-    desk.good(&["retune", "2e4", "--study", "mine.json", "--quiet", "--out", "whole"]);
+    desk.good(&["track", "2e4", "--study", "mine.json", "--quiet", "--out", "whole"]);
     assert_eq!(desk.names("out"), desk.names("whole"));
 }
 

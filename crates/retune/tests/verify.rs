@@ -221,7 +221,7 @@ fn contract_results_of_several_studies_and_certificates_are_verified_and_a_chang
     for (arguments, tables) in [
         (["certify", "one.json"].as_slice(), ["certificate.json"].as_slice()),
         (&["table2", "table2.json"], &["table2.csv"]),
-        (&["retune", "3e4", "--study", "table2.json"], &["retune.csv", "retention.csv"]),
+        (&["track", "3e4", "--study", "table2.json"], &["retune.csv", "retention.csv"]),
         (&["fronts", "fronts.json"], &["k2.csv", "stroke.csv", "front.csv"]),
     ] {
         let out = arguments[0];

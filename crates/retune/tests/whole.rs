@@ -261,7 +261,7 @@ fn paper_table2_puts_our_rows_beside_the_papers() {
 fn contract_retune_tunes_both_dampers_for_each_stiffness() {
     let desk = Desk::new();
     short_table2(&desk);
-    desk.good(&["retune", "30000", "5e4", "--study", "table2.json", "--quiet"]);
+    desk.good(&["track", "30000", "5e4", "--study", "table2.json", "--quiet"]);
     let csv = desk.read("results/table2/retune.csv");
     let rows: Vec<String> = columns(&csv)[1..].iter().map(|row| row[..3].join(",")).collect();
     let expected =
@@ -269,7 +269,7 @@ fn contract_retune_tunes_both_dampers_for_each_stiffness() {
     assert_eq!(rows, expected.concat());
     let resolved = desk.read_json("results/table2/k1-50000/tmd/study.json");
     assert_eq!(resolved["scene"]["primary"]["k1"], 5e4);
-    let Answer { code, stderr, .. } = desk.run(&["retune", "30000", "-1", "--study", "table2.json"]);
+    let Answer { code, stderr, .. } = desk.run(&["track", "30000", "-1", "--study", "table2.json"]);
     let message = "error: command line: k1: -1 is not allowed here: give a finite number not below 0\n";
     assert_eq!((code, stderr.as_str()), (Some(2), message));
 }
@@ -302,7 +302,7 @@ fn contract_every_command_explains_itself() {
         "certify",
         "simulate",
         "table2",
-        "retune",
+        "track",
         "reproduce",
         "figure",
         "table",

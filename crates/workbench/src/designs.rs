@@ -1,4 +1,4 @@
-//! A table of designs, as `table2` and `retune` make it.
+//! A table of designs, as `table2` and `track` make it.
 
 use crate::request::{open, where_results_are};
 use crate::resolved::{self, Resolved};

@@ -4,7 +4,7 @@
 //! results (`retune_store`), reports its progress to an [`Observer`], and returns its result. Nothing here prints.
 //!
 //! [`tune()`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
-//! [`table2`], [`retune`] and [`pareto`] make several searches and compare them; [`verify`] checks results by computing them
+//! [`table2`], [`track`] and [`pareto`] make several searches and compare them; [`verify`] checks results by computing them
 //! again; [`simulate`] makes one run; [`evaluate`] evaluates designs of other programs.
 //!
 //! ```
@@ -49,10 +49,10 @@ pub mod observer;
 pub mod pareto;
 pub mod request;
 pub mod resolved;
-pub mod retune;
 pub mod simulate;
 pub mod summary;
 pub mod table2;
+pub mod track;
 pub mod tune;
 pub mod verify;
 

@@ -1,4 +1,4 @@
-//! The results of several studies: tables of designs (`table2`, `retune`, `fronts`) and curves along k1.
+//! The results of several studies: tables of designs (`table2`, `track`, `fronts`) and curves along k1.
 
 use super::input::json;
 use super::report::{Check, Report};
@@ -7,7 +7,7 @@ use super::table::{Row, Sample};
 use crate::Error;
 use crate::pareto;
 use crate::resolved::Resolved;
-use crate::retune;
+use crate::track;
 use retune_study::{Setting, Study};
 use serde_json::Value;
 use std::path::Path;
@@ -97,14 +97,14 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
         let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == nominal);
         let scene = own.and_then(|row| study.scene_at(&row.design()?));
         if let Some(scene) = scene {
-            columns.push((retune::kept(name, nominal), study, scene));
+            columns.push((track::kept(name, nominal), study, scene));
         }
     }
     let mut checks = Vec::new();
     for row in sample.rows() {
         let k1 = row.number("k1");
         for &(ref column, study, scene) in &columns {
-            let again = move || retune::energy(study, scene, k1).unwrap_or(f64::INFINITY);
+            let again = move || track::energy(study, scene, k1).unwrap_or(f64::INFINITY);
             checks.push(Check { said: row.number(column), again: Box::new(again) });
         }
     }

@@ -1,4 +1,4 @@
-//! The figures of `retune`: E1max along k1, and the designs against k1.
+//! The figures of `track`: E1max along k1, and the designs against k1.
 
 use super::tuned::{Curves, Tuned};
 use crate::tune::Found;

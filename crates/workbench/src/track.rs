@@ -1,4 +1,4 @@
-//! `retune`: both dampers tuned anew for each stiffness k1 of the structure, and E1max of each tuning at other stiffnesses.
+//! `track`: both dampers tuned anew for each stiffness k1 of the structure, and E1max of each tuning at other stiffnesses.
 //!
 //! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
 //! more refinement starts at the design of the neighbouring k1.
@@ -20,12 +20,12 @@ use tuned::{Tuned, csv, retention};
 ///
 /// # Errors
 /// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
-pub fn retune(request: &Request, stiffnesses: &[Setting], watch: &dyn Observer) -> Result<(), Error> {
+pub fn track(request: &Request, stiffnesses: &[Setting], watch: &dyn Observer) -> Result<(), Error> {
     let rows = study::read_table2(&request.study)?;
     for setting in stiffnesses {
         rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
     }
-    let (out, order) = (request.out_of_file()?, request.order("retune"));
+    let (out, order) = (request.out_of_file()?, request.order("track"));
     const FILES: [&str; 3] = ["retention.csv", "retention.svg", "path.svg"];
     let k1: Vec<f64> = stiffnesses.iter().map(Setting::value).collect();
     let plan = json!({ "k1": k1 });
