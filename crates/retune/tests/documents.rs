@@ -57,10 +57,12 @@ fn contract_every_path_of_the_documents_exists() {
 #[test]
 fn contract_every_recipe_of_the_documents_exists() {
     let justfile = text("justfile");
+    let aliases = justfile.lines().filter_map(|line| line.strip_prefix("alias ")?.split(" :=").next());
     let recipes: Vec<&str> = justfile
         .lines()
         .filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase()) && !line.contains(":="))
         .filter_map(|line| line.split([' ', ':']).next())
+        .chain(aliases)
         .collect();
     let mut seen = 0;
     for document in DOCUMENTS {
