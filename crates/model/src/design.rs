@@ -4,7 +4,7 @@ use crate::{Damper, NonNegative, OutOfRange};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A parameter of the damper that may be tuned.
+/// A parameter of the damper that a search may vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub enum Variable {
     /// k2, stiffness of the damper's spring, N/m.
@@ -74,7 +74,7 @@ impl std::fmt::Display for Variable {
     }
 }
 
-/// A value for each [`Variable`].
+/// A damper's design.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Design {

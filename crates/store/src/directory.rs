@@ -9,7 +9,7 @@ use crate::journal::Journal;
 use crate::lock::Lock;
 use crate::manifest::{MadeBy, NAME, file_sha256};
 use crate::order::{Extent, Order};
-use crate::pending::Pending;
+use crate::pending::{self, Pending};
 use crate::unfinished::{self, JOURNAL, UNFINISHED, Unfinished};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -50,6 +50,7 @@ impl Directory {
         let refuse = |source| Error::Output { path: path.to_owned(), source };
         std::fs::create_dir_all(path).map_err(refuse)?;
         let lock = Lock::take(path)?;
+        pending::clear(&path.join(NAME)).map_err(refuse)?;
         let found = Unfinished::find(path, order.begin, identity)?;
         order.may_replace(path, extent, identity, &is_ours)?;
         let unfinished = path.join(UNFINISHED);

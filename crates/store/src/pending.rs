@@ -1,10 +1,28 @@
 //! Files that get their name only when they are complete: written under a temporary name, then renamed.
 
+use super::entries::names;
 use super::plain;
 use crate::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+/// Removes the temporary files that killed processes have left of the file at `path`. Only whoever holds the lock of the directory may.
+///
+/// # Errors
+/// One cannot be removed.
+pub fn clear(path: &Path) -> std::io::Result<()> {
+    let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else { return Ok(()) };
+    let begin = format!(".{}.", name.to_string_lossy());
+    let is_temporary = |name: &String| {
+        let process = name.strip_prefix(&begin).and_then(|rest| rest.strip_suffix(".tmp"));
+        process.is_some_and(|process| process.parse::<u32>().is_ok())
+    };
+    for name in names(directory)?.iter().filter(|name| is_temporary(name)) {
+        std::fs::remove_file(directory.join(name))?;
+    }
+    Ok(())
+}
 
 /// A file that is being written under a temporary name. It vanishes unless it is finished.
 #[derive(Debug)]

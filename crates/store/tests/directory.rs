@@ -94,3 +94,16 @@ fn contract_results_of_another_identity_are_refused_unless_they_may_be_replaced(
     assert_eq!(table(), "3\n");
     assert!(manifest::is_finished(&path, &other) && !manifest::is_finished(&path, &edited));
 }
+
+/// A process that was killed while it wrote the manifest leaves a temporary file beside the results; no other file is touched.
+#[test]
+fn regress_what_a_killed_process_left_of_a_manifest_is_removed() {
+    let desk = tempfile::tempdir().expect("a directory");
+    let (path, identity) = (desk.path().join("results"), Identity::of("study"));
+    std::fs::create_dir(&path).expect("a directory");
+    let left = [".manifest.json.4711.tmp", ".manifest.json.mine.tmp", ".hidden"].map(|name| path.join(name));
+    left.iter().for_each(|path| std::fs::write(path, "half").expect("a file"));
+    let results = open(&path, &order(Begin::New), &identity).expect("a directory");
+    finish(results, &identity, "1,2\n").expect("results");
+    assert_eq!(left.map(|path| path.exists()), [false, true, true]);
+}
