@@ -23,7 +23,7 @@ CRATES = {
     "retune-store": (["crates/store/src/*"], ["--tests", "@retune --tests"]),
 }
 # How much is drawn at random in the slowest tests.
-SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_SETTLED": "40", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}
+SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}
 HOME = pathlib.Path("target/mutants")
 REASONS = pathlib.Path("tests/mutants.json")
 TABLE = pathlib.Path("results/robustness/mutants.md")

@@ -167,7 +167,7 @@ fn regress_looks_at_a_piece_with_many_maxima() {
 /// Bounds that only short stretches have: the search halves until they tell.
 #[test]
 fn contract_stretches_are_halved_until_their_bounds_decide() {
-    struct OnlyShort(Wave);
+    struct OnlyShort(Wave, f64);
     impl Segment<2> for OnlyShort {
         fn ends(&self) -> [&Knot<2>; 2] {
             self.0.ends()
@@ -182,13 +182,18 @@ fn contract_stretches_are_halved_until_their_bounds_decide() {
             self.0.at_time(t)
         }
         fn quintic_error(&self, _form: &Form<2>, _ends: [&Knot<2>; 2], h: f64, _sharp: bool) -> Option<f64> {
-            Some(if h > 0.2 { f64::INFINITY } else { 7.0_f64.powi(6) / 46080.0 * h.powi(6) })
+            Some(if h > self.1 { f64::INFINITY } else { 7.0_f64.powi(6) / 46080.0 * h.powi(6) })
         }
     }
-    let wave = OnlyShort(Wave::new(7.0, 0.1, Some([1.0; 2])));
+    let wave = OnlyShort(Wave::new(7.0, 0.1, Some([1.0; 2])), 0.2);
     let mut peak = RunningMaximum::new(&wave.0, f64::INFINITY);
     peak.segment(&wave);
     assert!((peak.record().value - 1.0).abs() < 4e-16 && peak.doubt() == 0.0);
+    // Where no bound ever decides, the search ends all the same, and reports that nothing is proven.
+    let never = OnlyShort(Wave::new(7.0, 0.1, Some([1.0; 2])), 0.0);
+    let mut in_doubt = RunningMaximum::new(&never.0, f64::INFINITY);
+    in_doubt.segment(&never);
+    assert_eq!(in_doubt.doubt(), f64::INFINITY);
     // A cutoff is passed by what is above it, not by what is at it.
     let most = peak.record().value;
     for (cutoff, passed) in [(0.5, true), (most, false), (2.0, false)] {
