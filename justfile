@@ -146,7 +146,7 @@ fuzz TARGET="numbers" SECONDS="1800":
 
 # Whether the tests see a mistake: mutants drawn at random, each against the tests of its own crate, into results/robustness/mutants.md (needs python3 and `cargo install cargo-mutants`); for instance `just mutants --list`
 mutants *OPTIONS:
-    CARGO_BUILD_JOBS=1 nice python3 tests/mutants.py {{OPTIONS}}
+    CARGO_BUILD_JOBS=1 nice python3 tests/mutants.py "$@"
 
 # Licences, sources, duplicates and advisories of what is built in
 deny:

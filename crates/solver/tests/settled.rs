@@ -4,7 +4,7 @@
 mod scenes;
 
 use retune_model::Scene;
-use retune_solver::{Ask, Extremes, Settings, Settle, Window, extremes, settled};
+use retune_solver::{Ask, Extremes, Method, Settings, Settle, Window, extremes, settled};
 use scenes::{Numbers, SSVI, Spread};
 
 /// Of the settled motion alone.
@@ -94,4 +94,18 @@ fn contract_a_damper_that_creeps_has_not_settled() {
             );
         }
     }
+}
+
+/// A transient that falls by 5 % a period changes little from return to return, and twenty times as much in all that follows: only
+/// the latter may be below the tolerance.
+#[test]
+fn exact_a_slow_decay_has_not_settled_before_all_that_is_left_of_it_is_small() {
+    let numbers = Numbers { c1: 100.0, k2: 0.0, c2: 0.0, d: 5.0, c: 5.0, ..SSVI };
+    let settings = Settings { method: Method::Dop853, rtol: 1e-9, atol: 1e-11, ..Settings::default() };
+    let window = Window { from: 0.0, to: 600.0 };
+    let found =
+        settled(&numbers.scene(), window, Settle::default(), &settings, Ask::default()).expect("a run");
+    let steady = numbers.bare().steady(numbers.omega).e1_max;
+    let error = (found.e1_max.value / steady - 1.0).abs();
+    assert!(found.settled && error < 5e-5, "{} {error:e}", found.settled);
 }
