@@ -1,6 +1,7 @@
 //! A table or figure of the paper, reproduced: the paper's statements, our results, and a verdict on each statement.
 
 use retune_figures::sheet::Drawing;
+use retune_workbench::designs::quoted;
 use serde::{Deserialize, Serialize};
 
 /// The verdict on a statement.
@@ -76,14 +77,8 @@ impl Grid {
 
     /// The table as CSV.
     pub fn csv(&self) -> String {
-        let quoted = |text: &String| {
-            if text.contains([',', '"']) {
-                format!("\"{}\"", text.replace('"', "\"\""))
-            } else {
-                text.clone()
-            }
-        };
-        let line = |cells: &Vec<String>| cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n";
+        let line =
+            |cells: &Vec<String>| cells.iter().map(|text| quoted(text)).collect::<Vec<_>>().join(",") + "\n";
         std::iter::once(&self.head).chain(&self.rows).map(line).collect()
     }
 }

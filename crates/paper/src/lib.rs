@@ -19,10 +19,12 @@ mod table2;
 
 pub use plan::{PaperPlan, Plan};
 
-use item::Item;
-use retune_store::{Directory, Extent, Identity, manifest};
-use retune_workbench::request::{open, where_results_are};
-use retune_workbench::{Error, Observer, Request, resolved};
+pub use item::{Grid, Item, Picture, Statement, Verdict};
+
+use retune_store::Directory;
+use retune_workbench::artefact::{Content, Kind, artefact};
+use retune_workbench::job::{Job, Made};
+use retune_workbench::{Done, Error, Observer, Request, resolved};
 
 /// The function that makes an item.
 type Maker = fn(&Plan) -> Result<Item, Error>;
@@ -39,43 +41,55 @@ const ITEMS: [(&str, Maker); 8] = [
     ("figure7", cases::figure7),
 ];
 
+/// The files of the reproduction.
+pub static KIND: Kind = Kind {
+    command: "reproduce",
+    answer: "index.html",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("study.json", Content::Derived),
+        artefact("table1-*", Content::Derived),
+        artefact("table2-*", Content::Derived),
+        artefact("figure*", Content::Derived),
+        artefact("index.html", Content::Derived),
+    ],
+};
+
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
 ///
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
-pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) -> Result<(), Error> {
+pub fn reproduce(
+    request: &Request,
+    only: Option<&str>,
+    watch: &dyn Observer,
+) -> Result<Done<Vec<Item>>, Error> {
     let plan = Plan::read(&request.study, watch)?;
-    let (out, order) = (request.out_of_file()?, request.order("reproduce"));
-    let is_page = only.is_none();
-    let only = only.map(str::to_owned);
-    let wanted = move |name: &str| only.as_deref().is_none_or(|only| only == name);
-    let items: Vec<_> = ITEMS.into_iter().filter(|(name, _)| wanted(name)).collect();
-    let is_ours = move |file: &str| {
-        [manifest::NAME, resolved::NAME, "study.json"].contains(&file)
-            || file == "index.html" && is_page
-            || ITEMS.iter().any(|(name, _)| wanted(name) && is_of(file, name))
-    };
-    let extent = if is_page { Extent::Whole } else { Extent::Share };
-    let resolved = plan.resolved().text()?;
-    let identity = Identity::of(&resolved);
-    let results = open(&out, &order, &identity, extent, is_ours, watch)?;
-    request.on_threads(|| {
+    let dampers = [("SSVI NES", &plan.ssvi), ("TMD", &plan.tmd)];
+    let mut job = Job::of_studies(&KIND, request, serde_json::json!(plan.file), dampers.into_iter())?;
+    if let Some(only) = only {
+        job.answer = statements(only);
+        job.only = Some(only.to_owned());
+    }
+    job.run(request, watch, |results| {
         results.write_json("study.json", &plan.file)?;
         let mut made = Vec::new();
-        for (name, make) in items {
-            let item = kept_or_made(name, make, &plan, &results)?;
-            write(&item, &results)?;
+        for (name, make) in ITEMS.into_iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
+            let item = kept_or_made(name, make, &plan, results)?;
+            write(&item, results)?;
             watch.result(&report(&item))?;
             made.push(item);
         }
-        if is_page {
+        if only.is_none() {
             results.write("index.html", &page::page(&made))?;
         }
-        results.write(resolved::NAME, &resolved)?;
-        manifest::write(identity, [plan.ssvi.solver, plan.tmd.solver], &results)?;
-        results.finish()?;
-        watch.result(&where_results_are(&out)?)
+        Ok(Made { answer: made, report: String::new(), parts: Vec::new() })
     })
+}
+
+/// The file with the verdicts on the statements of an item.
+fn statements(name: &str) -> String {
+    format!("{name}-statements.json")
 }
 
 /// An item kept by an interrupted run, or made now and kept in case this run is interrupted.
@@ -94,10 +108,6 @@ fn kept_or_made(name: &str, make: Maker, plan: &Plan, results: &Directory) -> Re
     Ok(item)
 }
 
-fn is_of(file: &str, name: &str) -> bool {
-    file.strip_prefix(name).is_some_and(|rest| rest.starts_with(['.', '-']))
-}
-
 fn write(item: &Item, results: &Directory) -> Result<(), Error> {
     for picture in &item.pictures {
         results.write(&format!("{}.svg", picture.name), &picture.drawing.wide)?;
@@ -108,7 +118,7 @@ fn write(item: &Item, results: &Directory) -> Result<(), Error> {
     for (name, content) in &item.data {
         results.write(name, content)?;
     }
-    Ok(results.write_json(&format!("{}-statements.json", item.name), &item.statements)?)
+    Ok(results.write_json(&statements(&item.name), &item.statements)?)
 }
 
 /// The verdicts of an item, for the screen.

@@ -5,7 +5,6 @@ use retune_solver::{Settings, Window};
 use retune_study::{PaperStudy, Study, StudyError, read_paper, read_table2};
 use retune_workbench::Error;
 use retune_workbench::Observer;
-use retune_workbench::resolved::Resolved;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -96,12 +95,6 @@ impl<'a> Plan<'a> {
         let [ssvi, tmd] =
             studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
         Ok(Self { file, ssvi: ssvi.study, tmd: tmd.study, watch })
-    }
-
-    /// All that the results follow from.
-    pub fn resolved(&self) -> Resolved {
-        let dampers = [("SSVI NES", &self.ssvi), ("TMD", &self.tmd)];
-        Resolved::new(serde_json::json!(self.file), dampers.into_iter())
     }
 
     /// The scenes without damper, with SSVI NES and with TMD at a stiffness.

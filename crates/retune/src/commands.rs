@@ -5,11 +5,12 @@ use crate::screen::{self, Screen};
 use clap::CommandFactory;
 use retune_paper::Plan;
 use retune_study as study;
+use retune_workbench::designs::Designs;
 use retune_workbench::evaluate::Streams;
 use retune_workbench::simulate::Trajectory;
-use retune_workbench::tune::Tuned;
+use retune_workbench::tune::Optimum;
 use retune_workbench::{
-    Error, Observer, Request, Silent, certify, describe, evaluate, pareto, table2, track, tune, verify,
+    Done, Error, Observer, Request, Silent, certify, describe, evaluate, pareto, table2, track, tune, verify,
 };
 use std::io::BufReader;
 use std::path::Path;
@@ -24,29 +25,28 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Optimize(arguments) => optimize(&arguments),
         Command::Merge(cli::Merge { study, parts, running }) => {
             let (request, screen) = running.request(&study);
-            check_limits(&study, tune::merge::merge(&request, &parts, &screen)?)
+            found(tune::merge::merge(&request, &parts, &screen)?)
         }
         Command::Verify(cli::Verify { results, sample, within }) => {
             verify::verify(&results, sample as usize, within, &all)
         }
         Command::Certify(cli::Certify { design, running }) => {
             let (request, screen) = running.request(&design);
-            let (study, certificate) = certify::certify_file(&request, &screen)?;
-            certificate.short().check_limits(study.name())
+            certify::certify_file(&request, &screen)?.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
         Command::Evaluate(arguments) => evaluate(&arguments),
         Command::Table2(cli::Table2 { study, running }) => {
             let (request, screen) = running.request(&study);
-            table2::table2(&request, &screen)
+            made(table2::table2(&request, &screen)?, Designs::check_limits)
         }
         Command::Track(cli::Track { k1, study, running }) => {
             let (request, screen) = running.request(&study);
-            track::track(&request, &k1, &screen)
+            made(track::track(&request, &k1, &screen)?, |tracked| tracked.table.check_limits())
         }
         Command::Fronts(cli::Fronts { study, running }) => {
             let (request, screen) = running.request(&study);
-            pareto::pareto(&request, &screen)
+            pareto::pareto(&request, &screen).map(drop)
         }
         Command::Reproduce(arguments) => reproduce(&arguments, None),
         Command::Figure { number, paper } => reproduce(&paper, Some(&format!("figure{number}"))),
@@ -70,21 +70,26 @@ fn optimize(cli::Optimize { study, shard, running }: &cli::Optimize) -> Result<(
     let (request, screen) = running.request(study);
     match shard {
         Some(shard) => tune::tune_share(&request, *shard, &screen),
-        None => check_limits(study, tune::tune(&request, &screen)?),
+        None => found(tune::tune(&request, &screen)?),
     }
 }
 
 /// A design that breaks the limits of its study has an exit code of its own.
-fn check_limits(study: &Path, tuned: Tuned) -> Result<(), Error> {
-    match tuned {
-        Tuned::Found(optimum) => optimum.check_limits(study::read(study)?.name()),
-        Tuned::FinishedBefore => Ok(()),
+fn found(tuned: Done<Optimum>) -> Result<(), Error> {
+    made(tuned, |optimum| optimum.check_limits())
+}
+
+/// The check of results that were made now.
+fn made<T>(done: Done<T>, check: impl FnOnce(T) -> Result<(), Error>) -> Result<(), Error> {
+    match done {
+        Done::Made(results) => check(results),
+        Done::FinishedBefore => Ok(()),
     }
 }
 
 fn reproduce(cli::Reproduce { study, running }: &cli::Reproduce, only: Option<&str>) -> Result<(), Error> {
     let (request, screen) = running.request(study);
-    retune_paper::reproduce(&request, only, &screen)
+    retune_paper::reproduce(&request, only, &screen).map(drop)
 }
 
 fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {

@@ -1,5 +1,6 @@
 //! A directory of results while they are made: opened, filled, read.
 
+mod manifest;
 mod publish;
 
 use crate::entries::{names, sync_directory};
@@ -166,10 +167,7 @@ impl Directory {
     }
 
     /// SHA-256 of each complete result except the manifest.
-    ///
-    /// # Errors
-    /// A file cannot be read.
-    pub fn new_files(&self) -> Result<BTreeMap<String, String>, Error> {
+    fn new_files(&self) -> Result<BTreeMap<String, String>, Error> {
         let mut files = BTreeMap::new();
         for name in self.whole()?.into_iter().filter(|name| name != NAME) {
             let sha = file_sha256(&self.whole_path(&name))?;
@@ -184,7 +182,7 @@ impl Directory {
     }
 
     /// Discards the unfinished work, because to repeat it would end the same way. Earlier results stay.
-    pub fn discard(self) {
+    pub fn discard(&self) {
         let _ = unfinished::remove(&self.unfinished); // what is left of it is cleared by the next run
     }
 

@@ -21,9 +21,9 @@ fn value(results: &Directory, value: f64) -> (f64, bool) {
 }
 
 /// Writes a table with its manifest and finishes.
-fn finish(results: Directory, identity: &Identity, text: &str) -> Result<(), Error> {
+fn finish(results: Directory, text: &str) -> Result<(), Error> {
     results.write(TABLE, text)?;
-    manifest::write(identity.clone(), [serde_json::json!({ "method": "hybrid" })], &results)?;
+    results.write_manifest([serde_json::json!({ "method": "hybrid" })])?;
     results.finish()
 }
 
@@ -74,7 +74,7 @@ fn contract_results_of_another_identity_are_refused_unless_they_may_be_replaced(
     let [own, edited, other] = ["study", "study, edited", "another study"].map(Identity::of);
     let table = || std::fs::read_to_string(path.join(TABLE)).expect("a table");
     let of_study = order(Begin::New);
-    finish(open(&path, &of_study, &own).expect("an empty directory"), &own, "1\n").expect("results");
+    finish(open(&path, &of_study, &own).expect("an empty directory"), "1\n").expect("results");
 
     let of_other = Order { study: "other.json".into(), ..of_study.clone() };
     match open(&path, &of_other, &other).map(drop) {
@@ -84,15 +84,15 @@ fn contract_results_of_another_identity_are_refused_unless_they_may_be_replaced(
         other => panic!("{other:?}"),
     }
     assert_eq!(table(), "1\n");
-    assert!(manifest::is_finished(&path, &own));
+    assert!(Directory::is_finished(&path, &own, TABLE));
 
     // The same study file, edited since, replaces its own results; another study only where it was told to.
-    finish(open(&path, &of_study, &edited).expect("own results"), &edited, "2\n").expect("results");
+    finish(open(&path, &of_study, &edited).expect("own results"), "2\n").expect("results");
     assert_eq!(table(), "2\n");
     let replace = Order { replace: true, ..of_other };
-    finish(open(&path, &replace, &other).expect("results to replace"), &other, "3\n").expect("results");
+    finish(open(&path, &replace, &other).expect("results to replace"), "3\n").expect("results");
     assert_eq!(table(), "3\n");
-    assert!(manifest::is_finished(&path, &other) && !manifest::is_finished(&path, &edited));
+    assert!(Directory::is_finished(&path, &other, TABLE) && !Directory::is_finished(&path, &edited, TABLE));
 }
 
 /// A process that was killed while it wrote the manifest leaves a temporary file beside the results; no other file is touched.
@@ -104,6 +104,6 @@ fn regress_what_a_killed_process_left_of_a_manifest_is_removed() {
     let left = [".manifest.json.4711.tmp", ".manifest.json.mine.tmp", ".hidden"].map(|name| path.join(name));
     left.iter().for_each(|path| std::fs::write(path, "half").expect("a file"));
     let results = open(&path, &order(Begin::New), &identity).expect("a directory");
-    finish(results, &identity, "1,2\n").expect("results");
+    finish(results, "1,2\n").expect("results");
     assert_eq!(left.map(|path| path.exists()), [false, true, true]);
 }

@@ -5,22 +5,31 @@ mod measure;
 
 pub use certificate::{Certificate, Short};
 
-use crate::request::{open, where_results_are};
-use crate::resolved::{identity_of, study_text};
+use crate::artefact::{Content, Kind, artefact};
+use crate::job::{Job, open};
+use crate::request::where_results_are;
+use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
-use retune_store::{Extent, manifest};
+use retune_store::Extent;
 use retune_study::{self as study, Rule, Study};
 use std::path::{Path, PathBuf};
 
 /// The file that a certificate is written to.
 pub const FILE: &str = "certificate.json";
 
+/// The files of a certificate that does not stand beside the search that found its design.
+pub static KIND: Kind = Kind {
+    command: "certify",
+    answer: FILE,
+    artefacts: &[artefact(resolved::ONE, Content::Input), artefact(FILE, Content::Certificate)],
+};
+
 /// Certifies the design of a study, or the one that a search found: `request.study` is a study, an `optimum.json`, or the directory of
 /// a search's results. The certificate goes beside an optimum, or to `results/certify/<study>`, unless told otherwise.
 ///
 /// # Errors
 /// The input is wrong, the design cannot be run, or the certificate cannot be written.
-pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<(Study, Certificate), Error> {
+pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certificate, Error> {
     let (study, found_in) = read(&request.study)?;
     let out = request.out.clone().or(found_in.clone());
     let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
@@ -31,21 +40,21 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<(Study, C
         return Err(retune_store::Error::Output { path: out, source }.into());
     }
     let certificate = request.on_threads(|| certify(&study))?;
-    let identity = identity_of(&study)?;
-    let is_ours = move |name: &str| name == FILE || !beside && ["study.json", manifest::NAME].contains(&name);
-    let extent = if beside { Extent::Guest } else { Extent::Whole };
-    let results = open(&out, &request.order("certify"), &identity, extent, is_ours, watch)?;
-    results.write_json(FILE, &certificate)?;
-    if beside {
-        manifest::amend(&results)?;
+    let order = request.order(KIND.command);
+    let results = if beside {
+        let is_ours = |name: &str| name == FILE;
+        let results = open(&out, &order, &identity_of(&study)?, Extent::Guest, is_ours, watch)?;
+        results.write_json(FILE, &certificate)?;
+        results.amend_manifest()?;
+        results
     } else {
-        results.write("study.json", &study_text(&study)?)?;
-        manifest::write(identity, [study.solver], &results)?;
-    }
+        let job = Job::of_study(&KIND, &study, &out, &order)?;
+        job.make(watch, |results| Ok(results.write_json(FILE, &certificate)?))?.1
+    };
     results.finish()?;
     watch.result(&certificate.to_string())?;
     watch.result(&where_results_are(&out)?)?;
-    Ok((study, certificate))
+    Ok(certificate)
 }
 
 /// Whether both are the same directory.

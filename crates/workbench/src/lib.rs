@@ -40,15 +40,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod artefact;
 pub mod certify;
 pub mod describe;
 pub mod designs;
 pub mod error;
 pub mod evaluate;
+pub mod job;
 pub mod observer;
 pub mod pareto;
 pub mod request;
 pub mod resolved;
+pub mod searches;
 pub mod simulate;
 pub mod summary;
 pub mod table2;
@@ -57,5 +60,6 @@ pub mod tune;
 pub mod verify;
 
 pub use error::Error;
+pub use job::Done;
 pub use observer::{Observer, Progress, Silent};
 pub use request::Request;

@@ -1,7 +1,7 @@
-//! The request for a job beside its study, and the steps that every job begins and ends with.
+//! The request for a job beside its study.
 
-use crate::{Error, Observer};
-use retune_store::{Begin, Directory, Extent, Identity, Order};
+use crate::Error;
+use retune_store::{Begin, Order};
 use retune_study::{Study, StudyError, check_name};
 use std::path::{Path, PathBuf};
 
@@ -58,26 +58,6 @@ impl Request {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()?;
         pool.install(work)
     }
-}
-
-/// Opens a directory of results and reports it to the observer.
-///
-/// # Errors
-/// As [`Directory::open`].
-pub fn open(
-    path: &Path,
-    order: &Order,
-    identity: &Identity,
-    extent: Extent,
-    is_ours: impl Fn(&str) -> bool + Send + Sync + 'static,
-    watch: &dyn Observer,
-) -> Result<Directory, Error> {
-    let directory = Directory::open(path, order, identity, extent, is_ours)?;
-    if let Some(warning) = directory.warning() {
-        watch.warn(warning);
-    }
-    watch.resumable();
-    Ok(directory)
 }
 
 /// A message with the directory of the results and their list.

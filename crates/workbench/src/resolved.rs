@@ -12,7 +12,7 @@ use std::path::Path;
 /// # Errors
 /// Serialisation fails, which no known study causes.
 pub fn study_text(study: &Study) -> Result<String, Error> {
-    Ok(json_text(&study.resolved(), "study.json")?)
+    Ok(json_text(&study.resolved(), ONE)?)
 }
 
 /// The identity of the search of a study.
@@ -23,8 +23,10 @@ pub fn identity_of(study: &Study) -> Result<Identity, Error> {
     Ok(Identity::of(&study_text(study)?))
 }
 
-/// The name of the file that several studies are written to.
-pub const NAME: &str = "resolved.json";
+/// The name of the file that the complete input is written to, if it is one study.
+pub const ONE: &str = "study.json";
+/// The same for several studies.
+pub const SEVERAL: &str = "resolved.json";
 
 /// The plan and the study of each damper.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -55,7 +57,7 @@ impl Resolved {
     /// # Errors
     /// Serialisation fails, which no known study causes.
     pub fn text(&self) -> Result<String, Error> {
-        Ok(json_text(self, NAME)?)
+        Ok(json_text(self, SEVERAL)?)
     }
 
     /// Reads the file in a directory of results.
@@ -63,7 +65,7 @@ impl Resolved {
     /// # Errors
     /// It cannot be read, or is not such a file.
     pub fn read(place: &Path) -> Result<Self, Error> {
-        let path = place.join(NAME);
+        let path = place.join(SEVERAL);
         let refuse = |source| retune_store::Error::Input { path: path.clone(), source };
         let text = std::fs::read_to_string(&path).map_err(refuse)?;
         Ok(serde_json::from_str(&text).map_err(|error| refuse(error.into()))?)
@@ -75,7 +77,7 @@ impl Resolved {
     /// A study is invalid.
     pub fn studies(&self) -> Result<Vec<(String, Study)>, Error> {
         let study =
-            |damper: &Damper| Ok((damper.damper.clone(), from_text(&damper.study.to_string(), NAME)?));
+            |damper: &Damper| Ok((damper.damper.clone(), from_text(&damper.study.to_string(), SEVERAL)?));
         self.dampers.iter().map(study).collect()
     }
 }

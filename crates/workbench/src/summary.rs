@@ -99,6 +99,11 @@ impl MadeBy {
         Self { retune: env!("CARGO_PKG_VERSION"), study, omega, window, solver, objective }
     }
 
+    /// The name of the study.
+    pub fn study(&self) -> &str {
+        &self.study
+    }
+
     /// The origin of a run of `scene` under `study`.
     fn run(study: &Study, scene: &Scene) -> Self {
         let omega = scene.forcing.frequency.get();

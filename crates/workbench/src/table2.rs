@@ -1,32 +1,50 @@
 //! `table2`: the same search for several dampers, from the paper's own designs.
 
-use crate::designs::Table;
-use crate::tune::optimize;
+use crate::artefact::{Content, Kind, artefact};
+use crate::designs::{Designs, Row};
+use crate::job::{Done, Job, Made};
+use crate::resolved;
+use crate::searches::Searches;
 use crate::{Error, Observer, Request};
 use retune_study::{PaperStudy, read_table2};
 use serde_json::json;
 
-/// Re-optimises each row of Table 2 from the paper's own design, and shows both rows.
+/// The files of the table.
+pub static KIND: Kind = Kind {
+    command: "table2",
+    answer: "table2.csv",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("table2.csv", Content::Designs),
+        artefact("table2.txt", Content::Derived),
+    ],
+};
+
+/// Re-optimises each row of Table 2 from the paper's own design; the table has both rows.
 ///
 /// # Errors
 /// A study is wrong, nothing can be computed, or the results cannot be written.
-pub fn table2(request: &Request, watch: &dyn Observer) -> Result<(), Error> {
+pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, Error> {
     let mut rows = read_table2(&request.study)?;
-    let (out, order) = (request.out_of_file()?, request.order("table2"));
     for PaperStudy { study, .. } in &mut rows {
         if let Some(optimize) = &mut study.optimize {
             optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
         }
     }
-    let mut table = Table::new(["table2", "origin"], &[], &out, &order, json!({}), &rows, watch)?;
-    request.on_threads(|| {
-        for PaperStudy { damper, study } in rows {
+    let studies = rows.iter().map(|row| (row.damper.as_str(), &row.study));
+    let job = Job::of_studies(&KIND, request, json!({}), studies)?;
+    job.run(request, watch, |directory| {
+        let mut searches = Searches::new(directory, &job.order, watch);
+        let mut table = Vec::new();
+        for PaperStudy { damper, study } in &rows {
             watch.log(&format!("\n{damper}: re-optimised from the paper's design"))?;
-            let (optimum, results) = optimize(&study, &table.directory().part(study.name()), &order, watch)?;
-            table.push("paper", &damper, optimum.start());
-            table.push("re-optimised", &damper, optimum.found());
-            table.keep(&study, &optimum, results);
+            let optimum = searches.tune(study, "")?;
+            let row = |label: &str, found| Row { label: label.to_owned(), damper: damper.clone(), found };
+            table.extend([row("paper", optimum.start()), row("re-optimised", optimum.found())]);
         }
-        table.finish(watch)
+        let Searches { results: parts, infeasible, .. } = searches;
+        let table = Designs { column: "origin", rows: table, infeasible };
+        table.write(KIND.command, directory)?;
+        Ok(Made { report: format!("\n{}", table.text()), answer: table, parts })
     })
 }

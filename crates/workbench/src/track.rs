@@ -6,87 +6,130 @@
 mod draw;
 mod tuned;
 
-pub use tuned::{energy, kept};
+pub use tuned::{Curves, Tuned, column, energy};
 
-use crate::designs::Table;
-use crate::tune::{Found, optimize};
+use crate::artefact::{Content, Kind, artefact};
+use crate::designs::{Designs, Row};
+use crate::job::{Done, Job, Made};
+use crate::resolved;
+use crate::searches::Searches;
+use crate::tune::Found;
 use crate::{Error, Observer, Request};
-use retune_store::Order;
 use retune_study::{self as study, PaperStudy, PerVariable, Setting, Study, short};
 use serde_json::json;
-use tuned::{Tuned, csv, retention};
+use tuned::{csv, retention};
 
-/// Tunes both dampers anew for each stiffness of the primary structure, and shows how E1max is retained.
+/// The files of the retention of tuning.
+pub static KIND: Kind = Kind {
+    command: "track",
+    answer: "retune.csv",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("retune.csv", Content::Designs),
+        artefact("retention.csv", Content::Retention),
+        artefact("retune.txt", Content::Derived),
+        artefact("retention.svg", Content::Derived),
+        artefact("path.svg", Content::Derived),
+    ],
+};
+
+/// The dampers tuned for several stiffnesses of the primary structure.
+#[derive(Debug)]
+pub struct Tracked {
+    /// Each damper with its designs.
+    pub tuned: Vec<Tuned>,
+    /// E1max along k1.
+    pub curves: Curves,
+    /// All designs as a table.
+    pub table: Designs,
+}
+
+/// Tunes both dampers anew for each stiffness of the primary structure, and computes how each tuning does at other stiffnesses.
 ///
 /// # Errors
 /// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
-pub fn track(request: &Request, stiffnesses: &[Setting], watch: &dyn Observer) -> Result<(), Error> {
+pub fn track(
+    request: &Request,
+    stiffnesses: &[Setting],
+    watch: &dyn Observer,
+) -> Result<Done<Tracked>, Error> {
     let rows = study::read_table2(&request.study)?;
     for setting in stiffnesses {
         rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
     }
-    let (out, order) = (request.out_of_file()?, request.order("track"));
-    const FILES: [&str; 3] = ["retention.csv", "retention.svg", "path.svg"];
     let k1: Vec<f64> = stiffnesses.iter().map(Setting::value).collect();
-    let plan = json!({ "k1": k1 });
-    let mut table = Table::new(["retune", "k1"], &FILES, &out, &order, plan, &rows, watch)?;
-    request.on_threads(|| {
+    let studies = rows.iter().map(|row| (row.damper.as_str(), &row.study));
+    let job = Job::of_studies(&KIND, request, json!({ "k1": k1 }), studies)?;
+    job.run(request, watch, |directory| {
+        let mut searches = Searches::new(directory, &job.order, watch);
         let tuned = rows
-            .into_iter()
-            .map(|row| tune(row, stiffnesses, &order, &mut table, watch))
-            .collect::<Result<Vec<Tuned>, Error>>()?;
-        let mut designs: Vec<(f64, &str, Found)> = tuned
             .iter()
-            .flat_map(|damper| damper.designs.iter().map(|(k1, found)| (*k1, damper.name.as_str(), *found)))
-            .collect();
-        designs.sort_by(|a, b| a.0.total_cmp(&b.0)); // stable: dampers in the order of the table
-        for (k1, name, found) in designs {
-            table.push(&k1.to_string(), name, found);
-        }
+            .map(|row| tune(row, stiffnesses, &mut searches, watch))
+            .collect::<Result<Vec<Tuned>, Error>>()?;
+        let Searches { results: parts, infeasible, .. } = searches;
+        let table = Designs { column: "k1", rows: by_stiffness(&tuned), infeasible };
         let curves = retention(&tuned);
-        let directory = table.directory();
         directory.write("retention.csv", &csv(&tuned, &curves))?;
         directory.write("retention.svg", &draw::retention(&tuned, &curves))?;
         directory.write("path.svg", &draw::path(&tuned))?;
-        table.finish(watch)
+        table.write("retune", directory)?;
+        Ok(Made { report: format!("\n{}", table.text()), answer: Tracked { tuned, curves, table }, parts })
     })
 }
 
-/// Tunes one damper for the stiffness of its study, then for each of `others`, outwards.
+/// All designs, smallest stiffness first, the dampers in their order under each.
+fn by_stiffness(tuned: &[Tuned]) -> Vec<Row> {
+    let of = |damper: &Tuned| {
+        let name = damper.name.clone();
+        let row = move |&(k1, found): &(f64, Found)| {
+            (k1, Row { label: k1.to_string(), damper: name.clone(), found })
+        };
+        damper.designs.iter().map(row).collect::<Vec<_>>()
+    };
+    let mut rows: Vec<(f64, Row)> = tuned.iter().flat_map(of).collect();
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0)); // stable
+    rows.into_iter().map(|(_, row)| row).collect()
+}
+
+/// Tunes one damper for the stiffness of its study, then for each of `others`: upwards from there, then downwards.
 fn tune(
-    row: PaperStudy,
+    PaperStudy { damper: name, study }: &PaperStudy,
     others: &[Setting],
-    order: &Order,
-    table: &mut Table,
+    searches: &mut Searches,
     watch: &dyn Observer,
 ) -> Result<Tuned, Error> {
-    let PaperStudy { damper: name, study } = row;
     let nominal = study.scene.primary.stiffness.get();
-    let mut stiffnesses: Vec<f64> = others.iter().map(Setting::value).chain([nominal]).collect();
-    stiffnesses.sort_by(f64::total_cmp);
-    stiffnesses.dedup();
-    let here = stiffnesses.iter().position(|k1| *k1 == nominal).unwrap_or_default();
-    let mut designs: Vec<Option<Found>> = vec![None; stiffnesses.len()];
-    let upwards = (here..stiffnesses.len()).map(|i| (i, i.checked_sub(1).filter(|_| i > here)));
-    let downwards = (0..here).rev().map(|i| (i, Some(i + 1)));
-    for (i, neighbour) in upwards.chain(downwards) {
-        let k1 = stiffnesses[i];
-        let from = neighbour.and_then(|neighbour| designs[neighbour]);
-        let study = warm(&study, k1, from)?;
-        let warm = if from.is_some() { ", and from the design of the k1 beside it" } else { "" };
+    let sorted = |wanted: &dyn Fn(f64) -> bool| {
+        let mut stiffnesses: Vec<f64> = others.iter().map(Setting::value).filter(|k1| wanted(*k1)).collect();
+        stiffnesses.sort_by(f64::total_cmp);
+        stiffnesses.dedup();
+        stiffnesses
+    };
+    let mut at = |k1: f64, neighbour: Option<Found>| -> Result<Found, Error> {
+        let study = warm(study, k1, neighbour)?;
+        let warm = if neighbour.is_some() { ", and from the design of the k1 beside it" } else { "" };
         let natural = short(study.scene.primary.natural_frequency());
         watch.log(&format!(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
             study::over(&study.objective(), study.scene.forcing.frequency.get())
         ))?;
-        let place = table.directory().part(&format!("k1-{k1}/{}", study.name()));
-        let (optimum, results) = optimize(&study, &place, order, watch)?;
-        table.keep(&study, &optimum, results);
+        let optimum = searches.tune(&study, &format!("k1-{k1}"))?;
         watch.log(&optimum.report())?;
-        designs[i] = Some(optimum.found());
+        Ok(optimum.found())
+    };
+    let nominal_design = at(nominal, None)?;
+    let (above, mut below) = (sorted(&|k1| k1 > nominal), sorted(&|k1| k1 < nominal));
+    below.reverse();
+    let mut designs = vec![(nominal, nominal_design)];
+    for outwards in [above, below] {
+        let mut neighbour = nominal_design;
+        for k1 in outwards {
+            neighbour = at(k1, Some(neighbour))?;
+            designs.push((k1, neighbour));
+        }
     }
-    let designs = stiffnesses.into_iter().zip(designs).filter_map(|(k1, found)| Some((k1, found?))).collect();
-    Ok(Tuned { name, study, nominal, designs })
+    designs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(Tuned { name: name.clone(), study: study.clone(), nominal, nominal_design, designs })
 }
 
 /// The study at another stiffness, with one more start.

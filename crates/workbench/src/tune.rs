@@ -13,55 +13,50 @@ mod surf;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
+use crate::artefact::{Content, Kind, artefact};
 use crate::certify::{self, certify};
-use crate::request::{self, where_results_are};
-use crate::resolved::{identity_of, study_text};
+use crate::job::{Done, Job, Made};
+use crate::resolved;
 use crate::summary::Summary;
 use crate::{Error, Observer, Request};
 use global::Basins;
 use optimum::Searched;
-use retune_store::{Begin, Directory, Extent, Order, manifest};
+use retune_store::{Directory, Order};
 use retune_study::{Search, Study, are};
 use shard::Shard;
 use std::path::Path;
 
-/// The result of a search.
-pub enum Tuned {
-    /// It is finished: the best design.
-    Found(Box<Optimum>),
-    /// The search was to be resumed, but was already finished.
-    FinishedBefore,
-}
+/// The file with the design that a search found.
+pub const OPTIMUM: &str = "optimum.json";
+
+/// The files of a search.
+pub static KIND: Kind = Kind {
+    command: "optimize",
+    answer: OPTIMUM,
+    artefacts: &[
+        artefact(resolved::ONE, Content::Input),
+        artefact("surf.csv", Content::Searched),
+        artefact("fminsearch.csv", Content::Searched),
+        artefact("fminsearch-starts.csv", Content::Searched),
+        artefact("basins.csv", Content::Searched),
+        artefact("band.csv", Content::Band),
+        artefact(OPTIMUM, Content::Optimum),
+        artefact(certify::FILE, Content::Certificate),
+        artefact("fminsearch.txt", Content::Derived),
+        artefact("surf-*.svg", Content::Derived),
+        artefact("convergence.svg", Content::Derived),
+        artefact("band.svg", Content::Derived),
+    ],
+};
 
 /// Tunes the damper of a study file.
 ///
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
-pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Tuned, Error> {
+pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let study = retune_study::read(&request.study)?;
-    finished(&study, request, watch, |out, order| optimize(&study, out, order, watch))
-}
-
-/// Makes a search with `search`, unless it is to be resumed and is already finished; reports its result.
-fn finished(
-    study: &Study,
-    request: &Request,
-    watch: &dyn Observer,
-    search: impl FnOnce(&Path, &Order) -> Result<(Optimum, Directory), Error> + Send,
-) -> Result<Tuned, Error> {
-    let out = request.out_of(study);
-    if request.begin == Begin::Resume && manifest::is_finished(&out, &identity_of(study)?) {
-        Directory::tidy(&out);
-        watch.result(&format!("finished already: nothing to go on with\n{}", where_results_are(&out)?))?;
-        certify::check_limits_in(&out, study.name())?;
-        return Ok(Tuned::FinishedBefore);
-    }
-    let order = request.order("optimize");
-    let (optimum, results) = request.on_threads(|| search(&out, &order))?;
-    results.finish()?;
-    watch.result(&optimum.report())?;
-    watch.result(&where_results_are(&out)?)?;
-    Ok(Tuned::Found(Box::new(optimum)))
+    let search = searched(&study)?;
+    run(&study, request, watch, |results| tuned(&study, &search, results, watch))
 }
 
 /// Computes a share of the grid of a study file, for [`merge`].
@@ -70,12 +65,12 @@ fn finished(
 /// The study is wrong or has no grid, or the part cannot be written.
 pub fn tune_share(request: &Request, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
     let study = retune_study::read(&request.study)?;
-    let (out, order) = (request.out_of(&study), request.order("optimize"));
+    let (out, order) = (request.out_of(&study), request.order(KIND.command));
     request.on_threads(|| shard::shard(&study, shard, &out, &order, watch))
 }
 
-/// Searches for the best design of a study and writes all results to the directory `out`. The work can be resumed until the
-/// directory is finished.
+/// Searches for the best design of a study as a part of a larger job. The results in the directory `out` can be resumed until it is
+/// finished.
 ///
 /// # Errors
 /// The study has nothing to tune, nothing can be computed, or the results cannot be written.
@@ -85,49 +80,59 @@ pub fn optimize(
     order: &Order,
     watch: &dyn Observer,
 ) -> Result<(Optimum, Directory), Error> {
-    optimize_from(study, out, order, watch, |_| Ok(()))
+    let search = searched(study)?;
+    let job = Job::of_study(&KIND, study, out, order)?;
+    job.make(watch, |results| tuned(study, &search, results, watch))
 }
 
-/// As [`optimize`], after `prepare` has added known values to the directory.
-///
-/// # Errors
-/// As [`optimize`].
-fn optimize_from(
+/// Does a search with `work` as a whole job. Results that were finished before are checked for their limits.
+fn run(
     study: &Study,
-    out: &Path,
-    order: &Order,
+    request: &Request,
     watch: &dyn Observer,
-    prepare: impl FnOnce(&mut Directory) -> Result<(), Error>,
-) -> Result<(Optimum, Directory), Error> {
-    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let mut results = request::open(out, order, &identity_of(study)?, Extent::Whole, is_ours, watch)?;
-    prepare(&mut results)?;
-    match results.journal().known() {
-        0 => {}
-        known => watch.log(&format!("goes on: {} known", are(known, "value")))?,
+    work: impl FnOnce(&mut Directory) -> Result<Optimum, Error> + Send,
+) -> Result<Done<Optimum>, Error> {
+    let job = Job::of_study(&KIND, study, &request.out_of(study), &request.order(KIND.command))?;
+    let done = job.run(request, watch, |results| {
+        let answer = work(results)?;
+        Ok(Made { report: answer.report(), answer, parts: Vec::new() })
+    })?;
+    if let Done::FinishedBefore = done {
+        certify::check_limits_in(&job.out, study.name())?;
     }
-    match tuned(study, &search, &results, watch)
-        .and_then(|optimum| Ok(results.publish().map(|()| optimum)?))
-    {
-        Ok(optimum) => Ok((optimum, results)),
-        Err(error) => {
-            // Work that cannot be written can be resumed later; work that cannot be computed cannot.
-            if !matches!(error, Error::Store(_)) {
-                results.discard();
-            }
-            Err(error)
-        }
-    }
+    Ok(done)
 }
 
-/// Searches and writes.
+/// The search of a study.
+fn searched(study: &Study) -> Result<Search, Error> {
+    study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })
+}
+
+/// Searches, writes, and discards what cannot be computed: only work that could not be written can be resumed later.
 fn tuned(
     study: &Study,
     search: &Search,
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
-    results.write("study.json", &study_text(study)?)?;
+    match results.journal().known() {
+        0 => {}
+        known => watch.log(&format!("goes on: {} known", are(known, "value")))?,
+    }
+    let optimum = search_and_write(study, search, results, watch);
+    if optimum.as_ref().is_err_and(|error| !matches!(error, Error::Store(_))) {
+        results.discard();
+    }
+    optimum
+}
+
+/// Searches and writes.
+fn search_and_write(
+    study: &Study,
+    search: &Search,
+    results: &Directory,
+    watch: &dyn Observer,
+) -> Result<Optimum, Error> {
     let surf = surf::surf(study, search, results, watch)?;
     let explored = global::global(study, search, results.journal(), watch)?;
     let mut starts = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
@@ -154,30 +159,10 @@ fn tuned(
     let certificate = certify(&Study { scene: design, ..study.clone() })?;
     results.write_json(certify::FILE, &certificate)?;
     let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short());
-    results.write_json("optimum.json", &optimum)?;
+    results.write_json(OPTIMUM, &optimum)?;
     pictures::draw(study, search, surf.as_ref(), &refined, results)?;
     if study.objective().omega.is_some() {
         band::write(study, design, results)?;
     }
-    manifest::write(identity_of(study)?, [study.solver], results)?;
     Ok(optimum)
-}
-
-/// Whether `optimize` writes files of this name.
-fn is_ours(name: &str) -> bool {
-    const NAMES: [&str; 12] = [
-        certify::FILE,
-        "basins.csv",
-        "study.json",
-        "surf.csv",
-        "fminsearch.csv",
-        "fminsearch.txt",
-        "fminsearch-starts.csv",
-        "optimum.json",
-        "convergence.svg",
-        "band.csv",
-        "band.svg",
-        manifest::NAME,
-    ];
-    NAMES.contains(&name) || (name.starts_with("surf-") && name.ends_with(".svg"))
 }

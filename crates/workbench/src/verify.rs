@@ -1,20 +1,23 @@
-//! `verify`: results are compared with those that their study gives. Every file is compared with the manifest, a sample of the rows
-//! is run again and compared to the last bit, certificates are made again. Parts that cannot be checked are reported.
+//! `verify`: results are compared with those that their study gives. Every file is compared with the manifest; by the lists of the jobs
+//! a sample of the rows is run again and compared to the last bit, certificates are made again. Parts that cannot be checked are
+//! reported.
 
 mod files;
 mod input;
+mod one;
 mod report;
-mod search;
 mod several;
 mod table;
 mod tally;
 mod values;
 
-use crate::resolved;
+use crate::artefact::{Content, Kind};
 use crate::tune::shard::PARTS;
-use crate::{Error, Observer};
+use crate::{Error, Observer, certify, pareto, resolved, table2, track, tune};
+use one::One;
 use report::Report;
 use retune_store::{UNFINISHED, manifest};
+use several::Several;
 use std::path::{Path, PathBuf};
 
 /// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
@@ -43,31 +46,64 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
     report.end(path)
 }
 
-/// Checks the results in one directory.
-fn look(place: &Path, sample: usize, report: &mut Report<'_>) -> Result<(), Error> {
-    files::verify(place, report)?;
-    let has = |name: &str| place.join(name).exists();
-    let done = if has(resolved::NAME) {
-        several::verify(place, sample, report)
-    } else if has("study.json") {
-        search::verify(place, sample, report)
-    } else {
-        report.unchecked("no row of these results can be run again by itself")
-    };
-    match done {
-        // Damaged files do not hold either.
-        Err(
-            error @ (Error::Store(retune_store::Error::Input { .. })
-            | Error::Study(_)
-            | Error::Rule { .. }
-            | Error::Setting(_)),
-        ) => report.fail("", &error.to_string()),
-        other => other,
+/// The kinds of jobs whose results are computed again.
+static KINDS: [&Kind; 5] = [&tune::KIND, &certify::KIND, &table2::KIND, &track::KIND, &pareto::KIND];
+
+/// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
+fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+    let there = files::verify(place, report)?;
+    let known = known(&there);
+    let of_searches = |content| matches!(content, Content::Searched | Content::Band);
+    if known.iter().all(|(_, content)| matches!(content, Content::Input | Content::Derived)) {
+        return report.unchecked("no row of these results can be run again by itself");
     }
+    for &(name, content) in &known {
+        let done = match content {
+            Content::Input | Content::Derived => Ok(()),
+            Content::Searched => One::read(place).and_then(|one| one.searched(name, most, report)),
+            Content::Band => One::read(place).and_then(|one| one.band(name, most, report)),
+            Content::Optimum => One::read(place).and_then(|one| one.optimum(name, report)),
+            Content::Certificate => One::read(place).and_then(|one| one.certificate(name, report)),
+            Content::Designs => Several::read(place).and_then(|all| all.designs(name, most, report)),
+            Content::Retention => Several::read(place).and_then(|all| all.retention(name, most, report)),
+            Content::CertificateOf => Several::read(place).and_then(|all| all.certificate(name, report)),
+        };
+        match done {
+            // Damaged files do not hold either.
+            Err(
+                error @ (Error::Store(retune_store::Error::Input { .. })
+                | Error::Study(_)
+                | Error::Rule { .. }
+                | Error::Setting(_)),
+            ) => report.fail("", &error.to_string())?,
+            other => other?,
+        }
+    }
+    if known.iter().any(|(_, content)| of_searches(*content)) && !has(&known, Content::Optimum) {
+        return report.unchecked("there is no optimum.json: the design that was found");
+    }
+    Ok(())
+}
+
+/// The files of a directory that a job makes, in the order of its list, with their contents.
+fn known(there: &[String]) -> Vec<(&str, Content)> {
+    let mut known: Vec<(&str, Content)> = Vec::new();
+    for artefact in KINDS.iter().flat_map(|kind| kind.artefacts) {
+        for name in there.iter().filter(|name| artefact.is(name)) {
+            if known.iter().all(|(other, _)| other != name) {
+                known.push((name, artefact.content));
+            }
+        }
+    }
+    known
+}
+
+fn has(known: &[(&str, Content)], content: Content) -> bool {
+    known.iter().any(|(_, other)| *other == content)
 }
 
 fn is_result(place: &Path) -> bool {
-    [manifest::NAME, "study.json"].iter().any(|name| place.join(name).exists())
+    [manifest::NAME, resolved::ONE].iter().any(|name| place.join(name).exists())
 }
 
 /// A directory, if there are files in it, and those below with files, sorted.

@@ -65,11 +65,11 @@ impl Short {
         self.verdict.map_or("none", Verdict::name)
     }
 
-    /// Refuses a design that breaks the limits of its study, for which there is no verdict.
+    /// Refuses a design that breaks the limits of its `study`, for which there is no verdict.
     ///
     /// # Errors
     /// [`Error::Infeasible`].
-    pub fn check_limits(&self, study: &str) -> Result<(), Error> {
+    pub(crate) fn check_limits(&self, study: &str) -> Result<(), Error> {
         match self.verdict {
             Some(_) => Ok(()),
             None => Err(Error::Infeasible { name: study.to_owned(), words: self.words.clone() }),
@@ -102,6 +102,14 @@ impl Certificate {
             sensitivity,
             neighbourhood,
         }
+    }
+
+    /// Refuses a design that breaks the limits of its study.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`].
+    pub fn check_limits(&self) -> Result<(), Error> {
+        self.short().check_limits(self.made_by.study())
     }
 
     /// The short form.

@@ -17,8 +17,9 @@ pub struct Candidate {
     pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
-    /// The largest stroke (spring deflection |x2 - x1 - D|), m, and contact force, N, in any run.
+    /// The largest stroke (spring deflection |x2 - x1 - D|) in any run, m.
     pub stroke: f64,
+    /// The largest contact force in any run, N.
     pub force: f64,
     /// The verdict of its certificate.
     pub verdict: &'static str,

@@ -6,11 +6,10 @@
 use super::candidate::{Candidate, SAME, by_excess, finer, look};
 use crate::certify::{Certificate, certify};
 use crate::designs::quoted;
-use crate::tune::optimize;
+use crate::searches::Searches;
 use crate::{Error, Observer};
 use retune_model::{Design, Variable};
 use retune_optim::Limit;
-use retune_store::{Directory, Order};
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
 
 /// A search keeps this much below a limit of stroke, for between its samples a stroke may be a little larger.
@@ -19,6 +18,7 @@ const ROOM: f64 = 0.99;
 const GIVEN: &str = "of the study";
 
 /// The best design of a damper under a bound; none where no design that was found keeps it.
+#[derive(Debug)]
 pub struct Row<'a> {
     /// The bounded quantity.
     pub sweep: Sweep,
@@ -31,6 +31,7 @@ pub struct Row<'a> {
 }
 
 /// The designs that all searches found.
+#[derive(Debug)]
 pub struct Fronts {
     /// The plan of the study of fronts.
     pub plan: FrontsPlan,
@@ -38,12 +39,19 @@ pub struct Fronts {
     pub designs: Vec<Candidate>,
     /// The dampers in the scenes of the studies, where they can be run.
     pub given: Vec<Candidate>,
+    /// The certificates of the designs that are furthest below the first damper under the same bound, each value once.
+    pub certified: Vec<Certified>,
 }
 
 /// A design that is certified: below the best of the first damper under the same bound.
-pub struct Certified<'a> {
-    /// The design, with its bound.
-    pub row: Row<'a>,
+#[derive(Debug)]
+pub struct Certified {
+    /// The bounded quantity.
+    pub sweep: Sweep,
+    /// The bound, in the unit of the sweep.
+    pub bound: f64,
+    /// The design.
+    pub design: Candidate,
     /// The least E1max of the first damper under this bound, J.
     pub reference: Option<f64>,
     /// The name of the certificate's file.
@@ -54,14 +62,12 @@ pub struct Certified<'a> {
 
 impl Fronts {
     /// Makes all searches, the tighter bounds first.
-    pub fn search(
+    pub(super) fn search(
         plan: FrontsPlan,
-        directory: &Directory,
-        order: &Order,
+        searches: &mut Searches,
         watch: &dyn Observer,
-    ) -> Result<(Self, Vec<Directory>), Error> {
-        let mut fronts = Self { plan, designs: Vec::new(), given: Vec::new() };
-        let mut parts = Vec::new();
+    ) -> Result<Self, Error> {
+        let mut fronts = Self { plan, designs: Vec::new(), given: Vec::new(), certified: Vec::new() };
         for damper in 0..fronts.plan.dampers.len() {
             let (name, study) = fronts.plan.dampers[damper].clone();
             if let Some(place) = study.scene.damper {
@@ -76,16 +82,15 @@ impl Fronts {
                     let study = study::bounded(&study, sweep, room * bound, starts).map_err(refuse)?;
                     let (what, unit) = (sweep.name(), sweep.unit());
                     watch.log(&format!("\n{name}, {what} at most {bound} {unit}"))?;
-                    let place = directory.part(&format!("{what}-{bound}/{}", study.name()));
-                    let (optimum, results) = optimize(&study, &place, order, watch)?;
-                    parts.push(results);
+                    let optimum = searches.tune(&study, &format!("{what}-{bound}"))?;
                     watch.log(&optimum.report())?;
                     let at = optimum.found().damper.design;
                     fronts.designs.extend(fronts.look(damper, at, optimum.verdict()));
                 }
             }
         }
-        Ok((fronts, parts))
+        fronts.certified = fronts.certify()?;
+        Ok(fronts)
     }
 
     /// The designs at which a search starts: the best so far of the damper itself, and of those before it, under the bound.
@@ -145,6 +150,7 @@ impl Fronts {
         front
     }
 
+    /// The name of a damper.
     pub fn name(&self, damper: usize) -> &str {
         self.plan.dampers.get(damper).map_or("", |(name, _)| name)
     }
@@ -156,8 +162,8 @@ impl Fronts {
     }
 
     /// Certifies the designs that are furthest below the first damper under the same bound, each value once.
-    pub fn certify(&self) -> Result<Vec<Certified<'_>>, Error> {
-        let mut gains: Vec<(f64, Row, Option<f64>)> = Vec::new();
+    fn certify(&self) -> Result<Vec<Certified>, Error> {
+        let mut gains: Vec<(f64, Sweep, f64, &Candidate, Option<f64>)> = Vec::new();
         for row in Sweep::ALL.into_iter().flat_map(|sweep| self.rows(sweep)).filter(|row| row.damper > 0) {
             let reference = self.reference(&row);
             let Some(design) = row.design.filter(|design| design.force > 0.0 && design.verdict != GIVEN)
@@ -165,21 +171,18 @@ impl Fronts {
                 continue;
             };
             let share = reference.map_or(0.0, |reference| design.e1_max / reference);
-            if share < 1.0 - SAME
-                && gains.iter().all(|(_, other, _)| !other.design.is_some_and(|other| other.is_like(design)))
-            {
-                gains.push((share, row, reference));
+            if share < 1.0 - SAME && gains.iter().all(|(.., other, _)| !other.is_like(design)) {
+                gains.push((share, row.sweep, row.bound, design, reference));
             }
         }
         gains.sort_by(|a, b| a.0.total_cmp(&b.0));
         gains.truncate(self.plan.said.certificates);
         let mut certified = Vec::new();
-        for (_, row, reference) in gains {
-            let Some(study) = row.design.and_then(|design| self.finer(row.damper, &design.at)) else {
-                continue;
-            };
-            let file = format!("certificate-{}-{}.json", row.sweep.name(), row.bound);
-            certified.push(Certified { row, reference, file, certificate: certify(&study)? });
+        for (_, sweep, bound, design, reference) in gains {
+            let Some(study) = self.finer(design.damper, &design.at) else { continue };
+            let file = format!("certificate-{}-{bound}.json", sweep.name());
+            let (design, certificate) = (design.clone(), certify(&study)?);
+            certified.push(Certified { sweep, bound, design, reference, file, certificate });
         }
         Ok(certified)
     }
@@ -191,7 +194,7 @@ impl Fronts {
         Some(own?.design?.e1_max)
     }
 
-    /// A row for each bound and damper; what no design keeps has empty fields.
+    /// The table along a bound: a row for each bound and damper; what no design keeps has empty fields.
     pub fn csv(&self, sweep: Sweep) -> String {
         let mut text = format!("{}_most,damper,E1max,k2,c2,D,C,stroke,force,verdict\n", sweep.name());
         for Row { bound, damper, design, .. } in self.rows(sweep) {
@@ -201,6 +204,7 @@ impl Fronts {
         text
     }
 
+    /// The table of [`Self::front`].
     pub fn front_csv(&self) -> String {
         let rows = self
             .front()

@@ -5,14 +5,8 @@ use super::fronts::{Certified, Fronts, Row};
 use retune_study::Sweep;
 use retune_study::short;
 
-/// Why a soft spring with a stop does as well as a stiff one without.
-const MECHANISM: &str = "A mass that bounces on one stop makes only about half of each swing of its spring, so it comes back up to twice as \
-     fast as the spring alone lets it: with one strike a period it is in tune with the structure at down to a quarter of the \
-     stiffness that a TMD needs. The stop also cuts the swing off on its side, and the other wall stays out of reach, so that \
-     the motion is periodic and takes energy at every strike, at the cost of a contact force.";
-
 /// The page.
-pub(super) fn page(fronts: &Fronts, certified: &[Certified]) -> String {
+pub(super) fn page(fronts: &Fronts) -> String {
     let names: Vec<&str> = fronts.plan.dampers.iter().map(|(name, _)| name.as_str()).collect();
     let mut text = format!("# What the {} is good for\n\n", names.last().unwrap_or(&""));
     text += &format!(
@@ -45,14 +39,12 @@ pub(super) fn page(fronts: &Fronts, certified: &[Certified]) -> String {
     }
     text += "\n## The trade\n\nDesigns that no other dominates in all of E1max, stroke, contact force and k2 (`front.csv`); pale, those that are dominated.\n\n";
     text += "![E1max against stroke, contact force and k2](front.svg)\n\n";
-    if certified.is_empty() {
+    if fronts.certified.is_empty() {
         return text
             + "No design that strikes a wall is better than the first damper under the same bound.\n";
     }
-    text += "## Why\n\n";
-    text += MECHANISM;
-    text += "\n\n## Certified\n\n";
-    for one in certified {
+    text += "## Certified\n\n";
+    for one in &fronts.certified {
         text += &certificate(fronts, one);
     }
     text
@@ -133,14 +125,13 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 }
 
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
-    let Certified { row: Row { sweep, bound, damper, design }, reference, file, certificate } = one;
-    let Some(design) = design else { return String::new() };
+    let Certified { sweep, bound, design, reference, file, certificate } = one;
     let [k2, c2, d, c] = design.at.values().map(|value| round(value, 4));
     let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
     format!(
         "- {}, {} at most {bound} {}: k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m with {} J (best {} under the same bound: {reference}). \
          [{file}]({file}):\n\n```text\n{}\n```\n\n",
-        fronts.name(*damper),
+        fronts.name(design.damper),
         sweep.name(),
         sweep.unit(),
         joule(design.e1_max),

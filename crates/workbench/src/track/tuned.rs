@@ -10,6 +10,7 @@ use retune_study::Study;
 const ALONG: usize = 61;
 
 /// A damper tuned for several stiffnesses.
+#[derive(Debug)]
 pub struct Tuned {
     /// Its name.
     pub name: String,
@@ -17,11 +18,14 @@ pub struct Tuned {
     pub study: Study,
     /// The stiffness of its study, N/m.
     pub nominal: f64,
+    /// The design for it.
+    pub nominal_design: Found,
     /// A design for each stiffness, N/m, in their order.
     pub designs: Vec<(f64, Found)>,
 }
 
 /// E1max along k1.
+#[derive(Debug)]
 pub struct Curves {
     /// The stiffnesses, N/m.
     pub k1: Vec<f64>,
@@ -45,8 +49,8 @@ pub fn retention(tuned: &[Tuned]) -> Curves {
     };
     let none = tuned.first().map(|first| curve(&first.study, Scene { damper: None, ..first.study.scene }));
     let kept = |damper: &Tuned| {
-        let scene = damper.scene(damper.nominal).unwrap_or(damper.study.scene);
-        curve(&damper.study, scene)
+        let scene = damper.study.scene_at(&damper.nominal_design.damper.design);
+        scene.map_or(vec![f64::NAN; k1.len()], |scene| curve(&damper.study, scene))
     };
     let (none, kept) = (none.unwrap_or_default(), tuned.iter().map(kept).collect());
     Curves { k1, none, kept }
@@ -59,27 +63,21 @@ pub fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
 }
 
 impl Tuned {
-    /// The scene with the design for one of the stiffnesses.
-    fn scene(&self, k1: f64) -> Option<Scene> {
-        let (_, found) = self.designs.iter().find(|(other, _)| *other == k1)?;
-        self.study.scene_at(&found.damper.design)
-    }
-
     /// E1max of the design for a stiffness at it, J, if it is one of those tuned for.
     fn retuned(&self, k1: f64) -> Option<f64> {
         self.designs.iter().find(|(other, _)| *other == k1).map(|(_, found)| found.e1_max)
     }
 }
 
-/// The column of a damper as it was tuned for the stiffness of its study, N/m.
-pub fn kept(name: &str, nominal: f64) -> String {
+/// The name of the column of a damper as it was tuned for the stiffness of its study, N/m.
+pub fn column(name: &str, nominal: f64) -> String {
     format!("{name} tuned for {nominal}")
 }
 
 /// A row for each stiffness; what has no value is an empty field.
 pub fn csv(tuned: &[Tuned], curves: &Curves) -> String {
     let columns = tuned.iter().map(|Tuned { name, nominal, .. }| {
-        let columns = [kept(name, *nominal), format!("{name} re-tuned")];
+        let columns = [column(name, *nominal), format!("{name} re-tuned")];
         columns.map(|column| quoted(&column)).join(",")
     });
     let mut text = format!("k1,none,{}\n", columns.collect::<Vec<_>>().join(","));

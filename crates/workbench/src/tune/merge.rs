@@ -1,7 +1,8 @@
 //! `merge`: merges the parts of a grid that many machines computed, and completes the search.
 
 use super::shard::{self, Head, PARTS};
-use super::{Tuned, finished, optimize_from};
+use super::{Optimum, run, searched, tuned};
+use crate::job::Done;
 use crate::resolved::identity_of;
 use crate::{Error, Observer, Request};
 use retune_study::Rule;
@@ -18,13 +19,14 @@ const NAMED: usize = 5;
 /// The study or a part is wrong, nothing can be computed, or the results cannot be written.
 ///
 /// [`tune`]: super::tune()
-pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Result<Tuned, Error> {
+pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let study = retune_study::read(&request.study)?;
     let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
-    let (_, grid) = study.search().map_err(refuse)?.surf.ok_or_else(|| refuse(Rule::NoGrid))?;
-    finished(&study, request, watch, |out, order| {
+    let search = searched(&study)?;
+    let (_, grid) = search.surf.as_ref().ok_or_else(|| refuse(Rule::NoGrid))?;
+    let (out, identity) = (request.out_of(&study), identity_of(&study)?);
+    run(&study, request, watch, |results| {
         let paths = if parts.is_empty() { shard::list(&out.join(PARTS))? } else { parts.to_owned() };
-        let identity = identity_of(&study)?;
         let mut heads = Vec::new();
         for path in &paths {
             let head = shard::read(path, |_, _| {})?;
@@ -33,17 +35,16 @@ pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Resu
             }
             heads.push(head);
         }
-        check(&mut heads, grid.len(), &request.study, out)?;
+        check(&mut heads, grid.len(), &request.study, &out)?;
         watch.log(&format!(
             "{}, {}: complete, disjoint, of this study",
             counted(heads.len() as u64, "part"),
             counted(grid.len() as u64, "point")
         ))?;
-        optimize_from(&study, out, order, watch, |results| {
-            heads.iter().try_for_each(|head| {
-                shard::read(&head.path, |point, value| results.know(point, value)).map(drop)
-            })
-        })
+        for head in &heads {
+            shard::read(&head.path, |point, value| results.know(point, value))?;
+        }
+        tuned(&study, &search, results, watch)
     })
 }
 

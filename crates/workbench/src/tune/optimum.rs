@@ -52,11 +52,13 @@ pub(super) struct Searched<'a> {
 }
 
 /// A damper that was found, and its E1max.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Found {
     /// The damper.
+    #[serde(flatten)]
     pub damper: TunedDamper,
     /// E1max, J.
+    #[serde(rename = "E1max")]
     pub e1_max: f64,
 }
 
@@ -164,8 +166,8 @@ impl Optimum {
     ///
     /// # Errors
     /// [`Error::Infeasible`].
-    pub fn check_limits(&self, study: &str) -> Result<(), Error> {
-        self.certificate.check_limits(study)
+    pub fn check_limits(&self) -> Result<(), Error> {
+        self.certificate.check_limits(self.made_by.study())
     }
 
     /// The design at which the best refinement started.

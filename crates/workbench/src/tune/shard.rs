@@ -2,7 +2,7 @@
 //! part, whose name holds the hash of its content. A part never changes: it exists complete, or not at all.
 
 use super::objective::objective;
-use crate::request;
+use crate::job;
 use crate::resolved::identity_of;
 use crate::{Error, Observer};
 use retune_store::identity::{Identity, hexadecimal};
@@ -155,12 +155,13 @@ pub fn shard(
 
 /// Opens the working directory of a part; it has no results of its own.
 fn open(place: &Path, order: &Order, identity: &Identity, watch: &dyn Observer) -> Result<Directory, Error> {
-    request::open(place, order, identity, Extent::Share, |_| false, watch)
+    job::open(place, order, identity, Extent::Share, |_| false, watch)
 }
 
 /// Removes the working directory of a part.
 fn put_away(work: Directory, place: &Path) {
     work.discard();
+    drop(work); // removes the lock
     let _ = std::fs::remove_dir(place); // empty by now; otherwise it is not ours
 }
 

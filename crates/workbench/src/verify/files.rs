@@ -9,12 +9,17 @@ use retune_store::manifest::{self, Manifest};
 use retune_study::counted;
 use std::path::Path;
 
-/// Compares every file with the manifest.
+/// Compares every file with the manifest; returns their names, sorted.
 ///
 /// # Errors
 /// The directory cannot be read.
-pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<(), Error> {
+pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<Vec<String>, Error> {
     let there = names(place)?;
+    compare(place, &there, report)?;
+    Ok(there)
+}
+
+fn compare(place: &Path, there: &[String], report: &mut Report<'_>) -> Result<(), Error> {
     if !place.join(manifest::NAME).exists() {
         return report.unchecked(
             "there is no manifest.json: what made these files, and whether they are as it made them",
@@ -34,7 +39,7 @@ pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<(), Error> {
             Err(_) => problems.push(format!("{name} is missing")),
         }
     }
-    let input = [resolved::NAME, "study.json"].into_iter().find(|name| place.join(name).exists());
+    let input = [resolved::SEVERAL, resolved::ONE].into_iter().find(|name| place.join(name).exists());
     match input {
         Some(input) if sha256(text(place, input).unwrap_or_default().as_bytes()) != manifest.study_sha256 => {
             problems.push(format!("{input} is not the study that made these results"));
@@ -51,7 +56,8 @@ pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<(), Error> {
     report.watch.result(&format!("  {words}"))?;
     let place = report.place.clone();
     report.problems.extend(problems.into_iter().map(|problem| format!("{place}{problem}")));
-    let unnamed: Vec<String> = there.into_iter().filter(|name| !manifest.files.contains_key(name)).collect();
+    let unnamed: Vec<String> =
+        there.iter().filter(|name| !manifest.files.contains_key(*name)).cloned().collect();
     if !unnamed.is_empty() {
         let not = if unnamed.len() == 1 { "is" } else { "are" };
         report.unchecked(&format!("{} {not} not in the manifest", unnamed.join(", ")))?;

@@ -1,8 +1,8 @@
 //! The results of several studies: tables of designs (`table2`, `track`, `fronts`) and curves along k1.
 
 use super::input::json;
+use super::one::{self, certificate, energy};
 use super::report::{Check, Report};
-use super::search::{self, certificate, energy};
 use super::table::{Row, Sample};
 use crate::Error;
 use crate::pareto;
@@ -10,60 +10,66 @@ use crate::resolved::Resolved;
 use crate::track;
 use retune_study::{Setting, Study};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Checks at most `most` rows of each table.
-///
-/// # Errors
-/// They cannot be read.
-pub fn verify(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-    let resolved = Resolved::read(place)?;
-    let studies = resolved.studies()?;
-    let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
-    let mut looked = false;
-    for name in ["table2.csv", "retune.csv", "k2.csv", "stroke.csv", "front.csv"] {
-        if place.join(name).exists() {
-            let sample = Sample::read(&place.join(name), most)?;
-            let checks: Vec<Check> = sample.rows().filter_map(|row| design(&studies, samples, row)).collect();
-            report.look(name, &sample.of(checks.len()), &checks)?;
-            looked = true;
-        }
-    }
-    let name = "retention.csv";
-    if place.join(name).exists() && place.join("retune.csv").exists() {
-        let sample = Sample::read(&place.join(name), most)?;
-        let designs = Sample::read(&place.join("retune.csv"), usize::MAX)?;
-        let (columns, checks) = curves(&studies, &designs, &sample);
-        report.look(name, &sample.of(checks.len() / columns.max(1)), &checks)?;
-        looked = true;
-    }
-    for name in
-        names(place).map_err(|source| retune_store::Error::Input { path: place.to_owned(), source })?
-    {
-        let said = json(place, &name)?;
-        match certified(&studies, samples, &said) {
-            Some(study) => certificate(&study, &said, &name, report)?,
-            None => report.fail(&name, "is of none of the studies")?,
-        }
-    }
-    if looked { Ok(()) } else { report.unchecked("no row of these results can be run again by itself") }
+/// The results of several studies.
+pub struct Several {
+    place: PathBuf,
+    studies: Vec<(String, Study)>,
+    /// The samples of the bands, where the plan says so.
+    samples: Option<usize>,
 }
 
-/// The certificates in a directory, sorted.
-fn names(place: &Path) -> std::io::Result<Vec<String>> {
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(place)? {
-        names.extend(entry?.file_name().into_string());
+impl Several {
+    /// Reads the plan and the studies of the results in a directory.
+    ///
+    /// # Errors
+    /// They cannot be read.
+    pub fn read(place: &Path) -> Result<Self, Error> {
+        let resolved = Resolved::read(place)?;
+        let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
+        Ok(Self { place: place.to_owned(), studies: resolved.studies()?, samples })
     }
-    names.retain(|name| name.starts_with("certificate-") && name.ends_with(".json"));
-    names.sort();
-    Ok(names)
+
+    /// Checks at most `most` rows of designs.
+    ///
+    /// # Errors
+    /// The file cannot be read, as of all checks.
+    pub fn designs(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+        let sample = Sample::read(&self.place.join(name), most)?;
+        let checks: Vec<Check> =
+            sample.rows().filter_map(|row| design(&self.studies, self.samples, row)).collect();
+        report.look(name, &sample.of(checks.len()), &checks)
+    }
+
+    /// Checks at most `most` stiffnesses of the curves along k1, whose designs are those of `retune.csv`.
+    ///
+    /// # Errors
+    /// As [`Self::designs`].
+    pub fn retention(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+        let sample = Sample::read(&self.place.join(name), most)?;
+        let designs = Sample::read(&self.place.join(track::KIND.answer), usize::MAX)?;
+        let (columns, checks) = curves(&self.studies, &designs, &sample);
+        report.look(name, &sample.of(checks.len() / columns.max(1)), &checks)
+    }
+
+    /// Checks the certificate of a design.
+    ///
+    /// # Errors
+    /// As [`Self::designs`].
+    pub fn certificate(&self, name: &str, report: &mut Report<'_>) -> Result<(), Error> {
+        let said = json(&self.place, name)?;
+        match certified(&self.studies, self.samples, &said) {
+            Some(study) => certificate(&study, &said, name, report),
+            None => report.fail(name, "is of none of the studies"),
+        }
+    }
 }
 
 /// The study with the design that a certificate of `fronts` is of.
 fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
     let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
-    pareto::finer(study, samples?, &search::design(&said["design"])?)
+    pareto::finer(study, samples?, &one::design(&said["design"])?)
 }
 
 /// The check of a row with a design; none where the row says that it has none.
@@ -97,7 +103,7 @@ fn curves<'a>(studies: &'a [(String, Study)], designs: &Sample, sample: &Sample)
         let own = designs.rows().find(|row| row.text("damper") == name && row.number("k1") == nominal);
         let scene = own.and_then(|row| study.scene_at(&row.design()?));
         if let Some(scene) = scene {
-            columns.push((track::kept(name, nominal), study, scene));
+            columns.push((track::column(name, nominal), study, scene));
         }
     }
     let mut checks = Vec::new();

@@ -4,79 +4,111 @@ use super::input::json;
 use super::report::{Check, Report};
 use super::table::{Row, Sample};
 use crate::Error;
-use crate::certify::{self, certify};
+use crate::artefact::{Artefact, Content};
+use crate::certify::certify;
+use crate::resolved;
 use crate::summary::Summary;
-use crate::tune::band;
 use crate::tune::objective::objective;
+use crate::tune::{self, OPTIMUM, band};
 use retune_model::{Design, NonNegative, Scene};
 use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
 use retune_study::{self as study, Study};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The curves of a band: without damper, with that of the study, with the best.
 const CURVES: usize = 3;
 
-/// Tables of designs with the values that the search gave them.
-const TABLES: [&str; 4] = ["surf.csv", "fminsearch.csv", "fminsearch-starts.csv", "basins.csv"];
-
-/// Checks the results of a study, at most `most` rows of each table.
-///
-/// # Errors
-/// They cannot be read.
-pub fn verify(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-    let study = study::read(&place.join("study.json"))?;
-    let has = |name: &str| place.join(name).exists();
-    let searched = has("optimum.json") || TABLES.into_iter().any(has) || has("band.csv");
-    if searched {
-        search(place, &study, most, report)?;
-    }
-    if has(certify::FILE) {
-        let said = json(place, certify::FILE)?;
-        let study = if has("optimum.json") {
-            certify::read(&place.join("optimum.json"))?.0
-        } else if searched {
-            let found = design(&said["design"]).and_then(|found| study.scene_at(&found)); // it stands nowhere else
-            Study { scene: found.unwrap_or(study.scene), ..study }
-        } else {
-            study
-        };
-        certificate(&study, &said, certify::FILE, report)?;
-    } else if !searched {
-        report.unchecked("no row of these results can be run again by itself")?;
-    }
-    Ok(())
+/// The results of one study.
+pub struct One {
+    place: PathBuf,
+    study: Study,
 }
 
-/// Checks the tables of a search, and the design that it found.
-fn search(place: &Path, study: &Study, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let objective = objective(study, &search, &Variable::ALL);
-    for name in TABLES {
-        if place.join(name).exists() {
-            let sample = Sample::read(&place.join(name), most)?;
-            let checks: Vec<Check> = sample.rows().map(|row| value(&objective, row)).collect();
-            report.look(name, &sample.of(checks.len()), &checks)?;
+impl One {
+    /// Reads the study of the results in a directory.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn read(place: &Path) -> Result<Self, Error> {
+        Ok(Self { place: place.to_owned(), study: study::read(&place.join(resolved::ONE))? })
+    }
+
+    /// Checks at most `most` rows of designs with the values that the search gave them.
+    ///
+    /// # Errors
+    /// The file cannot be read, as of all checks.
+    pub fn searched(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+        let (objective, sample) = (self.objective()?, Sample::read(&self.place.join(name), most)?);
+        let checks: Vec<Check> = sample.rows().map(|row| value(&objective, row)).collect();
+        report.look(name, &sample.of(checks.len()), &checks)
+    }
+
+    /// Checks at most `most` frequencies of a band.
+    ///
+    /// # Errors
+    /// As [`Self::searched`].
+    pub fn band(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+        let Some(tuned) = self.tuned()? else { return Ok(()) }; // reported with optimum.json
+        let sample = Sample::read(&self.place.join(name), most)?;
+        let checks = curves(&self.study, tuned, &sample);
+        report.look(name, &sample.of(checks.len() / CURVES), &checks)
+    }
+
+    /// Checks the design that was found.
+    ///
+    /// # Errors
+    /// As [`Self::searched`].
+    pub fn optimum(&self, name: &str, report: &mut Report<'_>) -> Result<(), Error> {
+        let Some(tuned) = self.tuned()? else { return report.fail(name, "its design cannot be run") };
+        let objective = self.objective()?;
+        let optimum = json(&self.place, name)?;
+        match objective.evaluate(&tuned, f64::INFINITY) {
+            Err(error) => report.fail(name, &format!("its design cannot be run: {error}")),
+            Ok(found) => {
+                let again = again(&self.study, &objective, tuned, &found, &optimum)?;
+                report.compare(name, "its design", &optimum, &again)
+            }
         }
     }
-    if !place.join("optimum.json").exists() {
-        return report.unchecked("there is no optimum.json: the design that was found");
-    }
-    let optimum = json(place, "optimum.json")?;
-    let Some(tuned) = design(&optimum).and_then(|found| study.scene_at(&found)) else {
-        return report.fail("optimum.json", "its design cannot be run");
-    };
-    if place.join("band.csv").exists() {
-        let sample = Sample::read(&place.join("band.csv"), most)?;
-        let checks = curves(study, tuned, &sample);
-        report.look("band.csv", &sample.of(checks.len() / CURVES), &checks)?;
-    }
-    match objective.evaluate(&tuned, f64::INFINITY) {
-        Err(error) => report.fail("optimum.json", &format!("its design cannot be run: {error}")),
-        Ok(found) => {
-            let again = again(study, &objective, tuned, &found, &optimum)?;
-            report.compare("optimum.json", "its design", &optimum, &again)
+
+    /// Checks the certificate: of the design of `optimum.json`, of its own where a search left no other, or of the study's.
+    ///
+    /// # Errors
+    /// As [`Self::searched`].
+    pub fn certificate(&self, name: &str, report: &mut Report<'_>) -> Result<(), Error> {
+        let said = json(&self.place, name)?;
+        let scene = if self.place.join(OPTIMUM).exists() {
+            self.tuned()?
+        } else if self.is_of_a_search() {
+            design(&said["design"]).and_then(|found| self.study.scene_at(&found))
+        } else {
+            Some(self.study.scene)
+        };
+        match scene {
+            Some(scene) => certificate(&Study { scene, ..self.study.clone() }, &said, name, report),
+            None => report.fail(name, "its design cannot be run"),
         }
+    }
+
+    /// The scene with the design that was found; none where there is none, or it cannot be run.
+    fn tuned(&self) -> Result<Option<Scene>, Error> {
+        let missing = !self.place.join(OPTIMUM).exists();
+        if missing {
+            return Ok(None);
+        }
+        Ok(design(&json(&self.place, OPTIMUM)?).and_then(|found| self.study.scene_at(&found)))
+    }
+
+    fn is_of_a_search(&self) -> bool {
+        let made_by_search = |of: &&Artefact| matches!(of.content, Content::Searched | Content::Band);
+        let mut files = tune::KIND.artefacts.iter().filter(made_by_search);
+        files.any(|file| self.place.join(file.name).exists())
+    }
+
+    fn objective(&self) -> Result<PeakEnergy, Error> {
+        let refuse = |rule| Error::Rule { name: self.study.name().to_owned(), rule };
+        Ok(objective(&self.study, &self.study.search().map_err(refuse)?, &Variable::ALL))
     }
 }
 

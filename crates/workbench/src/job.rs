@@ -1,0 +1,153 @@
+//! A job from its request to its results: the directory is opened, the work done, the input and the manifest written, everything
+//! published and reported. Every kind of job does these steps here.
+
+use crate::artefact::Kind;
+use crate::request::where_results_are;
+use crate::resolved::{self, Resolved};
+use crate::{Error, Observer, Request};
+use retune_store::{Begin, Directory, Extent, Identity, Order, manifest};
+use retune_study::{Solver, Study};
+use std::path::{Path, PathBuf};
+
+/// A job, ready to be done.
+pub struct Job {
+    /// Its kind.
+    pub kind: &'static Kind,
+    /// The directory of its results.
+    pub out: PathBuf,
+    /// The request for them.
+    pub order: Order,
+    /// The file that holds the complete input, and its text.
+    pub input: (&'static str, String),
+    /// The file without which its results are not complete.
+    pub answer: String,
+    /// The solvers of its studies.
+    pub solvers: Vec<Solver>,
+    /// The beginning of the names of its files, if it makes a part of the results and leaves the others as they are.
+    pub only: Option<String>,
+}
+
+/// What a job has made.
+pub struct Made<T> {
+    /// The result.
+    pub answer: T,
+    /// The last lines on screen, if any.
+    pub report: String,
+    /// The results of its searches. They can be resumed until the whole job is finished.
+    pub parts: Vec<Directory>,
+}
+
+/// The end of a job.
+#[derive(Debug)]
+pub enum Done<T> {
+    /// It was done: its result.
+    Made(T),
+    /// It was to be resumed, but was finished already.
+    FinishedBefore,
+}
+
+impl Job {
+    /// The job of a kind on one study.
+    ///
+    /// # Errors
+    /// Serialisation fails, which no known study causes.
+    pub fn of_study(kind: &'static Kind, study: &Study, out: &Path, order: &Order) -> Result<Self, Error> {
+        let input = (resolved::ONE, resolved::study_text(study)?);
+        let (out, order, answer) = (out.to_owned(), order.clone(), kind.answer.to_owned());
+        Ok(Self { kind, out, order, input, answer, solvers: vec![study.solver], only: None })
+    }
+
+    /// The job of a kind on several studies: each with the name of its damper, under a plan.
+    ///
+    /// # Errors
+    /// The name of the study file cannot be that of a directory.
+    pub fn of_studies<'a>(
+        kind: &'static Kind,
+        request: &Request,
+        plan: serde_json::Value,
+        studies: impl Iterator<Item = (&'a str, &'a Study)> + Clone,
+    ) -> Result<Self, Error> {
+        let solvers = studies.clone().map(|(_, study)| study.solver).collect();
+        let input = (resolved::SEVERAL, Resolved::new(plan, studies).text()?);
+        let (out, order) = (request.out_of_file()?, request.order(kind.command));
+        Ok(Self { kind, out, order, input, answer: kind.answer.to_owned(), solvers, only: None })
+    }
+
+    /// The identity of its results.
+    pub fn identity(&self) -> Identity {
+        Identity::of(&self.input.1)
+    }
+
+    /// Does the work and publishes its results. The work can be resumed until the directory is finished.
+    ///
+    /// # Errors
+    /// The directory cannot be opened or written to, or `work` fails.
+    pub fn make<T>(
+        &self,
+        watch: &dyn Observer,
+        work: impl FnOnce(&mut Directory) -> Result<T, Error>,
+    ) -> Result<(T, Directory), Error> {
+        let (kind, only, input) = (self.kind, self.only.clone(), self.input.0);
+        let is_ours = move |name: &str| {
+            let shared = [input, manifest::NAME].contains(&name);
+            let wanted = |only: &String| {
+                name.strip_prefix(only.as_str()).is_some_and(|rest| rest.starts_with(['.', '-']))
+            };
+            shared || kind.makes(name) && only.as_ref().is_none_or(wanted)
+        };
+        let extent = if self.only.is_none() { Extent::Whole } else { Extent::Share };
+        let mut results = open(&self.out, &self.order, &self.identity(), extent, is_ours, watch)?;
+        let made = work(&mut results)?;
+        results.write(self.input.0, &self.input.1)?;
+        results.write_manifest(&self.solvers)?;
+        results.publish()?;
+        Ok((made, results))
+    }
+
+    /// Does the whole job on the threads of its request and reports its end to the observer; `work` may not report it.
+    ///
+    /// # Errors
+    /// As [`Self::make`].
+    pub fn run<T: Send>(
+        &self,
+        request: &Request,
+        watch: &dyn Observer,
+        work: impl FnOnce(&mut Directory) -> Result<Made<T>, Error> + Send,
+    ) -> Result<Done<T>, Error> {
+        let resumed = self.order.begin == Begin::Resume;
+        if resumed && Directory::is_finished(&self.out, &self.identity(), &self.answer) {
+            Directory::tidy(&self.out);
+            let place = where_results_are(&self.out)?;
+            watch.result(&format!("finished already: nothing to go on with\n{place}"))?;
+            return Ok(Done::FinishedBefore);
+        }
+        let (Made { answer, report, parts }, results) = request.on_threads(|| self.make(watch, work))?;
+        parts.into_iter().try_for_each(Directory::finish)?;
+        results.finish()?;
+        if !report.is_empty() {
+            watch.result(&report)?;
+        }
+        watch.result(&where_results_are(&self.out)?)?;
+        Ok(Done::Made(answer))
+    }
+}
+
+/// Opens a directory of results and reports it to the observer.
+///
+/// # Errors
+/// As [`Directory::open`].
+pub fn open(
+    path: &Path,
+    order: &Order,
+    identity: &Identity,
+    extent: Extent,
+    is_ours: impl Fn(&str) -> bool + Send + Sync + 'static,
+    watch: &dyn Observer,
+) -> Result<Directory, Error> {
+    let directory = Directory::open(path, order, identity, extent, is_ours)?;
+    if let Some(warning) = directory.warning() {
+        watch.warn(warning);
+    }
+    watch.resumable();
+    Ok(directory)
+}

@@ -1,0 +1,37 @@
+//! The searches that a larger job is made of, each a job of its own below the directory of the whole.
+
+use crate::tune::{Optimum, optimize};
+use crate::{Error, Observer};
+use retune_store::{Directory, Order};
+use retune_study::Study;
+
+/// The searches of a job. Each has its own directory, log and certificate, and can be resumed until the whole job is finished.
+pub struct Searches<'a> {
+    directory: &'a Directory,
+    order: &'a Order,
+    watch: &'a dyn Observer,
+    /// The results made so far.
+    pub results: Vec<Directory>,
+    /// The error of the first search that found no design within its limits.
+    pub infeasible: Option<Error>,
+}
+
+impl<'a> Searches<'a> {
+    /// No search yet; they will be below `directory`.
+    pub fn new(directory: &'a Directory, order: &'a Order, watch: &'a dyn Observer) -> Self {
+        Self { directory, order, watch, results: Vec::new(), infeasible: None }
+    }
+
+    /// Makes the search of a study, its results in `place/` and the name of the study.
+    ///
+    /// # Errors
+    /// As [`optimize`].
+    pub fn tune(&mut self, study: &Study, place: &str) -> Result<Optimum, Error> {
+        let name =
+            if place.is_empty() { study.name().to_owned() } else { format!("{place}/{}", study.name()) };
+        let (optimum, results) = optimize(study, &self.directory.part(&name), self.order, self.watch)?;
+        self.results.push(results);
+        self.infeasible = self.infeasible.take().or(optimum.check_limits().err());
+        Ok(optimum)
+    }
+}
