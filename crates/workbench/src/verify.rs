@@ -54,7 +54,8 @@ fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error>
     let there = files::verify(place, report)?;
     let known = known(&there);
     let of_searches = |content| matches!(content, Content::Searched | Content::Band);
-    if known.iter().all(|(_, content)| matches!(content, Content::Input | Content::Derived)) {
+    let plain = |content| matches!(content, Content::Input | Content::Derived);
+    if !has(&known, Content::Input) || known.iter().all(|(_, content)| plain(*content)) {
         return report.unchecked("no row of these results can be run again by itself");
     }
     for &(name, content) in &known {
