@@ -6,8 +6,9 @@ use super::plan::{Plan, stiffness};
 use rayon::prelude::*;
 use retune_dynamics::{Kind, Parameter, Regime, Stretch, Zone, classify, follow};
 use retune_figures::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, sheet};
-use retune_model::{Positive, Scene};
+use retune_model::Scene;
 use retune_solver::{Rows, Sample, Window, trajectory};
+use retune_study::Setting;
 use retune_workbench::Error;
 
 /// A case of the paper.
@@ -69,14 +70,6 @@ fn judge(scene: &Scene, plan: &Plan) -> Result<Regime, Error> {
     Ok(classify(&follow(scene, None, Stretch { settle: 1000, observe: 1000 }, &plan.settings())?))
 }
 
-fn with_radius(scene: &Scene, radius: f64) -> Scene {
-    let damper = scene.damper.map(|mut damper| {
-        damper.contact.radius = Positive::new(radius).unwrap_or(damper.contact.radius);
-        damper
-    });
-    Scene { damper, ..*scene }
-}
-
 /// Makes Figure 7.
 ///
 /// # Errors
@@ -106,14 +99,16 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     for case in &CASES {
         let scene = case.scene(plan)?;
         draw(plan, case, &scene, &mut item)?;
-        let own = scene.damper.map_or(2.0, |damper| damper.contact.radius.get());
+        let own = plan.ssvi.value_of("R").unwrap_or(f64::NAN);
         let mut variants: Vec<(f64, f64)> = vec![(own, case.omega)];
         variants.extend(near.map(|shift| (own, case.omega + shift)));
         variants.extend(RADII.iter().filter(|&&radius| radius != own).map(|&radius| (radius, case.omega)));
         let judged: Vec<Result<Regime, Error>> = variants
             .par_iter()
             .map(|&(radius, omega)| {
-                let scene = Parameter::Omega.at(with_radius(&scene, radius), omega)?;
+                let settings = [("k1", case.k1), ("omega", omega), ("R", radius)]
+                    .map(|(name, value)| Setting::new(name, value));
+                let scene = plan.ssvi.scene_with(&settings)?;
                 let regime = judge(&scene, plan);
                 bar.inc(1);
                 regime

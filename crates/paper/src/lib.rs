@@ -8,6 +8,7 @@ mod energies;
 mod family;
 mod item;
 mod judgement;
+mod measures;
 mod motions;
 mod page;
 mod plan;
@@ -24,21 +25,23 @@ pub use item::{Grid, Item, Picture, Statement, Verdict};
 use retune_store::Directory;
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::job::{Job, Made};
+use retune_workbench::observer::Quiet;
+use retune_workbench::searches::Searches;
 use retune_workbench::{Done, Error, Observer, Request, resolved};
 
 /// The function that makes an item.
-type Maker = fn(&Plan) -> Result<Item, Error>;
+type Maker = fn(&Plan, &mut Searches) -> Result<Item, Error>;
 
 /// Every item, in the order of the page.
 const ITEMS: [(&str, Maker); 8] = [
-    ("table1", table1::table1),
+    ("table1", |plan, _| table1::table1(plan)),
     ("table2", table2::table2),
-    ("figure2", surfaces::figure2),
-    ("figure3", curves::figure3),
-    ("figure4", regimes::figure4),
-    ("figure5", ratios::figure5),
-    ("figure6", energies::figure6),
-    ("figure7", cases::figure7),
+    ("figure2", |plan, _| surfaces::figure2(plan)),
+    ("figure3", |plan, _| curves::figure3(plan)),
+    ("figure4", |plan, _| regimes::figure4(plan)),
+    ("figure5", |plan, _| ratios::figure5(plan)),
+    ("figure6", |plan, _| energies::figure6(plan)),
+    ("figure7", |plan, _| cases::figure7(plan)),
 ];
 
 /// The files of the reproduction.
@@ -73,9 +76,11 @@ pub fn reproduce(
     }
     job.run(request, watch, |results| {
         results.write_json("study.json", &plan.file)?;
+        let quiet = Quiet(watch); // the page has the answers of its searches, and they their own logs
+        let mut searches = Searches::new(results, &job.order, &quiet);
         let mut made = Vec::new();
         for (name, make) in ITEMS.into_iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
-            let item = kept_or_made(name, make, &plan, results)?;
+            let item = kept_or_made(name, make, &plan, results, &mut searches)?;
             write(&item, results)?;
             watch.result(&report(&item))?;
             made.push(item);
@@ -83,7 +88,7 @@ pub fn reproduce(
         if only.is_none() {
             results.write("index.html", &page::page(&made))?;
         }
-        Ok(Made { answer: made, report: String::new(), parts: Vec::new() })
+        Ok(Made { answer: made, report: String::new(), parts: searches.results })
     })
 }
 
@@ -92,8 +97,15 @@ fn statements(name: &str) -> String {
     format!("{name}-statements.json")
 }
 
-/// An item kept by an interrupted run, or made now and kept in case this run is interrupted.
-fn kept_or_made(name: &str, make: Maker, plan: &Plan, results: &Directory) -> Result<Item, Error> {
+/// An item kept by an interrupted run, or made now and kept in case this run is interrupted. One that makes searches is made again:
+/// they are resumed.
+fn kept_or_made(
+    name: &str,
+    make: Maker,
+    plan: &Plan,
+    results: &Directory,
+    searches: &mut Searches,
+) -> Result<Item, Error> {
     let (file, journal) = (format!("{name}.item"), results.journal());
     if journal.is_marked(name) {
         let kept = results.read(&file).and_then(|text| serde_json::from_str(&text).ok());
@@ -101,7 +113,11 @@ fn kept_or_made(name: &str, make: Maker, plan: &Plan, results: &Directory) -> Re
             return Ok(item);
         }
     }
-    let item = make(plan)?;
+    let before = searches.results.len();
+    let item = make(plan, searches)?;
+    if searches.results.len() > before {
+        return Ok(item);
+    }
     results.write_json(&file, &item)?;
     journal.mark(name);
     journal.check()?;

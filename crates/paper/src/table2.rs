@@ -1,74 +1,124 @@
 //! Table 2: both dampers tuned again, and in which sense the paper's rows are optimal.
 
 use super::item::{Grid, Item, Verdict};
-use super::plan::{Plan, Range};
-use super::table1::perturbed;
-use rayon::prelude::*;
-use retune_dynamics::Parameter;
-use retune_model::{Coupled, Damper, Scene};
-use retune_optim::{Bounds, Failures, Options, Scaling, Variable, minimize};
-use retune_solver::{Window, e1_max};
-use retune_study::Study;
+use super::measures::{Spread, at_omega, near, over_band, whole, worst};
+use super::plan::Plan;
+use retune_model::{Design, Scene, Variable};
+use retune_optim::{Failures, Limits, Objective, Response};
+use retune_study::{Optimize, PerVariable, Refine, Setting, Study};
 use retune_workbench::Error;
-use std::ops::ControlFlow;
-
-/// Frequencies of the worst case, rad/s, for the impacting damper; the linear one is evaluated in closed form on a fine grid.
-const COARSE: Range = Range { from: 5.6, to: 7.0, points: 57 };
-const FINE: Range = Range { from: 5.0, to: 8.0, points: 1501 };
+use retune_workbench::searches::Searches;
 
 /// The best node of Figure 2's surface over k2 and c2, rounded: another start for the SSVI NES.
-const STIFFER: [f64; 4] = [500.0, 160.0, 0.06, 0.36];
+const STIFFER: [(&str, f64); 2] = [("k2", 500.0), ("c2", 160.0)];
+/// Samples of the band while the SSVI NES is tuned; the TMD's steady response is exact.
+const SAMPLES: usize = 31;
+/// Largest stiffness of a spring, N/m: that of the paper's TMD, its stiffest.
+const STIFFEST: f64 = 600.0;
 
+/// A damper, as a row of the table.
 struct Row {
     damper: &'static str,
-    origin: String,
-    design: [f64; 4],
+    origin: &'static str,
+    design: Design,
+    /// E1max at ω = 6.28, over the whole run, and the worst over the band, J.
+    worth: [f64; 3],
+}
+
+/// A search for a row: its name, that of its results, and how it differs from the paper's study.
+struct Search<'a> {
+    origin: &'static str,
+    name: &'static str,
+    base: &'a Study,
+    vary: &'a [Variable],
+    objective: Objective,
+    most_k2: Option<f64>,
+    evaluations: u64,
 }
 
 /// Makes Table 2.
 ///
 /// # Errors
 /// A search fails.
-pub fn table2(plan: &Plan) -> Result<Item, Error> {
+pub fn table2(plan: &Plan, searches: &mut Searches) -> Result<Item, Error> {
     let mut item = Item::new(
         "table2",
         "Table 2. The optimised dampers",
         "SSVI NES: k2 = 215 N/m, c2 = 232 N·s/m, D = 0.06 m, C = 0.36 m. TMD: k2 = 600 N/m, c2 = 262 N·s/m, D = 2.08 m, C = 4.7 m.",
-        plan.made_by("fminsearch from the paper's rows, parameters scaled by the start, each between 0 and 20 times its start, at most 400 evaluations at one frequency and 150 (SSVI NES) or 400 (TMD) in the worst case; worst case: E1max over ω, on 57 frequencies in 5.6–7.0 rad/s while the SSVI NES is tuned, 1501 in 5–8 for the linear TMD, steady state."),
+        plan.made_by("fminsearch from the paper's rows, parameters scaled by the start, each between 0 and 20 times its start, at most 400 evaluations at one frequency and 150 (SSVI NES) or 400 (TMD) in the worst case; worst case: E1max over ω in 5–8 rad/s, on 31 frequencies and their peaks while the SSVI NES is tuned, on 301 and their peaks in the table, in closed form while the TMD is tuned. Each search is a study with results of its own, below table2/."),
     );
     let bar = plan.watch.progress("table 2", 8);
-    let tmd = [Variable::K2, Variable::C2];
-    let mut rows = Vec::new();
-    let mut push = |damper, origin: &str, design| {
-        bar.inc(1);
-        rows.push(Row { damper, origin: origin.to_owned(), design });
+    let stiffer = plan.ssvi.with(&STIFFER.map(|(name, value)| Setting::new(name, value)))?;
+    let [ssvi, tmd] = [&plan.ssvi, &plan.tmd];
+    let (all, linear) = (&Variable::ALL[..], &[Variable::K2, Variable::C2][..]);
+    let sampled = || over_band(SAMPLES, Response::Window);
+    let steady = || over_band(SAMPLES, Response::Steady);
+    let search = |origin, name, base, vary, objective, most_k2, evaluations| Search {
+        origin,
+        name,
+        base,
+        vary,
+        objective,
+        most_k2,
+        evaluations,
     };
-    push("SSVI NES", "the paper's", designed(&plan.ssvi)?);
-    push(
-        "SSVI NES",
-        "re-optimised, ω = 6.28",
-        tuned(&plan.ssvi, &Variable::ALL, &|scene| at_omega(plan, scene), 400)?,
-    );
-    push(
-        "SSVI NES",
-        "re-optimised, worst ω",
-        tuned(&plan.ssvi, &Variable::ALL, &|scene| worst(plan, scene, COARSE), 150)?,
-    );
-    let stiffer = at(&plan.ssvi, &Variable::ALL, &STIFFER).map(|scene| Study { scene, ..plan.ssvi.clone() });
-    let stiffer = stiffer.as_ref().unwrap_or(&plan.ssvi);
-    push(
-        "SSVI NES",
-        "from Figure 2's best node, worst ω",
-        tuned(stiffer, &Variable::ALL, &|scene| worst(plan, scene, COARSE), 150)?,
-    );
-    push("TMD", "the paper's", designed(&plan.tmd)?);
-    push(
-        "TMD",
-        "best c2 at k2 = 600, worst ω",
-        tuned(&plan.tmd, &tmd[1..], &|scene| linear_worst(scene), 200)?,
-    );
-    push("TMD", "re-optimised, worst ω", tuned(&plan.tmd, &tmd, &|scene| linear_worst(scene), 400)?);
-    push("TMD", "re-optimised, ω = 6.28", tuned(&plan.tmd, &tmd, &|scene| at_omega(plan, scene), 400)?);
+    let at_one = Objective::default;
+    let tasks = [
+        search("re-optimised, ω = 6.28", "ssvi-one-omega", ssvi, all, at_one(), None, 400),
+        search("re-optimised, worst ω", "ssvi-worst", ssvi, all, sampled(), None, 150),
+        search("from Figure 2's best node, worst ω", "ssvi-stiffer", &stiffer, all, sampled(), None, 150),
+        search("worst ω, k2 at most 600", "tmd-bounded", tmd, linear, steady(), Some(STIFFEST), 400),
+        search("re-optimised, worst ω", "tmd-worst", tmd, linear, steady(), None, 400),
+        search("re-optimised, ω = 6.28", "tmd-one-omega", tmd, linear, at_one(), None, 400),
+    ];
+    let mut rows: Vec<Row> = Vec::new();
+    for (damper, base, tasks) in [("SSVI NES", ssvi, &tasks[..3]), ("TMD", tmd, &tasks[3..])] {
+        let mut push = |origin, design: Design| -> Result<(), Error> {
+            let scene = base.scene_at(&design).ok_or_else(|| Error::NoStart(Failures::default()))?;
+            let worth = [at_omega(plan, &scene), whole(plan, &scene), worst(plan, &scene)];
+            rows.push(Row { damper, origin, design, worth });
+            bar.inc(1);
+            Ok(())
+        };
+        let own = base.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))?;
+        push("the paper's", Design::of(&own))?;
+        for task in tasks {
+            push(task.origin, searches.tune(&task.study(), "table2")?.found().damper.design)?;
+        }
+    }
+    bar.finish();
+    item.grids.push(table(&rows));
+    let bare = at_omega(plan, &Scene { damper: None, ..plan.ssvi.scene });
+    let scatter = near(SCATTER, &ssvi.scene, |scene| worst(plan, scene));
+    statements(&rows, bare, &scatter, &mut item);
+    Ok(item)
+}
+
+impl Search<'_> {
+    /// The study of the search, which starts at the design of its base.
+    fn study(&self) -> Study {
+        let mut bounds = PerVariable::default();
+        for &variable in self.vary {
+            let start = self.base.scene.damper.map_or(0.0, |damper| variable.get(&damper));
+            let most = if variable == Variable::K2 { self.most_k2 } else { None };
+            *bounds.get_mut(variable) = Some((0.0, Some(most.unwrap_or(20.0 * start))));
+        }
+        let refine = Refine { scaled: true, max_fun_evals: Some(self.evaluations), ..Refine::default() };
+        let optimize = Optimize {
+            vary: self.vary.to_vec(),
+            objective: self.objective.clone(),
+            bounds,
+            limits: Limits::default(),
+            surf: None,
+            global: None,
+            starts: Vec::new(),
+            refine,
+        };
+        Study { name: Some(self.name.to_owned()), optimize: Some(optimize), ..self.base.clone() }
+    }
+}
+
+fn table(rows: &[Row]) -> Grid {
     let head = [
         "damper",
         "origin",
@@ -81,33 +131,24 @@ pub fn table2(plan: &Plan) -> Result<Item, Error> {
         "worst E1max over ω, J",
     ];
     let mut grid = Grid::new("Designs and what they are worth, by three objectives", &head);
-    let mut worths = Vec::new();
-    for row in &rows {
-        let study = if row.damper == "TMD" { &plan.tmd } else { &plan.ssvi };
-        let scene = at(study, &Variable::ALL, &row.design).unwrap_or(study.scene);
-        let fine = Range { points: 301, ..FINE };
-        let worth = [at_omega(plan, &scene), whole(plan, &scene), worst(plan, &scene, fine)];
-        let mut cells = vec![row.damper.to_owned(), row.origin.clone()];
-        cells.extend(row.design.map(|v| format!("{}", (v * 1e4).round() / 1e4)));
+    for Row { damper, origin, design, worth } in rows {
+        let mut cells = vec![(*damper).to_owned(), (*origin).to_owned()];
+        cells.extend(design.values().map(|v| format!("{}", (v * 1e4).round() / 1e4)));
         cells.extend(worth.map(|v| format!("{v:.1}")));
         grid.rows.push(cells);
-        worths.push(worth);
     }
-    bar.finish();
-    item.grids.push(grid);
-    let bare = at_omega(plan, &Scene { damper: None, ..plan.ssvi.scene });
-    statements(&worths, bare, &rows, scatter(plan)?, &mut item);
-    Ok(item)
+    grid
 }
 
 /// Values that differ by no more than this share count as equal: the rows are printed to two or three digits.
 const ROUNDING: f64 = 0.01;
 /// Designs within ±0.1 % whose worst cases show the scatter.
-const SCATTER: usize = 21;
+const SCATTER: u32 = 21;
 
-fn statements(worths: &[[f64; 3]], bare: f64, rows: &[Row], scatter: [f64; 2], item: &mut Item) {
+fn statements(rows: &[Row], bare: f64, scatter: &Spread, item: &mut Item) {
     let optimal = |paper: f64, best: f64| (1.0 - ROUNDING) * paper < best;
-    let [ssvi, at_one, at_all, tmd] = [worths[0], worths[1], worths[2], worths[4]];
+    let worth = |i: usize| rows.get(i).map_or([f64::NAN; 3], |row| row.worth);
+    let [ssvi, at_one, at_all, stiffer, tmd, bounded, free, tmd_at_one] = std::array::from_fn(worth);
     item.statement(
         "The SSVI NES's row is optimal: no smaller E1max at ω = 6.28 rad/s",
         "Holds if fminsearch, started there, finds nothing smaller by more than 1 %: the row is printed to two or three digits.",
@@ -117,28 +158,38 @@ fn statements(worths: &[[f64; 3]], bare: f64, rows: &[Row], scatter: [f64; 2], i
             ssvi[0], at_one[0], at_one[2]
         ),
     );
-    let best = at_all[2].min(worths[3][2]);
+    let best = at_all[2].min(stiffer[2]);
     item.statement(
         "The SSVI NES's row is optimal: no smaller worst case over ω",
         "Fails if a design is better by more than the scatter, the least of 21 designs within ±0.1 % of the row. Otherwise in part: the search is local and coarse, so it cannot show that nothing better exists.",
-        if best < scatter[0] { Verdict::Fails } else { Verdict::Partly },
+        if best < scatter.least { Verdict::Fails } else { Verdict::Partly },
         format!(
             "worst case {:.0} J, within ±0.1 % from {:.0} J to {:.0} J; tuned for it from there {:.0} J, from the best node of Figure 2 {:.0} J",
-            ssvi[2], scatter[0], scatter[1], at_all[2], worths[3][2]
+            ssvi[2], scatter.least, scatter.largest, at_all[2], stiffer[2]
         ),
     );
-    let c2 = rows[5].design[1];
+    let [bounded_design, free_design] =
+        [5, 6].map(|i| rows.get(i).map_or([f64::NAN; 4], |row| row.design.values()));
     item.statement(
         "The TMD's row is optimal",
-        "Holds if no worst case over ω with k2 and c2 both free is smaller by more than 1 %; in part if none is with the row's own k2.",
-        match (optimal(tmd[2], worths[6][2]), optimal(tmd[2], worths[5][2])) {
+        "Holds if no worst case over ω with k2 and c2 both free is smaller by more than 1 %; in part if none is with k2 at most that of the row.",
+        match (optimal(tmd[2], free[2]), optimal(tmd[2], bounded[2])) {
             (true, _) => Verdict::Holds,
             (false, true) => Verdict::Partly,
             (false, false) => Verdict::Fails,
         },
         format!(
-            "its c2 is the best for k2 = 600 N/m in the worst case over ω (ours {c2:.1} N·s/m, {:.1} J against {:.1} J); but with k2 free as well, k2 = {:.0} N/m and c2 = {:.0} N·s/m give {:.0} J, {:.1} times less; at ω = 6.28 rad/s alone the best TMD has hardly any damping ({:.0} J there, {:.0} J at its worst)",
-            worths[5][2], tmd[2], rows[6].design[0], rows[6].design[1], worths[6][2], tmd[2] / worths[6][2], worths[7][0], worths[7][2]
+            "with k2 at most 600 N/m it is the best in the worst case over ω (ours k2 = {:.1} N/m, c2 = {:.1} N·s/m, {:.1} J against {:.1} J); but with k2 free, k2 = {:.0} N/m and c2 = {:.0} N·s/m give {:.0} J, {:.1} times less; at ω = 6.28 rad/s alone the best TMD has hardly any damping ({:.0} J there, {:.0} J at its worst)",
+            bounded_design[0],
+            bounded_design[1],
+            bounded[2],
+            tmd[2],
+            free_design[0],
+            free_design[1],
+            free[2],
+            tmd[2] / free[2],
+            tmd_at_one[0],
+            tmd_at_one[2]
         ),
     );
     item.statement(
@@ -150,86 +201,4 @@ fn statements(worths: &[[f64; 3]], bare: f64, rows: &[Row], scatter: [f64; 2], i
             ssvi[2], tmd[2]
         ),
     );
-}
-
-/// Least and largest worst case over the coarse frequencies of designs within ±0.1 % of the SSVI NES's row.
-fn scatter(plan: &Plan) -> Result<[f64; 2], Error> {
-    let own = designed(&plan.ssvi)?;
-    let worsts = (0..SCATTER).map(|n| {
-        at(&plan.ssvi, &Variable::ALL, &perturbed(&own, n))
-            .map_or(f64::NAN, |scene| worst(plan, &scene, COARSE))
-    });
-    Ok(worsts.fold([f64::INFINITY, 0.0], |[least, largest], value| [least.min(value), largest.max(value)]))
-}
-
-/// The design of a study's damper.
-fn designed(study: &Study) -> Result<[f64; 4], Error> {
-    let damper = damper(study)?;
-    Ok(Variable::ALL.map(|variable| variable.get(&damper)))
-}
-
-fn damper(study: &Study) -> Result<Damper, Error> {
-    study.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))
-}
-
-/// The scene with some parameters of its damper changed; `None` if a value is out of range.
-fn at(study: &Study, variables: &[Variable], design: &[f64]) -> Option<Scene> {
-    let mut damper = study.scene.damper?;
-    for (variable, value) in variables.iter().zip(design) {
-        variable.set(&mut damper, *value).ok()?;
-    }
-    Some(Scene { damper: Some(damper), ..study.scene })
-}
-
-/// The best design by `objective`, from the study's own, over `variables`.
-fn tuned(
-    study: &Study,
-    variables: &[Variable],
-    objective: &dyn Fn(&Scene) -> f64,
-    evaluations: u64,
-) -> Result<[f64; 4], Error> {
-    let mut design = designed(study)?;
-    let damper = damper(study)?;
-    let start: Vec<f64> = variables.iter().map(|variable| variable.get(&damper)).collect();
-    let options = Options {
-        scaling: Scaling::Start,
-        bounds: start.iter().map(|value| Bounds::between(0.0, 20.0 * value)).collect(),
-        max_fun_evals: Some(evaluations),
-        ..Options::default()
-    };
-    let value = |x: &[f64], _: f64| at(study, variables, x).map_or(f64::INFINITY, |scene| objective(&scene));
-    let found = minimize(value, &start, options, |_| ControlFlow::Continue(()))
-        .map_err(|source| Error::Search { source, failures: Failures::default() })?;
-    for (variable, value) in variables.iter().zip(found.x) {
-        design[*variable as usize] = value;
-    }
-    Ok(design)
-}
-
-fn energy(plan: &Plan, scene: &Scene, window: Window) -> f64 {
-    e1_max(scene, window, &plan.settings(), f64::INFINITY).map_or(f64::INFINITY, |peak| peak.value)
-}
-
-fn at_omega(plan: &Plan, scene: &Scene) -> f64 {
-    energy(plan, scene, plan.window())
-}
-
-fn whole(plan: &Plan, scene: &Scene) -> f64 {
-    energy(plan, scene, Window { from: 0.0, to: plan.window().to })
-}
-
-/// The largest E1max over a range of frequencies.
-fn worst(plan: &Plan, scene: &Scene, range: Range) -> f64 {
-    let one = |omega: &f64| {
-        Parameter::Omega.at(*scene, *omega).map_or(f64::INFINITY, |scene| at_omega(plan, &scene))
-    };
-    let all: Vec<f64> = range.values().par_iter().map(one).collect();
-    all.into_iter().fold(0.0, f64::max)
-}
-
-/// The same of a damper that never touches, in steady state.
-fn linear_worst(scene: &Scene) -> f64 {
-    let Some(damper) = &scene.damper else { return f64::INFINITY };
-    let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-    FINE.values().into_iter().map(|omega| system.steady(omega).e1_max).fold(0.0, f64::max)
 }

@@ -55,3 +55,25 @@ impl Progress for Silent {
     fn inc(&self, _more: u64) {}
     fn finish(&self) {}
 }
+
+/// Passes on warnings alone: for a search whose answer is told as a part of a larger one.
+#[derive(Clone, Copy)]
+pub struct Quiet<'a>(pub &'a dyn Observer);
+
+impl Observer for Quiet<'_> {
+    fn result(&self, _line: &str) -> Result<(), Error> {
+        Ok(())
+    }
+    fn log(&self, _line: &str) -> Result<(), Error> {
+        Ok(())
+    }
+    fn warn(&self, words: &str) {
+        self.0.warn(words);
+    }
+    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
+        Box::new(Silent)
+    }
+    fn resumable(&self) {
+        self.0.resumable();
+    }
+}

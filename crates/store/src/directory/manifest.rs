@@ -4,6 +4,7 @@ use super::Directory;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::manifest::{Fields, Manifest, NAME};
+use crate::order::Extent;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,6 +18,7 @@ impl Directory {
         let mut files = self.new_files()?;
         let mut earlier = BTreeMap::new();
         let mut made_by = self.made_by();
+        let mut parts = self.parts();
         if let Some(old) = Manifest::read(&self.path) {
             // Files that this run does not replace stay listed: as part of the results if they are of the same work, else as earlier.
             let same = old.identity() == self.identity;
@@ -27,6 +29,9 @@ impl Directory {
                     if is_part { &mut files } else { &mut earlier }.insert(name, sha);
                 }
             }
+            if same && self.extent != Extent::Whole {
+                parts.extend(old.parts); // those of the files that stay
+            }
             // The same study from another place is still that of the first.
             made_by = old.made_by.filter(|_| same).unwrap_or(made_by);
         }
@@ -35,7 +40,7 @@ impl Directory {
             solvers.into_iter().map(|solver| fields(&solver)).collect::<Result<Vec<Fields>, Error>>()?;
         let mut solvers = solvers.into_iter();
         let solver = solvers.next().filter(|first| solvers.all(|other| other == *first));
-        let (made_by, parts) = (Some(made_by), self.parts());
+        let made_by = Some(made_by);
         let manifest =
             Manifest { retune: version, made_by, study_sha256, arithmetic, solver, files, earlier, parts };
         self.write_json(NAME, &manifest)
