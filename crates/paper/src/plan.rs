@@ -2,7 +2,7 @@
 
 use retune_model::Scene;
 use retune_solver::{Settings, Window};
-use retune_study::{PaperStudy, Study, StudyError, read_paper, read_table2};
+use retune_study::{Kind, PaperStudy, Study, StudyError, read_paper, read_table2};
 use retune_workbench::Error;
 use retune_workbench::Observer;
 use schemars::JsonSchema;
@@ -16,6 +16,10 @@ pub struct PaperPlan {
     /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// "paper". A file without it is recognised by its other fields.
+    #[serde(default = "kind")]
+    #[schemars(extend("const" = "paper"))]
+    pub kind: Kind,
     /// The table of the two dampers, the SSVI NES first, then the TMD; a path as seen from this file.
     pub table2: PathBuf,
     /// Stiffnesses k1 of the primary structure, N/m.
@@ -26,6 +30,10 @@ pub struct PaperPlan {
     pub k1_range: Range,
     /// Frequencies on either side of the natural frequency over which motions are named, as ratios to it, and how many.
     pub motions: Range,
+}
+
+fn kind() -> Kind {
+    Kind::Paper
 }
 
 /// Evenly spaced values.

@@ -10,7 +10,8 @@ use retune_workbench::evaluate::Streams;
 use retune_workbench::simulate::Trajectory;
 use retune_workbench::tune::Optimum;
 use retune_workbench::{
-    Done, Error, Observer, Request, Silent, certify, describe, evaluate, pareto, table2, track, tune, verify,
+    Done, Error, Observer, Request, Silent, artefact, certify, describe, evaluate, pareto, table2, track,
+    tune, verify,
 };
 use std::io::BufReader;
 use std::path::Path;
@@ -118,16 +119,23 @@ fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<()
 
 /// Checks a study file and prints a description of it.
 fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
-    screen.line(if study::is_table2(path)? {
-        describe::table2(&study::read_table2(path)?)
-    } else if study::is_fronts(path)? {
-        describe::fronts(&study::read_fronts(path)?)
-    } else if study::is_paper(path)? {
-        Plan::read(path, &Silent)?;
-        "every table and figure of the paper".to_owned()
-    } else {
-        describe::study(&study::read(path)?)
-    })?;
+    let (words, jobs): (String, Vec<&artefact::Kind>) = match study::kind_of(path)? {
+        study::Kind::Table2 => {
+            (describe::table2(&study::read_table2(path)?), vec![&table2::KIND, &track::KIND])
+        }
+        study::Kind::Fronts => (describe::fronts(&study::read_fronts(path)?), vec![&pareto::KIND]),
+        study::Kind::Paper => {
+            Plan::read(path, &Silent)?;
+            ("every table and figure of the paper".to_owned(), vec![&retune_paper::KIND])
+        }
+        study::Kind::Study => {
+            let study = study::read(path)?;
+            let jobs = if study.optimize.is_some() { vec![&tune::KIND] } else { Vec::new() };
+            (describe::study(&study), jobs)
+        }
+    };
+    screen.line(words)?;
+    jobs.iter().try_for_each(|job| screen.line(job.files()))?;
     screen.result(&format!("{}: good", path.display()))
 }
 

@@ -44,8 +44,15 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     small_plan(&desk);
     let screen = desk.good(&["reproduce", "--study", "paper.json", "--threads", "1", "--out", "one"]);
     desk.good(&["reproduce", "--study", "paper.json", "--threads", "2", "--out", "two", "--quiet"]);
-    let names = desk.names("one");
+    let mut names = desk.names("one");
     assert_eq!(names, desk.names("two"));
+    names.retain(|name| name != "table2");
+    for search in desk.names("one/table2") {
+        for name in desk.names(&format!("one/table2/{search}")) {
+            let [one, two] = ["one", "two"].map(|run| desk.read(&format!("{run}/table2/{search}/{name}")));
+            assert_eq!(one, two, "{search}/{name}: threads");
+        }
+    }
     for name in &names {
         assert_eq!(desk.read(&format!("one/{name}")), desk.read(&format!("two/{name}")), "{name}: threads");
     }
@@ -130,9 +137,25 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     assert_eq!(rows.lines().count(), 1 + 201, "10 s every 0.05 s");
 
     desk.good(&["table", "2", "--study", "paper.json", "--out", "tables", "--quiet"]);
-    let names =
-        ["manifest.json", "resolved.json", "study.json", "table2-statements.json", "table2-table-1.csv"];
+    let names = [
+        "manifest.json",
+        "resolved.json",
+        "study.json",
+        "table2",
+        "table2-statements.json",
+        "table2-table-1.csv",
+    ];
     assert_eq!(desk.names("tables"), names);
+    let searches =
+        ["ssvi-one-omega", "ssvi-stiffer", "ssvi-worst", "tmd-bounded", "tmd-one-omega", "tmd-worst"];
+    assert_eq!(desk.names("tables/table2"), searches);
+    // The searches stay those of the results when another item is made again.
+    desk.good(&["table", "1", "--study", "paper.json", "--out", "tables", "--quiet"]);
+    assert_eq!(
+        desk.read_json("tables/manifest.json")["parts"].as_array().map(Vec::len),
+        Some(searches.len())
+    );
+    assert_eq!(desk.names("tables/table2"), searches);
     let table = desk.read("tables/table2-table-1.csv");
     assert!(table.contains("SSVI NES,the paper's,215,232,0.06,0.36,"), "{table}");
     assert!(table.contains("TMD,the paper's,600,262,2.08,4.7,"), "{table}");

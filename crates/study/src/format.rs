@@ -1,6 +1,7 @@
 //! The study file: its fields, with their defaults. The doc comments are the descriptions of the JSON Schema.
 
 use super::global::GlobalSearch;
+use super::kind::Kind;
 use super::per_variable::PerVariable;
 use retune_model::{NonNegative, Positive, Scene, Variable};
 use retune_optim::{Limits, Objective, Options, Scale};
@@ -15,6 +16,10 @@ pub struct Study {
     /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// "study". A file without it is recognised by its other fields.
+    #[serde(default, skip_serializing_if = "Kind::is_study")]
+    #[schemars(extend("const" = "study"))]
+    pub kind: Kind,
     /// The version of Retune that wrote this file, when it did. Ignored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub retune: Option<String>,

@@ -1,8 +1,9 @@
 //! The study behind `retune fronts`: dampers to tune under ever looser bounds on the spring or on the stroke.
 
 use super::format::Study;
+use super::kind::Kind;
 use super::per_variable::PerVariable;
-use super::read::{StudyError, has_field, parse, read, read_text};
+use super::read::{StudyError, expect, parse, read, read_text};
 use super::rule::Rule;
 use retune_model::Positive;
 use retune_optim::Variable;
@@ -20,6 +21,10 @@ pub struct Fronts {
     /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// "fronts". A file without it is recognised by its other fields.
+    #[serde(default = "kind")]
+    #[schemars(extend("const" = "fronts"))]
+    pub kind: Kind,
     /// The dampers. Each is compared with the first, and its searches start at the designs of those before it too.
     #[schemars(length(min = 1))]
     pub dampers: Vec<FrontDamper>,
@@ -65,6 +70,10 @@ pub struct FrontsPlan {
     pub said: Fronts,
     /// Each damper's name and study.
     pub dampers: Vec<(String, Study)>,
+}
+
+fn kind() -> Kind {
+    Kind::Fronts
 }
 
 fn samples() -> usize {
@@ -144,7 +153,9 @@ pub fn bounded(
 /// [`StudyError`], of the file or of a study that it names.
 pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     let file = path.display().to_string();
-    let said: Fronts = parse(&read_text(path)?, &file)?;
+    let text = read_text(path)?;
+    expect(Kind::Fronts, &text, &file)?;
+    let said: Fronts = parse(&text, &file)?;
     let refuse = |field: &str, value: String, allowed| StudyError::Rule {
         file: file.clone(),
         rule: Rule::NotAllowed { field: field.to_owned(), value, allowed },
@@ -177,12 +188,4 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
         plan.dampers.push((damper, study));
     }
     Ok(plan)
-}
-
-/// Whether a file asks for fronts, by its field `dampers`.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn is_fronts(path: &Path) -> Result<bool, StudyError> {
-    has_field(path, "dampers")
 }

@@ -2,6 +2,7 @@
 
 use super::explain::explain;
 use super::format::Study;
+use super::kind::Kind;
 use super::rule::Rule;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -40,6 +41,16 @@ pub enum StudyError {
         /// The field's path and the error.
         problem: String,
     },
+    /// The file is of another kind.
+    #[error("{file}: its kind is `{}`, for {}; a file of kind `{}` is needed here", found.name(), found.commands(), wanted.name())]
+    Kind {
+        /// The file.
+        file: String,
+        /// Its kind.
+        found: Kind,
+        /// The kind that is needed.
+        wanted: Kind,
+    },
     /// Values without their names.
     #[error("{file}: {field}: wrong type: list, expected an object")]
     List {
@@ -71,7 +82,9 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`]: the file, the field, its value and the allowed values.
 pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, StudyError> {
-    parse(&read_text(path)?, &path.display().to_string())
+    let (text, file) = (read_text(path)?, path.display().to_string());
+    expect(Kind::Paper, &text, &file)?;
+    parse(&text, &file)
 }
 
 /// Reads and checks a study. Its name is filled in from that of the file.
@@ -87,6 +100,7 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
 /// # Errors
 /// As [`read`].
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
+    expect(Kind::Study, text, file)?;
     let mut study: Study = parse(text, file)?;
     let stem = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     study.name = study.name.or(stem);
@@ -129,10 +143,25 @@ pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> 
     }
 }
 
-/// Whether a file is JSON with this field at its top.
-pub(super) fn has_field(path: &Path, field: &str) -> Result<bool, StudyError> {
+/// The kind of a study file. What cannot be recognised counts as a study of one damper, whose reader says what is wrong with it.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
     let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
-    Ok(json.is_ok_and(|json| json.get(field).is_some()))
+    Ok(json.ok().as_ref().and_then(Kind::of).unwrap_or_default())
+}
+
+/// Refuses the text of a file that is recognised as one of another kind.
+///
+/// # Errors
+/// [`StudyError::Kind`].
+pub(super) fn expect(wanted: Kind, text: &str, file: &str) -> Result<(), StudyError> {
+    let json: Result<Value, _> = serde_json::from_str(text);
+    match json.ok().as_ref().and_then(Kind::of) {
+        Some(found) if found != wanted => Err(StudyError::Kind { file: file.to_owned(), found, wanted }),
+        _ => Ok(()),
+    }
 }
 
 /// The first field given as a list instead of an object. (Serde accepts both.)
@@ -144,5 +173,20 @@ fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
             Some(if inner.is_empty() { key.clone() } else { format!("{key}.{inner}") })
         }),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_a_file_of_another_kind_is_named_with_its_commands() {
+        let error = expect(Kind::Study, r#"{ "rows": [] }"#, "t.json").expect_err("a table");
+        assert_eq!(
+            error.to_string(),
+            "t.json: its kind is `table2`, for `retune table2` and `retune track`; a file of kind `study` is needed here"
+        );
+        assert!(expect(Kind::Table2, r#"{ "rows": [] }"#, "t.json").is_ok());
     }
 }

@@ -1,7 +1,8 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
 use super::format::Study;
-use super::read::{StudyError, has_field, parse, read, read_text};
+use super::kind::Kind;
+use super::read::{StudyError, expect, parse, read, read_text};
 use super::rule::Rule;
 use retune_model::{Design, NonNegative};
 use schemars::JsonSchema;
@@ -15,9 +16,17 @@ pub struct Table2 {
     /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// "table2". A file without it is recognised by its other fields.
+    #[serde(default = "kind")]
+    #[schemars(extend("const" = "table2"))]
+    pub kind: Kind,
     /// The rows of the table.
     #[schemars(length(min = 1))]
     pub rows: Vec<PaperRow>,
+}
+
+fn kind() -> Kind {
+    Kind::Table2
 }
 
 /// A row of Table 2.
@@ -47,7 +56,9 @@ pub struct PaperStudy {
 /// [`StudyError`], of the table's own file or of a study that it names.
 pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     let file = path.display().to_string();
-    let table: Table2 = parse(&read_text(path)?, &file)?;
+    let text = read_text(path)?;
+    expect(Kind::Table2, &text, &file)?;
+    let table: Table2 = parse(&text, &file)?;
     let refuse = |rule| StudyError::Rule { file: file.clone(), rule };
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut rows: Vec<PaperStudy> = Vec::new();
@@ -93,7 +104,8 @@ pub fn at_found(study: Study, path: &Path) -> Result<Result<Study, Rule>, StudyE
 /// # Errors
 /// The file cannot be read.
 pub fn is_optimum(path: &Path) -> Result<bool, StudyError> {
-    has_field(path, "damper_type")
+    let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
+    Ok(json.is_ok_and(|json| json.get("damper_type").is_some()))
 }
 
 /// The study with another design in its scene.
@@ -107,20 +119,4 @@ fn with_design(mut study: Study, design: Design) -> Result<Study, Rule> {
     let damper = study.scene.damper.as_mut().ok_or(Rule::NoDamper)?;
     *damper = design.on(*damper);
     Ok(study)
-}
-
-/// Whether a file is a table of studies and no study: whether it has `rows`. A file that is neither is none.
-///
-/// # Errors
-/// It cannot be read.
-pub fn is_table2(path: &Path) -> Result<bool, StudyError> {
-    has_field(path, "rows")
-}
-
-/// Whether a file is a plan of the whole paper, by its field `table2`.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn is_paper(path: &Path) -> Result<bool, StudyError> {
-    has_field(path, "table2")
 }

@@ -62,6 +62,12 @@ impl Artefact {
 }
 
 impl Kind {
+    /// Its files in words: those that it makes of any study, some of them only where the study asks for it.
+    pub fn files(&self) -> String {
+        let names: Vec<&str> = self.artefacts.iter().map(|artefact| artefact.name).collect();
+        format!("`retune {}` makes {}", self.command, names.join(" "))
+    }
+
     /// Whether this job makes files of this name.
     pub fn makes(&self, name: &str) -> bool {
         self.artefacts.iter().any(|artefact| artefact.is(name))

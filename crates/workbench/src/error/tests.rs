@@ -7,7 +7,7 @@ use retune_model::{OutOfRange, Positive};
 use retune_optim::{AxisError, Bounds, GridError, Variable};
 use retune_solver::Remedy;
 use retune_store::Error as StoreError;
-use retune_study::StudyError;
+use retune_study::{Kind, StudyError};
 use std::io::ErrorKind;
 
 /// Checks that there is a sample of each variant; that all are named is up to the compiler.
@@ -78,6 +78,7 @@ fn studies() -> Vec<StudyError> {
             column: 5,
             problem: "scene.primary.k1: missing".into(),
         },
+        StudyError::Kind { file: file.clone(), found: Kind::Fronts, wanted: Kind::Study },
         StudyError::List { file: file.clone(), field: "window".into() },
         StudyError::Rule { file: file.clone(), rule: Rule::NoDamper },
         StudyError::Paper { file, problem: "k1: give at least one number above 0".into() },
@@ -220,7 +221,7 @@ fn regress_the_words_of_every_error() {
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
         each!(errors(), Error: Store Study Setting Rule Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
-        each!(studies(), StudyError: Unreadable NotText Field List Rule Paper),
+        each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
