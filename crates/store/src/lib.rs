@@ -40,7 +40,7 @@ mod unfinished;
 pub use directory::Directory;
 pub use error::Error;
 pub use identity::{Identity, json_text};
-pub use journal::Journal;
+pub use journal::{Journal, MOST_POINTS};
 pub use order::{Begin, Extent, Order};
 pub use pending::Pending;
 pub use unfinished::UNFINISHED;

@@ -158,7 +158,7 @@ fn search_and_write(
     let searched = Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins };
     let certificate = certify(&Study { scene: design, ..study.clone() })?;
     results.write_json(certify::FILE, &certificate)?;
-    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short());
+    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short())?;
     results.write_json(OPTIMUM, &optimum)?;
     pictures::draw(study, search, surf.as_ref(), &refined, results)?;
     if study.objective().omega.is_some() {

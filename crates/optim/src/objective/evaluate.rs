@@ -116,10 +116,10 @@ impl Goal {
 
     /// The weighted sum, J.
     fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
-        let terms = self.objective.terms();
-        if let [(1.0, term)] = terms[..] {
-            return watch.term(scene, (0, term), cutoff);
+        if self.objective.sum.is_empty() {
+            return watch.term(scene, (0, &self.objective), cutoff); // the common case, without an allocation
         }
+        let terms = self.objective.terms();
         let (mut sum, most) = (0.0, cutoff * SLACK);
         for (i, (weight, term)) in terms.into_iter().enumerate() {
             sum += weight * watch.term(scene, (i, term), (most - sum) / weight)?;

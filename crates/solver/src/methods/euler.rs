@@ -4,7 +4,7 @@
 //! Hairer, Lubich & Wanner, Geometric Numerical Integration, 2nd ed. 2006, I.1.2 and VI.3. Order 1, one evaluation, no error
 //! estimate. States alternate position and velocity, `[x1, v1, x2, v2]`. Between steps the motion is a straight line.
 
-use super::step::{Attempt, OneStep, POWERS, Tolerance, unknown_error};
+use super::step::{Attempt, OneStep, POWERS, unknown_error};
 use crate::system::System;
 
 /// The method.
@@ -12,6 +12,7 @@ pub struct Euler;
 
 impl<const N: usize> OneStep<N> for Euler {
     const POWER: f64 = 1.0;
+    const FIXED: bool = true;
     const EVALUATIONS: u64 = 1;
 
     fn attempt(system: &impl System<N>, t: f64, y: &[f64; N], f: &[f64; N], h: f64) -> Option<Attempt<N>> {
@@ -21,16 +22,5 @@ impl<const N: usize> OneStep<N> for Euler {
         let mut dense = [[0.0; N]; POWERS];
         dense[0] = rate;
         Some(Attempt { y: end, slope: system.derivative(t + h, &end), error: unknown_error(&end), dense })
-    }
-
-    fn first_step(
-        _: &impl System<N>,
-        _t: f64,
-        _y: &[f64; N],
-        _f: &[f64; N],
-        _: Tolerance,
-        longest: f64,
-    ) -> f64 {
-        longest
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Order 4, four stages, no error estimate: a step that is too long goes unnoticed.
 
-use super::step::{Attempt, OneStep, Tolerance, hermite, unknown_error};
+use super::step::{Attempt, OneStep, hermite, unknown_error};
 use crate::system::System;
 
 /// The method.
@@ -10,6 +10,7 @@ pub struct Rk4;
 
 impl<const N: usize> OneStep<N> for Rk4 {
     const POWER: f64 = 1.0;
+    const FIXED: bool = true;
     const EVALUATIONS: u64 = 4;
 
     fn attempt(system: &impl System<N>, t: f64, y: &[f64; N], k1: &[f64; N], h: f64) -> Option<Attempt<N>> {
@@ -25,16 +26,5 @@ impl<const N: usize> OneStep<N> for Rk4 {
             error: unknown_error(&end),
             dense: hermite(h, (y, k1), (&end, &slope)),
         })
-    }
-
-    fn first_step(
-        _: &impl System<N>,
-        _t: f64,
-        _y: &[f64; N],
-        _f: &[f64; N],
-        _: Tolerance,
-        longest: f64,
-    ) -> f64 {
-        longest
     }
 }

@@ -42,6 +42,8 @@ pub fn unknown_error<const N: usize>(end: &[f64; N]) -> [f64; N] {
 pub trait OneStep<const N: usize> {
     /// Exponent of the step control, one over the order of the error estimate's method plus one.
     const POWER: f64;
+    /// Whether every step is the longest: the method has no error estimate.
+    const FIXED: bool = false;
     /// Evaluations per step, the one at its start not counted.
     const EVALUATIONS: u64;
     /// Takes a step of length `h`; `None` if the method's equations have no solution there.
@@ -55,6 +57,9 @@ pub trait OneStep<const N: usize> {
         tolerance: Tolerance,
         longest: f64,
     ) -> f64 {
+        if Self::FIXED {
+            return longest;
+        }
         let rate = tolerance.norm(f, y, y) / (0.8 * tolerance.rtol.powf(Self::POWER));
         if longest * rate > 1.0 { 1.0 / rate } else { longest }
     }

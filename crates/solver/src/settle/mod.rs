@@ -1,5 +1,4 @@
 //! Settled motions: a run is followed until its state returns after some periods of the force, with only a small drift left.
-
 //!
 //! Read [`settled`], then `blocks` (the run in blocks of some periods), `section` (its states once per period) and `recurrence`
 //! (whether they return).

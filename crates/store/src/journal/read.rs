@@ -16,7 +16,7 @@ const TITLE: &str = "retune-journal-2";
 /// Longest valid line, bytes.
 const LONGEST: usize = 1024;
 
-/// Most points of a grid.
+/// Most points of a grid that a journal holds.
 pub const MOST_POINTS: usize = 10_000_000;
 
 /// The contents of a journal.

@@ -9,7 +9,7 @@ use crate::Error;
 use crate::certify::Short;
 use crate::summary::{MadeBy, Summary, TunedDamper};
 use notes::{Goal, LimitNote, Met};
-use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, Unusable, energy};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
 use retune_study::{PerVariable, Search, Study};
 use retune_study::{counted, short};
 use serde::Serialize;
@@ -115,12 +115,12 @@ impl Optimum {
         summary: Summary,
         evaluation: Evaluation,
         certificate: Short,
-    ) -> Self {
+    ) -> Result<Self, Error> {
         let best = refined.best();
-        let damper = refined.objective.damper(&best.minimum.x).unwrap_or(search.damper);
+        let damper = refined.objective.damper(&best.minimum.x)?;
         let over = |values: &[f64]| PerVariable::of(&search.variables, values);
         let refine = study.optimize.as_ref().map(|optimize| optimize.refine).unwrap_or_default();
-        Self {
+        Ok(Self {
             damper_type: summary.damper_type(),
             damper: TunedDamper::of(&damper),
             e1_max: evaluation.energy,
@@ -147,9 +147,9 @@ impl Optimum {
             ]),
             certificate,
             simulation: summary,
-            start: start(search, refined),
+            start: start(refined)?,
             made_by: MadeBy::new(study),
-        }
+        })
     }
 
     /// The best design.
@@ -228,19 +228,17 @@ pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 
-/// The start of the best run, with its energy whether it keeps the limits or not.
-fn start(search: &Search, refined: &Refined) -> Found {
-    let first = refined.best().rows.first();
-    let damper = first.and_then(|row| refined.objective.damper(&row.best).ok()).unwrap_or(search.damper);
-    let again = |x: &[f64]| {
-        let scene = refined.objective.scene(x)?;
-        Ok::<f64, Unusable>(refined.objective.evaluate(&scene, f64::INFINITY)?.energy)
-    };
-    let e1_max = first.map_or(f64::NAN, |row| match energy(row.value) {
-        none if none.is_nan() => again(&row.best).unwrap_or(f64::NAN),
+/// The start of the best run, with its energy whether it keeps the limits or not. A run that ends before its first iteration has
+/// only its end.
+fn start(refined: &Refined) -> Result<Found, Error> {
+    let Run { rows, minimum } = refined.best();
+    let (x, value) = rows.first().map_or((&minimum.x, minimum.value), |row| (&row.best, row.value));
+    let scene = refined.objective.scene(x)?;
+    let e1_max = match energy(value) {
+        none if none.is_nan() => refined.objective.evaluate(&scene, f64::INFINITY)?.energy,
         known => known,
-    });
-    Found { damper: TunedDamper::of(&damper), e1_max }
+    };
+    Ok(Found { damper: TunedDamper::of(&refined.objective.damper(x)?), e1_max })
 }
 
 impl RunNote {

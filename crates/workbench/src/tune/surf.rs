@@ -11,6 +11,9 @@ use retune_study::{Search, Study};
 use retune_study::{counted, joined, short};
 use std::time::Instant;
 
+// A journal must hold every grid that a study may have.
+const _: () = assert!(retune_study::MOST_GRID_POINTS <= retune_store::MOST_POINTS);
+
 /// E1max at every point of the grid.
 pub struct Surf {
     /// The grid's parameters, in the order of its axes.
