@@ -20,7 +20,7 @@ CRATES = {
         "--lib --test allocation --test bounds --test bounds_in_flight --test exact --test extreme_values --test general_methods --test invariant --test observers --test order --test paper --test running_maximum --test settled --test trajectory",
         "--test any_scene --test edge --test hunt"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
-    "retune-store": (["crates/store/src/*"], ["--tests", "@retune --tests"]),
+    "retune-store": (["crates/store/src/*"], ["--tests", "@retune-workbench --tests", "@retune --tests"]),
 }
 # How much is drawn at random in the slowest tests.
 SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}

@@ -2,8 +2,8 @@
 
 mod scenes;
 
-use retune_model::{Coupled, RegularisedContact, RegularisedState, Side};
-use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED};
+use retune_model::{Coupled, RegularisedState, Side};
+use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, advance};
 
 const T: f64 = 1.21;
 
@@ -125,17 +125,6 @@ fn exact_bounds_over_a_contact_add_up_every_cause() {
             }
         }
     }
-}
-
-/// One step of the classical Runge–Kutta method in `θ`.
-fn advance(equations: &RegularisedContact, y: &RegularisedState, h: f64) -> RegularisedState {
-    let along =
-        |k: &RegularisedState, h: f64| -> RegularisedState { std::array::from_fn(|i| y[i] + h * k[i]) };
-    let a = equations.derivative(y);
-    let b = equations.derivative(&along(&a, 0.5 * h));
-    let c = equations.derivative(&along(&b, 0.5 * h));
-    let d = equations.derivative(&along(&c, h));
-    along(&std::array::from_fn(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0), h)
 }
 
 #[test]

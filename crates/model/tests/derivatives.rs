@@ -7,7 +7,7 @@ use scenes::{ROW1, SSVI, Spread, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
 
-/// Spacing of the differences, small beside a indentation of millimetres.
+/// Spacing of the differences, small beside an indentation of millimetres.
 const H: f64 = 3e-5;
 
 /// Random states: in flight, in contact with the structure, in contact with the obstacle.
@@ -20,8 +20,7 @@ fn states(system: &Coupled) -> Vec<[f64; 4]> {
             -2e-3,
             system.wall(retune_model::Side::Obstacle) + 3e-3,
         ] {
-            let (x1, v1, v2) = (0.1 * spread.signed(), 0.6 * spread.signed(), 1.5 * spread.signed());
-            states.push([x1, v1, x1 + r, v2]);
+            states.push(spread.state(r));
         }
     }
     states

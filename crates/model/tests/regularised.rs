@@ -3,14 +3,13 @@
 mod scenes;
 
 use retune_model::{RegularisedContact, RegularisedState, Side};
-use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, slope};
+use scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, advance, slope};
 
 const T: f64 = 1.21;
 
 /// A random state with the indentation `z` (m) of a wall.
 fn in_contact(system: &retune_model::Coupled, side: Side, z: f64, spread: &mut Spread) -> [f64; 4] {
-    let (x1, v1, v2) = (0.1 * spread.signed(), 0.6 * spread.signed(), 1.5 * spread.signed());
-    [x1, v1, x1 + system.wall(side) + side.sign() * z, v2]
+    spread.state(system.wall(side) + side.sign() * z)
 }
 
 #[test]
@@ -67,17 +66,6 @@ fn exact_regularised_equations_are_equation_1() {
             }
         }
     }
-}
-
-/// One step of the classical Runge–Kutta method in `θ`.
-fn advance(equations: &RegularisedContact, y: &RegularisedState, h: f64) -> RegularisedState {
-    let along =
-        |k: &RegularisedState, h: f64| -> RegularisedState { std::array::from_fn(|i| y[i] + h * k[i]) };
-    let a = equations.derivative(y);
-    let b = equations.derivative(&along(&a, 0.5 * h));
-    let c = equations.derivative(&along(&b, 0.5 * h));
-    let d = equations.derivative(&along(&c, h));
-    along(&std::array::from_fn(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0), h)
 }
 
 /// Two bodies and nothing else.

@@ -4,9 +4,11 @@
 //! `just test` makes a few kills; `just test-kills` makes hundreds and reports the stage of each (`RETUNE_KILLS` is their
 //! number).
 
+#[path = "program/common.rs"]
 mod common;
 
-use common::{Desk, studies, tiny};
+use common::Desk;
+use common::desk::{committed, tiny};
 use serde_json::json;
 use std::collections::{BTreeMap, HashSet};
 use std::process::{Child, Stdio};
@@ -59,7 +61,10 @@ const WORKS: [Work; 4] = [
 
 /// Studies whose searches take a second or so.
 fn desk() -> Desk {
-    let desk = Desk::new();
+    let desk = Desk::with_table2("table2.json", |_| {});
+    let mut ssvi = desk.read_json("ssvi.json");
+    ssvi["optimize"]["refine"] = json!({ "MaxFunEvals": 400, "TolX": 1e-9, "TolFun": 1e-9 });
+    desk.write_json("ssvi.json", &ssvi);
     let mut study = tiny();
     study["window"] = json!({ "t0": 20, "T": 60 });
     for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
@@ -67,34 +72,11 @@ fn desk() -> Desk {
     }
     study["optimize"]["refine"] = json!({ "starts": 3, "apart": 1, "MaxFunEvals": 300 });
     desk.write_json("study.json", &study);
-    for name in ["ssvi.json", "tmd.json", "table2.json", "paper.json"] {
-        desk.write(name, std::fs::read_to_string(studies().join(name)).expect(name));
-    }
-    let mut ssvi = desk.read_json("ssvi.json");
-    ssvi["optimize"]["refine"] = json!({ "MaxFunEvals": 400, "TolX": 1e-9, "TolFun": 1e-9 });
-    desk.write_json("ssvi.json", &ssvi);
-    let mut plan = desk.read_json("paper.json");
+    let mut plan = committed("paper.json");
     plan["omega"] = json!({ "from": 4, "to": 9, "points": 101 });
     plan["k1_range"] = json!({ "from": 2.0e4, "to": 6.0e4, "points": 21 });
     desk.write_json("paper.json", &plan);
     desk
-}
-
-/// Every file below a directory with its bytes, except parts, which remain beside the merged results.
-fn everything(desk: &Desk, below: &str) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for name in desk.names(below) {
-        let inner = format!("{below}/{name}");
-        if desk.path(&inner).is_dir() {
-            all.extend(
-                everything(desk, &inner).into_iter().map(|(rest, bytes)| (format!("{name}/{rest}"), bytes)),
-            );
-            all.insert(name, Vec::new());
-        } else {
-            all.insert(name, std::fs::read(desk.path(&inner)).expect("a file"));
-        }
-    }
-    all
 }
 
 /// The stage of a killed run, from the files it left.
@@ -192,7 +174,7 @@ fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
         let begun = Instant::now();
         assert!(ends_before(&mut start(&desk, work, "whole"), Duration::from_secs(600)));
         let usual = begun.elapsed();
-        let expected = everything(&desk, "whole");
+        let expected = desk.everything("whole");
         let wanted = (asked as f64 * work.share).ceil() as usize;
         let mut kills = 0;
         while kills < wanted {
@@ -212,7 +194,7 @@ fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
                 *table.entry((work.name, stage(&desk, work))).or_default() += 1;
             }
             endings += 1;
-            let found = everything(&desk, "out");
+            let found = desk.everything("out");
             assert_eq!(
                 found.keys().collect::<Vec<_>>(),
                 expected.keys().collect::<Vec<_>>(),

@@ -3,7 +3,8 @@
 #![allow(clippy::approx_constant, reason = "the paper's 6.28 and 0.318 are not 2π and 1/π")]
 
 use retune_model::{
-    Bare, Contact, Coupled, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary, Scene,
+    Bare, Contact, Coupled, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary,
+    RegularisedContact, RegularisedState, Scene,
 };
 
 /// A scene as plain numbers in the paper's symbols and SI units, to be varied by `..`.
@@ -142,6 +143,23 @@ impl Spread {
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.unit())
     }
+
+    /// A state `[x1, v1, x2, v2]` of usual size in which the damper is `r` (m) ahead of the structure.
+    pub fn state(&mut self, r: f64) -> [f64; 4] {
+        let (x1, v1, v2) = (0.1 * self.signed(), 0.6 * self.signed(), 1.5 * self.signed());
+        [x1, v1, x1 + r, v2]
+    }
+}
+
+/// One step of the classical Runge–Kutta method in `θ`.
+pub fn advance(equations: &RegularisedContact, y: &RegularisedState, h: f64) -> RegularisedState {
+    let along =
+        |k: &RegularisedState, h: f64| -> RegularisedState { std::array::from_fn(|i| y[i] + h * k[i]) };
+    let a = equations.derivative(y);
+    let b = equations.derivative(&along(&a, 0.5 * h));
+    let c = equations.derivative(&along(&b, 0.5 * h));
+    let d = equations.derivative(&along(&c, h));
+    along(&std::array::from_fn(|i| (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0), h)
 }
 
 /// `df/ds` at `s = 0`, by central differences of order 8 with spacing `h`.

@@ -1,32 +1,34 @@
-//! `reproduce`, `figure` and `table` from end to end, on a plan of short runs and few points.
+//! Every table and figure of the paper from end to end, on a plan of short runs and few points.
 
-mod common;
+#[path = "../../workbench/tests/jobs/desk.rs"]
+mod desk;
+#[path = "../../workbench/tests/jobs/observers.rs"]
+mod observers;
 
-use common::{Answer, Desk, studies};
+use desk::{Desk, committed};
+use observers::{Record, good, refused};
+use retune_paper::reproduce;
+use retune_store::Error as StoreError;
+use retune_study::StudyError;
+use retune_workbench::{Error, Request, Silent};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// The paper's plan with windows of seconds and grids of a few points.
-fn small_plan(desk: &Desk) -> Value {
-    for name in ["ssvi.json", "tmd.json", "table2.json", "paper.json"] {
-        let mut study = read(name);
-        if study.get("window").is_some() {
-            study["window"] = json!({ "t0": 5, "T": 10 });
-        }
-        desk.write_json(name, &study);
-    }
-    let mut plan = read("paper.json");
+fn small() -> Desk {
+    let desk = Desk::with_table2("table2.json", |study| study["window"] = json!({ "t0": 5, "T": 10 }));
+    let mut plan = committed("paper.json");
     plan["k1"] = json!([3.00e4, 3.95e4, 5.00e4]);
     plan["omega"] = json!({ "from": 4, "to": 9, "points": 31 });
     plan["k1_range"] = json!({ "from": 2.0e4, "to": 6.0e4, "points": 3 });
     plan["motions"] = json!({ "from": 0.9, "to": 1.1, "points": 4 });
     desk.write_json("paper.json", &plan);
-    plan
+    desk
 }
 
-fn read(name: &str) -> Value {
-    let text = std::fs::read_to_string(studies().join(name)).expect(name);
-    serde_json::from_str(&text).expect("JSON")
+/// A request for the paper of the desk, into a directory of it.
+fn request(desk: &Desk, out: &str) -> Request {
+    Request { out: Some(desk.path(out)), ..Request::new(&desk.path("paper.json")) }
 }
 
 /// The targets of links and sources in an HTML page.
@@ -40,22 +42,13 @@ fn targets(page: &str) -> BTreeSet<String> {
 
 #[test]
 fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
-    let desk = Desk::new();
-    small_plan(&desk);
-    let screen = desk.good(&["reproduce", "--study", "paper.json", "--threads", "1", "--out", "one"]);
-    desk.good(&["reproduce", "--study", "paper.json", "--threads", "2", "--out", "two", "--quiet"]);
-    let mut names = desk.names("one");
-    assert_eq!(names, desk.names("two"));
+    let desk = small();
+    let record = Record::default();
+    good(reproduce(&Request { threads: Some(1), ..request(&desk, "one") }, None, &record));
+    good(reproduce(&Request { threads: Some(2), ..request(&desk, "two") }, None, &Silent));
+    desk.assert_same("one", "two");
+    let (mut names, said) = (desk.names("one"), record.results());
     names.retain(|name| name != "table2");
-    for search in desk.names("one/table2") {
-        for name in desk.names(&format!("one/table2/{search}")) {
-            let [one, two] = ["one", "two"].map(|run| desk.read(&format!("{run}/table2/{search}/{name}")));
-            assert_eq!(one, two, "{search}/{name}: threads");
-        }
-    }
-    for name in &names {
-        assert_eq!(desk.read(&format!("one/{name}")), desk.read(&format!("two/{name}")), "{name}: threads");
-    }
 
     let page = desk.read("one/index.html");
     let foreign = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
@@ -100,28 +93,33 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
             let [paper, rule, found] =
                 ["paper", "rule", "found"].map(|key| statement[key].as_str().expect(key));
             assert!(!rule.is_empty() && !found.is_empty(), "{name}: {paper}");
-            assert!(screen.contains(paper), "{paper}");
+            assert!(said.contains(paper), "{paper}");
             verdicts += 1;
         }
     }
     assert_eq!(page.matches("class=\"verdict\"").count(), verdicts);
     assert!(verdicts >= 20, "{verdicts}");
-    assert!(screen.trim_end().ends_with("table2-table-1.csv"), "{screen}");
+    assert!(said.trim_end().ends_with("table2-table-1.csv"), "{said}");
 }
 
 #[test]
 fn contract_one_figure_or_table_makes_its_own_files_only() {
-    let desk = Desk::new();
-    small_plan(&desk);
+    let desk = small();
     desk.write("out/figure6-old.csv", "of an earlier run");
     desk.write("out/figure5.svg", "of another figure");
-    let run = ["figure", "6", "--study", "paper.json", "--out", "out"];
-    let Answer { code, stderr, .. } = desk.run(&run);
-    assert_eq!(code, Some(2));
-    assert!(stderr.contains("figure6-old.csv stands here, which Retune did not make"), "{stderr}");
+    match refused(reproduce(&request(&desk, "out"), Some("figure6"), &Silent)) {
+        Error::Store(StoreError::Standing { problem, .. }) => {
+            assert!(
+                problem.starts_with("figure6-old.csv stands here, which Retune did not make"),
+                "{problem}"
+            );
+        }
+        other => panic!("{other}"),
+    }
     assert_eq!(desk.read("out/figure6-old.csv"), "of an earlier run");
-    let screen = desk.good(&[&run[..], &["--replace"]].concat());
-    assert!(screen.starts_with("Figure 6. "), "{screen}");
+    let record = Record::default();
+    good(reproduce(&Request { replace: true, ..request(&desk, "out") }, Some("figure6"), &record));
+    assert!(record.results().starts_with("Figure 6. "), "{}", record.results());
     let names = [
         "figure5.svg",
         "figure6-statements.json",
@@ -136,7 +134,7 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     assert_eq!(rows.lines().next(), Some("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J"));
     assert_eq!(rows.lines().count(), 1 + 201, "10 s every 0.05 s");
 
-    desk.good(&["table", "2", "--study", "paper.json", "--out", "tables", "--quiet"]);
+    good(reproduce(&request(&desk, "tables"), Some("table2"), &Silent));
     let names = [
         "manifest.json",
         "resolved.json",
@@ -150,7 +148,7 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
         ["ssvi-one-omega", "ssvi-stiffer", "ssvi-worst", "tmd-bounded", "tmd-one-omega", "tmd-worst"];
     assert_eq!(desk.names("tables/table2"), searches);
     // The searches stay those of the results when another item is made again.
-    desk.good(&["table", "1", "--study", "paper.json", "--out", "tables", "--quiet"]);
+    good(reproduce(&request(&desk, "tables"), Some("table1"), &Silent));
     assert_eq!(
         desk.read_json("tables/manifest.json")["parts"].as_array().map(Vec::len),
         Some(searches.len())
@@ -161,26 +159,52 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     assert!(table.contains("TMD,the paper's,600,262,2.08,4.7,"), "{table}");
 }
 
+/// A figure that is made again keeps the others in the manifest.
 #[test]
-fn contract_figures_and_tables_that_the_paper_does_not_have_are_refused() {
-    let desk = Desk::new();
-    for (arguments, sentence) in [
-        (["figure", "8"], "invalid value '8' for '<NUMBER>': 8 is not in 2..=7"),
-        (["figure", "1"], "invalid value '1' for '<NUMBER>': 1 is not in 2..=7"),
-        (["figure", "two"], "invalid value 'two' for '<NUMBER>': invalid digit found in string"),
-        (["table", "3"], "invalid value '3' for '<NUMBER>': 3 is not in 1..=2"),
-    ] {
-        let Answer { code, stdout, stderr } = desk.run(&arguments);
-        assert_eq!((code, stdout.as_str()), (Some(2), ""), "{arguments:?}");
-        assert!(stderr.contains(sentence), "{stderr}");
+fn contract_figures_made_one_by_one_stay_retunes() {
+    let desk = small();
+    let make = |figure| reproduce(&request(&desk, "out"), Some(figure), &Silent);
+    good(make("figure5"));
+    desk.write("out/figure5-notes.txt", "mine");
+    desk.write("out/notes.txt", "mine");
+    match refused(make("figure5")) {
+        Error::Store(StoreError::Standing { problem, .. }) => {
+            assert!(problem.starts_with("figure5-notes.txt stands here"), "{problem}");
+        }
+        other => panic!("{other}"),
     }
-    assert!(desk.names(".").is_empty(), "nothing may be left behind");
+    desk.remove("out/figure5-notes.txt");
+    good(make("figure3"));
+    let manifest = desk.read_json("out/manifest.json");
+    let files = manifest["files"].as_object().expect("files");
+    assert!(files.contains_key("figure3.svg") && files.contains_key("figure5.svg"), "{files:?}");
+    let mut plan = desk.read_json("paper.json");
+    plan["omega"] = json!({ "from": 4, "to": 9, "points": 12 });
+    desk.write_json("paper.json", &plan);
+    good(make("figure5"));
+    let manifest = desk.read_json("out/manifest.json");
+    let earlier = manifest["earlier"].as_object().expect("earlier");
+    assert!(earlier.contains_key("figure3.svg") && !earlier.contains_key("figure5.svg"), "{earlier:?}");
+    good(make("figure3"));
+    assert_eq!(desk.read_json("out/manifest.json").get("earlier"), None);
+    assert!(desk.path("out/notes.txt").exists());
 }
 
 #[test]
 fn contract_wrong_plans_are_refused_with_the_field() {
-    let desk = Desk::new();
-    let plan = small_plan(&desk);
+    let desk = small();
+    let plan = desk.read_json("paper.json");
+    let problem = |field: &str, value: Value| {
+        let mut wrong = plan.clone();
+        wrong[field] = value;
+        desk.write_json("paper.json", &wrong);
+        let error = refused(reproduce(&request(&desk, "out"), None, &Silent));
+        assert!(!desk.path("out").exists(), "nothing may be left behind");
+        match error {
+            Error::Study(error) => error,
+            other => panic!("{other}"),
+        }
+    };
     for (field, value, sentence) in [
         ("k1", json!([]), "k1: give at least one number above 0"),
         ("k1", json!([-1.0]), "k1: give at least one number above 0"),
@@ -194,19 +218,20 @@ fn contract_wrong_plans_are_refused_with_the_field() {
             json!({ "from": 0.9, "to": 1.1, "points": 1 }),
             "motions: give 0 < from < to and 2 to 100000 points",
         ),
-        ("table2", json!("none.json"), "none.json: cannot be read: "),
-        ("k3", json!(1), "unknown field `k3`; did you mean `k1`?"),
     ] {
-        let mut wrong = plan.clone();
-        wrong[field] = value;
-        desk.write_json("wrong.json", &wrong);
-        let Answer { code, stdout, stderr } =
-            desk.run(&["reproduce", "--study", "wrong.json", "--out", "out"]);
-        assert_eq!((code, stdout.as_str()), (Some(2), ""), "{stderr}");
-        assert!(stderr.starts_with("error: ") && stderr.contains(sentence), "{stderr}");
-        assert!(!desk.path("out").exists(), "nothing may be left behind");
+        match problem(field, value) {
+            StudyError::Paper { problem, .. } => assert_eq!(problem, sentence),
+            other => panic!("{other}"),
+        }
     }
-    let Answer { code, stderr, .. } = desk.run(&["figure", "6"]);
-    assert_eq!(code, Some(2));
-    assert!(stderr.starts_with("error: studies/paper.json: cannot be read: "), "{stderr}");
+    match problem("table2", json!("none.json")) {
+        StudyError::Unreadable { file, .. } => assert_eq!(file, desk.path("none.json").display().to_string()),
+        other => panic!("{other}"),
+    }
+    match problem("k3", json!(1)) {
+        StudyError::Field { problem, .. } => {
+            assert!(problem.starts_with("unknown field `k3`; did you mean `k1`?"), "{problem}");
+        }
+        other => panic!("{other}"),
+    }
 }

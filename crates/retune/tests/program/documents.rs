@@ -1,11 +1,9 @@
 //! The files, commands and studies that the documents name exist.
 
-mod common;
-#[path = "../../model/tests/scenes/mod.rs"]
+#[path = "../../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use common::studies;
-use serde_json::Value;
+use crate::common::desk::committed;
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -106,9 +104,8 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
 #[test]
 fn contract_the_scene_of_the_tests_is_that_of_the_studies() {
     for (name, numbers) in [("ssvi.json", scenes::SSVI), ("tmd.json", scenes::TMD)] {
-        let text = std::fs::read_to_string(studies().join(name)).expect(name);
-        let study: Value = serde_json::from_str(&text).expect("JSON");
-        let scene: retune_model::Scene = serde_json::from_value(study["scene"].clone()).expect("a scene");
+        let scene: retune_model::Scene =
+            serde_json::from_value(committed(name)["scene"].clone()).expect("a scene");
         assert_eq!(scene, numbers.scene(), "{name}");
     }
 }

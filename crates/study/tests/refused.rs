@@ -1,28 +1,44 @@
-//! Bad input: one clear message each, exit code 2, and no file left.
+//! Wrong studies: one clear message each, which names the field and what is allowed.
 
-mod common;
+#[path = "../../workbench/tests/jobs/desk.rs"]
+mod desk;
 
-use common::{Answer, Desk, tiny};
+use desk::{Desk, global, tiny};
+use retune_study::read::from_text;
+use retune_study::{Rule, Setting, SettingError, StudyError};
 use serde_json::{Value, json};
 
-/// Runs `optimize` on the tiny study with `value` at `pointer` and expects `message`.
+/// What is wrong with this study, without the place in its file.
+#[track_caller]
+fn problem(text: &str) -> String {
+    match from_text(text, "bad.json").expect_err("a wrong study") {
+        StudyError::Field { file, line, column, problem } => {
+            assert!(file == "bad.json" && line > 0, "{file}:{line}:{column}");
+            problem
+        }
+        StudyError::List { file, field } => {
+            assert_eq!(file, "bad.json");
+            format!("{field}: wrong type: list, expected an object")
+        }
+        StudyError::Rule { file, rule } => {
+            assert_eq!(file, "bad.json");
+            rule.to_string()
+        }
+        other => panic!("{other}"),
+    }
+}
+
+#[track_caller]
+fn refused_text(text: &str, message: &str) {
+    assert_eq!(problem(text), message);
+}
+
+/// The tiny study with `value` at `pointer`.
 #[track_caller]
 fn refused(pointer: &str, value: Value, message: &str) {
     let mut study = tiny();
     *study.pointer_mut(pointer).unwrap_or_else(|| panic!("no {pointer}")) = value;
     refused_text(&study.to_string(), message);
-}
-
-/// Runs `optimize` on `text` and expects `message` after the file's name and, if any, the line and column.
-#[track_caller]
-fn refused_text(text: &str, message: &str) {
-    let desk = Desk::new();
-    desk.write("bad.json", text);
-    let Answer { code, stdout, stderr } = desk.run(&["optimize", "bad.json", "--out", "out"]);
-    let said = stderr.strip_prefix("error: bad.json:").unwrap_or_else(|| panic!("{stderr}"));
-    let said = said.trim_start_matches(|c: char| c.is_ascii_digit() || c == ':').trim();
-    assert_eq!((said, stdout.as_str(), code), (message, "", Some(2)));
-    assert_eq!(desk.names("."), ["bad.json"], "nothing may be left behind");
 }
 
 #[test]
@@ -231,112 +247,113 @@ fn contract_text_that_is_not_json_is_refused() {
     refused_text(&format!("{text}}}"), "not valid JSON: there is more text after the end of the study");
     let desk = Desk::new();
     desk.write("bad.json", b"{\"name\":\"\xe9\"}");
-    assert_eq!(desk.run(&["check", "bad.json"]).stderr, "error: bad.json: not UTF-8 text (at byte 9)\n");
+    let error = retune_study::read(&desk.path("bad.json")).expect_err("no text");
+    assert!(matches!(error, StudyError::NotText { byte: 9, .. }), "{error}");
 }
 
 #[test]
 fn contract_a_byte_order_mark_is_accepted() {
     let desk = Desk::new();
     desk.write("study.json", format!("\u{feff}{}", tiny()));
-    desk.good(&["check", "study.json"]);
+    let study = retune_study::read(&desk.path("study.json")).expect("a study");
+    assert_eq!(study, from_text(&tiny().to_string(), "study.json").expect("a study"));
 }
 
 #[test]
-fn contract_missing_files_and_places_that_cannot_be_written_are_named() {
+fn contract_a_missing_file_is_named() {
     let desk = Desk::new();
-    let Answer { code, stderr, .. } = desk.run(&["check", "none.json"]);
-    assert_eq!(code, Some(2));
-    assert!(stderr.starts_with("error: none.json: cannot be read: "), "{stderr}");
+    let path = desk.path("none.json");
+    match retune_study::read(&path).expect_err("no file") {
+        StudyError::Unreadable { file, source } => {
+            assert_eq!((file, source.kind()), (path.display().to_string(), std::io::ErrorKind::NotFound));
+        }
+        other => panic!("{other}"),
+    }
+}
 
-    desk.write_json("study.json", &tiny());
-    desk.write("file", "");
-    let Answer { code, stderr, .. } = desk.run(&["optimize", "study.json", "--out", "file/out"]);
-    assert_eq!(code, Some(2));
-    assert!(stderr.starts_with("error: file/out: cannot be written: "), "{stderr}");
+/// Rules that several fields break together are values as well as words.
+#[test]
+fn contract_contradictions_are_typed() {
+    let rule = |pointer: &str, value: Value| {
+        let mut study = tiny();
+        *study.pointer_mut(pointer).expect(pointer) = value;
+        match from_text(&study.to_string(), "bad.json").expect_err("a contradiction") {
+            StudyError::Rule { rule, .. } => rule,
+            other => panic!("{other}"),
+        }
+    };
+    assert_eq!(rule("/window/t0", json!(4)), Rule::EmptyWindow { t0: 4.0, end: 4.0 });
+    assert_eq!(rule("/scene/damper", Value::Null), Rule::NoDamper);
+    assert_eq!(rule("/optimize/vary", json!([])), Rule::NothingVaried);
+    assert_eq!(rule("/optimize/refine/starts", json!(0)), Rule::NoStarts);
+}
 
-    let Answer { code, stderr, .. } = desk.run(&["simulate", "study.json", "--trajectory", "none/t.csv"]);
-    assert_eq!(code, Some(2));
-    assert!(stderr.starts_with("error: none/t.csv: cannot be written: "), "{stderr}");
-    assert_eq!(desk.names("."), ["file", "study.json"]);
+#[test]
+fn contract_invalid_objectives_are_refused() {
+    for (objective, message) in [
+        (
+            json!({ "k1": { "set": [] } }),
+            "optimize.objective.k1.set: an empty list is not allowed here: give at least one",
+        ),
+        (
+            json!({ "k1": { "range": { "from": 4e4, "to": 4e4, "samples": 3 } } }),
+            "optimize.objective.k1.range: from = 40000 N/m is not below to = 40000 N/m: the band is empty",
+        ),
+        (json!({ "settle": { "blocks": 1 } }), "optimize.objective.settle.blocks: 1 is not allowed here"),
+        (
+            json!({ "ensemble": { "members": 0 } }),
+            "optimize.objective.ensemble.members: 0 is not allowed here",
+        ),
+        (
+            json!({ "ensemble": { "members": 2, "statistic": { "quantile": 1.5 } } }),
+            "optimize.objective.ensemble.statistic.quantile: 1.5 is not allowed here: give a number above 0 and at most 1",
+        ),
+        (
+            json!({ "response": "steady", "sum": [{ "weight": 1, "objective": {} }] }),
+            "optimize.objective.sum: stands in the place of omega, k1, response, settle and ensemble",
+        ),
+        (
+            json!({ "sum": [{ "weight": 1, "objective": { "omega": { "from": 8, "to": 5 } } }] }),
+            "optimize.objective.sum[0].objective.omega: from = 8 rad/s is not below to = 5 rad/s",
+        ),
+    ] {
+        let said = problem(&global(objective, json!({})).to_string());
+        assert!(said.starts_with(message), "{message}: {said}");
+    }
+    let mut open = global(json!({}), json!({}));
+    open["optimize"]["bounds"] = json!({});
+    let said = problem(&open.to_string());
+    let message = "optimize.global.box.k2: missing, and optimize.bounds.k2 has no largest value";
+    assert!(said.starts_with(message), "{said}");
 }
 
 #[test]
 fn contract_settings_are_checked_like_the_file() {
-    let desk = Desk::new();
-    desk.write_json("study.json", &tiny());
+    let study = from_text(&tiny().to_string(), "study.json").expect("a study");
     for (setting, message) in [
-        ("m1=-1", "command line: m1: -1 is not allowed here: give a finite number above 0"),
-        ("k2=nan", "command line: k2: NaN is not allowed here: give a finite number not below 0"),
-        ("R=0", "command line: R: 0 is not allowed here: give a finite number above 0"),
-        ("t0=9", "command line: window: t0 = 9 s is not before T = 4 s: the window is empty"),
+        ("m1=-1", "m1: -1 is not allowed here: give a finite number above 0"),
+        ("k2=nan", "k2: NaN is not allowed here: give a finite number not below 0"),
+        ("R=0", "R: 0 is not allowed here: give a finite number above 0"),
+        ("t0=9", "window: t0 = 9 s is not before T = 4 s: the window is empty"),
     ] {
-        let Answer { code, stderr, .. } = desk.run(&["simulate", "study.json", "--set", setting]);
-        assert_eq!((code, stderr), (Some(2), format!("error: {message}\n")));
+        let setting: Setting = setting.parse().expect("a setting");
+        let error = study.with(std::slice::from_ref(&setting)).expect_err("a wrong value");
+        assert_eq!(error.to_string(), message);
+        assert_eq!(
+            matches!(error, SettingError::Rule(Rule::EmptyWindow { .. })),
+            message.starts_with("window")
+        );
     }
-    for (setting, part) in [
-        (
-            "k3=1",
-            "unknown parameter `k3`; did you mean `k1`? allowed: m1, c1, k1, m2, k2, c2, D, C, P, omega, R, T, t0",
-        ),
-        ("k1", "\"k1\" is not of the form NAME=VALUE, for instance k1=30000"),
-        ("k1=soft", "k1: \"soft\" is not a number"),
+    for (text, error) in [
+        ("k3=1", SettingError::Name { name: "k3".into() }),
+        ("k1", SettingError::Form { text: "k1".into() }),
+        ("k1=soft", SettingError::Number { name: "k1", text: "soft".into() }),
     ] {
-        let Answer { code, stderr, .. } = desk.run(&["simulate", "study.json", "--set", setting]);
-        assert_eq!(code, Some(2));
-        assert!(stderr.contains(part), "{stderr}");
+        assert_eq!(text.parse::<Setting>(), Err(error));
     }
     let mut bare = tiny();
     bare["scene"]["damper"] = Value::Null;
     bare["optimize"] = Value::Null;
-    desk.write_json("bare.json", &bare);
-    let Answer { stderr, .. } = desk.run(&["simulate", "bare.json", "--set", "k2=1"]);
-    assert_eq!(stderr, "error: command line: k2: the scene has no damper\n");
-}
-
-#[test]
-fn contract_a_failed_run_exits_with_1_not_2() {
-    let mut study = tiny();
-    study["solver"] = json!({ "max_steps": 3 });
-    let desk = Desk::new();
-    desk.write_json("study.json", &study);
-    let Answer { code, stderr, .. } = desk.run(&["simulate", "study.json"]);
-    assert_eq!(code, Some(1));
-    assert!(stderr.starts_with("error: the run failed: the run needed more than 3 steps"), "{stderr}");
-    let Answer { code, stderr, .. } = desk.run(&["optimize", "study.json", "--out", "out"]);
-    assert_eq!(code, Some(1));
-    let part = "no point of the grid could be computed (24 failed; at [100.0, 100.0, 0.05, 0.1]: the run needed more than";
-    assert!(stderr.contains(part), "{stderr}");
-    assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
-}
-
-/// One cause and one remedy, immediately: a typing error must not start a run of a day.
-#[test]
-fn contract_values_that_nobody_means_are_told_with_what_helps() {
-    let desk = Desk::new();
-    let study = common::studies().join("ssvi.json");
-    for (setting, cause, remedy) in [
-        ("T=1e300", "lost to rounding at t = 1e300 s", "shorten T"),
-        ("T=1e10", "and max_steps is 20000000", "shorten T"),
-        (
-            "omega=1e300",
-            "the motion changes within 1.2e-300 s",
-            "lower omega, which makes the motion this fast",
-        ),
-        ("R=1e-200", "a contact at t = 2.29", "check what it is made of: R, q, E1 to E4"),
-        ("m2=1e-6", "at this rate it takes 9.3e9 steps", "lower c2/m2, which makes the motion this fast"),
-        ("k1=1e20", "at this rate it takes 1.3e10 steps", "lower k1/m1, which makes the motion this fast"),
-        ("P=1e150", "at this rate it takes 1.3e23 steps", "lower P: nearly all steps are those of contacts"),
-    ] {
-        let begin = std::time::Instant::now();
-        let Answer { code, stdout, stderr } =
-            desk.run(&["simulate", study.to_str().expect("a path"), "--set", setting]);
-        assert!(begin.elapsed().as_secs() < 10, "{setting}: {:?}", begin.elapsed()); // a fraction of a second on an idle machine
-        assert_eq!((code, stdout.as_str()), (Some(1), ""), "{setting}: {stderr}");
-        assert!(
-            stderr.starts_with("error: the run failed: ") && stderr.contains(cause),
-            "{setting}: {stderr}"
-        );
-        assert!(stderr.ends_with(&format!("; {remedy}\n")), "{setting}: {stderr}");
-        assert_eq!(stderr.matches(';').count(), 1, "{setting}: {stderr}");
-    }
+    let bare = from_text(&bare.to_string(), "study.json").expect("a study");
+    assert_eq!(bare.with(&[Setting::new("k2", 1.0)]), Err(SettingError::NoDamper { name: "k2" }));
 }

@@ -1,0 +1,9 @@
+//! The program as a process: arguments, the screen, pipes, exit codes, signals. What its jobs find is tested in `workbench`.
+
+mod commands;
+mod common;
+mod documents;
+mod evaluate;
+mod interrupted;
+mod refused;
+mod schema;

@@ -1,0 +1,163 @@
+//! Limits and certificates: whether a design keeps its limits, and whether its E1max can be relied on.
+
+use crate::desk::{Desk, global, number, studies, tiny};
+use crate::observers::{Record, good, refused};
+use crate::{found, request, resume, search};
+use retune_store::Error as StoreError;
+use retune_study::{Rule, Setting, StudyError};
+use retune_workbench::certify::{certify, certify_file};
+use retune_workbench::simulate::simulate;
+use retune_workbench::tune::tune;
+use retune_workbench::verify::verify;
+use retune_workbench::{Error, Request, Silent};
+use serde_json::{Value, json};
+
+/// A limit that the unconstrained optimum breaks is kept and reported as active.
+#[test]
+fn contract_limits_are_kept_and_reported() {
+    let desk = Desk::with(&global(json!({}), json!({ "stroke": 1e3, "force": 1e9 })));
+    let free = found(good(tune(&request(&desk, "study.json", "free"), &Silent)));
+    assert!(free.check_limits().is_ok());
+    let free = desk.read_json("free/optimum.json");
+    assert_eq!((&free["limits"]["active"], number(&free, "/limits/infeasible")), (&json!([]), 0.0));
+    let stroke = 0.7 * number(&free, "/limits/stroke");
+    desk.write_json("kept.json", &global(json!({}), json!({ "stroke": stroke })));
+    let optimum = search(&desk, "kept.json", "kept");
+    assert!(optimum.check_limits().is_ok());
+    let said = optimum.report();
+    let kept = desk.read_json("kept/optimum.json");
+    assert!(number(&kept, "/limits/stroke") <= stroke && kept["limits"]["feasible"] == true);
+    assert!(number(&kept, "/limits/infeasible") > 0.0 && said.contains("limits kept: stroke "), "{said}");
+    assert!(number(&kept, "/E1max") >= number(&free, "/E1max"));
+    let certificate = desk.read_json("kept/certificate.json");
+    assert_ne!(certificate["verdict"], "robust", "1 % more breaks an active limit: {certificate}");
+    let near = &certificate["limits"]["broken_near"][0];
+    assert_eq!((&near["limit"], &certificate["limits"]["broken"]), (&json!("stroke"), &json!([])));
+    let [reached, over] = ["/reached", "/over_percent"].map(|path| number(near, path));
+    assert!(reached > stroke && (over - 100.0 * (reached / stroke - 1.0)).abs() < 1e-9, "{near}");
+    let words = certificate["words"].as_str().expect("words");
+    assert!(
+        words.contains("on the edge of a limit: stroke is ") && words.contains(" % over its limit of "),
+        "{words}"
+    );
+    assert!(said.contains(words), "{said}");
+}
+
+/// One that cannot be kept is reported as broken: by the search, by one that is finished already, and by its certificate.
+#[test]
+fn contract_limits_that_no_design_keeps_leave_no_verdict() {
+    let desk = Desk::with(&global(json!({}), json!({ "stroke": 1e-6 })));
+    let optimum = found(good(tune(&request(&desk, "study.json", "out"), &Silent)));
+    let said = optimum.report();
+    assert!(said.contains("NO DESIGN KEEPS THE LIMITS; the nearest: stroke "), "{said}");
+    let no_verdict = "no verdict, for the design breaks the limit of stroke: ";
+    assert!(said.contains(&format!("certificate: {no_verdict}")), "{said}");
+    let infeasible = |error| match error {
+        Error::Infeasible { name, words } => (name, words),
+        other => panic!("{other}"),
+    };
+    let (name, words) = infeasible(refused(optimum.check_limits()));
+    assert!(name == "study" && words.starts_with(no_verdict), "{words}");
+    let again = infeasible(refused(tune(&resume(&desk, "study.json", "out"), &Silent)));
+    assert_eq!(again, (name.clone(), words.clone()), "nor has it one when it is finished already");
+    let certificate = good(certify_file(&Request::new(&desk.path("out")), &Silent));
+    assert_eq!(infeasible(refused(certificate.check_limits())), (name, words));
+    let certificate = desk.read_json("out/certificate.json");
+    assert_eq!(certificate["verdict"], Value::Null);
+    assert_eq!(certificate["limits"]["broken"][0]["limit"], "stroke");
+    let none = desk.read_json("out/optimum.json");
+    assert_eq!(none["certificate"]["verdict"], Value::Null);
+    assert!(number(&none, "/limits/violation") > 0.0 && none["limits"]["active"] == json!(["stroke"]));
+    assert!(number(&none, "/E1max") < 1e4, "an energy, not a rank");
+}
+
+/// Table 2's SSVI NES: predictable by every method, and yet a single chaotic realisation; the TMD is robust.
+#[test]
+fn paper_table_2_is_certified() {
+    let [_, tmd] = [("ssvi", "single chaotic realisation", "chaotic"), ("tmd", "robust", "T, 0, 0")].map(
+        |(name, verdict, regime)| {
+            let study = retune_study::read(&studies().join(format!("{name}.json"))).expect("a study");
+            let certificate = good(certify(&study));
+            let said = certificate.to_string();
+            let certificate = json!(certificate);
+            assert_eq!(certificate["verdict"], verdict, "{said}");
+            assert_eq!(certificate["motion"]["regime"], regime);
+            assert_eq!(certificate["predictable"], true);
+            assert!(number(&certificate, "/error_bar") < 1e-5);
+            // Methods that share nothing but the equations agree.
+            let runs = certificate["convergence"].as_array().expect("runs");
+            assert_eq!(runs.len(), 5);
+            let value = number(&certificate, "/E1max");
+            assert!(runs.iter().all(|run| (number(run, "/E1max") - value).abs() < 1e-5));
+            assert!(said.contains("verdict ") && said.contains("rule ") && said.contains("c2 "), "{said}");
+            (study, certificate)
+        },
+    );
+    let (study, certificate) = tmd;
+    // Without contacts C has no effect, and the slope in k2 is that of two runs.
+    let slope = |name: &str| {
+        let rows = certificate["sensitivity"].as_array().expect("rows");
+        number(rows.iter().find(|row| row["parameter"] == name).expect("a row"), "/slope_per_percent")
+    };
+    assert_eq!(slope("C"), 0.0);
+    let at = |k2: f64| {
+        let study = study.with(&[Setting::new("k2", k2)]).expect("a study");
+        number(&json!(good(simulate(&study, None))), "/E1max")
+    };
+    let expected = (at(600.0 * 1.0025) - at(600.0 * 0.9975)) / 0.5;
+    assert!((slope("k2") - expected).abs() < 1e-6, "{expected}");
+}
+
+#[test]
+fn contract_results_of_a_search_are_certified_in_place() {
+    let mut study = global(json!({}), json!({}));
+    study["optimize"]["global"] = Value::Null;
+    let desk = Desk::with(&study);
+    search(&desk, "study.json", "out");
+    let first = desk.read("out/certificate.json");
+    for path in ["out", "out/optimum.json"] {
+        desk.remove("out/certificate.json");
+        good(certify_file(&Request::new(&desk.path(path)), &Silent));
+        assert_eq!(desk.read("out/certificate.json"), first, "{path}");
+    }
+    good(certify_file(&request(&desk, "out", "out"), &Silent));
+    good(verify(&desk.path("out"), 20, 0.0, &Silent));
+    let error = refused(certify_file(&request(&desk, "study.json", "out"), &Silent));
+    assert!(error.to_string().contains("the results of a search stand there"), "{error}");
+    assert!(
+        matches!(&error, Error::Store(StoreError::Output { path, .. }) if *path == desk.path("out")),
+        "{error}"
+    );
+    let optimum = desk.read_json("out/optimum.json");
+    let certificate = desk.read_json("out/certificate.json");
+    assert_eq!(optimum["certificate"]["verdict"], certificate["verdict"]);
+    assert_eq!(optimum["E1max"], certificate["E1max"]);
+}
+
+#[test]
+fn contract_a_certificate_of_a_study_has_a_directory_of_its_own() {
+    let desk = Desk::with(&tiny());
+    let record = Record::default();
+    good(certify_file(&request(&desk, "study.json", "out"), &record));
+    assert_eq!(desk.names("out"), ["certificate.json", "manifest.json", "study.json"]);
+    let words = desk.read_json("out/certificate.json")["words"].as_str().expect("words").to_owned();
+    assert!(record.results().contains(&words), "{}", record.results());
+    good(verify(&desk.path("out"), 20, 0.0, &Silent));
+}
+
+#[test]
+fn contract_only_a_damper_can_be_certified() {
+    let mut bare = tiny();
+    bare["scene"]["damper"] = Value::Null;
+    bare["optimize"] = Value::Null;
+    let desk = Desk::with(&bare);
+    let error = refused(certify_file(&request(&desk, "study.json", "out"), &Silent));
+    assert!(
+        matches!(&error, Error::Rule { rule: Rule::NotAllowed { field, .. }, .. } if field == "scene.damper"),
+        "{error}"
+    );
+    assert!(error.to_string().contains("scene.damper: none is not allowed here: give a damper"), "{error}");
+    let error = refused(certify_file(&request(&desk, "nothing.json", "out"), &Silent));
+    assert!(matches!(error, Error::Study(StudyError::Unreadable { .. })), "{error}");
+    assert!(!desk.path("out").exists(), "nothing may be left behind");
+}

@@ -1,0 +1,131 @@
+//! `simulate`: one run, its summary and its motion.
+
+use crate::desk::{Desk, studies, tiny};
+use crate::observers::{good, refused};
+use crate::read;
+use retune_solver::{Remedy, SolverError};
+use retune_store::Error as StoreError;
+use retune_study::Setting;
+use retune_workbench::Error;
+use retune_workbench::simulate::{Trajectory, simulate};
+
+/// Writes the motion of the tiny study into a file of the desk.
+fn motion(desk: &Desk, file: &str, interval: f64) -> Result<(), Error> {
+    let (file, study) = (desk.path(file), desk.path("study.json"));
+    let trajectory = Trajectory { file: &file, interval, inputs: &[&study] };
+    simulate(&read(desk, "study.json"), Some(trajectory)).map(drop)
+}
+
+#[test]
+fn contract_the_trajectory_has_a_row_for_each_interval() {
+    let desk = Desk::with(&tiny());
+    good(motion(&desk, "motion.csv", 0.5));
+    let csv = desk.rows("motion.csv");
+    assert_eq!(csv[0].join(","), "t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment");
+    let grid = csv[1..].iter().filter(|row| row[9] == "grid");
+    let times: Vec<&String> = grid.map(|row| &row[0]).collect();
+    assert_eq!(times, ["1", "1.5", "2", "2.5", "3", "3.5", "4"]);
+    for interval in [1e-9, 0.0, -1.0, f64::NAN] {
+        let error = refused(motion(&desk, "other.csv", interval));
+        let Error::Interval { value, most } = error else { panic!("{error}") };
+        assert_eq!((value.to_bits(), most), (interval.to_bits(), 100_000_000));
+    }
+    assert_eq!(desk.names("."), ["motion.csv", "study.json"]);
+}
+
+#[test]
+fn contract_a_trajectory_replaces_only_trajectories() {
+    let desk = Desk::with(&tiny());
+    let before = desk.read("study.json");
+    let protected = |file: &str, reason: &str| match refused(motion(&desk, file, 1.0)) {
+        Error::Store(StoreError::Protected { path, problem }) => {
+            assert_eq!(path, desk.path(file));
+            assert!(problem.starts_with(reason), "{problem}");
+        }
+        other => panic!("{file}: {other}"),
+    };
+    for file in ["study.json", "./study.json"] {
+        protected(file, "it is an input of this command");
+    }
+    desk.write("notes.csv", "t,x\n1,2\n");
+    desk.write("surf.csv", "k2,c2,D,C,E1max\n");
+    for file in ["notes.csv", "surf.csv"] {
+        protected(file, "a file stands there that Retune did not make");
+    }
+    assert_eq!([desk.read("study.json"), desk.read("notes.csv")], [before, "t,x\n1,2\n".to_owned()]);
+    desk.write("empty.csv", "");
+    for file in ["motion.csv", "motion.csv", "empty.csv"] {
+        good(motion(&desk, file, 1.0));
+        assert!(desk.read(file).starts_with("t,x1,v1,x2,v2,"));
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("motion.csv", desk.path("link.csv")).expect("a link");
+        protected("link.csv", "it is a symbolic link");
+        protected("/dev/null", "it is no plain file");
+    }
+}
+
+/// One cause and one remedy, immediately: a typing error must not start a run of a day.
+#[test]
+fn contract_values_that_nobody_means_are_told_with_what_helps() {
+    let study = retune_study::read(&studies().join("ssvi.json")).expect("a study");
+    let too_fast = |error, what| matches!(error, SolverError::TooFast { remedy, .. } if remedy == what);
+    let too_slow = |error, what| matches!(error, SolverError::TooSlow { remedy, .. } if remedy == what);
+    type Expected<'a> = &'a dyn Fn(SolverError) -> bool;
+    let cases: [(&str, f64, Expected, &str, &str); 7] = [
+        (
+            "T",
+            1e300,
+            &|error| too_fast(error, Remedy::ShorterRun),
+            "lost to rounding at t = 1e300 s",
+            "shorten T",
+        ),
+        ("T", 1e10, &|error| too_slow(error, Remedy::ShorterRun), "and max_steps is 20000000", "shorten T"),
+        (
+            "omega",
+            1e300,
+            &|error| too_fast(error, Remedy::Slower("omega")),
+            "the motion changes within 1.2e-300 s",
+            "lower omega, which makes the motion this fast",
+        ),
+        (
+            "R",
+            1e-200,
+            &|error| matches!(error, SolverError::Contact { .. }),
+            "a contact at t = 2.29",
+            "check what it is made of: R, q, E1 to E4",
+        ),
+        (
+            "m2",
+            1e-6,
+            &|error| too_slow(error, Remedy::Slower("c2/m2")),
+            "at this rate it takes 9.3e9 steps",
+            "lower c2/m2, which makes the motion this fast",
+        ),
+        (
+            "k1",
+            1e20,
+            &|error| too_slow(error, Remedy::Slower("k1/m1")),
+            "at this rate it takes 1.3e10 steps",
+            "lower k1/m1, which makes the motion this fast",
+        ),
+        (
+            "P",
+            1e150,
+            &|error| too_slow(error, Remedy::LessForce),
+            "at this rate it takes 1.3e23 steps",
+            "lower P: nearly all steps are those of contacts",
+        ),
+    ];
+    for (name, value, expected, cause, remedy) in cases {
+        let begin = std::time::Instant::now();
+        let error = refused(simulate(&study.with(&[Setting::new(name, value)]).expect("a study"), None));
+        assert!(begin.elapsed().as_secs() < 10, "{name}: {:?}", begin.elapsed()); // a fraction of a second on an idle machine
+        let words = error.to_string();
+        let Error::Run(error) = error else { panic!("{name}: {words}") };
+        assert!(expected(error), "{name}: {error:?}");
+        assert!(words.contains(cause) && words.ends_with(&format!("; {remedy}")), "{name}: {words}");
+        assert_eq!(words.matches(';').count(), 1, "{name}: {words}");
+    }
+}

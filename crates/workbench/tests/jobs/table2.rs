@@ -1,0 +1,58 @@
+//! `table2`: several dampers, each from the paper's own design.
+
+use crate::desk::Desk;
+use crate::observers::{cut_off, good, refused};
+use crate::{request, resume};
+use retune_store::Error as StoreError;
+use retune_workbench::table2::table2;
+use retune_workbench::{Error, Silent};
+use serde_json::json;
+
+/// The studies of Table 2 with short runs and coarse grids.
+pub fn desk(table: &str) -> Desk {
+    Desk::with_table2(table, |study| {
+        study["window"] = json!({ "t0": 1, "T": 4 });
+        for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
+            axis["points"] = json!(2);
+        }
+        study["optimize"]["refine"] = json!({ "MaxFunEvals": 20 });
+    })
+}
+
+#[test]
+fn paper_table2_puts_our_rows_beside_the_papers() {
+    let desk = desk("table2.json");
+    good(table2(&request(&desk, "table2.json", "out"), &Silent));
+    let csv = desk.rows("out/table2.csv");
+    assert_eq!(csv[0].join(","), "origin,damper,m2,k2,c2,D,C,E1max");
+    assert_eq!(csv[1][..7], ["paper", "SSVI NES", "60", "215", "232", "0.06", "0.36"]);
+    assert_eq!(csv[2][..2], ["re-optimised", "SSVI NES"]);
+    assert_eq!(csv[3][..7], ["paper", "TMD", "60", "600", "262", "2.08", "4.7"]);
+    let energy = |row: usize| csv[row][7].parse::<f64>().expect("a number");
+    assert!(energy(2) <= energy(1) && energy(4) <= energy(3));
+    let expected = ["manifest.json", "resolved.json", "ssvi", "table2.csv", "table2.txt", "tmd"];
+    assert_eq!(desk.names("out"), expected);
+    assert!(!desk.names("out/ssvi").contains(&"unfinished".to_owned()));
+}
+
+#[test]
+fn contract_table2_resumes_where_it_was_cut_off() {
+    let desk = desk("table2.json");
+    good(table2(&request(&desk, "table2.json", "whole"), &Silent));
+    // In the first search, and in the second.
+    for (at, begun) in [(8, "out/ssvi"), (20, "out/tmd")] {
+        cut_off(at, |watch| table2(&request(&desk, "table2.json", "out"), watch));
+        assert!(desk.path(begun).join("unfinished/journal").exists(), "{at}");
+        let error = refused(table2(&request(&desk, "table2.json", "out"), &Silent));
+        assert!(
+            matches!(
+                error,
+                Error::Store(StoreError::Unfinished { lines: 5.., damaged: 0, difference: None, .. })
+            ),
+            "{error}"
+        );
+        good(table2(&resume(&desk, "table2.json", "out"), &Silent));
+        desk.assert_same("whole", "out");
+        desk.remove("out");
+    }
+}

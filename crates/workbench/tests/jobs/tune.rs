@@ -1,0 +1,162 @@
+//! `tune`: from a study to its results.
+
+use crate::desk::{Desk, RESULTS, global, number, tiny};
+use crate::observers::{Record, good};
+use crate::{found, request, search};
+use retune_workbench::Request;
+use retune_workbench::tune::tune;
+use serde_json::json;
+
+#[test]
+fn contract_optimize_writes_every_result_with_its_columns() {
+    let desk = Desk::with(&tiny());
+    let report = search(&desk, "study.json", "out").report();
+    assert_eq!(desk.names("out"), RESULTS);
+    assert!(report.contains("TolX 1e-4 is absolute"), "{report}");
+
+    let surf = desk.rows("out/surf.csv");
+    assert_eq!(surf[0], ["k2", "c2", "D", "C", "E1max"]);
+    assert_eq!(surf.len(), 1 + 3 * 2 * 2 * 2);
+    assert_eq!(surf[1][..4], ["100", "100", "0.05", "0.1"]);
+
+    let log = desk.rows("out/fminsearch.csv");
+    assert_eq!(log[0].join(","), "iteration,func_count,procedure,k2,c2,D,C,E1max");
+    assert_eq!(log[1][..3], ["0", "1", ""]);
+    assert_eq!(log[2][..3], ["1", "5", "initial simplex"]);
+    let all = desk.read("out/fminsearch-starts.csv");
+    assert!(all.starts_with("start,iteration,func_count,procedure,k2,c2,D,C,E1max\n1,0,1,,"));
+
+    let optimum = desk.read_json("out/optimum.json");
+    let last = log.last().expect("a row");
+    for (field, name) in last[3..].iter().zip(["k2", "c2", "D", "C", "E1max"]) {
+        assert_eq!(field.parse::<f64>().ok(), optimum[name].as_f64(), "{name}");
+    }
+    assert_eq!(optimum["refine"]["runs"].as_array().map(Vec::len), Some(2));
+    assert_eq!(optimum["failures"]["count"], 0);
+}
+
+#[test]
+fn paper_the_log_has_the_look_of_table_1() {
+    let desk = Desk::new();
+    desk.write_json("small.json", &tiny());
+    search(&desk, "small.json", "out");
+    let text = desk.read("out/fminsearch.txt");
+    let rows: Vec<&str> = text.lines().collect();
+    assert_eq!(rows[0], "k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         E1max J");
+    let of_table_1 = |number: &str| {
+        let shape: String = number.chars().map(|c| if c.is_ascii_digit() { '0' } else { c }).collect();
+        shape == "0.000000E+000" || shape == "0.000000E-000"
+    };
+    for row in rows[1..].iter().take_while(|row| !row.is_empty()) {
+        let numbers: Vec<&str> = row.split_whitespace().collect();
+        assert_eq!(numbers.len(), 5, "{row}");
+        assert!(numbers.into_iter().all(of_table_1), "{row}");
+    }
+    assert!(text.trim_end().contains("study small, omega = 6.28 rad/s, t0 = 1 s, T = 4 s; Retune "));
+}
+
+#[test]
+fn contract_results_are_the_same_bytes_with_one_thread_and_two() {
+    let desk = Desk::with(&tiny());
+    let logs = [1, 2].map(|threads| {
+        let record = Record::default();
+        let request = request(&desk, "study.json", &threads.to_string());
+        good(tune(&Request { threads: Some(threads), ..request }, &record));
+        let said = record.all();
+        said.lines().filter(|line| line.contains("E+0")).map(str::to_owned).collect::<Vec<_>>()
+    });
+    assert_eq!(desk.names("1"), RESULTS);
+    desk.assert_same("1", "2");
+    assert!(logs[0].len() > 20 && logs[0] == logs[1], "{logs:?}");
+}
+
+#[test]
+fn contract_the_resolved_study_repeats_its_results() {
+    let mut study = tiny();
+    study["name"] = json!("small");
+    let desk = Desk::with(&study);
+    search(&desk, "study.json", "out");
+    let before = RESULTS.map(|name| desk.read(&format!("out/{name}")));
+    std::fs::rename(desk.path("out/study.json"), desk.path("again.json")).expect("a file");
+    search(&desk, "again.json", "out");
+    assert_eq!(RESULTS.map(|name| desk.read(&format!("out/{name}"))), before);
+    let resolved = desk.read_json("out/study.json");
+    assert_eq!(resolved["solver"]["method"], "hybrid");
+    assert_eq!(resolved["optimize"]["bounds"]["C"], json!([0.0, null]));
+    assert_eq!(resolved["optimize"]["refine"]["MaxIter"], 800);
+    assert_eq!(resolved["optimize"]["refine"]["MaxFunEvals"], 30);
+}
+
+#[test]
+fn contract_a_later_run_leaves_nothing_of_an_earlier_one() {
+    let desk = Desk::with(&tiny());
+    search(&desk, "study.json", "out");
+    desk.write("out/notes.txt", "mine");
+    desk.write("out/unfinished/.fminsearch-starts.csv.4711.tmp", "what a killed run left");
+    desk.write("out/.lock", "4711 what it left as well\n");
+    desk.write("out/.notes.txt.tmp", "mine too");
+    let mut study = tiny();
+    study["optimize"] = json!({ "vary": ["c2"], "refine": { "scaled": true, "TolX": 0.01 } });
+    desk.write_json("study.json", &study);
+    let report = search(&desk, "study.json", "out").report();
+    assert!(report.contains("TolX 1e-2 is scaled"), "{report}");
+    let expected = [
+        ".notes.txt.tmp",
+        "certificate.json",
+        "convergence.svg",
+        "fminsearch.csv",
+        "fminsearch.txt",
+        "manifest.json",
+        "notes.txt",
+        "optimum.json",
+        "study.json",
+    ];
+    assert_eq!(desk.names("out"), expected);
+    let log = desk.rows("out/fminsearch.csv");
+    assert!(log[1..].iter().all(|row| row[3] == "215" && row[5] == "0.06" && row[6] == "0.36"));
+}
+
+#[test]
+fn contract_a_global_search_is_the_same_at_any_number_of_threads_and_lists_its_basins() {
+    let desk = Desk::with(&global(json!({}), json!({})));
+    let record = Record::default();
+    for (threads, out) in [(1, "1"), (2, "2")] {
+        let request = request(&desk, "study.json", out);
+        found(good(tune(&Request { threads: Some(threads), ..request }, &record)));
+    }
+    desk.assert_same("1", "2");
+    let said = record.all();
+    assert!(said.contains("global: 24 designs over the box of k2 c2 D C, then 2 CMA-ES searches"), "{said}");
+    assert!(said.contains("that of the optimum was reached by "), "{said}");
+    let optimum = desk.read_json("1/optimum.json");
+    let rows = desk.rows("1/basins.csv");
+    assert_eq!(rows[0].join(","), "basin,searches,refinements,k2,c2,D,C,E1max");
+    assert_eq!(rows[1][7].parse::<f64>().expect("a number"), number(&optimum, "/E1max"));
+    let searches: u64 = rows[1..].iter().map(|row| row[1].parse::<u64>().expect("a count")).sum();
+    assert_eq!(searches, 2);
+    // The resolved study repeats it.
+    search(&desk, "1/study.json", "3");
+    assert_eq!(desk.read("1/optimum.json"), desk.read("3/optimum.json"));
+}
+
+#[test]
+fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
+    let objective = json!({
+        "omega": { "from": 6.0, "to": 6.6, "samples": 2 },
+        "k1": { "set": [3.9e4, 4.2e4] },
+        "response": "settled",
+        "settle": { "periods": 1, "blocks": 2, "tolerance": 0.5 },
+        "ensemble": { "members": 2 }
+    });
+    let mut study = global(objective, json!({}));
+    study["optimize"]["refine"]["starts"] = json!(1);
+    study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 10 });
+    let desk = Desk::with(&study);
+    let report = search(&desk, "study.json", "out").report();
+    let words = "mean of 2 members (all phases, errors to 0.1 %), worst over omega = 6 to 6.6 rad/s and k1";
+    assert!(report.contains(words), "{report}");
+    let optimum = desk.read_json("out/optimum.json");
+    let k1 = number(&optimum, "/objective/worst_k1");
+    assert!((k1 / 3.9e4 - 1.0).abs() < 1e-3 || (k1 / 4.2e4 - 1.0).abs() < 1e-3, "{k1}");
+    assert!(number(&optimum, "/objective/runs") >= 8.0);
+}
