@@ -1,9 +1,10 @@
 //! The study behind `retune fronts`: dampers to tune under ever looser bounds on the spring or on the stroke.
 
+use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
 use super::per_variable::PerVariable;
-use super::read::{StudyError, expect, parse, read, read_text};
+use super::read::read;
 use super::rule::Rule;
 use retune_model::Positive;
 use retune_optim::Variable;

@@ -26,6 +26,7 @@
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod explain;
+mod file;
 mod format;
 mod fronts;
 mod global;
@@ -39,14 +40,15 @@ mod set;
 mod table2;
 mod words;
 
+pub use file::{StudyError, kind_of};
 pub use format::{GridAxis, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
 pub use kind::Kind;
 pub use per_variable::PerVariable;
-pub use read::{StudyError, kind_of, read, read_paper};
+pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
-pub use table2::{PaperStudy, Table2, at_found, is_optimum, read_table2};
+pub use table2::{PaperStudy, Table2, read_table2};
 pub use words::{are, counted, joined, over, short};

@@ -1,81 +1,20 @@
-//! From a file to a checked study, or to one message with the correction.
+//! From a file, or the results of a search, to a checked study.
 
-use super::explain::explain;
+use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
 use super::rule::Rule;
+use retune_model::{Design, NonNegative};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::path::Path;
-use thiserror::Error;
+use std::path::{Path, PathBuf};
 
-/// The error of a study file.
-#[derive(Debug, Error)]
-pub enum StudyError {
-    /// The file does not exist or cannot be read.
-    #[error("{file}: cannot be read: {source}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The system's reason.
-        source: std::io::Error,
-    },
-    /// The file is not text.
-    #[error("{file}: not UTF-8 text (at byte {byte})")]
-    NotText {
-        /// The file.
-        file: String,
-        /// Offset of the first byte that is not UTF-8.
-        byte: usize,
-    },
-    /// The text is not JSON, or does not have the fields of a study.
-    #[error("{file}:{line}:{column}: {problem}")]
-    Field {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// The field's path and the error.
-        problem: String,
-    },
-    /// The file is of another kind.
-    #[error("{file}: its kind is `{}`, for {}; a file of kind `{}` is needed here", found.name(), found.commands(), wanted.name())]
-    Kind {
-        /// The file.
-        file: String,
-        /// Its kind.
-        found: Kind,
-        /// The kind that is needed.
-        wanted: Kind,
-    },
-    /// Values without their names.
-    #[error("{file}: {field}: wrong type: list, expected an object")]
-    List {
-        /// The file.
-        file: String,
-        /// The field's path.
-        field: String,
-    },
-    /// Each field is valid but they contradict one another.
-    #[error("{file}: {rule}")]
-    Rule {
-        /// The file.
-        file: String,
-        /// The rule that is broken.
-        rule: Rule,
-    },
-    /// A value of the paper's plan is not allowed.
-    #[error("{file}: {problem}")]
-    Paper {
-        /// The file.
-        file: String,
-        /// The field and the allowed values.
-        problem: String,
-    },
-}
+/// The file with the design that a search found, beside [`STUDY`], its study.
+const OPTIMUM: &str = "optimum.json";
+const STUDY: &str = "study.json";
+/// The file in the place of [`STUDY`] where there are several.
+const SEVERAL: &str = "resolved.json";
 
 /// Reads the plan of the paper's reproduction.
 ///
@@ -87,12 +26,77 @@ pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, Stu
     parse(&text, &file)
 }
 
-/// Reads and checks a study. Its name is filled in from that of the file.
+/// Reads and checks a study, whose name is filled in from that of the file. The directory of a search's results, or its
+/// `optimum.json`, stands for the study with the design that was found in its scene.
 ///
 /// # Errors
 /// [`StudyError`]: the file, the field, its value and the allowed values.
 pub fn read(path: &Path) -> Result<Study, StudyError> {
-    from_text(&read_text(path)?, &path.display().to_string())
+    let Some(place) = found_in(path)? else {
+        return from_text(&read_text(path)?, &path.display().to_string());
+    };
+    if !place.join(STUDY).exists() && place.join(SEVERAL).exists() {
+        let one = first_below(&place).map(|one| one.display().to_string());
+        return Err(StudyError::Several { file: path.display().to_string(), one });
+    }
+    let file = place.join(STUDY);
+    let study = from_text(&read_text(&file)?, &file.display().to_string())?;
+    let optimum = if path.is_dir() { place.join(OPTIMUM) } else { path.to_owned() };
+    if !optimum.exists() {
+        return Ok(study); // of a certificate: the design is that of the study
+    }
+    let found = design(&read_text(&optimum)?, &optimum.display().to_string())?;
+    match study.scene_at(&found) {
+        Some(scene) => Ok(Study { scene, ..study }),
+        None => Err(StudyError::Rule { file: file.display().to_string(), rule: Rule::NoDamper }),
+    }
+}
+
+/// The directory of the results that a path names: itself, or that of the `optimum.json` that it is; none of a study file.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn found_in(path: &Path) -> Result<Option<PathBuf>, StudyError> {
+    if path.is_dir() {
+        return Ok(Some(path.to_owned()));
+    }
+    let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
+    let is_optimum = json.is_ok_and(|json| json.get("damper_type").is_some());
+    Ok(is_optimum.then(|| path.parent().unwrap_or(Path::new("")).to_owned()))
+}
+
+/// The first directory below with the results of a search.
+fn first_below(place: &Path) -> Option<PathBuf> {
+    let mut inner: Vec<PathBuf> = std::fs::read_dir(place)
+        .ok()?
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.is_dir())
+        .collect();
+    inner.sort();
+    inner
+        .iter()
+        .find_map(|path| if path.join(OPTIMUM).exists() { Some(path.clone()) } else { first_below(path) })
+}
+
+/// The design of an `optimum.json`.
+fn design(text: &str, file: &str) -> Result<Design, StudyError> {
+    let found: Value = parse(text, file)?;
+    let number = |name: &str| {
+        let value = found.get(name).and_then(Value::as_f64).map(NonNegative::new);
+        match value {
+            Some(Ok(value)) => Ok(value),
+            _ => Err(StudyError::Rule {
+                file: file.to_owned(),
+                rule: Rule::NotAllowed {
+                    field: name.to_owned(),
+                    value: found.get(name).map_or("nothing".to_owned(), ToString::to_string),
+                    allowed: "a number not below 0: the design that `retune optimize` found",
+                },
+            }),
+        }
+    };
+    Ok(Design { k2: number("k2")?, c2: number("c2")?, d: number("D")?, c: number("C")? })
 }
 
 /// Checks the text of a study file as [`read`] does.
@@ -106,87 +110,4 @@ pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     study.name = study.name.or(stem);
     study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     Ok(study)
-}
-
-/// Reads a file as text, without a byte-order mark.
-///
-/// # Errors
-/// The file cannot be read or is not UTF-8.
-pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
-    let file = || path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|source| StudyError::Unreadable { file: file(), source })?;
-    let text = String::from_utf8(bytes)
-        .map_err(|error| StudyError::NotText { file: file(), byte: error.utf8_error().valid_up_to() })?;
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
-}
-
-/// Parses the text of `file`; an error names the field.
-///
-/// # Errors
-/// [`StudyError::Field`].
-pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> Result<T, StudyError> {
-    let refuse = |path: Option<String>, error: &serde_json::Error| StudyError::Field {
-        file: file.to_owned(),
-        line: error.line(),
-        column: error.column(),
-        problem: explain(path.as_deref(), error),
-    };
-    let mut json = serde_json::Deserializer::from_str(text);
-    let value = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| refuse(Some(error.path().to_string()), error.inner()))?;
-    json.end().map_err(|error| refuse(None, &error))?;
-    let given = serde_json::from_str(text).map_err(|error| refuse(None, &error))?;
-    let meant = serde_json::to_value(&value).map_err(|error| refuse(None, &error))?;
-    match list_for_object(&given, &meant) {
-        Some(field) => Err(StudyError::List { file: file.to_owned(), field }),
-        None => Ok(value),
-    }
-}
-
-/// The kind of a study file. What cannot be recognised counts as a study of one damper, whose reader says what is wrong with it.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
-    let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
-    Ok(json.ok().as_ref().and_then(Kind::of).unwrap_or_default())
-}
-
-/// Refuses the text of a file that is recognised as one of another kind.
-///
-/// # Errors
-/// [`StudyError::Kind`].
-pub(super) fn expect(wanted: Kind, text: &str, file: &str) -> Result<(), StudyError> {
-    let json: Result<Value, _> = serde_json::from_str(text);
-    match json.ok().as_ref().and_then(Kind::of) {
-        Some(found) if found != wanted => Err(StudyError::Kind { file: file.to_owned(), found, wanted }),
-        _ => Ok(()),
-    }
-}
-
-/// The first field given as a list instead of an object. (Serde accepts both.)
-fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
-    match (given, meant) {
-        (Value::Array(_), Value::Object(_)) => Some(String::new()),
-        (Value::Object(given), Value::Object(meant)) => given.iter().find_map(|(key, value)| {
-            let inner = list_for_object(value, meant.get(key)?)?;
-            Some(if inner.is_empty() { key.clone() } else { format!("{key}.{inner}") })
-        }),
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn contract_a_file_of_another_kind_is_named_with_its_commands() {
-        let error = expect(Kind::Study, r#"{ "rows": [] }"#, "t.json").expect_err("a table");
-        assert_eq!(
-            error.to_string(),
-            "t.json: its kind is `table2`, for `retune table2` and `retune track`; a file of kind `study` is needed here"
-        );
-        assert!(expect(Kind::Table2, r#"{ "rows": [] }"#, "t.json").is_ok());
-    }
 }

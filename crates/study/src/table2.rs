@@ -1,10 +1,11 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
+use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
-use super::read::{StudyError, expect, parse, read, read_text};
+use super::read::read;
 use super::rule::Rule;
-use retune_model::{Design, NonNegative};
+use retune_model::Design;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -74,49 +75,10 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok(rows) }
 }
 
-/// The study with the design of the `optimum.json` at `path` in its scene; the inner error is of the study.
-///
-/// # Errors
-/// [`StudyError`] of the file.
-pub fn at_found(study: Study, path: &Path) -> Result<Result<Study, Rule>, StudyError> {
-    let file = path.display().to_string();
-    let found: serde_json::Value = parse(&read_text(path)?, &file)?;
-    let number = |name: &str| {
-        let value = found.get(name).and_then(serde_json::Value::as_f64).map(NonNegative::new);
-        match value {
-            Some(Ok(value)) => Ok(value),
-            _ => Err(StudyError::Rule {
-                file: file.clone(),
-                rule: Rule::NotAllowed {
-                    field: name.to_owned(),
-                    value: found.get(name).map_or("nothing".to_owned(), ToString::to_string),
-                    allowed: "a number not below 0: the design that `retune optimize` found",
-                },
-            }),
-        }
-    };
-    let design = Design { k2: number("k2")?, c2: number("c2")?, d: number("D")?, c: number("C")? };
-    Ok(with_design(study, design))
-}
-
-/// Whether a file is what `retune optimize` found, by its field `damper_type`.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn is_optimum(path: &Path) -> Result<bool, StudyError> {
-    let json: Result<serde_json::Value, _> = serde_json::from_str(&read_text(path)?);
-    Ok(json.is_ok_and(|json| json.get("damper_type").is_some()))
-}
-
 /// The study with another design in its scene.
 fn at_design(study: Study, design: Design) -> Result<Study, Rule> {
-    let study = with_design(study, design)?;
+    let scene = study.scene_at(&design).ok_or(Rule::NoDamper)?;
+    let study = Study { scene, ..study };
     study.search()?;
-    Ok(study)
-}
-
-fn with_design(mut study: Study, design: Design) -> Result<Study, Rule> {
-    let damper = study.scene.damper.as_mut().ok_or(Rule::NoDamper)?;
-    *damper = design.on(*damper);
     Ok(study)
 }

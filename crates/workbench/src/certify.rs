@@ -12,7 +12,7 @@ use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
 use retune_store::Extent;
 use retune_study::{self as study, Rule, Study};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The file that a certificate is written to.
 pub const FILE: &str = "certificate.json";
@@ -30,7 +30,7 @@ pub static KIND: Kind = Kind {
 /// # Errors
 /// The input is wrong, the design cannot be run, or the certificate cannot be written.
 pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certificate, Error> {
-    let (study, found_in) = read(&request.study)?;
+    let (study, found_in) = (study::read(&request.study)?, study::found_in(&request.study)?);
     let out = request.out.clone().or(found_in.clone());
     let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
     // Beside the search that found the design, whose study and manifest stay.
@@ -92,21 +92,4 @@ pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
         }
         _ => Ok(()),
     }
-}
-
-/// The study with the design to certify in its scene, from a study, an `optimum.json` or a directory of results; of the latter two also
-/// the directory for the certificate.
-///
-/// # Errors
-/// They cannot be read, or are wrong.
-pub fn read(path: &Path) -> Result<(Study, Option<PathBuf>), Error> {
-    let optimum = if path.is_dir() { path.join("optimum.json") } else { path.to_owned() };
-    if !path.is_dir() && !study::is_optimum(path)? {
-        return Ok((study::read(path)?, None));
-    }
-    let directory = optimum.parent().unwrap_or(Path::new("")).to_owned();
-    let study = study::read(&directory.join("study.json"))?;
-    let name = study.name().to_owned();
-    let study = study::at_found(study, &optimum)?.map_err(|rule| Error::Rule { name, rule })?;
-    Ok((study, Some(directory)))
 }

@@ -2,12 +2,15 @@
 
 use crate::desk::{Desk, studies, tiny};
 use crate::observers::{good, refused};
-use crate::read;
+use crate::{read, request, search};
 use retune_solver::{Remedy, SolverError};
 use retune_store::Error as StoreError;
-use retune_study::Setting;
-use retune_workbench::Error;
+use retune_study::{Setting, Study};
 use retune_workbench::simulate::{Trajectory, simulate};
+use retune_workbench::table2::table2;
+use retune_workbench::{Error, Silent};
+use serde_json::json;
+use std::path::Path;
 
 /// Writes the motion of the tiny study into a file of the desk.
 fn motion(desk: &Desk, file: &str, interval: f64) -> Result<(), Error> {
@@ -128,4 +131,32 @@ fn contract_values_that_nobody_means_are_told_with_what_helps() {
         assert!(words.contains(cause) && words.ends_with(&format!("; {remedy}")), "{name}: {words}");
         assert_eq!(words.matches(';').count(), 1, "{name}: {words}");
     }
+}
+
+fn read_file(path: &Path) -> Result<Study, Error> {
+    Ok(retune_study::read(path)?)
+}
+
+/// The results of a search stand for its study with the design that it found, wherever a study is read.
+#[test]
+fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
+    let desk = Desk::with(&tiny());
+    let found = search(&desk, "study.json", "out").found();
+    let own = good(read_file(&desk.path("study.json")));
+    let scene = own.scene_at(&found.damper.design).expect("a damper");
+    for path in ["out", "out/optimum.json"] {
+        let study = good(read_file(&desk.path(path)));
+        assert_eq!((study.scene, study.name()), (scene, "study"), "{path}");
+        let run = good(simulate(&study, None));
+        assert_eq!(json!(run)["E1max"].as_f64(), Some(found.e1_max), "{path}");
+    }
+    // Of several searches one has to be named.
+    let row = json!({ "damper": "NES", "study": "study.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
+    desk.write_json("table2.json", &json!({ "rows": [row] }));
+    good(table2(&request(&desk, "table2.json", "table"), &Silent));
+    let said = refused(read_file(&desk.path("table"))).to_string();
+    assert!(
+        said.contains("holds the designs of several searches") && said.ends_with("table/study"),
+        "{said}"
+    );
 }
