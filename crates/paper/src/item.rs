@@ -1,6 +1,6 @@
 //! A table or figure of the paper, reproduced: the paper's statements, our results, and a verdict on each statement.
 
-use retune_figures::sheet::Drawing;
+use retune_figures::Drawing;
 use serde::{Deserialize, Serialize};
 
 /// The verdict on a statement.
