@@ -92,6 +92,11 @@ impl Axis {
         }
     }
 
+    /// The smallest and the largest value of the axis.
+    pub const fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
     /// Whether `value` lies on the axis.
     pub fn holds(&self, value: f64) -> bool {
         self.range.0 <= value && value <= self.range.1

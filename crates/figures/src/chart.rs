@@ -145,19 +145,14 @@ pub enum Layer {
         /// Its look.
         stroke: Stroke,
     },
-    /// A label, its middle at a place.
+    /// A text on the chart.
     Text {
         /// Its place.
         at: (f64, f64),
-        /// Its text.
+        /// Its words.
         text: String,
-    },
-    /// A label, its left end at a place.
-    TextFrom {
-        /// Its place.
-        at: (f64, f64),
-        /// Its text.
-        text: String,
+        /// How it stands there.
+        stand: Stand,
     },
     /// A name on the right of the frame for a line that ends at a place. Names are moved apart, each with a thin line to its place.
     Name {
@@ -165,9 +160,20 @@ pub enum Layer {
         at: (f64, f64),
         /// The name.
         text: String,
-        /// The mark before it.
-        mark: Mark,
+        /// The mark before it, if any.
+        mark: Option<Mark>,
     },
+}
+
+/// How a text stands at its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stand {
+    /// About it, with a rim in the colour of the paper, so that lines behind do not cross it.
+    Over,
+    /// On its right, with a rim.
+    Right,
+    /// About it and small, in a coloured cell.
+    Cell,
 }
 
 /// A chart.

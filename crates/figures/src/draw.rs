@@ -1,6 +1,6 @@
 //! A chart that is laid out, as SVG.
 
-use crate::chart::{Dash, Layer, Mark, Stroke};
+use crate::chart::{Dash, Layer, Mark, Stand, Stroke};
 use crate::colour::{BLACK, Colour, GREY, PAPER, viridis};
 use crate::layout::{LEADER, Layout, SMALL, TICK, TINY};
 use crate::path::{Rect, polyline, rectangle, shape};
@@ -19,8 +19,7 @@ const BAR: i32 = 64;
 
 /// Draws a chart.
 pub(crate) fn chart(svg: &mut Svg, layout: &Layout) {
-    let over =
-        |layer: &&Layer| matches!(layer, Layer::Text { .. } | Layer::TextFrom { .. } | Layer::Name { .. });
+    let over = |layer: &&Layer| matches!(layer, Layer::Text { .. });
     for layer in layout.chart.layers.iter().filter(|layer| !over(layer)) {
         draw_layer(svg, layer, layout);
     }
@@ -118,13 +117,15 @@ fn draw_layer(svg: &mut Svg, layer: &Layer, layout: &Layout) {
             line(svg, &polyline([(left, at), (right, at)].into_iter(), layout.frame), stroke);
         }
         Layer::Upright { .. } | Layer::Level { .. } | Layer::Name { .. } => {}
-        Layer::Text { at, text } if on_chart(at) => {
-            svg.text(text, layout.at(*at), Font { halo: true, ..Font::new(SMALL, Anchor::Middle) });
+        Layer::Text { at, text, stand } if on_chart(at) => {
+            let font = match stand {
+                Stand::Over => Font { halo: true, ..Font::new(SMALL, Anchor::Middle) },
+                Stand::Right => Font { halo: true, ..Font::new(SMALL, Anchor::Start) },
+                Stand::Cell => Font::new(TINY, Anchor::Middle),
+            };
+            svg.text(text, layout.at(*at), font);
         }
-        Layer::TextFrom { at, text } if on_chart(at) => {
-            svg.text(text, layout.at(*at), Font { halo: true, ..Font::new(SMALL, Anchor::Start) });
-        }
-        Layer::Text { .. } | Layer::TextFrom { .. } => {}
+        Layer::Text { .. } => {}
     }
 }
 
@@ -209,7 +210,7 @@ fn draw_frame(svg: &mut Svg, layout: &Layout) {
 /// Names beside the frame in the order of their places, moved apart.
 fn names(svg: &mut Svg, layout: &Layout) {
     let [left, top, right, bottom] = layout.frame;
-    let mut all: Vec<((f64, f64), &str, Mark)> = Vec::new();
+    let mut all: Vec<((f64, f64), &str, Option<Mark>)> = Vec::new();
     for layer in &layout.chart.layers {
         if let Layer::Name { at, text, mark } = layer {
             let (x, y) = layout.at(*at);
@@ -222,7 +223,9 @@ fn names(svg: &mut Svg, layout: &Layout) {
         let from = right + LEADER - 8.0;
         let path = polyline([(*x, *y), (from, place)].into_iter(), everywhere());
         svg.line(&path, GREY, 0.3, "");
-        marks(svg, &[(from + 3.0, place)], *mark);
+        if let Some(mark) = mark {
+            marks(svg, &[(from + 3.0, place)], *mark);
+        }
         svg.text(text, (right + LEADER, place), Font::new(TINY, Anchor::Start));
     }
 }

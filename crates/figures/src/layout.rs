@@ -216,11 +216,13 @@ fn labels(
     let large = |label: Label| Label { size: TEXT, ..label };
     let row = LINE * TEXT;
     let mut all = Vec::new();
+    // Of the frame, as far as the cell allows.
+    let middle = |text: &str| {
+        let half = 0.5 * TEXT * ems(text);
+        (0.5 * (left + right)).min(cell_right - half).max(cell_left + half)
+    };
     for (i, line) in title.iter().enumerate() {
-        // Above the middle of the frame, as far as the cell allows.
-        let half = 0.5 * TEXT * ems(line);
-        let middle = (0.5 * (left + right)).min(cell_right - half).max(cell_left + half);
-        all.push(large(Label::new(line, (middle, cell_top + row * (i as f64 + 0.5)), 0)));
+        all.push(large(Label::new(line, (middle(line), cell_top + row * (i as f64 + 0.5)), 0)));
     }
     for (value, text) in layout.ticks[0].iter().filter(|_| labelled || !x.names.is_empty()) {
         let (at, _) = layout.at((*value, f64::NAN));
@@ -240,11 +242,11 @@ fn labels(
         ..large(Label::new(text, (at, 0.5 * (top + bottom)), 0))
     };
     if labelled && !x.label.is_empty() {
-        let at = (0.5 * (left + right), cell_bottom - 0.5 * row);
+        let at = (middle(&x.label), cell_bottom - 0.5 * row);
         all.push(large(Label::new(&x.label, at, 0)));
     }
     if !y.label.is_empty() {
-        all.push(upright(&y.label, left - GAP - widest(&layout.ticks[1]) - 2.0 - 0.5 * row));
+        all.push(upright(&y.label, cell_left + 0.5 * row));
     }
     if let Some(Bar { colours, rect, ticks }) = &layout.bar {
         for (value, text) in ticks {

@@ -50,7 +50,7 @@ mod text;
 mod ticks;
 
 pub use axis::{Axis, Scale, scale_for};
-pub use chart::{Chart, Dash, Key, Layer, Mark, Shape, Stroke};
+pub use chart::{Chart, Dash, Key, Layer, Mark, Shape, Stand, Stroke};
 pub use heat_map::{Nodes, Place, heat_map};
 pub use sheet::{Drawing, Sheet, Width, drawing, svg};
 pub use ticks::ten_to;

@@ -6,7 +6,9 @@ use super::plan::stiffness;
 use retune_dynamics::sweep::zones;
 use retune_dynamics::{Kind, Zone};
 use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, YELLOW};
-use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing};
+use retune_figures::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stand, Stroke, Width, drawing,
+};
 
 /// Height of the strip on top of the orbit diagram, as a share of the chart's.
 const STRIP: f64 = 0.05;
@@ -169,7 +171,7 @@ fn labels(motions: &Motions, (first, last): (f64, f64), heights: [f64; 2]) -> Ve
         };
         if let Some(&height) = heights.iter().find(free) {
             taken.push((x, half, height));
-            layers.push(Layer::Text { at: (x, height), text });
+            layers.push(Layer::Text { at: (x, height), text, stand: Stand::Over });
         }
     }
     layers
