@@ -88,10 +88,12 @@ impl Svg {
         } else {
             String::new()
         };
+        // Some readers drop a space at the beginning of an element, as after an index, unless it is asked for.
+        let spaces = if text.contains(' ') { " xml:space=\"preserve\"" } else { "" };
         let (size, text) = (units(font.size), markup(text));
         let _ = writeln!(
             self.body,
-            "<text x=\"{}\" y=\"{}\" font-size=\"{size}\"{anchor}{turned}{halo}>{text}</text>",
+            "<text x=\"{}\" y=\"{}\" font-size=\"{size}\"{anchor}{turned}{halo}{spaces}>{text}</text>",
             at[0], at[1]
         );
     }

@@ -15,7 +15,7 @@ const STRIP: f64 = 0.05;
 /// Heights of the two alternating rows of regime labels, as shares of the chart's height.
 const ROWS: [f64; 2] = [0.9, 0.82];
 /// Width of a letter of a label, as a share of the chart's width.
-const LETTER: f64 = 0.024;
+const LETTER: f64 = 0.022;
 /// The lines of the energies.
 const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Long);
 const SSVI: Stroke = Stroke::new(VERMILION, 1.4, Dash::Dots);

@@ -135,7 +135,7 @@ fn chart(title: &str, label: &str, range: (f64, f64), dampers: [&[Point]; 2]) ->
     Chart {
         title: title.to_owned(),
         x: Axis::linear(label, range),
-        y: Axis::linear("R1, R2", (0.0, 1.0)),
+        y: Axis::linear("R1, R2", (-0.03, 1.05)),
         layers,
         height: 125.0,
     }
