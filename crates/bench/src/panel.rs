@@ -56,7 +56,12 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
         let held = |p: (f64, f64)| (p.0.clamp(ends[0].0, ends[0].1), p.1.clamp(ends[1].0, ends[1].1));
         let finite = points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite());
         let points: Vec<(f64, f64)> = finite.map(held).collect();
-        let mark = shape.map(|shape| Mark::new(shape, colour, if width > 1.0 { 3.6 } else { 3.0 }));
+        let size = match shape {
+            Some(Shape::Ring) => 4.6,
+            _ if width > 1.0 => 3.6,
+            _ => 3.0,
+        };
+        let mark = shape.map(|shape| Mark::new(shape, colour, size));
         if let (Some(&at), false) = (points.iter().max_by(|a, b| a.0.total_cmp(&b.0)), name.is_empty()) {
             names.push(Layer::Name { at, text: name, mark });
         }

@@ -32,7 +32,7 @@ const DARK: [(Colour, &str); 5] =
     [(BLACK, "#E8EAEE"), (PAPER, "#14161A"), (BLUE, "#4AA8E0"), (VERMILION, "#FF8A3D"), (GREEN, "#2FC79B")];
 
 /// The style sheet of a figure: other colours where the reader's pages are dark. It holds within elements of the class `figure` only, so
-/// that it may stand in an HTML page. What stands on a map keeps its colours, since the map does.
+/// that it may stand in an HTML page. Maps keep their colours.
 pub(crate) fn style() -> String {
     let rule = |(light, dark): (Colour, &str)| {
         format!(".figure [fill=\"{light}\"]{{fill:{dark}}}.figure [stroke=\"{light}\"]{{stroke:{dark}}}")
