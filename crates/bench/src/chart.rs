@@ -1,13 +1,14 @@
 //! Charts of speed against accuracy, one panel for each scene, and of the saving by the smallest exact model.
 
-use crate::panel::{
-    Axis, BLUE, Drawn, GREEN, GREY, INK, Line, Marker, ORANGE, PURPLE, Panel, VERMILION, sheet,
-};
+use crate::panel::{Drawn, Line, WIDTHS, look, panel, sheet};
 use crate::reading::{Curve, Measure, curves, rank};
 use crate::record::Row;
 use crate::savings::Saving;
 use crate::scenes::Case;
-use plotters::prelude::*;
+use retune_figures::colour::{BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILION};
+use retune_figures::{Axis, Chart, Key, Layer, Shape, Sheet, Stand, Width, svg};
+use retune_solver::Method;
+use std::fs;
 use std::path::Path;
 
 /// The cost of a run.
@@ -19,23 +20,22 @@ pub enum Cost {
     Evaluations,
 }
 
-/// Colour by program and marker by method; the hybrid and the paper's method are emphasised.
-fn style(name: &str) -> (RGBColor, u32, Marker) {
+/// Colour by program and mark by method; the hybrid and the paper's method are emphasised.
+fn style(name: &str) -> (Colour, f64, Shape) {
+    let thin = |colour, shape| (colour, WIDTHS[0], shape);
     match name {
-        "hybrid" => (VERMILION, 4, Marker::Disc),
-        "ode23s" => (INK, 3, Marker::Disc),
-        "ode45" => (BLUE, 2, Marker::Disc),
-        "ode23" => (BLUE, 2, Marker::Square),
-        "dop853" => (BLUE, 2, Marker::Triangle),
-        "rk4" => (GREEN, 1, Marker::Disc),
-        "euler" => (GREEN, 1, Marker::Square),
-        _ if name.starts_with("differential-equations") => (PURPLE, 1, Marker::Disc),
-        _ if name.starts_with("ivp") => (PURPLE, 1, Marker::Square),
-        _ if name.starts_with("diffsol") => (PURPLE, 1, Marker::Triangle),
-        "Octave ode23s" => (ORANGE, 2, Marker::Disc),
-        _ if name.starts_with("Octave") => (ORANGE, 1, Marker::Square),
-        _ if name.starts_with("SUNDIALS") => (GREY, 1, Marker::Square),
-        _ => (GREY, 1, Marker::Disc),
+        "rk4" => thin(GREEN, Shape::Disc),
+        "euler" => thin(GREEN, Shape::Square),
+        "Octave ode23s" => (ORANGE, WIDTHS[1], Shape::Disc),
+        _ if name.starts_with("differential-equations") => thin(PURPLE, Shape::Disc),
+        _ if name.starts_with("ivp") => thin(PURPLE, Shape::Square),
+        _ if name.starts_with("diffsol") => thin(PURPLE, Shape::Triangle),
+        _ if name.starts_with("Octave") => thin(ORANGE, Shape::Square),
+        _ if name.starts_with("SUNDIALS") => thin(GREY, Shape::Square),
+        _ => Method::ALL
+            .into_iter()
+            .find(|method| method.name() == name)
+            .map_or_else(|| thin(GREY, Shape::Disc), look),
     }
 }
 
@@ -55,12 +55,11 @@ fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
         }
     }
     // The most important lines are drawn last, on top.
-    kept.sort_by_key(|c| style(&c.name).1);
+    kept.sort_by(|a, b| style(&a.name).1.total_cmp(&style(&b.name).1));
     kept
 }
 
 fn line(curve: &Curve<'_>, cost: Cost) -> Line {
-    let (colour, width, marker) = style(&curve.name);
     let way = if curve.contacts == "stepped" { ", stepped" } else { "" };
     let failed = if curve.failed > 0 { format!(" ({} failed)", curve.failed) } else { String::new() };
     let name = format!("{}{way}{failed}", curve.name.replace("differential-equations", "diff-eq"));
@@ -71,7 +70,7 @@ fn line(curve: &Curve<'_>, cost: Cost) -> Line {
         .filter_map(|(error, row)| Some((*error, row.cost(cost == Cost::Time)? * scale)))
         .filter(|p| p.1 > 0.0)
         .collect();
-    Line { name, points, colour, width, marker }
+    Line::new(&name, points, style(&curve.name))
 }
 
 /// One panel for each scene: error on the horizontal axis, cost on the vertical axis.
@@ -86,21 +85,22 @@ pub fn work_precision(path: &Path, cases: &[Case], rows: &[Row], measure: Measur
         }
     };
     let error = measure.name();
-    let panels: Vec<Panel> = cases
-        .iter()
-        .map(|case| Panel {
-            caption: format!("{} (T = {} s)", case.label, case.to),
-            x: Axis::log(&format!("relative error of {error}"), 1e-15, 1e1),
-            y: Axis::log(unit, low, high),
-            lines: shown(curves(rows, case, measure)).iter().map(|c| line(c, cost)).collect(),
-        })
-        .collect();
+    let panels = cases.iter().map(|case| {
+        let lines = shown(curves(rows, case, measure)).iter().map(|c| line(c, cost)).collect();
+        panel(
+            &format!("{} (T = {} s)", case.label, case.to),
+            Axis::log(format!("relative error of {error}"), (1e-15, 1e1)),
+            Axis::log(unit, (low, high)),
+            lines,
+            180.0,
+        )
+    });
     let title = format!("Error of {error} against {what}: lower left is better");
     let key = "Vermilion: Retune's hybrid. Black: the paper's ode23s. Blue, green: Retune's other methods, adaptive and of fixed step. \
                Purple: Rust crates. Orange: GNU Octave. Grey: SciPy, SUNDIALS.";
     let note = "Of every other program the method that served the scene best; contacts located unless it says stepped. \
-                All runs, failures with their reason: runs.csv.";
-    sheet(path, &[&title, key, note], 3, (690, 500), &panels)
+                Points beyond the axes lie on their ends. All runs, failures with their reason: runs.csv.";
+    sheet(path, &title, &[key, note], 2, panels.collect())
 }
 
 /// Time of each scene under the smallest exact model and under the full one.
@@ -108,26 +108,41 @@ pub fn work_precision(path: &Path, cases: &[Case], rows: &[Row], measure: Measur
 /// # Errors
 /// A file that cannot be written.
 pub fn savings(path: &Path, savings: &[Saving]) -> Drawn {
-    let root = SVGBackend::new(path, (900, 84 + 62 * savings.len() as u32)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let bold = |size| ("sans-serif", size).into_font().style(FontStyle::Bold);
-    root.draw(&Text::new(
-        "Time of one E1max, µs: the smallest model that is exact, and the full contact model",
-        (20, 14),
-        bold(18),
-    ))?;
-    let longest = savings.iter().flat_map(|s| s.seconds).fold(0.0, f64::max);
+    const COLOURS: [Colour; 2] = [VERMILION, BLUE];
+    let longest = 1e6 * savings.iter().flat_map(|s| s.seconds).fold(0.0, f64::max);
+    let mut layers = Vec::new();
     for (i, s) in savings.iter().enumerate() {
-        let top = 60 + 62 * i as i32;
-        root.draw(&Text::new(s.label, (20, top + 12), ("sans-serif", 16).into_font()))?;
-        let models = [(s.model, VERMILION), ("full contact model", BLUE)];
-        for (j, (seconds, (model, colour))) in s.seconds.into_iter().zip(models).enumerate() {
-            let (y, width) = (top + 22 * j as i32, (330.0 * seconds / longest) as i32);
-            root.draw(&Rectangle::new([(250, y), (250 + width.max(1), y + 18)], colour.filled()))?;
-            let text = format!("{:.1}  {model}", seconds * 1e6);
-            root.draw(&Text::new(text, (258 + width, y + 2), ("sans-serif", 14).into_font().color(&colour)))?;
+        for (j, (seconds, model)) in s.seconds.into_iter().zip([s.model, "full contact model"]).enumerate() {
+            let (time, middle) = (1e6 * seconds, -(i as f64) + 0.2 - 0.4 * j as f64);
+            let y = (middle - 0.17, middle + 0.17);
+            layers.push(Layer::Band { x: (0.0, time), y, colour: COLOURS[j], opacity: 1.0 });
+            let at = (time + 0.015 * longest, middle);
+            layers.push(Layer::Text { at, text: format!("{time:.1}  {model}"), stand: Stand::Right });
         }
     }
-    root.present()?;
+    let names = savings.iter().enumerate().map(|(i, s)| (-(i as f64), s.label.to_owned())).collect();
+    let count = savings.len() as f64;
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::linear("time of one E1max, µs", (0.0, 1.9 * longest)),
+        y: Axis::of_names((0.5 - count, 0.5), names),
+        layers,
+        height: 30.0 + 24.0 * count,
+    };
+    let key = |j: usize, words: &str| (Key::Area(COLOURS[j], 1.0), words.to_owned());
+    fs::write(
+        path,
+        svg(&Sheet {
+            title: "Time of one E1max: the smallest model that is exact, and the full contact model"
+                .to_owned(),
+            description: "Two bars for each scene, with the time in microseconds.".to_owned(),
+            width: Width::Page,
+            charts: vec![chart],
+            columns: 1,
+            stacked: false,
+            legend: vec![key(0, "the smallest model that is exact"), key(1, "the full contact model")],
+            caption: Vec::new(),
+        }),
+    )?;
     Ok(())
 }

@@ -1,6 +1,46 @@
-//! Colours that remain distinct for colour-blind readers and keep their order in grey.
+//! One palette, which colour-blind readers can tell apart, and its counterpart on a dark page.
 
-use plotters::style::RGBColor;
+/// A colour as SVG writes it.
+pub type Colour = &'static str;
+
+/// Black. The colours below are those of M. Okabe and K. Ito's palette (2008).
+pub const BLACK: Colour = "#000000";
+/// Orange.
+pub const ORANGE: Colour = "#E69F00";
+/// Sky blue.
+pub const SKY: Colour = "#56B4E9";
+/// Bluish green.
+pub const GREEN: Colour = "#009E73";
+/// Blue.
+pub const BLUE: Colour = "#0072B2";
+/// Vermilion.
+pub const VERMILION: Colour = "#D55E00";
+/// Reddish purple; pale, the pink of the paper's bilateral zones.
+pub const PURPLE: Colour = "#CC79A7";
+/// Yellow.
+pub const YELLOW: Colour = "#F0E442";
+/// For points of less interest.
+pub const GREY: Colour = "#999999";
+
+/// The paper.
+pub(crate) const PAPER: Colour = "#FFFFFF";
+/// Where a map has no value.
+pub(crate) const NOTHING: &str = "#C8C8C8";
+
+/// What is drawn in another colour on a dark page. Blue and vermilion would be too dark there.
+const DARK: [(Colour, &str); 5] =
+    [(BLACK, "#E8EAEE"), (PAPER, "#14161A"), (BLUE, "#4AA8E0"), (VERMILION, "#FF8A3D"), (GREEN, "#2FC79B")];
+
+/// The style sheet of a figure: other colours where the reader's pages are dark. It holds within elements of the class `figure` only, so
+/// that it may stand in an HTML page. Maps keep their colours.
+pub(crate) fn style() -> String {
+    let rule = |(light, dark): (Colour, &str)| {
+        format!(".figure [fill=\"{light}\"]{{fill:{dark}}}.figure [stroke=\"{light}\"]{{stroke:{dark}}}")
+    };
+    let [(_, ink), ..] = DARK;
+    let rules: String = DARK.into_iter().map(rule).collect();
+    format!("<style>@media (prefers-color-scheme:dark){{.figure{{fill:{ink}}}{rules}}}</style>\n")
+}
 
 /// Viridis (S. van der Walt and N. Smith, matplotlib, 2015, CC0) at eighths.
 const VIRIDIS: [[f64; 3]; 9] = [
@@ -15,17 +55,47 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
-/// Blue of M. Okabe and K. Ito's palette (2008).
-pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-/// Where there is no value.
-pub const NOTHING: RGBColor = RGBColor(200, 200, 200);
-
-/// The colour of a share from 0 (dark) to 1 (bright).
-pub fn viridis(share: f64) -> RGBColor {
-    let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+/// The colour of a share from 0 (dark) to 1 (bright), in 256 steps; grey if it is not finite.
+pub(crate) fn viridis(share: f64) -> String {
+    if !share.is_finite() {
+        return NOTHING.to_owned();
+    }
+    let place = (255.0 * share.clamp(0.0, 1.0)).round() / 255.0 * (VIRIDIS.len() - 1) as f64;
     let i = (place as usize).min(VIRIDIS.len() - 2);
     let part = place - i as f64;
     let [r, g, b] =
         [0, 1, 2].map(|c| (VIRIDIS[i][c] + part * (VIRIDIS[i + 1][c] - VIRIDIS[i][c])).round() as u8);
-    RGBColor(r, g, b)
+    format!("#{r:02X}{g:02X}{b:02X}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_viridis_begins_and_ends_as_published() {
+        assert_eq!([viridis(0.0), viridis(1.0)], ["#440154", "#FDE725"]);
+        assert_eq!([viridis(-3.0), viridis(9.0)], ["#440154", "#FDE725"]);
+        assert_eq!([viridis(f64::NAN), viridis(f64::INFINITY)], [NOTHING, NOTHING]);
+    }
+
+    /// Relative luminance and contrast as in WCAG 2.1.
+    fn contrast(a: &str, b: &str) -> f64 {
+        let channel = |text: &str, i: usize| {
+            let value = f64::from(u8::from_str_radix(&text[i..i + 2], 16).expect("a colour")) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        };
+        let light = |c: &str| 0.2126 * channel(c, 1) + 0.7152 * channel(c, 3) + 0.0722 * channel(c, 5) + 0.05;
+        (light(a) / light(b)).max(light(b) / light(a))
+    }
+
+    #[test]
+    fn contract_lines_and_text_stand_out_on_light_and_on_dark_paper() {
+        let dark = |colour: Colour| DARK.iter().find(|pair| pair.0 == colour).map_or(colour, |pair| pair.1);
+        assert!(contrast(BLACK, PAPER) > 15.0 && contrast(dark(BLACK), dark(PAPER)) > 12.0);
+        for colour in [ORANGE, SKY, GREEN, BLUE, VERMILION, PURPLE, GREY] {
+            assert!(contrast(colour, PAPER) > 2.0, "{colour}: {}", contrast(colour, PAPER));
+            assert!(contrast(dark(colour), dark(PAPER)) > 5.0, "{colour} on dark paper");
+        }
+    }
 }

@@ -1,13 +1,11 @@
-//! A heat map: a coloured cell for each node of a grid, with a colour bar.
+//! A heat map: a coloured cell for each node of a grid, with a colour bar and the places that matter.
 
 use crate::axis::{Axis, Scale, scale_for};
-use crate::canvas::{Canvas, Drawn, TEXT, TICK, figure, line, text, upright};
-use crate::colour::{NOTHING, viridis};
-use crate::frame::Frame;
-use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
+use crate::chart::{Chart, Key, Layer, Mark, Shape};
+use crate::colour::BLACK;
 
 /// A side of the grid.
+#[derive(Clone, Debug)]
 pub struct Nodes {
     /// The quantity with its unit.
     pub label: String,
@@ -17,67 +15,46 @@ pub struct Nodes {
     pub values: Vec<f64>,
 }
 
-/// A point marked on the map.
-pub enum Mark {
-    /// A square on a node of the grid.
-    Grid {
-        /// Its coordinate along the first side.
-        x: f64,
-        /// Its coordinate along the second side.
-        y: f64,
-        /// Its entry in the legend.
-        label: String,
-    },
-    /// A disc at any place. Outside the axes it is not drawn, and the legend says so.
-    Optimum {
-        /// Its coordinate along the first side.
-        x: f64,
-        /// Its coordinate along the second side.
-        y: f64,
-        /// Its entry in the legend.
-        label: String,
-    },
+/// A place on the map with its entry in the legend.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The place. Outside the axes it is not drawn, and the legend says so.
+    pub at: (f64, f64),
+    /// Its meaning.
+    pub label: String,
 }
 
-const HEIGHT: u32 = 1200;
+/// Shapes of the places, in their order.
+const MARKS: [Mark; 3] = [
+    Mark { rim: true, ..Mark::new(Shape::Frame, BLACK, 10.0) },
+    Mark { rim: true, ..Mark::new(Shape::Disc, BLACK, 4.5) },
+    Mark { rim: true, ..Mark::new(Shape::Cross, BLACK, 7.0) },
+];
 
-/// Draws `values` over the two `sides`, row by row: the index of the first side varies fastest. `quantity` is their label with its
-/// unit. Values that are not finite are grey.
-///
-/// # Errors
-/// The drawing library's.
+/// The chart of `values` over the two `sides`, row by row: the index of the first side varies fastest. `quantity` is their label with
+/// its unit. Values that are not finite are grey. The legend belongs to it.
 pub fn heat_map(
     sides: &[Nodes; 2],
     values: &[f64],
     quantity: &str,
-    marks: &[Mark],
-    caption: &[String],
-) -> Result<String, String> {
+    places: &[Place],
+) -> (Chart, Vec<(Key, String)>) {
     let edges = [edges(&sides[0]), edges(&sides[1])];
     let axis = |side: usize| {
-        let (first, last) = (edges[side][0], edges[side][edges[side].len() - 1]);
-        Axis::new(sides[side].label.clone(), sides[side].scale, first, last)
+        let ends = (edges[side][0], edges[side][edges[side].len() - 1]);
+        Axis::new(sides[side].label.as_str(), sides[side].scale, ends)
     };
     let (x, y) = (axis(0), axis(1));
-    let frame = Frame { x: &x, y: &y, left: 240, right: 1230, top: 110, bottom: 1040 };
-    let colours = Axis::exact(quantity.to_owned(), scale_for(values), values);
-    figure(HEIGHT, caption, |canvas| {
-        let columns = sides[0].values.len();
-        for (i, &value) in values.iter().enumerate() {
-            let (column, row) = (i % columns, i / columns);
-            let corner = frame.pixel(edges[0][column], edges[1][row]);
-            let (right, top) = frame.pixel(edges[0][column + 1], edges[1][row + 1]);
-            let colour = if value.is_finite() { viridis(colours.share(value)) } else { NOTHING };
-            cell(canvas, corner, (right, top), &colour)?;
-        }
-        frame.draw(canvas, true)?;
-        colour_bar(canvas, &colours, &frame)?;
-        marks.iter().enumerate().try_for_each(|(i, mark)| draw_mark(canvas, &frame, mark, i))
-    })
-}
-
-fn cell(canvas: &Canvas, corner: (i32, i32), opposite: (i32, i32), colour: &impl Color) -> Drawn {
-    canvas.draw(&Rectangle::new([corner, opposite], colour.filled())).map_err(|error| error.to_string())
+    let colours = Axis::exact(quantity, scale_for(values), values.iter().copied());
+    let mut layers = vec![Layer::Map { edges: edges.clone(), values: values.to_vec(), colours }];
+    let mut legend = Vec::new();
+    for (place, mark) in places.iter().zip(MARKS.into_iter().cycle()) {
+        let inside = x.holds(place.at.0) && y.holds(place.at.1);
+        let off = if inside { "" } else { " (off the map)" };
+        legend.push((Key::Mark(mark), format!("{}{off}", place.label)));
+        layers.push(Layer::Marks { points: vec![place.at], mark });
+    }
+    (Chart { title: String::new(), x, y, layers, height: 190.0 }, legend)
 }
 
 /// The edges of the cells around the nodes: halfway to the next node, on the scale of the side.
@@ -85,8 +62,9 @@ fn edges(side: &Nodes) -> Vec<f64> {
     let to = |v: f64| if side.scale == Scale::Log { v.ln() } else { v };
     let from = |v: f64| if side.scale == Scale::Log { v.exp() } else { v };
     let nodes: Vec<f64> = side.values.iter().map(|&v| to(v)).collect();
-    let half_first = nodes.get(1).map_or(0.5, |second| 0.5 * (second - nodes[0]));
-    let mut edges = vec![from(nodes[0] - half_first)];
+    let Some(first) = nodes.first() else { return vec![0.0, 1.0] };
+    let half_first = nodes.get(1).map_or(0.5, |second| 0.5 * (second - first));
+    let mut edges = vec![from(first - half_first)];
     for (i, node) in nodes.iter().enumerate() {
         let half = nodes.get(i + 1).map_or_else(|| node - to(edges[i]), |next| 0.5 * (next - node));
         edges.push(from(node + half));
@@ -94,50 +72,16 @@ fn edges(side: &Nodes) -> Vec<f64> {
     edges
 }
 
-fn colour_bar(canvas: &Canvas, colours: &Axis, frame: &Frame) -> Drawn {
-    let (left, right) = (frame.right + 50, frame.right + 100);
-    let height = frame.bottom - frame.top;
-    let bands = 128;
-    for i in 0..bands {
-        let [below, above] = [i, i + 1].map(|edge| frame.bottom - height * edge / bands);
-        let colour = viridis((f64::from(i) + 0.5) / f64::from(bands));
-        cell(canvas, (left, below), (right, above), &colour)?;
-    }
-    for (value, label) in colours.ticks(6) {
-        let y = frame.bottom - (f64::from(height) * colours.share(value)).round() as i32;
-        line(canvas, &[(right, y), (right + TICK, y)], 3, &BLACK)?;
-        text(canvas, &label, (right + 24, y), TEXT, HPos::Left, &BLACK)?;
-    }
-    upright(canvas, colours.label(), (frame.right + 290, (frame.top + frame.bottom) / 2))?;
-    let (top, bottom) = (frame.top, frame.bottom);
-    line(canvas, &[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], 3, &BLACK)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Draws a mark on the surface, and its meaning above the frame.
-fn draw_mark(canvas: &Canvas, frame: &Frame, mark: &Mark, number: usize) -> Drawn {
-    let (Mark::Grid { x, y, label } | Mark::Optimum { x, y, label }) = mark;
-    let inside = frame.x.holds(*x) && frame.y.holds(*y);
-    let key = (frame.left + 20 + 640 * number as i32, 60);
-    let places = if inside { vec![frame.pixel(*x, *y), key] } else { vec![key] };
-    for place in places {
-        symbol(canvas, mark, place)?;
+    #[test]
+    fn exact_edges_lie_halfway_on_the_scale() {
+        let nodes = |scale, values: &[f64]| Nodes { label: String::new(), scale, values: values.to_vec() };
+        assert_eq!(edges(&nodes(Scale::Linear, &[1.0, 2.0, 4.0])), [0.5, 1.5, 3.0, 5.0]);
+        let log = edges(&nodes(Scale::Log, &[1.0, 100.0]));
+        assert!(log.iter().zip([0.1, 10.0, 1000.0]).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{log:?}");
+        assert_eq!(edges(&nodes(Scale::Linear, &[3.0])), [2.5, 3.5]);
     }
-    let words = if inside { label.clone() } else { format!("{label} (off the map)") };
-    text(canvas, &words, (key.0 + 40, key.1), TEXT - 4, HPos::Left, &BLACK)
-}
-
-/// White with a black rim: seen on every colour of the map.
-fn symbol(canvas: &Canvas, mark: &Mark, (x, y): (i32, i32)) -> Drawn {
-    let drawn = match mark {
-        Mark::Grid { .. } => {
-            let square = |half: i32| [(x - half, y - half), (x + half, y + half)];
-            canvas
-                .draw(&Rectangle::new(square(24), BLACK.filled()))
-                .and_then(|()| canvas.draw(&Rectangle::new(square(19), WHITE.filled())))
-        }
-        Mark::Optimum { .. } => canvas
-            .draw(&Circle::new((x, y), 15, WHITE.filled()))
-            .and_then(|()| canvas.draw(&Circle::new((x, y), 11, BLACK.filled()))),
-    };
-    drawn.map_err(|error| error.to_string())
 }

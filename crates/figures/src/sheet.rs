@@ -1,38 +1,59 @@
-//! Several charts on one sheet, in rows and columns, below one common legend, as on a page of the paper.
+//! A sheet: charts in rows and columns below one legend, and a caption.
 
-mod chart;
-mod draw;
-
-pub use chart::{BLACK, BLUE, Chart, GREEN, GREY, Layer, ORANGE, PURPLE, SKY, VERMILION, YELLOW};
-
-use draw::{draw_chart, words};
+use crate::chart::{Chart, Key, Mark, Stroke};
+use crate::draw::{area, chart, marks, sample};
+use crate::layout::{LINE, Margins, SMALL, TEXT, layout};
+use crate::path::Rect;
+use crate::svg::{Anchor, Font, Svg};
+use crate::text::{ems, lines};
 use serde::{Deserialize, Serialize};
-use std::fmt::Write;
 
-/// The symbol of an entry in the legend.
-#[derive(Clone, Copy, Debug)]
-pub enum Key {
-    /// A line: its colour and `stroke-dasharray`.
-    Line(&'static str, &'static str),
-    /// A dot: its colour.
-    Dot(&'static str),
-    /// An area: its colour and opacity.
-    Area(&'static str, f64),
-    /// No symbol: the text is the heading of a row of entries.
-    Heading,
+/// Width of a sheet: text has 8 pt and more in print.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// A column of a journal, 85 mm.
+    Column,
+    /// Its whole page, 180 mm.
+    Page,
 }
 
-const WIDTH: f64 = 1600.0;
-/// Width for narrow screens: on a telephone text is then about 12 px high.
-const NARROW: f64 = 800.0;
-const TEXT: f64 = 27.0;
+impl Width {
+    /// In points.
+    const fn points(self) -> f64 {
+        match self {
+            Self::Column => 241.0,
+            Self::Page => 510.0,
+        }
+    }
+}
+
+/// A figure as data.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// What it shows, in a few words: the `<title>` of the SVG.
+    pub title: String,
+    /// What can be seen in it, for a reader who cannot: its `<desc>`.
+    pub description: String,
+    /// Its width.
+    pub width: Width,
+    /// The charts, row by row.
+    pub charts: Vec<Chart>,
+    /// Charts in a row.
+    pub columns: usize,
+    /// Whether the charts of a column have the abscissa in common: only the lowest has its numbers and its label.
+    pub stacked: bool,
+    /// The legend above the charts.
+    pub legend: Vec<(Key, String)>,
+    /// Lines of text below them; long ones are broken.
+    pub caption: Vec<String>,
+}
 
 /// A figure, and a version of it for narrow screens, on which the figure itself would be too small to read.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Drawing {
     /// For print and wide screens.
     pub wide: String,
-    /// One chart a row, half as wide.
+    /// One chart a row, as wide as a column.
     pub narrow: Option<String>,
 }
 
@@ -42,56 +63,108 @@ impl From<String> for Drawing {
     }
 }
 
-/// Draws `charts` in rows of `columns`, each `height` px high.
-pub fn sheet(charts: &[Chart], columns: usize, height: f64, legend: &[(Key, &str)]) -> Drawing {
-    let wide = on_width(WIDTH, charts, columns, height, legend);
-    Drawing { wide, narrow: Some(on_width(NARROW, charts, 1, height, legend)) }
+/// Space at the edges of a sheet, pt.
+const EDGE: f64 = 3.0;
+/// Space between columns, pt.
+const GUTTER: f64 = 9.0;
+/// Length of a line in the legend, pt.
+const SAMPLE: f64 = 18.0;
+/// Height of a row of the legend, pt.
+const ROW: f64 = 1.45 * TEXT;
+
+/// A sheet as SVG.
+pub fn svg(sheet: &Sheet) -> String {
+    on_width(sheet, sheet.width.points(), sheet.columns)
 }
 
-fn on_width(page: f64, charts: &[Chart], columns: usize, height: f64, legend: &[(Key, &str)]) -> String {
-    let mut body = String::new();
-    let mut y = 26.0;
-    let mut x = 30.0;
-    for (key, words) in legend {
-        let heading = matches!(key, Key::Heading);
-        let length = if heading { 125.0 } else { 74.0 + 16.0 * words.chars().count() as f64 + 12.0 };
-        if (heading && x > 30.0) || x + length > page {
-            (x, y) = (30.0, y + 44.0);
-        }
-        draw_key(&mut body, key, words, x, y);
-        x += length;
-    }
-    let top = if legend.is_empty() { 20.0 } else { y + 40.0 };
-    let (cell_width, cell_height) = (page / columns as f64, height);
-    for (i, chart) in charts.iter().enumerate() {
-        let corner = ((i % columns) as f64 * cell_width, top + (i / columns) as f64 * cell_height);
-        draw_chart(&mut body, chart, corner, (cell_width, cell_height));
-    }
-    let total = top + charts.len().div_ceil(columns) as f64 * cell_height + 10.0;
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {page} {total}\" width=\"{page}\" height=\"{total}\" font-family=\"sans-serif\" \
-         font-size=\"{TEXT}\">\n<rect class=\"paper\" width=\"{page}\" height=\"{total}\" fill=\"#FFFFFF\"/>\n{body}</svg>\n"
-    )
+/// A sheet as SVG, with a version for narrow screens if it is as wide as a page.
+pub fn drawing(sheet: &Sheet) -> Drawing {
+    let narrow = (sheet.width == Width::Page).then(|| on_width(sheet, Width::Column.points(), 1));
+    Drawing { wide: svg(sheet), narrow }
 }
 
-fn draw_key(out: &mut String, key: &Key, text: &str, x: f64, y: f64) {
-    let _ = match key {
-        Key::Line(colour, dash) => writeln!(
-            out,
-            "<path d=\"M{x} {y}h56\" stroke=\"{colour}\" stroke-width=\"5\" stroke-dasharray=\"{dash}\" fill=\"none\"/>"
-        ),
-        Key::Dot(colour) => {
-            writeln!(out, "<circle cx=\"{}\" cy=\"{y}\" r=\"8\" fill=\"{colour}\"/>", x + 40.0)
+fn on_width(sheet: &Sheet, page: f64, columns: usize) -> String {
+    let mut out = Svg::default();
+    let (columns, count) = (columns.max(1), sheet.charts.len());
+    let mut y = EDGE + legend(&mut out, &sheet.legend, page);
+    let width = (page - 2.0 * EDGE - GUTTER * (columns - 1) as f64) / columns as f64;
+    let lowest = |i: usize| i + columns >= count;
+    let mut cells: Vec<(Rect, bool)> = Vec::new();
+    for (row, charts) in sheet.charts.chunks(columns).enumerate() {
+        let height = charts.iter().map(|chart| chart.height).fold(0.0, f64::max);
+        for column in 0..charts.len() {
+            let left = EDGE + column as f64 * (width + GUTTER);
+            cells.push((
+                [left, y, left + width, y + height],
+                !sheet.stacked || lowest(row * columns + column),
+            ));
         }
-        Key::Area(colour, opacity) => writeln!(
-            out,
-            "<rect x=\"{x}\" y=\"{}\" width=\"56\" height=\"26\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>",
-            y - 13.0
-        ),
-        Key::Heading => {
-            words(out, text, (x, y + 9.0), "start", "");
-            return;
+        y += height + if sheet.stacked { 0.0 } else { 4.0 };
+    }
+    for column in 0..columns.min(count) {
+        let own = || (column..count).step_by(columns);
+        let margins =
+            own().map(|i| layout(&sheet.charts[i], cells[i].0, cells[i].1, Margins::default()).margins);
+        let least = margins.fold(Margins::default(), Margins::with);
+        for i in own() {
+            // Frames one below the other begin at the same place; they end there, too, if they share their abscissa.
+            let least = Margins { right: if sheet.stacked { least.right } else { 0.0 }, ..least };
+            chart(&mut out, &layout(&sheet.charts[i], cells[i].0, cells[i].1, least));
         }
-    };
-    words(out, text, (x + 68.0, y + 9.0), "start", "");
+    }
+    y += 2.0;
+    for line in sheet.caption.iter().flat_map(|text| lines(text, SMALL, page - 2.0 * EDGE)) {
+        out.text(&line, (EDGE, y + 0.5 * LINE * SMALL), Font::new(SMALL, Anchor::Start));
+        y += LINE * SMALL;
+    }
+    out.document((page, y + EDGE), &sheet.title, &sheet.description)
+}
+
+/// Draws the legend from the upper edge downwards; its height, pt.
+fn legend(out: &mut Svg, keys: &[(Key, String)], page: f64) -> f64 {
+    let heading = |key: &Key| matches!(key, Key::Heading);
+    let indent = keys
+        .iter()
+        .filter(|(key, _)| heading(key))
+        .map(|(_, text)| TEXT * ems(text) + 6.0)
+        .fold(0.0, f64::max);
+    let (mut x, mut y) = (EDGE, EDGE);
+    let mut used = 0.0;
+    for (key, text) in keys {
+        let begins = heading(key);
+        let room = page - EDGE - EDGE - indent - if begins { 0.0 } else { SAMPLE + 4.0 };
+        let words = if begins { vec![text.clone()] } else { lines(text, TEXT, room) };
+        let longest = words.iter().map(|line| TEXT * ems(line)).fold(0.0, f64::max);
+        let length = if begins { indent } else { SAMPLE + 4.0 + longest };
+        if (begins && used > 0.0) || (x > EDGE + indent && x + length > page - EDGE) {
+            y += used;
+            x = if begins { EDGE } else { EDGE + indent };
+            used = 0.0;
+        }
+        let middle = y + 0.5 * ROW;
+        let text_at = if begins { x } else { x + SAMPLE + 4.0 };
+        draw_key(out, key, (x, middle));
+        for (i, line) in words.iter().enumerate() {
+            out.text(line, (text_at, middle + LINE * TEXT * i as f64), Font::new(TEXT, Anchor::Start));
+        }
+        used = f64::max(used, ROW + LINE * TEXT * (words.len().max(1) - 1) as f64);
+        x += length + if begins { 0.0 } else { 11.0 };
+    }
+    if keys.is_empty() { 0.0 } else { y + used - EDGE + 3.0 }
+}
+
+fn draw_key(out: &mut Svg, key: &Key, (x, y): (f64, f64)) {
+    let middle = (x + 0.5 * SAMPLE, y);
+    let line = |out: &mut Svg, stroke: &Stroke| sample(out, (x, y), SAMPLE, *stroke);
+    let mark = |out: &mut Svg, mark: &Mark| marks(out, &[middle], *mark);
+    match key {
+        Key::Line(stroke) => line(out, stroke),
+        Key::Marked(stroke, shape) => {
+            line(out, stroke);
+            mark(out, shape);
+        }
+        Key::Mark(shape) => mark(out, shape),
+        Key::Area(colour, opacity) => area(out, [x, y - 3.5, x + SAMPLE, y + 3.5], colour, *opacity),
+        Key::Heading => {}
+    }
 }

@@ -5,7 +5,8 @@ use super::judgement::definitions;
 use super::plan::{Plan, stiffness};
 use rayon::prelude::*;
 use retune_dynamics::{Kind, Parameter, Regime, Stretch, Zone, classify, follow};
-use retune_figures::sheet::{BLACK, BLUE, Chart, GREEN, Key, Layer, sheet};
+use retune_figures::colour::{BLACK, BLUE, GREEN};
+use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, drawing};
 use retune_model::Scene;
 use retune_solver::{Rows, Sample, Window, trajectory};
 use retune_study::Setting;
@@ -216,55 +217,59 @@ fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), 
     };
     let top = samples.iter().map(|s| s.forces[0].max(s.forces[1])).fold(1.0, f64::max) * 1.06;
     let some: Vec<&Sample> = samples.iter().step_by(16).collect();
+    let thin = |colour, width| Stroke::new(colour, width, Dash::Solid);
     let force = |side: usize, colour| Layer::Line {
         points: samples
             .windows(3)
             .filter(|near| near.iter().any(|s| s.forces[side] > 0.0))
             .map(|near| (near[1].t, near[1].forces[side]))
             .collect(),
-        colour,
-        width: 2.0,
-        dash: "",
+        stroke: thin(colour, 0.6),
     };
-    let time = (window.from, window.to);
-    let x2 = Layer::Line {
-        points: some.iter().map(|s| (s.t, s.state[2])).collect(),
-        colour: BLACK,
-        width: 1.8,
-        dash: "",
-    };
+    let time = || Axis::linear("t, s", (window.from, window.to));
+    let x2 =
+        Layer::Line { points: samples.iter().map(|s| (s.t, s.state[2])).collect(), stroke: thin(BLACK, 0.6) };
     let phase = Layer::Line {
         points: samples.iter().step_by(2).map(|s| (s.state[2], s.state[3])).collect(),
-        colour: BLACK,
-        width: 0.9,
-        dash: "",
+        stroke: thin(BLACK, 0.3),
     };
-    let chart = |title: &str, labels: [&str; 2], ranges, layers| Chart {
-        title: title.into(),
-        labels: labels.map(str::to_owned),
-        ranges,
-        log: false,
-        layers,
-    };
-    let charts = [
+    let title = format!("({}) ω = {:.2} rad/s, k1 = {} N/m", case.letter, case.omega, stiffness(case.k1));
+    let chart = |title: &str, x, y, layers| Chart { title: title.into(), x, y, layers, height: 135.0 };
+    let displacement = || Axis::linear("x2, m", range(|s| s.state[2]));
+    let charts = vec![
+        chart(&title, time(), displacement(), vec![x2]),
         chart(
-            &format!("({}) ω = {:.2} rad/s, k₁ = {} N/m", case.letter, case.omega, stiffness(case.k1)),
-            ["t, s", "x₂, m"],
-            [time, range(|s| s.state[2])],
-            vec![x2],
+            "Contact forces",
+            time(),
+            Axis::linear("F, N", (0.0, top)),
+            vec![force(0, BLUE), force(1, GREEN)],
         ),
-        chart("Contact forces", ["t, s", "F, N"], [time, (0.0, top)], vec![force(0, BLUE), force(1, GREEN)]),
         chart(
             "Phase trajectory",
-            ["x₂, m", "v₂, m/s"],
-            [range(|s| s.state[2]), range(|s| s.state[3])],
+            displacement(),
+            Axis::linear("v2, m/s", range(|s| s.state[3])),
             vec![phase],
         ),
     ];
-    let legend = [(Key::Line(BLUE, ""), "force on the PS"), (Key::Line(GREEN, ""), "force on the obstacle")];
+    let sheet = Sheet {
+        title,
+        description: format!(
+            "x2 and the contact forces over time, and the phase trajectory. The paper: {}.",
+            case.paper
+        ),
+        width: Width::Page,
+        charts,
+        columns: 1,
+        stacked: false,
+        legend: vec![
+            (Key::Line(Stroke::solid(BLUE)), "force on the PS".to_owned()),
+            (Key::Line(Stroke::solid(GREEN)), "force on the obstacle".to_owned()),
+        ],
+        caption: Vec::new(),
+    };
     item.picture(
         &format!("figure7-{}", case.letter),
-        sheet(&charts, 1, 440.0, &legend),
+        drawing(&sheet),
         &format!("({}) The paper: {}.", case.letter, case.paper),
     );
     let rows = some.iter().map(|s| {

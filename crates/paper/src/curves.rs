@@ -4,13 +4,19 @@ use super::detuning::statements;
 use super::family::{Family, Peak};
 use super::item::{Grid, Item, numbers};
 use super::plan::{Plan, stiffness};
-use retune_figures::sheet::{BLUE, Chart, Drawing, GREEN, Key, Layer, ORANGE, PURPLE, SKY, VERMILION, sheet};
+use retune_figures::colour::{BLUE, Colour, GREEN, ORANGE, PURPLE, SKY, VERMILION};
+use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Sheet, Stroke, Width, drawing};
 use retune_workbench::Error;
 
 const NAMES: [&str; 3] = ["without damper", "with SSVI NES", "with TMD"];
 /// One colour and dash for each stiffness; the tuned one is red, as in the paper.
-const OTHERS: [(&str, &str); 5] =
-    [(BLUE, ""), (SKY, "18 8"), (GREEN, "6 6"), (PURPLE, "22 6 6 6"), (ORANGE, "12 6")];
+const OTHERS: [(Colour, Dash); 5] = [
+    (BLUE, Dash::Solid),
+    (SKY, Dash::Long),
+    (GREEN, Dash::Short),
+    (PURPLE, Dash::DashDot),
+    (ORANGE, Dash::Dots),
+];
 
 /// Makes Figure 3.
 ///
@@ -55,39 +61,42 @@ pub fn figure3(plan: &Plan) -> Result<Item, Error> {
 }
 
 fn picture(plan: &Plan, families: &[Family]) -> Drawing {
-    let style =
-        |i: usize, k1: f64| if k1 == plan.tuned() { (VERMILION, "") } else { OTHERS[i % OTHERS.len()] };
+    let style = |i: usize, k1: f64| {
+        let (colour, dash) = OTHERS[i % OTHERS.len()];
+        if k1 == plan.tuned() {
+            Stroke::new(VERMILION, 1.5, Dash::Solid)
+        } else {
+            Stroke::new(colour, 1.1, dash)
+        }
+    };
     let top = families.iter().map(|f| f.highest(0).energy).fold(0.0, f64::max) * 1.06;
-    let charts: Vec<Chart> = (0..3)
-        .map(|scene| Chart {
-            title: format!("({}) {}", ["a", "b", "c"][scene], NAMES[scene]),
-            labels: ["ω, rad/s".into(), "E₁max, J".into()],
-            ranges: [
-                (plan.file.omega.from, plan.file.omega.to),
-                (0.0, if scene == 0 { top } else { 0.7 * top }),
-            ],
-            log: false,
-            layers: families
-                .iter()
-                .enumerate()
-                .map(|(i, family)| {
-                    let (colour, dash) = style(i, family.k1);
-                    let points = family.points[scene].iter().map(|p| (p.value, p.e1_max)).collect();
-                    Layer::Line { points, colour, width: if colour == VERMILION { 5.0 } else { 3.5 }, dash }
-                })
-                .collect(),
-        })
-        .collect();
-    let words: Vec<String> = families.iter().map(|f| format!("k₁ = {} N/m", stiffness(f.k1))).collect();
-    let legend: Vec<(Key, &str)> = words
-        .iter()
-        .enumerate()
-        .map(|(i, words)| {
-            let (colour, dash) = style(i, families[i].k1);
-            (Key::Line(colour, dash), words.as_str())
-        })
-        .collect();
-    sheet(&charts, 1, 480.0, &legend)
+    let chart = |scene: usize| Chart {
+        title: format!("({}) {}", ["a", "b", "c"][scene], NAMES[scene]),
+        x: Axis::linear("ω, rad/s", (plan.file.omega.from, plan.file.omega.to)),
+        y: Axis::linear("E1max, J", (0.0, if scene == 0 { top } else { 0.7 * top })),
+        layers: families
+            .iter()
+            .enumerate()
+            .map(|(i, family)| Layer::Line {
+                points: family.points[scene].iter().map(|p| (p.value, p.e1_max)).collect(),
+                stroke: style(i, family.k1),
+            })
+            .collect(),
+        height: 140.0,
+    };
+    let key = |(i, family): (usize, &Family)| {
+        (Key::Line(style(i, family.k1)), format!("k1 = {} N/m", stiffness(family.k1)))
+    };
+    drawing(&Sheet {
+        title: "E1max against the frequency".to_owned(),
+        description: "E1max against ω for several stiffnesses k1: (a) without damper, (b) with the SSVI NES, (c) with the TMD.".to_owned(),
+        width: Width::Page,
+        charts: (0..3).map(chart).collect(),
+        columns: 1,
+        stacked: false,
+        legend: families.iter().enumerate().map(key).collect(),
+        caption: Vec::new(),
+    })
 }
 
 fn highest(families: &[Family]) -> Grid {

@@ -5,25 +5,47 @@ use super::motions::Motions;
 use super::plan::stiffness;
 use retune_dynamics::sweep::zones;
 use retune_dynamics::{Kind, Zone};
-use retune_figures::sheet::{
-    BLACK, BLUE, Chart, Drawing, GREEN, GREY, Key, Layer, ORANGE, PURPLE, SKY, VERMILION, YELLOW, sheet,
+use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, YELLOW};
+use retune_figures::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stand, Stroke, Width, drawing,
 };
 
 /// Height of the strip on top of the orbit diagram, as a share of the chart's.
 const STRIP: f64 = 0.05;
 /// Heights of the two alternating rows of regime labels, as shares of the chart's height.
-const ROWS: [f64; 2] = [0.89, 0.83];
+const ROWS: [f64; 2] = [0.9, 0.82];
 /// Width of a letter of a label, as a share of the chart's width.
-const LETTER: f64 = 0.019;
+const LETTER: f64 = 0.022;
+/// The lines of the energies.
+const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Long);
+const SSVI: Stroke = Stroke::new(VERMILION, 1.4, Dash::Dots);
+const TMD: Stroke = Stroke::solid(GREEN);
+const DAMPER: Stroke = Stroke::solid(ORANGE);
+/// The natural frequency.
+const NATURAL: Stroke = Stroke::new(BLACK, 0.7, Dash::Solid);
 
 /// Both charts with their legend.
 pub fn picture(family: &Family, motions: &Motions) -> Drawing {
     let omega = (motions.omega[0], motions.omega[motions.omega.len() - 1]);
-    sheet(&[zone_chart(family, omega), orbit_chart(family, motions, omega)], 2, 560.0, &legend())
+    let k1 = stiffness(family.k1);
+    drawing(&Sheet {
+        title: format!("Impact zones and motions at k1 = {k1} N/m"),
+        description: format!(
+            "Against ω from {:.3} to {:.3} rad/s: on the left zones of impacts and the energies E1max and E2max, on the right x2 at the \
+             crests of the force, with the names of the motions.",
+            omega.0, omega.1
+        ),
+        width: Width::Page,
+        charts: vec![zone_chart(family, omega), orbit_chart(family, motions, omega)],
+        columns: 2,
+        stacked: false,
+        legend: legend().into_iter().map(|(key, words)| (key, words.to_owned())).collect(),
+        caption: Vec::new(),
+    })
 }
 
 /// The colour of a kind of motion.
-fn colour(kind: Kind) -> &'static str {
+fn colour(kind: Kind) -> Colour {
     match kind {
         Kind::Periodic => GREY,
         Kind::AmplitudeModulated => YELLOW,
@@ -40,19 +62,22 @@ fn legend() -> Vec<(Key, &'static str)> {
         (Key::Area(PURPLE, 0.35), "both walls struck"),
         (Key::Area(SKY, 0.35), "PS only"),
         (Key::Heading, "curves:"),
-        (Key::Line(BLACK, "12 8"), "E₁max, no damper"),
-        (Key::Line(VERMILION, "3 5"), "E₁max, SSVI"),
-        (Key::Line(GREEN, ""), "E₁max, TMD"),
-        (Key::Line(ORANGE, ""), "E₂max, SSVI"),
+        (Key::Line(NONE), "E1max, no damper"),
+        (Key::Line(SSVI), "E1max, SSVI"),
+        (Key::Line(TMD), "E1max, TMD"),
+        (Key::Line(DAMPER), "E2max, SSVI"),
         (Key::Heading, "dots:"),
-        (Key::Dot(BLACK), "from rest"),
-        (Key::Dot(BLUE), "sweep up"),
-        (Key::Dot(ORANGE), "sweep down"),
+        (Key::Mark(Mark::new(Shape::Disc, BLACK, 4.0)), "from rest"),
+        (Key::Mark(Mark::new(Shape::Disc, BLUE, 4.0)), "sweep up"),
+        (Key::Mark(Mark::new(Shape::Disc, ORANGE, 4.0)), "sweep down"),
         (Key::Heading, "strip:"),
     ];
     keys.extend(kinds.map(|kind| (Key::Area(colour(kind), 1.0), kind.words())));
     keys
 }
+
+/// All values.
+const EVERYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {
     let mut layers: Vec<Layer> = zones(&family.points[1])
@@ -63,24 +88,24 @@ fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {
                 Zone::PrimaryOnly => SKY,
                 Zone::ObstacleOnly | Zone::None => return None,
             };
-            Some(Layer::Band { from, to, colour, opacity: 0.35, height: (0.0, 1.0) })
+            Some(Layer::Band { x: (from, to), y: EVERYWHERE, colour, opacity: 0.35 })
         })
         .collect();
-    layers.push(Layer::Upright { x: family.natural });
+    layers.push(Layer::Upright { x: family.natural, stroke: NATURAL });
     let curve = |scene: usize, damper: bool| {
         family.points[scene].iter().map(|p| (p.value, if damper { p.e2_max } else { p.e1_max })).collect()
     };
-    layers.push(Layer::Line { points: curve(0, false), colour: BLACK, width: 3.0, dash: "12 8" });
-    layers.push(Layer::Line { points: curve(2, false), colour: GREEN, width: 4.0, dash: "" });
-    layers.push(Layer::Line { points: curve(1, true), colour: ORANGE, width: 3.5, dash: "" });
-    layers.push(Layer::Line { points: curve(1, false), colour: VERMILION, width: 5.0, dash: "3 5" });
+    layers.push(Layer::Line { points: curve(0, false), stroke: NONE });
+    layers.push(Layer::Line { points: curve(2, false), stroke: TMD });
+    layers.push(Layer::Line { points: curve(1, true), stroke: DAMPER });
+    layers.push(Layer::Line { points: curve(1, false), stroke: SSVI });
     let top = family.highest(0).energy.max(family.highest(1).energy);
     Chart {
-        title: format!("k₁ = {} N/m: impact zones, energies", stiffness(family.k1)),
-        labels: ["ω, rad/s".into(), "E, J".into()],
-        ranges: [omega, (0.0, 1.05 * top)],
-        log: false,
+        title: format!("k1 = {} N/m: impact zones, energies", stiffness(family.k1)),
+        x: Axis::linear("ω, rad/s", omega),
+        y: Axis::linear("E, J", (0.0, 1.05 * top)),
         layers,
+        height: 190.0,
     }
 }
 
@@ -93,39 +118,40 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
         colour,
         size,
     };
-    let mut layers = strip(motions);
-    layers.push(Layer::Upright { x: family.natural });
-    layers.extend([dots(0, BLACK, 6.0), dots(2, ORANGE, 4.5), dots(1, BLUE, 3.0)]);
-    layers.extend(labels(motions, omega));
     let values = motions.orbits.iter().flatten().flat_map(|o| o.samples.iter().map(|y| y[2]));
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    // Space on top for the strip and two rows of labels.
+    let range = (low - 0.05 * (high - low), high + 0.3 * (high - low));
+    let height = |share: f64| range.0 + share * (range.1 - range.0);
+    let mut layers = strip(motions, height(1.0 - STRIP));
+    layers.push(Layer::Upright { x: family.natural, stroke: NATURAL });
+    layers.extend([dots(0, BLACK, 1.9), dots(2, ORANGE, 1.4), dots(1, BLUE, 0.9)]);
+    layers.extend(labels(motions, omega, ROWS.map(height)));
     Chart {
-        title: "x₂ at the crests of the force; regimes nT, m, k".into(),
-        labels: ["ω, rad/s".into(), "x₂, m".into()],
-        // Space on top for the strip and two rows of labels.
-        ranges: [omega, (low - 0.05 * (high - low), high + 0.3 * (high - low))],
-        log: false,
+        title: "x2 at the crests of the force; regimes nT, m, k".into(),
+        x: Axis::linear("ω, rad/s", omega),
+        y: Axis::linear("x2, m", range),
         layers,
+        height: 190.0,
     }
 }
 
-/// A strip coloured by the kind of motion from rest.
-fn strip(motions: &Motions) -> Vec<Layer> {
+/// A strip on top, from a height on, coloured by the kind of motion from rest.
+fn strip(motions: &Motions, from: f64) -> Vec<Layer> {
     let omega = &motions.omega;
     let middle = |i: usize, j: usize| 0.5 * (omega[i] + omega[j]);
     let band = |(i, regime): (usize, &retune_dynamics::Regime)| Layer::Band {
-        from: middle(i.saturating_sub(1), i),
-        to: middle(i, (i + 1).min(omega.len() - 1)),
+        x: (middle(i.saturating_sub(1), i), middle(i, (i + 1).min(omega.len() - 1))),
+        y: (from, f64::INFINITY),
         colour: colour(regime.kind),
         opacity: 1.0,
-        height: (1.0 - STRIP, 1.0),
     };
     motions.regimes.iter().enumerate().map(band).collect()
 }
 
-/// Names of periodic motions where there is space for them, the widest windows first.
-fn labels(motions: &Motions, (first, last): (f64, f64)) -> Vec<Layer> {
+/// Names of periodic motions at two heights, where there is space for them, the widest windows first.
+fn labels(motions: &Motions, (first, last): (f64, f64), heights: [f64; 2]) -> Vec<Layer> {
     let mut windows = motions.windows();
     windows
         .retain(|(label, from, to)| label.starts_with(|c: char| c.is_ascii_digit() || c == 'T') && to > from);
@@ -143,9 +169,9 @@ fn labels(motions: &Motions, (first, last): (f64, f64)) -> Vec<Layer> {
         let free = |row: &&f64| {
             taken.iter().all(|(other, width, place)| place != *row || (x - other).abs() > half + width)
         };
-        if let Some(&share) = ROWS.iter().find(free) {
-            taken.push((x, half, share));
-            layers.push(Layer::Words { x, share, text });
+        if let Some(&height) = heights.iter().find(free) {
+            taken.push((x, half, height));
+            layers.push(Layer::Text { at: (x, height), text, stand: Stand::Over });
         }
     }
     layers

@@ -2,7 +2,8 @@
 
 use super::item::{Item, Verdict, numbers};
 use super::plan::Plan;
-use retune_figures::sheet::{BLACK, Chart, Key, Layer, ORANGE, VERMILION, sheet};
+use retune_figures::colour::{BLACK, ORANGE, VERMILION};
+use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, drawing};
 use retune_model::Scene;
 use retune_solver::{Rows, Sample, Window, trajectory};
 use retune_workbench::Error;
@@ -32,31 +33,35 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
         plan.made_by(&format!("ω = {omega} rad/s, from rest, shown every {INTERVAL} s.")),
     );
     let top = none.iter().map(|s| s.e1).fold(0.0, f64::max) * 1.05;
+    const LINES: [(Stroke, &str); 3] = [
+        (Stroke::new(BLACK, 0.5, Dash::Solid), "E1, PS without damper"),
+        (Stroke::new(VERMILION, 0.7, Dash::Solid), "E1, PS with damper"),
+        (Stroke::new(ORANGE, 0.7, Dash::Solid), "E2, damper"),
+    ];
     let charts = [("(a) SSVI NES", &ssvi), ("(b) TMD", &tmd)].map(|(title, damper)| {
-        let line = |samples: &[Sample], energy: fn(&Sample) -> f64, colour, width| Layer::Line {
+        let line = |samples: &[Sample], energy: fn(&Sample) -> f64, i: usize| Layer::Line {
             points: samples.iter().map(|s| (s.t, energy(s))).collect(),
-            colour,
-            width,
-            dash: "",
+            stroke: LINES[i].0,
         };
         Chart {
             title: title.to_owned(),
-            labels: ["t, s".into(), "E, J".into()],
-            ranges: [(0.0, window.to), (0.0, top)],
-            log: false,
-            layers: vec![
-                line(&none, |s| s.e1, BLACK, 1.2),
-                line(damper, |s| s.e1, VERMILION, 1.6),
-                line(damper, |s| s.e2, ORANGE, 1.6),
-            ],
+            x: Axis::linear("t, s", (0.0, window.to)),
+            y: Axis::linear("E, J", (0.0, top)),
+            layers: vec![line(&none, |s| s.e1, 0), line(damper, |s| s.e1, 1), line(damper, |s| s.e2, 2)],
+            height: 150.0,
         }
     });
-    let legend = [
-        (Key::Line(BLACK, ""), "E₁, PS without damper"),
-        (Key::Line(VERMILION, ""), "E₁, PS with damper"),
-        (Key::Line(ORANGE, ""), "E₂, damper"),
-    ];
-    item.picture("figure6", sheet(&charts, 1, 520.0, &legend), "Energies from rest.");
+    let sheet = Sheet {
+        title: "Energies over time at resonance".to_owned(),
+        description: "E1 of the structure without damper and with one, and E2 of the damper, from rest: (a) SSVI NES, (b) TMD.".to_owned(),
+        width: Width::Page,
+        charts: charts.to_vec(),
+        columns: 1,
+        stacked: false,
+        legend: LINES.map(|(stroke, words)| (Key::Line(stroke), words.to_owned())).to_vec(),
+        caption: Vec::new(),
+    };
+    item.picture("figure6", drawing(&sheet), "Energies from rest.");
     let rows = none
         .iter()
         .zip(&ssvi)

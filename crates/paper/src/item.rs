@@ -1,6 +1,6 @@
 //! A table or figure of the paper, reproduced: the paper's statements, our results, and a verdict on each statement.
 
-use retune_figures::sheet::Drawing;
+use retune_figures::Drawing;
 use retune_workbench::designs::quoted;
 use serde::{Deserialize, Serialize};
 

@@ -2,7 +2,7 @@
 
 use super::item::{Grid, Item, Picture, Statement, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use retune_figures::sheet::Drawing;
+use retune_figures::Drawing;
 
 const STYLE: &str = include_str!("page.css");
 

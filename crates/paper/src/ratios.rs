@@ -4,7 +4,8 @@ use super::family::Family;
 use super::item::{Item, Verdict, numbers};
 use super::plan::{Plan, stiffness};
 use retune_dynamics::Point;
-use retune_figures::sheet::{BLUE, Chart, Key, Layer, VERMILION, sheet};
+use retune_figures::colour::{BLUE, Colour, VERMILION};
+use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, drawing};
 use retune_solver::simulate;
 use retune_workbench::Error;
 
@@ -42,35 +43,45 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
         plan.made_by("(a) at resonance, ω = √(k1/m1), which the paper does not state; (b), (c) one run from rest at each frequency."),
     );
     let omega = (plan.file.omega.from, plan.file.omega.to);
-    let charts = [
+    let charts = vec![
         chart(
             "(a) at resonance",
-            "k₁, N/m",
+            "k1, N/m",
             (plan.file.k1_range.from, plan.file.k1_range.to),
             [&at_resonance[0], &at_resonance[1]],
         ),
         chart(
-            &format!("(b) k₁ = {} N/m", stiffness(soft.k1)),
+            &format!("(b) k1 = {} N/m", stiffness(soft.k1)),
             "ω, rad/s",
             omega,
             [&soft.points[1], &soft.points[2]],
         ),
         chart(
-            &format!("(c) k₁ = {} N/m", stiffness(tuned.k1)),
+            &format!("(c) k1 = {} N/m", stiffness(tuned.k1)),
             "ω, rad/s",
             omega,
             [&tuned.points[1], &tuned.points[2]],
         ),
     ];
-    let legend = [
-        (Key::Line(VERMILION, ""), "R₁, SSVI NES"),
-        (Key::Line(VERMILION, "10 7"), "R₂, SSVI NES"),
-        (Key::Line(BLUE, ""), "R₁, TMD"),
-        (Key::Line(BLUE, "10 7"), "R₂, TMD"),
-    ];
+    let key = |colour, ratio: usize, words: &str| (Key::Line(stroke(colour, ratio)), words.to_owned());
+    let sheet = Sheet {
+        title: "Energy ratios R1 and R2".to_owned(),
+        description: "R1 = E1max/(E1max + E2max) and R2 = E2max/(E1max + E2max) of the SSVI NES and the TMD: against k1 at resonance, and against ω at two stiffnesses.".to_owned(),
+        width: Width::Page,
+        charts,
+        columns: 1,
+        stacked: false,
+        legend: vec![
+            key(VERMILION, 0, "R1, SSVI NES"),
+            key(VERMILION, 1, "R2, SSVI NES"),
+            key(BLUE, 0, "R1, TMD"),
+            key(BLUE, 1, "R2, TMD"),
+        ],
+        caption: Vec::new(),
+    };
     item.picture(
         "figure5",
-        sheet(&charts, 1, 430.0, &legend),
+        drawing(&sheet),
         "Energy ratios; red the SSVI NES, blue the TMD; dashed the damper's share R₂.",
     );
     let csv = |ssvi: &[Point], tmd: &[Point], name: &str| {
@@ -108,19 +119,24 @@ pub fn figure5(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
+/// The line of a ratio: R2 is dashed.
+const fn stroke(colour: Colour, ratio: usize) -> Stroke {
+    Stroke::new(colour, 1.1, if ratio == 0 { Dash::Solid } else { Dash::Long })
+}
+
 fn chart(title: &str, label: &str, range: (f64, f64), dampers: [&[Point]; 2]) -> Chart {
     let mut layers = Vec::new();
     for (points, colour) in dampers.into_iter().zip([VERMILION, BLUE]) {
-        for (ratio, dash) in [(0, ""), (1, "10 7")] {
+        for ratio in 0..2 {
             let points = points.iter().map(|p| (p.value, p.ratios()[ratio])).collect();
-            layers.push(Layer::Line { points, colour, width: 4.0, dash });
+            layers.push(Layer::Line { points, stroke: stroke(colour, ratio) });
         }
     }
     Chart {
         title: title.to_owned(),
-        labels: [label.to_owned(), "R₁, R₂".to_owned()],
-        ranges: [range, (0.0, 1.0)],
-        log: false,
+        x: Axis::linear(label, range),
+        y: Axis::linear("R1, R2", (-0.03, 1.05)),
         layers,
+        height: 125.0,
     }
 }

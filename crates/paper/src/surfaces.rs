@@ -4,7 +4,7 @@ use super::item::{Item, Verdict, numbers};
 use super::plan::Plan;
 use rayon::prelude::*;
 use retune_dynamics::parameter::evenly;
-use retune_figures::{Mark, Nodes, Scale, heat_map};
+use retune_figures::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
 use retune_optim::{PeakEnergy, Variable};
 use retune_study::Study;
 use retune_study::short;
@@ -54,7 +54,7 @@ struct Found {
 /// Makes Figure 2.
 ///
 /// # Errors
-/// A figure cannot be drawn.
+/// A study without a damper.
 pub fn figure2(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(
         "figure2",
@@ -132,16 +132,25 @@ fn surface(
         scale: Scale::Linear,
         values: nodes.clone(),
     });
-    let marks = [
-        Mark::Grid {
-            x: found.best[0],
-            y: found.best[1],
-            label: format!("best node, {:.0} J", found.best_value),
-        },
-        Mark::Optimum { x: paper[0], y: paper[1], label: format!("the paper's, {:.0} J", found.paper_value) },
+    let places = [
+        Place { at: (found.best[0], found.best[1]), label: format!("best node, {:.0} J", found.best_value) },
+        Place { at: (paper[0], paper[1]), label: format!("the paper's, {:.0} J", found.paper_value) },
     ];
-    let svg = heat_map(&sides, &values, ENERGY, &marks, &[]).map_err(refuse)?;
+    let (chart, legend) = heat_map(&sides, &values, ENERGY, &places);
     let [a, b] = surface.variables;
+    let svg = svg(&Sheet {
+        title: format!("{}: E1max over {a} and {b}", surface.title),
+        description: format!(
+            "A map of {POINTS} by {POINTS} cells. Marked: {}.",
+            places.map(|place| place.label).join("; ")
+        ),
+        width: Width::Column,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend,
+        caption: Vec::new(),
+    });
     item.picture(surface.name, svg, &format!("{}: E₁max over {a} and {b}.", surface.title));
     let rows = designs.iter().zip(&values).map(|(design, value)| vec![design[0], design[1], *value]);
     item.data.push((format!("{}.csv", surface.name), numbers(&format!("{a},{b},E1max_J"), rows)));

@@ -1,8 +1,9 @@
 //! Drift of the mechanical energy over 1,000 impacts without any loss: no damping, no force.
 
 use crate::own;
-use crate::panel::{Axis, Drawn, Line, Panel, look, sheet};
+use crate::panel::{Drawn, Line, look, panel, sheet};
 use crate::scenes::{SSVI, scene, system};
+use retune_figures::Axis;
 use retune_model::{Coupled, NonNegative, Side};
 use retune_solver::observe::{Observer, Segment};
 use retune_solver::{Contacts, Method, Settings};
@@ -113,12 +114,11 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 fn draw(path: &Path, all: &[Drift]) -> Drawn {
-    let panel = |fixed: bool, contacts: Contacts, caption: &str| {
+    let one = |fixed: bool, contacts: Contacts, title: &str| {
         let lines = runs()
             .into_iter()
             .filter(|(method, _)| method.has_fixed_step() == fixed)
             .map(|(method, _)| {
-                let (colour, width, marker) = look(method);
                 let mut gains = 0;
                 let mut blown = 0;
                 let of: Vec<&Drift> = all
@@ -145,23 +145,23 @@ fn draw(path: &Path, all: &[Drift]) -> Drawn {
                     (_, 0) => ", loses or gains",
                     _ => ", blows up",
                 };
-                Line { name: format!("{}{how}", method.name()), points, colour, width, marker }
+                Line::new(&format!("{}{how}", method.name()), points, look(method))
             })
             .collect();
         let x = if fixed {
-            Axis::log("step, s", 1e-5, 1e-1)
+            Axis::log("step, s", (1e-5, 1e-1))
         } else {
-            Axis::log("relative tolerance of a step", 1e-13, 1e-1)
+            Axis::log("relative tolerance of a step", (1e-13, 1e-1))
         };
-        let y = Axis::log("relative change of the energy", 1e-12, 1e3);
-        Panel { caption: caption.into(), x, y, lines }
+        let y = Axis::log("relative change of the energy", (1e-12, 1e3));
+        panel(title, x, y, lines, 165.0)
     };
-    let panels = [
-        panel(false, Contacts::Located, "contacts located"),
-        panel(false, Contacts::Stepped, "contacts stepped over"),
-        panel(true, Contacts::Stepped, "fixed step, stepped over"),
+    let panels = vec![
+        one(false, Contacts::Located, "contacts located"),
+        one(false, Contacts::Stepped, "contacts stepped over"),
+        one(true, Contacts::Stepped, "fixed step, stepped over"),
     ];
     let note =
         "No damping, no force: every change is the method's error. Runs that blew up are in energy.csv.";
-    sheet(path, &["Change of the energy over 1,000 lossless impacts", note], 3, (610, 500), &panels)
+    sheet(path, "Change of the energy over 1,000 lossless impacts", &[note], 2, panels)
 }

@@ -2,8 +2,9 @@
 //! leaves it again before they end.
 
 use crate::own;
-use crate::panel::{Axis, Drawn, Line, Panel, look, sheet};
+use crate::panel::{Drawn, Line, look, panel, sheet};
 use crate::scenes::{Case, Numbers, TMD, cases, scene, system};
+use retune_figures::Axis;
 use retune_model::{Coupled, Side};
 use retune_solver::observe::{Observer, Segment};
 use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings};
@@ -146,30 +147,29 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 fn draw(path: &Path, shares: &[Shares]) -> Drawn {
-    let panel = |scene: &str, contacts: Contacts, caption: &str| Panel {
-        caption: caption.into(),
-        x: Axis::log("longest step allowed, s", 1e-4, 1.0),
-        y: Axis::linear("impacts jumped over, per cent", 0.0, 100.0),
-        lines: shares
-            .iter()
-            .filter(|s| s.0 == scene && (s.2 == contacts || s.1 == Method::Hybrid))
-            .map(|(_, method, _, points)| {
-                let (colour, width, marker) = look(*method);
-                let failed = points.iter().any(|p| p.1.is_nan());
-                let name = format!("{}{}", method.name(), if failed { ", then blows up" } else { "" });
-                let points = points.iter().map(|p| (p.0, 100.0 * p.1)).collect();
-                Line { name, points, colour, width, marker }
-            })
-            .rev()
-            .collect(),
+    let one = |scene: &str, contacts: Contacts, title: &str| {
+        let own = shares.iter().filter(|s| s.0 == scene && (s.2 == contacts || s.1 == Method::Hybrid));
+        let line = |(_, method, _, points): &Shares| {
+            let failed = points.iter().any(|p| p.1.is_nan());
+            let name = format!("{}{}", method.name(), if failed { ", then blows up" } else { "" });
+            Line::new(&name, points.iter().map(|p| (p.0, 100.0 * p.1)).collect(), look(*method))
+        };
+        let x = Axis::log("longest step allowed, s", (2e-4, 1.5));
+        panel(
+            title,
+            x,
+            Axis::linear("jumped over, per cent", (-3.0, 103.0)),
+            own.map(line).rev().collect(),
+            150.0,
+        )
     };
-    let panels = [
-        panel("grazing 1 %", Contacts::Located, "wall at 99 % of the swing, located"),
-        panel("grazing 1 %", Contacts::Stepped, "wall at 99 % of the swing, stepped over"),
-        panel("grazing 0.1 %", Contacts::Located, "wall at 99.9 % of the swing, located"),
-        panel("grazing 0.1 %", Contacts::Stepped, "wall at 99.9 % of the swing, stepped over"),
+    let panels = vec![
+        one("grazing 1 %", Contacts::Located, "wall at 99 % of the swing, located"),
+        one("grazing 1 %", Contacts::Stepped, "wall at 99 % of the swing, stepped over"),
+        one("grazing 0.1 %", Contacts::Located, "wall at 99.9 % of the swing, located"),
+        one("grazing 0.1 %", Contacts::Stepped, "wall at 99.9 % of the swing, stepped over"),
     ];
     let note = "A TMD that grazes its wall, 100 s, at MATLAB's default tolerance 1e-3.";
     let more = "Nobody noticed: where a line is above zero the run ended without a word. Lines end where the motion blew up.";
-    sheet(path, &["Contacts that steps jump over", note, more], 2, (690, 430), &panels)
+    sheet(path, "Contacts that steps jump over", &[note, more], 2, panels)
 }

@@ -2,9 +2,11 @@
 //! parameters about Table 2's SSVI.
 
 use crate::own;
-use crate::panel::{Axis, BLUE, Drawn, INK, Line, Marker, Panel, VERMILION, sheet};
+use crate::panel::{Drawn, Line, WIDTHS, panel, sheet};
 use crate::scenes::{Numbers, SSVI, scene};
 use rayon::prelude::*;
+use retune_figures::colour::{BLACK, BLUE, VERMILION};
+use retune_figures::{Axis, Shape};
 use retune_model::OutOfRange;
 use retune_optim::{Minimum, Options, PeakEnergy, Variable, minimize};
 use retune_solver::{Contacts, Method, Settings, Window, e1_max};
@@ -154,36 +156,46 @@ fn scan(settings: &Settings) -> Result<Vec<(f64, f64)>, OutOfRange> {
 }
 
 fn draw(path: &Path, [ode45, ode23s, hybrid]: [Vec<(f64, f64)>; 3]) -> Drawn {
-    let line =
-        |name: &str, points, colour, width, marker| Line { name: name.into(), points, colour, width, marker };
-    let panels = [
-        Panel {
-            caption: "How far E1max is off".into(),
-            x: Axis::log("relative tolerance of a step", 1e-13, 1e-1),
-            y: Axis::log("error of E1max, J", 1e-10, 1e3),
-            lines: vec![
-                line("ode45, stepped", ode45, BLUE, 2, Marker::Disc),
-                line("ode23s, stepped", ode23s, INK, 3, Marker::Disc),
-                line("hybrid", hybrid, VERMILION, 4, Marker::Disc),
+    let [thin, normal, bold, boldest] = WIDTHS;
+    let exact = Line {
+        name: "hybrid, rtol 1e-10".to_owned(),
+        points: scan(&located(Method::Hybrid, 1e-10))?,
+        colour: VERMILION,
+        width: bold,
+        shape: None,
+    };
+    let panels = vec![
+        panel(
+            "How far E1max is off",
+            Axis::log("relative tolerance of a step", (1e-13, 1e-1)),
+            Axis::log("error of E1max, J", (1e-10, 1e3)),
+            vec![
+                Line::new("ode45, stepped", ode45, (BLUE, normal, Shape::Disc)),
+                Line::new("ode23s, stepped", ode23s, (BLACK, bold, Shape::Disc)),
+                Line::new("hybrid", hybrid, (VERMILION, boldest, Shape::Disc)),
             ],
-        },
-        Panel {
-            caption: "E1max along k2, ±0.1 %".into(),
-            x: Axis::linear("change of k2, per cent", -0.1, 0.1),
-            y: Axis::linear("E1max, J", 540.0, 680.0),
-            lines: vec![
-                line("ode23s, rtol 1e-3", scan(&stepped(Method::Ode23s, 1e-3))?, INK, 1, Marker::Cross),
-                line("hybrid, rtol 1e-6", scan(&located(Method::Hybrid, 1e-6))?, BLUE, 1, Marker::Square),
-                line(
-                    "hybrid, rtol 1e-10",
-                    scan(&located(Method::Hybrid, 1e-10))?,
-                    VERMILION,
-                    3,
-                    Marker::Nothing,
+            165.0,
+        ),
+        panel(
+            "E1max along k2, ±0.1 %",
+            Axis::linear("change of k2, per cent", (-0.1, 0.1)),
+            Axis::linear("E1max, J", (540.0, 680.0)),
+            vec![
+                Line::new(
+                    "ode23s, rtol 1e-3",
+                    scan(&stepped(Method::Ode23s, 1e-3))?,
+                    (BLACK, thin, Shape::Cross),
                 ),
+                Line::new(
+                    "hybrid, rtol 1e-6",
+                    scan(&located(Method::Hybrid, 1e-6))?,
+                    (BLUE, thin, Shape::Square),
+                ),
+                exact,
             ],
-        },
+            165.0,
+        ),
     ];
     let note = "Table 2's SSVI, largest E1 over 0 to 100 s.";
-    sheet(path, &["The objective against tolerance and parameters", note], 2, (760, 500), &panels)
+    sheet(path, "The objective against tolerance and parameters", &[note], 2, panels)
 }

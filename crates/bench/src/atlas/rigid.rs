@@ -5,8 +5,10 @@
 
 use super::{WAYS, Way};
 use crate::own;
-use crate::panel::{Axis, BLUE, Drawn, GREEN, GREY, INK, Line, Marker, Panel, VERMILION, sheet};
+use crate::panel::{Drawn, Line, WIDTHS, panel, sheet};
 use crate::scenes::{Case, Numbers, SSVI, scene, system};
+use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
+use retune_figures::{Axis, Shape};
 use retune_model::{Coupled, Scene, Side};
 use retune_solver::observe::{Observer, PrimaryEnergy, RunningMaximum, Segment};
 use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError};
@@ -162,57 +164,51 @@ fn draw(
     costs: Vec<(Way, Vec<(f64, f64)>)>,
     limit: [Vec<(f64, f64)>; 2],
 ) -> Drawn {
+    let [thin, normal, bold, boldest] = WIDTHS;
     let look = |way: &Way| match (way.method, way.contacts) {
-        (Method::Hybrid, _) => (VERMILION, 4, Marker::Disc),
-        (Method::Ode23s, _) => (INK, 2, if way.setting > 1e-4 { Marker::Square } else { Marker::Disc }),
-        (Method::Rk4, _) => (GREEN, 2, Marker::Disc),
-        (Method::Euler, _) => (GREEN, 2, Marker::Square),
-        (Method::Ode23, _) => (BLUE, 1, Marker::Cross),
-        (Method::Ode45, Contacts::Located) => (BLUE, 2, Marker::Disc),
-        (Method::Ode45, _) => (BLUE, 1, Marker::Ring),
-        (_, Contacts::Located) => (BLUE, 2, Marker::Triangle),
-        _ => (BLUE, 1, Marker::Square),
+        (Method::Hybrid, _) => (VERMILION, boldest, Shape::Disc),
+        (Method::Ode23s, _) => (BLACK, normal, if way.setting > 1e-4 { Shape::Square } else { Shape::Disc }),
+        (Method::Rk4, _) => (GREEN, normal, Shape::Disc),
+        (Method::Euler, _) => (GREEN, normal, Shape::Square),
+        (Method::Ode23, _) => (BLUE, thin, Shape::Cross),
+        (Method::Ode45, Contacts::Located) => (BLUE, normal, Shape::Disc),
+        (Method::Ode45, _) => (BLUE, thin, Shape::Ring),
+        (_, Contacts::Located) => (BLUE, normal, Shape::Triangle),
+        _ => (BLUE, thin, Shape::Square),
     };
     let lines = |of: Vec<(Way, Vec<(f64, f64)>)>| {
-        let line = |(way, points): (Way, Vec<(f64, f64)>)| {
-            let (colour, width, marker) = look(&way);
-            let points = points.into_iter().map(|p| (p.0, p.1.max(1e-15))).collect();
-            Line { name: way.name.into(), points, colour, width, marker }
-        };
+        let line = |(way, points): (Way, Vec<(f64, f64)>)| Line::new(way.name, points, look(&way));
         of.into_iter().rev().map(line).collect::<Vec<_>>()
     };
-    let x = || Axis::log("stiffness of the contact, times that of the SSVI", 1e-2, 1e8);
+    let x = || Axis::log("stiffness of the contact, times that of the SSVI", (1e-2, 1e8));
     let [e1, state] = limit;
     let (first, at) = state.last().map_or((1.0, 1.0), |p| *p);
     let slope = EXPONENTS.map(|n| 10f64.powi(n)).map(|f| (f, at * (f / first).powf(-0.4))).collect();
-    let plain =
-        |name: &str, points, colour, width, marker| Line { name: name.into(), points, colour, width, marker };
-    let panels = [
-        Panel {
-            caption: "Error of the final state".into(),
-            x: x(),
-            y: Axis::log("relative error", 1e-10, 10.0),
-            lines: lines(errors),
-        },
-        Panel {
-            caption: "Cost".into(),
-            x: x(),
-            y: Axis::log("evaluations of the right-hand side", 1e2, 1e6),
-            lines: lines(costs),
-        },
-        Panel {
-            caption: "Hertz's contact against rigid walls".into(),
-            x: x(),
-            y: Axis::log("relative distance from rigid walls", 1e-8, 1e2),
-            lines: vec![
-                plain("slope −2/5", slope, GREY, 1, Marker::Nothing),
-                plain("E1max", e1, BLUE, 2, Marker::Disc),
-                plain("final state", state, VERMILION, 3, Marker::Disc),
+    let panels = vec![
+        panel(
+            "Error of the final state",
+            x(),
+            Axis::log("relative error", (1e-10, 10.0)),
+            lines(errors),
+            170.0,
+        ),
+        panel("Cost", x(), Axis::log("evaluations of the right-hand side", (1e2, 1e6)), lines(costs), 170.0),
+        panel(
+            "Hertz's contact against rigid walls",
+            x(),
+            Axis::log("distance from rigid walls", (1e-8, 1e2)),
+            vec![
+                Line {
+                    name: "slope −2/5".to_owned(), points: slope, colour: GREY, width: thin, shape: None
+                },
+                Line::new("E1max", e1, (BLUE, normal, Shape::Disc)),
+                Line::new("final state", state, (VERMILION, bold, Shape::Disc)),
             ],
-        },
+            170.0,
+        ),
     ];
-    let note = "Two-sided SSVI, 10 s. Lines end where a method gave up or blew up. Right: the hybrid against instantaneous elastic impacts; a contact lasts as long as K^(−2/5).";
-    sheet(path, &["Toward rigid walls", note], 3, (640, 480), &panels)
+    let note = "Two-sided SSVI, 10 s. Lines end where a method gave up or blew up. Below: the hybrid against instantaneous elastic impacts; a contact lasts as long as K^(−2/5). Points beyond the axes lie on their ends.";
+    sheet(path, "Toward rigid walls", &[note], 2, panels)
 }
 
 #[cfg(test)]

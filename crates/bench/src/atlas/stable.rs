@@ -2,9 +2,11 @@
 //! function (E. Hairer & G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. 1996, IV.2 and IV.7).
 
 use crate::own;
-use crate::panel::{Axis, BLUE, Drawn, GREEN, INK, Line, Marker, Panel, sheet};
+use crate::panel::{Drawn, Line, WIDTHS, look, panel, sheet};
 use crate::scenes::{Case, cases, system};
 use nalgebra::{Complex, SMatrix};
+use retune_figures::colour::BLACK;
+use retune_figures::{Axis, Shape};
 use retune_model::{Bare, Side};
 use retune_solver::methods::{Dop853, Euler, Ode23, Ode23s, Ode45, OneStep, Rk4};
 use retune_solver::{Contacts, Method, System, Window, simulate};
@@ -206,14 +208,7 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
 
 fn draw(path: &Path, steps: &[(f64, Vec<Stable>)]) -> Drawn {
     let mut lines = Vec::new();
-    let look = [
-        (Method::Ode45, BLUE, Marker::Disc),
-        (Method::Ode23, BLUE, Marker::Square),
-        (Method::Dop853, BLUE, Marker::Triangle),
-        (Method::Rk4, GREEN, Marker::Disc),
-        (Method::Euler, GREEN, Marker::Square),
-    ];
-    for (method, colour, marker) in look {
+    for method in [Method::Ode45, Method::Ode23, Method::Dop853, Method::Rk4, Method::Euler] {
         let of = |pick: fn(&Stable) -> f64| -> Vec<(f64, f64)> {
             steps
                 .iter()
@@ -221,18 +216,20 @@ fn draw(path: &Path, steps: &[(f64, Vec<Stable>)]) -> Drawn {
                 .filter(|p| p.1.is_finite())
                 .collect()
         };
-        let name = method.name().to_string();
-        lines.push(Line { name, points: of(|s| s.measured), colour, width: 1, marker });
-        let theory = of(|s| s.theory);
-        lines.push(Line { name: String::new(), points: theory, colour: INK, width: 0, marker: Marker::Ring });
+        let (colour, _, shape) = look(method);
+        lines.push(Line::new(method.name(), of(|s| s.measured), (colour, WIDTHS[0], shape)));
+        let theory =
+            Line { shape: Some(Shape::Ring), ..Line::new("", of(|s| s.theory), (BLACK, 0.0, shape)) };
+        lines.push(theory);
     }
-    let panel = Panel {
-        caption: String::new(),
-        x: Axis::log("fastest eigenvalue of the scene, rad/s", 1.0, 1e5),
-        y: Axis::log("largest stable step, s", 1e-5, 10.0),
+    let panels = vec![panel(
+        "",
+        Axis::log("fastest eigenvalue of the scene, rad/s", (1.0, 1e5)),
+        Axis::log("largest stable step, s", (1e-5, 10.0)),
         lines,
-    };
+        180.0,
+    )];
     let note = "Points: measured on the method's own step. Rings: by its stability function.";
     let more = "Left: flight; right: contacts frozen at their deepest. The hybrid's flight is exact and ode23s is L-stable: no limit.";
-    sheet(path, &["Which steps are stable", note, more], 1, (1000, 500), &[panel])
+    sheet(path, "Which steps are stable", &[note, more], 1, panels)
 }

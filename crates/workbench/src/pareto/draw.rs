@@ -2,12 +2,28 @@
 
 use super::candidate::Candidate;
 use super::fronts::{Fronts, Row};
-use retune_figures::sheet::{BLUE, Chart, GREY, Key, Layer, ORANGE, PURPLE, VERMILION, sheet};
+use retune_figures::colour::{BLUE, Colour, GREY, ORANGE, PURPLE, VERMILION};
+use retune_figures::{Axis, Chart, Key, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
 use retune_study::Sweep;
 
 /// A colour for each damper, of what was found and of the damper in its study.
-const COLOURS: [[&str; 2]; 2] = [[BLUE, PURPLE], [VERMILION, ORANGE]];
-const LABELS: [&str; 3] = ["largest stroke, m", "largest contact force, N", "k₂, N/m"];
+const COLOURS: [[Colour; 2]; 2] = [[BLUE, PURPLE], [VERMILION, ORANGE]];
+const LABELS: [&str; 3] = ["largest stroke, m", "contact force, N", "k2, N/m"];
+const ENERGY: &str = "worst E1max, J";
+
+/// The mark of a damper's designs. Later dampers are drawn over earlier ones, and smaller, so that equal designs are both seen.
+fn found(damper: usize) -> Mark {
+    let [colour, _] = COLOURS[damper % COLOURS.len()];
+    let (shape, size) = if damper == 0 { (Shape::Disc, 6.5) } else { (Shape::Square, 4.0) };
+    Mark::new(shape, colour, size)
+}
+
+/// The mark of the damper in a study.
+fn of_study(damper: usize) -> Mark {
+    let [_, colour] = COLOURS[damper % COLOURS.len()];
+    let shape = if damper == 0 { Shape::Triangle } else { Shape::Cross };
+    Mark { rim: true, ..Mark::new(shape, colour, 7.0) }
+}
 
 /// The least E1max against a bound.
 pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
@@ -19,31 +35,44 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
     };
     let mut layers = Vec::new();
     for damper in 0..fronts.plan.dampers.len() {
-        let [colour, _] = COLOURS[damper % COLOURS.len()];
-        layers.push(Layer::Line { points: line(damper), colour, width: 4.0, dash: "" });
-        layers.push(Layer::Dots { points: line(damper), colour, size: size(damper) });
+        let mark = found(damper);
+        layers.push(Layer::Line { points: line(damper), stroke: Stroke::solid(mark.colour) });
+        layers.push(Layer::Marks { points: line(damper), mark });
     }
     let reached = |design: &Candidate| if sweep == Sweep::K2 { design.at.k2.get() } else { design.stroke };
     layers.extend(given(fronts, reached));
     let right = 1.03 * rows.last().map_or(1.0, |row| row.bound);
     let energies = rows.iter().filter_map(|row| row.design).chain(&fronts.given).map(|design| design.e1_max);
     let label = match sweep {
-        Sweep::K2 => "k₂ at most, N/m",
+        Sweep::K2 => "k2 at most, N/m",
         Sweep::Stroke => "stroke at most, m",
     };
     let chart = Chart {
-        title: title(fronts),
-        labels: [label.to_owned(), "worst E₁max, J".to_owned()],
-        ranges: [(0.0, right), (0.0, 1.06 * energies.fold(0.0, f64::max))],
-        log: false,
+        title: String::new(),
+        x: Axis::linear(label, (0.0, right)),
+        y: Axis::linear(ENERGY, (0.0, 1.06 * energies.fold(0.0, f64::max))),
         layers,
+        height: 165.0,
     };
-    let words = legend(fronts, true, |design| reached(design) <= right);
-    sheet(&[chart], 1, 700.0, &keys(&words)).wide
+    let legend = legend(fronts, true, |design| reached(design) <= right);
+    svg(&Sheet {
+        title: format!("The least E1max against a bound: {label}"),
+        description: format!(
+            "The worst E1max of the best design of each damper under each bound: {}.",
+            words(&legend)
+        ),
+        width: Width::Column,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend,
+        caption: vec![made_by(fronts)],
+    })
 }
 
 /// E1max against stroke, contact force and k2: the designs that no other dominates, and pale those that are dominated.
 pub(super) fn front(fronts: &Fronts) -> String {
+    const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
     let front = fronts.front();
     let all = || fronts.designs.iter().chain(&fronts.given);
     let top = 1.06 * all().map(|design| design.e1_max).fold(0.0, f64::max);
@@ -51,45 +80,51 @@ pub(super) fn front(fronts: &Fronts) -> String {
         let value = |design: &Candidate| [design.stroke, design.force, design.at.k2.get()][which];
         let point = |design: &Candidate| (value(design), design.e1_max);
         let dominated = fronts.designs.iter().filter(|design| !front.contains(design));
-        let mut layers =
-            vec![Layer::Dots { points: dominated.map(point).collect(), colour: GREY, size: 10.0 }];
+        let mut layers = vec![Layer::Marks { points: dominated.map(point).collect(), mark: DOMINATED }];
         for damper in 0..fronts.plan.dampers.len() {
-            let [colour, _] = COLOURS[damper % COLOURS.len()];
             let points = front.iter().filter(|design| design.damper == damper).map(|design| point(design));
-            layers.push(Layer::Dots { points: points.collect(), colour, size: size(damper) });
+            layers.push(Layer::Marks { points: points.collect(), mark: found(damper) });
         }
         layers.extend(given(fronts, value));
         let most = all().map(value).fold(0.0, f64::max);
         Chart {
-            title: if which == 0 { title(fronts) } else { String::new() },
-            labels: [LABELS[which].to_owned(), "worst E₁max, J".to_owned()],
-            ranges: [(-0.02 * most, 1.05 * most), (0.0, top)],
-            log: false,
+            title: String::new(),
+            x: Axis::linear(LABELS[which], (-0.03 * most, 1.05 * most)),
+            y: Axis::linear(if which == 0 { ENERGY } else { "" }, (0.0, top)),
             layers,
+            height: 150.0,
         }
     };
-    let charts: Vec<Chart> = (0..3).map(chart).collect();
-    let mut words = legend(fronts, false, |_| true);
-    words.push((Key::Dot(GREY), "found, but dominated in all".to_owned()));
-    sheet(&charts, 1, 520.0, &keys(&words)).wide
+    let mut legend = legend(fronts, false, |_| true);
+    legend.push((Key::Mark(DOMINATED), "found, but dominated in all".to_owned()));
+    svg(&Sheet {
+        title: "E1max against stroke, contact force and k2".to_owned(),
+        description: format!(
+            "Three charts of the same {} designs, of which {} are not dominated by any other: {}.",
+            fronts.designs.len(),
+            front.len(),
+            words(&legend)
+        ),
+        width: Width::Page,
+        charts: (0..3).map(chart).collect(),
+        columns: 3,
+        stacked: false,
+        legend,
+        caption: vec![made_by(fronts)],
+    })
 }
 
-/// The dampers in the studies, each as a dot.
+/// The dampers in the studies, each marked.
 fn given(fronts: &Fronts, value: impl Fn(&Candidate) -> f64) -> impl Iterator<Item = Layer> {
-    let dot = move |design: &Candidate| Layer::Dots {
+    let mark = move |design: &Candidate| Layer::Marks {
         points: vec![(value(design), design.e1_max)],
-        colour: COLOURS[design.damper % COLOURS.len()][1],
-        size: 20.0,
+        mark: of_study(design.damper),
     };
-    fronts.given.iter().map(dot)
+    fronts.given.iter().map(mark)
 }
 
-/// Later dampers are drawn over earlier ones, and smaller, so that equal designs are both seen.
-fn size(damper: usize) -> f64 {
-    if damper == 0 { 22.0 } else { 13.0 }
-}
-
-fn title(fronts: &Fronts) -> String {
+/// What the designs are tuned for, and by what.
+fn made_by(fronts: &Fronts) -> String {
     let over = fronts.plan.dampers.last().map(|(_, study)| {
         let over = retune_study::over(&study.objective(), study.scene.forcing.frequency.get());
         format!("{over}; ")
@@ -101,16 +136,17 @@ fn title(fronts: &Fronts) -> String {
 fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Candidate) -> bool) -> Vec<(Key, String)> {
     let dampers = fronts.plan.dampers.iter().enumerate();
     let tuned = dampers.map(|(i, (name, _))| {
-        let [colour, _] = COLOURS[i % COLOURS.len()];
-        (if lines { Key::Line(colour, "") } else { Key::Dot(colour) }, format!("{name}, tuned"))
+        let mark = found(i);
+        let key = if lines { Key::Marked(Stroke::solid(mark.colour), mark) } else { Key::Mark(mark) };
+        (key, format!("{name}, tuned"))
     });
     let given = fronts.given.iter().filter(|design| shown(design)).map(|design| {
-        let [_, colour] = COLOURS[design.damper % COLOURS.len()];
-        (Key::Dot(colour), format!("{} of the study", fronts.name(design.damper)))
+        (Key::Mark(of_study(design.damper)), format!("{} of the study", fronts.name(design.damper)))
     });
     tuned.chain(given).collect()
 }
 
-fn keys(words: &[(Key, String)]) -> Vec<(Key, &str)> {
-    words.iter().map(|(key, words)| (*key, words.as_str())).collect()
+/// The words of a legend.
+fn words(legend: &[(Key, String)]) -> String {
+    legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
 }

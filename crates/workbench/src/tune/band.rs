@@ -3,7 +3,8 @@
 use crate::Error;
 use crate::summary::MadeBy;
 use rayon::prelude::*;
-use retune_figures::sheet::{BLACK, BLUE, Chart, Key, Layer, VERMILION, sheet};
+use retune_figures::colour::{BLACK, BLUE, VERMILION};
+use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
 use retune_model::{NonNegative, Scene};
 use retune_optim::{Band, Goal, Limits, Objective, Response};
 use retune_store::Directory;
@@ -80,30 +81,39 @@ pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
 }
 
 fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
-    const LINES: [(&str, &str, &str); 3] = [
-        ("no damper", BLACK, "6 6"),
-        ("the study's damper", BLUE, "18 8"),
-        ("tuned for the band", VERMILION, ""),
+    const LINES: [(&str, Stroke); 3] = [
+        ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
+        ("the study's damper", Stroke::new(BLUE, 1.1, Dash::Long)),
+        ("tuned for the band", Stroke::new(VERMILION, 1.3, Dash::Solid)),
     ];
     let said = |value: f64| if value.is_finite() { format!(": {} J", short(value)) } else { String::new() };
     let words: Vec<String> = (0..3).map(|i| format!("{}{}", LINES[i].0, said(worst[i]))).collect();
-    let legend: Vec<(Key, &str)> = LINES
-        .iter()
-        .zip(&words)
-        .map(|(&(_, colour, dash), words)| (Key::Line(colour, dash), words.as_str()))
-        .collect();
-    let layers = LINES.iter().enumerate().map(|(i, &(_, colour, dash))| {
+    let layers = LINES.iter().enumerate().map(|(i, &(_, stroke))| {
         let points = rows.iter().map(|(omega, energies)| (*omega, energies[i])).collect();
-        Layer::Line { points, colour, width: 4.0, dash }
+        Layer::Line { points, stroke }
     });
     let top = rows.iter().flat_map(|row| row.1).filter(|e| e.is_finite()).fold(0.0, f64::max);
-    let ends = (rows[0].0, rows[rows.len() - 1].0);
+    let (first, last) = (rows[0].0, rows[rows.len() - 1].0);
     let chart = Chart {
-        title: MadeBy::new(study).to_string(),
-        labels: ["ω, rad/s".to_owned(), "E₁max, J".to_owned()],
-        ranges: [ends, (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })],
-        log: false,
+        title: String::new(),
+        x: Axis::linear("ω, rad/s", (first, last)),
+        y: Axis::linear("E1max, J", (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
         layers: layers.collect(),
+        height: 160.0,
     };
-    sheet(&[chart], 1, 640.0, &legend).wide
+    svg(&Sheet {
+        title: "E1max over the band".to_owned(),
+        description: format!(
+            "E1max against ω from {} to {} rad/s. The worst of each curve: {}.",
+            short(first),
+            short(last),
+            words.join("; ")
+        ),
+        width: Width::Column,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend: LINES.iter().map(|(_, stroke)| Key::Line(*stroke)).zip(words).collect(),
+        caption: vec![MadeBy::new(study).to_string()],
+    })
 }

@@ -5,13 +5,14 @@ use super::refine::Refined;
 use super::surf::Surf;
 use crate::Error;
 use crate::summary::MadeBy;
-use retune_figures::{Mark, Nodes, Panel, Scale, scale_for};
+use retune_figures::colour::BLUE;
+use retune_figures::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, Width, scale_for, svg};
 use retune_optim::{Variable, energy};
 use retune_store::Directory;
 use retune_study::{Search, Study};
 
 /// The label of E1max.
-pub const ENERGY: &str = "E_{1max}, J";
+pub const ENERGY: &str = "E1max, J";
 
 /// Draws all figures.
 pub(super) fn draw(
@@ -28,26 +29,16 @@ pub(super) fn draw(
         for (i, &x) in free.iter().enumerate() {
             for &y in &free[i + 1..] {
                 let name = format!("surf-{}-{}.svg", surf.variables[x], surf.variables[y]);
-                let svg = heat_map(surf, [x, y], search, refined, &made_by);
-                results
-                    .write(&name, &svg.map_err(|problem| Error::Figure { name: name.clone(), problem })?)?;
+                results.write(&name, &heat_map(surf, [x, y], search, refined, &made_by))?;
             }
         }
     }
-    let name = "convergence.svg";
-    let svg = convergence(search, refined, &made_by);
-    results.write(name, &svg.map_err(|problem| Error::Figure { name: name.to_owned(), problem })?)?;
+    results.write("convergence.svg", &convergence(search, refined, &made_by))?;
     Ok(())
 }
 
 /// The surface over two axes of the grid: the least E1max over all other axes.
-fn heat_map(
-    surf: &Surf,
-    [x, y]: [usize; 2],
-    search: &Search,
-    refined: &Refined,
-    made_by: &str,
-) -> Result<String, String> {
+fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined, made_by: &str) -> String {
     let [columns, lines] = [x, y].map(|axis| surf.grid.axes()[axis].points());
     let mut least = vec![f64::INFINITY; columns * lines];
     let mut steps = vec![0; surf.grid.dim()];
@@ -62,33 +53,38 @@ fn heat_map(
         let place = search.variables.iter().position(|other| *other == variable);
         place.map_or(f64::NAN, |place| refined.best().minimum.x[place])
     };
-    let others: Vec<&str> = (0..surf.variables.len())
-        .filter(|axis| *axis != x && *axis != y)
-        .map(|axis| symbol(surf.variables[axis]))
-        .collect();
+    let others = (0..surf.variables.len()).filter(|axis| *axis != x && *axis != y);
+    let others: Vec<String> = others.map(|axis| surf.variables[axis].to_string()).collect();
     let what = match others.as_slice() {
-        [] => "E_{1max} at each point of the grid.".to_owned(),
-        others => format!("Least E_{{1max}} over the grid in {}.", others.join(" and ")),
+        [] => "E1max at each point of the grid.".to_owned(),
+        others => format!("Least E1max over the grid in {}.", others.join(" and ")),
     };
-    let marks = [
-        Mark::Grid {
-            x: best[x],
-            y: best[y],
+    let places = [
+        Place {
+            at: (best[x], best[y]),
             label: format!("best of the grid, {}", worth(surf.values[surf.best])),
         },
-        Mark::Optimum {
-            x: found(x),
-            y: found(y),
+        Place {
+            at: (found(x), found(y)),
             label: format!("refined, {}", worth(refined.best().minimum.value)),
         },
     ];
-    retune_figures::heat_map(
-        &[x, y].map(|axis| nodes(surf, axis)),
-        &least,
-        ENERGY,
-        &marks,
-        &[what, made_by.to_owned()],
-    )
+    let (chart, legend) =
+        retune_figures::heat_map(&[x, y].map(|axis| nodes(surf, axis)), &least, ENERGY, &places);
+    let [over, and] = [x, y].map(|axis| surf.variables[axis]);
+    svg(&Sheet {
+        title: format!("E1max over {over} and {and}"),
+        description: format!(
+            "A map of {columns} by {lines} cells. {what} Marked: {}.",
+            places.map(|place| place.label).join("; ")
+        ),
+        width: Width::Column,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend,
+        caption: vec![what, made_by.to_owned()],
+    })
 }
 
 /// An axis of the grid as an axis of a figure.
@@ -103,30 +99,44 @@ fn nodes(surf: &Surf, axis: usize) -> Nodes {
 }
 
 /// E1max and each tuned parameter against the iteration of the best run.
-fn convergence(search: &Search, refined: &Refined, made_by: &str) -> Result<String, String> {
+fn convergence(search: &Search, refined: &Refined, made_by: &str) -> String {
     let rows = &refined.best().rows;
-    let x: Vec<f64> = rows.iter().map(|row| row.iteration as f64).collect();
+    let chart = |label: String, scale: Option<Scale>, values: Vec<f64>, height: f64| {
+        let x = rows.iter().map(|row| row.iteration as f64);
+        let y = Axis::around(label, scale.unwrap_or_else(|| scale_for(&values)), values.iter().copied());
+        let points = x.clone().zip(values).collect();
+        let layers = vec![Layer::Steps { points, stroke: Stroke::solid(BLUE) }];
+        Chart { title: String::new(), x: Axis::exact("iteration", Scale::Linear, x), y, layers, height }
+    };
     let energies: Vec<f64> = rows.iter().map(|row| energy(row.value)).collect();
-    let mut panels = vec![Panel::new(ENERGY.to_owned(), scale_for(&energies), energies)];
+    let ends = [energies.first(), energies.last()].map(|e| e.copied().unwrap_or(f64::NAN));
+    let mut charts = vec![chart(ENERGY.to_owned(), None, energies, 95.0)];
     for (i, &variable) in search.variables.iter().enumerate() {
         let values = rows.iter().map(|row| row.best[i]).collect();
-        panels.push(Panel::new(label(variable), Scale::Linear, values));
+        charts.push(chart(label(variable), Some(Scale::Linear), values, 65.0));
+    }
+    if let Some(last) = charts.last_mut() {
+        last.height += 25.0;
     }
     let what = format!("Best vertex of the simplex, start {} of {}.", refined.winner + 1, refined.runs.len());
-    retune_figures::panels("iteration", &x, &panels, &[what, made_by.to_owned()])
+    svg(&Sheet {
+        title: "Convergence of the refinement".to_owned(),
+        description: format!(
+            "E1max and the tuned parameters against the iteration, one below the other. {what} E1max from {} to {} in {} iterations.",
+            worth(ends[0]),
+            worth(ends[1]),
+            rows.last().map_or(0, |row| row.iteration)
+        ),
+        width: Width::Column,
+        charts,
+        columns: 1,
+        stacked: true,
+        legend: Vec::new(),
+        caption: vec![what, made_by.to_owned()],
+    })
 }
 
 /// A parameter's symbol and unit, for an axis.
 pub fn label(variable: Variable) -> String {
-    format!("{}, {}", symbol(variable), variable.unit())
-}
-
-/// A parameter's symbol in figures.
-fn symbol(variable: Variable) -> &'static str {
-    match variable {
-        Variable::K2 => "k_{2}",
-        Variable::C2 => "c_{2}",
-        Variable::D => "D",
-        Variable::C => "C",
-    }
+    format!("{variable}, {}", variable.unit())
 }

@@ -1,0 +1,265 @@
+//! The places of a chart's parts: margins follow from the widths of the labels, so no label meets another.
+
+use crate::axis::Axis;
+use crate::chart::{Chart, Layer};
+use crate::path::Rect;
+use crate::text::{ems, lines};
+use crate::ticks::{Tick, minor, ticks};
+
+/// Size of titles, legends and names of quantities, pt.
+pub(crate) const TEXT: f64 = 8.5;
+/// Size of numbers, captions and labels, pt.
+pub(crate) const SMALL: f64 = 8.0;
+/// Size of the names beside a chart, pt.
+pub(crate) const TINY: f64 = 7.0;
+/// Height of a line of text, as a multiple of its size.
+pub(crate) const LINE: f64 = 1.25;
+/// Length of a tick, pt.
+pub(crate) const TICK: f64 = 3.0;
+/// Space between a frame and the numbers beside it, pt.
+const GAP: f64 = 4.0;
+/// Width of a colour bar, and its distance from the frame, pt.
+const BAR: [f64; 2] = [9.0, 7.0];
+/// Length of the line from the frame to a name, with the mark of the name, pt.
+pub(crate) const LEADER: f64 = 15.0;
+
+/// The left, right, upper and lower margin of a frame in its cell, pt.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Margins {
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+}
+
+impl Margins {
+    /// Wide enough for both.
+    pub fn with(self, other: Self) -> Self {
+        Self { left: self.left.max(other.left), right: self.right.max(other.right), ..self }
+    }
+}
+
+/// A line of text and its place; its middle stands there, or its right end, or its left end.
+#[derive(Clone, Debug)]
+pub(crate) struct Label {
+    pub text: String,
+    pub at: (f64, f64),
+    /// -1 for text to the left of its place, 1 for text to the right, 0 for text about it.
+    pub side: i8,
+    pub turned: bool,
+    pub size: f64,
+}
+
+impl Label {
+    fn new(text: impl Into<String>, at: (f64, f64), side: i8) -> Self {
+        Self { text: text.into(), at, side, turned: false, size: SMALL }
+    }
+
+    /// The rectangle that the text fills at most.
+    #[cfg(test)]
+    pub fn rect(&self) -> Rect {
+        let (width, height) = (self.size * ems(&self.text), self.size);
+        let (x, y) = self.at;
+        let left = match self.side {
+            -1 => x - width,
+            0 => x - 0.5 * width,
+            _ => x,
+        };
+        if self.turned {
+            return [x - 0.5 * height, y - 0.5 * width, x + 0.5 * height, y + 0.5 * width];
+        }
+        [left, y - 0.5 * height, left + width, y + 0.5 * height]
+    }
+}
+
+/// A colour bar.
+pub(crate) struct Bar<'a> {
+    pub colours: &'a Axis,
+    pub rect: Rect,
+    pub ticks: Vec<Tick>,
+}
+
+/// A chart with its places.
+pub(crate) struct Layout<'a> {
+    pub chart: &'a Chart,
+    /// The frame.
+    pub frame: Rect,
+    pub margins: Margins,
+    /// Ticks of abscissa and ordinate, with a label and without.
+    pub ticks: [Vec<Tick>; 2],
+    pub minor: [Vec<f64>; 2],
+    pub labels: Vec<Label>,
+    pub bar: Option<Bar<'a>>,
+}
+
+impl Layout<'_> {
+    /// The place of a point, pt.
+    pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let [left, top, right, bottom] = self.frame;
+        (left + (right - left) * self.chart.x.share(x), bottom - (bottom - top) * self.chart.y.share(y))
+    }
+}
+
+/// Whether numbers have room side by side on `length`.
+fn fit_across(axis: &Axis, length: f64) -> impl Fn(&[Tick], f64) -> bool + '_ {
+    move |ticks, space| {
+        let ends = |(value, text): &Tick| {
+            let (middle, half) = (length * axis.share(*value), 0.5 * SMALL * ems(text));
+            (middle - half, middle + half)
+        };
+        ticks.windows(2).all(|pair| ends(&pair[1]).0 - ends(&pair[0]).1 >= space * SMALL)
+    }
+}
+
+/// Whether numbers have room one above the other on `length`.
+fn fit_upright(axis: &Axis, length: f64) -> impl Fn(&[Tick], f64) -> bool + '_ {
+    move |ticks, space| {
+        let apart = |pair: &[Tick]| length * (axis.share(pair[1].0) - axis.share(pair[0].0));
+        ticks.windows(2).all(|pair| apart(pair) >= space * 2.2 * SMALL)
+    }
+}
+
+fn widest(ticks: &[Tick]) -> f64 {
+    let words = ticks.iter().flat_map(|(_, text)| text.split('\n'));
+    words.map(|text| SMALL * ems(text)).fold(0.0, f64::max)
+}
+
+fn map_colours(chart: &Chart) -> Option<&Axis> {
+    chart.layers.iter().find_map(|layer| match layer {
+        Layer::Map { colours, .. } => Some(colours),
+        _ => None,
+    })
+}
+
+/// The width of the widest name beside a chart.
+fn names(chart: &Chart) -> f64 {
+    let width = |layer: &Layer| match layer {
+        Layer::Name { text, .. } => LEADER + TINY * ems(text),
+        _ => 0.0,
+    };
+    chart.layers.iter().map(width).fold(0.0, f64::max)
+}
+
+/// Lays a chart out in a cell: left, top, right, bottom, pt. The margins become `least` at least, so that frames one below the other
+/// agree. The abscissa of a chart that is not `labelled` has neither numbers nor label: that of the chart below serves both.
+pub(crate) fn layout(
+    chart: &Chart,
+    [left, top, right, bottom]: Rect,
+    labelled: bool,
+    least: Margins,
+) -> Layout<'_> {
+    let (x, y) = (&chart.x, &chart.y);
+    let row = LINE * TEXT;
+    // Names of things stand above, as in a table; numbers below.
+    let named = !x.names.is_empty();
+    let numbers = if named {
+        LINE * SMALL * x.names.iter().map(|(_, name)| name.split('\n').count()).max().unwrap_or(1) as f64
+    } else {
+        GAP + SMALL
+    };
+    let title = lines(&chart.title, TEXT, right - left - 20.0);
+    let mut margins = Margins {
+        top: if title.is_empty() { 0.6 * SMALL } else { row * title.len() as f64 + 3.0 },
+        bottom: if labelled && !named { numbers + 3.0 } else { 0.5 * SMALL },
+        ..Margins::default()
+    };
+    if named {
+        margins.top += numbers + 2.0;
+    }
+    if labelled && !x.label.is_empty() {
+        margins.bottom += row;
+    }
+    let height = bottom - top - margins.top - margins.bottom;
+    let y_ticks = ticks(y, fit_upright(y, height));
+    let y_label = if y.label.is_empty() { 0.0 } else { row + 2.0 };
+    margins.left = widest(&y_ticks) + GAP + y_label;
+    let bar = map_colours(chart).map(|colours| (colours, ticks(colours, fit_upright(colours, height))));
+    let bar_width = bar.as_ref().map_or(0.0, |(colours, ticks)| {
+        BAR[0] + BAR[1] + TICK + GAP + widest(ticks) + if colours.label.is_empty() { 0.0 } else { row + 2.0 }
+    });
+    margins.right = bar_width.max(names(chart)).max(2.0);
+    margins = margins.with(least);
+    // The last number may stand out on the right; then the frame ends earlier.
+    let mut x_ticks = Vec::new();
+    for _ in 0..3 {
+        let width = right - left - margins.left - margins.right;
+        x_ticks = ticks(x, fit_across(x, width));
+        let over = |(value, text): &Tick| 0.5 * SMALL * ems(text) - width * (1.0 - x.share(*value));
+        let out = if labelled && !named { x_ticks.iter().map(over).fold(0.0, f64::max) } else { 0.0 };
+        if out <= margins.right {
+            break;
+        }
+        margins.right = out + 1.0;
+    }
+    let frame = [left + margins.left, top + margins.top, right - margins.right, bottom - margins.bottom];
+    let bar = bar.map(|(colours, ticks)| Bar {
+        colours,
+        ticks,
+        rect: [frame[2] + BAR[1], frame[1], frame[2] + BAR[1] + BAR[0], frame[3]],
+    });
+    let minor = [minor(x, &x_ticks), minor(y, &y_ticks)];
+    let mut layout =
+        Layout { chart, frame, margins, ticks: [x_ticks, y_ticks], minor, labels: Vec::new(), bar };
+    layout.labels = labels(&layout, [left, top, right, bottom], &title, labelled);
+    layout
+}
+
+/// All text beside the frame.
+fn labels(
+    layout: &Layout,
+    [cell_left, cell_top, cell_right, cell_bottom]: Rect,
+    title: &[String],
+    labelled: bool,
+) -> Vec<Label> {
+    let [left, top, right, bottom] = layout.frame;
+    let (x, y) = (&layout.chart.x, &layout.chart.y);
+    let large = |label: Label| Label { size: TEXT, ..label };
+    let row = LINE * TEXT;
+    let mut all = Vec::new();
+    // Of the frame, as far as the cell allows.
+    let middle = |text: &str| {
+        let half = 0.5 * TEXT * ems(text);
+        (0.5 * (left + right)).min(cell_right - half).max(cell_left + half)
+    };
+    for (i, line) in title.iter().enumerate() {
+        all.push(large(Label::new(line, (middle(line), cell_top + row * (i as f64 + 0.5)), 0)));
+    }
+    for (value, text) in layout.ticks[0].iter().filter(|_| labelled || !x.names.is_empty()) {
+        let (at, _) = layout.at((*value, f64::NAN));
+        let rows = text.split('\n').count() as f64;
+        for (i, line) in text.split('\n').enumerate() {
+            let below = bottom + GAP + 0.5 * SMALL;
+            let above = top - 2.0 - LINE * SMALL * (rows - i as f64 - 0.5);
+            all.push(Label::new(line, (at, if x.names.is_empty() { below } else { above }), 0));
+        }
+    }
+    for (value, text) in &layout.ticks[1] {
+        let (_, at) = layout.at((f64::NAN, *value));
+        all.push(Label::new(text, (left - GAP, at), -1));
+    }
+    let upright = |text: &str, at: f64| Label {
+        turned: true,
+        ..large(Label::new(text, (at, 0.5 * (top + bottom)), 0))
+    };
+    if labelled && !x.label.is_empty() {
+        let at = (middle(&x.label), cell_bottom - 0.5 * row);
+        all.push(large(Label::new(&x.label, at, 0)));
+    }
+    if !y.label.is_empty() {
+        all.push(upright(&y.label, cell_left + 0.5 * row));
+    }
+    if let Some(Bar { colours, rect, ticks }) = &layout.bar {
+        for (value, text) in ticks {
+            let at = bottom - (bottom - top) * colours.share(*value);
+            all.push(Label::new(text, (rect[2] + TICK + GAP, at), 1));
+        }
+        if !colours.label.is_empty() {
+            all.push(upright(&colours.label, rect[2] + TICK + GAP + widest(ticks) + 2.0 + 0.5 * row));
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+#[path = "layout/tests.rs"]
+mod tests;
