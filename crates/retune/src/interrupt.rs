@@ -2,9 +2,8 @@
 //! command that resumes the work and exits. (On systems without signals, Ctrl-C ends it without a message, and nothing is lost either.)
 
 /// The environment variable that the justfile sets to `just`, whose recipes are named like the commands; it replaces the program's
-/// name in the printed command.
-#[cfg(unix)]
-const RUN_AS: &str = "RETUNE_RUN_AS";
+/// name in printed commands.
+pub const RUN_AS: &str = "RETUNE_RUN_AS";
 
 /// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(unix)]

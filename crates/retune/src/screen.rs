@@ -54,7 +54,15 @@ impl Observer for Screen {
 
 /// Shows why a command failed. If standard error cannot be written, only the exit code reports the failure.
 pub fn show_error(error: &Error) {
-    say("error", &error.to_string());
+    say("error", &as_typed(&error.to_string(), std::env::var(interrupt::RUN_AS).ok()));
+}
+
+/// A message whose commands begin with `run_as` instead of the program's name, if it is given.
+fn as_typed(words: &str, run_as: Option<String>) -> String {
+    match run_as {
+        Some(run_as) => words.replace("`retune ", &format!("`{run_as} ")),
+        None => words.to_owned(),
+    }
 }
 
 /// Shows why a line of input has no value. If standard error cannot be written, only the answer reports it.
