@@ -152,9 +152,10 @@ mutants *OPTIONS:
 deny:
     .ci/deny
 
-# Pack every crate as it would be published, and build it from its package
+# Pack every crate that is published (all but the comparison), and build each from its package, on the packages of the others
 package:
-    # What cargo unpacked and built of an earlier packing of the same version it would take for the new one.
+    # cargo unpacks each package in target/packing and builds it there, as a registry would serve it: a file that lies outside of its crate is
+    # missing. What it unpacked and built of an earlier packing of the same version it would take for the new one.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
     cargo package --target-dir target/packing --workspace --exclude retune-bench --allow-dirty
 

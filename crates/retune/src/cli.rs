@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 #[command(version, about, max_term_width = 110, subcommand_required = true, arg_required_else_help = true)]
 #[command(after_help = crate::exit::HELP)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -25,51 +25,51 @@ pub struct Cli {
 pub enum Command {
     /// Tune the damper of a study: a coarse grid (surf), then Nelder-Mead (fminsearch)
     Optimize(Optimize),
-    /// Put the parts of a grid together that `optimize --shard` made, and go on with the search
+    /// Merge the parts of a grid made by `optimize --shard`, and continue with the search
     Merge(Merge),
-    /// Run a sample of the rows of results again, and say whether they hold (exit code 0), do not (1), or cannot be checked (4)
+    /// Recompute a sample of the rows of results, and report whether they hold (exit code 0), do not (1), or cannot be checked (4)
     Verify(Verify),
     /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
     Certify(Certify),
-    /// Run one scene and say what happened
+    /// Run one scene and print a summary of the motion
     Simulate(Simulate),
-    /// Read designs from standard input, one a line, and answer each with the value that `optimize` makes small
+    /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line
     #[command(after_help = retune_workbench::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2(Table2),
-    /// Track the optimum along k1: tune both dampers anew for other stiffnesses of the structure, and show how long a tuning lasts
+    /// Track the optimum along k1: retune both dampers for other stiffnesses of the structure, and plot the loss by detuning
     Track(Track),
-    /// Tune dampers under ever looser bounds on k2 and on the stroke, and draw what each is good for
+    /// Compute Pareto fronts: tune dampers under successively looser bounds on k2 and on the stroke
     Fronts(Fronts),
-    /// Make every table and figure of the paper, on one page beside what the paper says
+    /// Reproduce every table and figure of the paper, on one page beside its statements
     Reproduce(Reproduce),
-    /// Make one figure of the paper
+    /// Reproduce one figure of the paper
     Figure {
         /// Its number in the paper
         #[arg(value_parser = clap::value_parser!(u8).range(2..=7))]
         number: u8,
-        /// How it is made.
+        /// The options of the run.
         #[command(flatten)]
         paper: Reproduce,
     },
-    /// Make one table of the paper
+    /// Reproduce one table of the paper
     Table {
         /// Its number in the paper
         #[arg(value_parser = clap::value_parser!(u8).range(1..=2))]
         number: u8,
-        /// How it is made.
+        /// The options of the run.
         #[command(flatten)]
         paper: Reproduce,
     },
-    /// Check a study file and say what it asks for
+    /// Check a study file and describe what it specifies
     Check {
         /// The study file
         study: PathBuf,
     },
-    /// Print the JSON Schema of a study file, for completion and checks in an editor
+    /// Print the JSON Schema of a study file, for completion and validation in an editor
     Schema {
-        /// Which kind of file
+        /// The kind of file
         #[arg(value_enum, default_value_t = Kind::Study)]
         kind: Kind,
     },
@@ -87,13 +87,13 @@ pub enum Kind {
     Study,
     /// The paper's Table 2
     Table2,
-    /// What dampers are good for
+    /// Pareto fronts
     Fronts,
     /// The whole paper
     Paper,
 }
 
-/// How a search is run.
+/// The options of a run.
 #[derive(Debug, Args)]
 pub struct Running {
     /// Directory of the results [default: results/<study>]
@@ -102,13 +102,13 @@ pub struct Running {
     /// Threads of the grid; the results are the same for any number [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// No log and no progress on screen, only the result
+    /// Print only the result, without log and progress
     #[arg(long)]
     pub quiet: bool,
-    /// Go on with unfinished work, if there is any
+    /// Resume unfinished work, if there is any
     #[arg(long, conflicts_with = "restart")]
     pub resume: bool,
-    /// Throw unfinished work away and begin anew
+    /// Discard unfinished work and start again
     #[arg(long)]
     pub restart: bool,
     /// Replace results of another study in the directory, and files of the results' names that Retune did not make
@@ -117,7 +117,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// What is asked of a job with a study file, and where it is shown.
+    /// The request to a job with a study file, and the screen that shows it.
     pub fn request(&self, study: &Path) -> (Request, Screen) {
         let begin = match (self.resume, self.restart) {
             (true, _) => Begin::Resume,
@@ -141,10 +141,10 @@ impl Running {
 pub struct Optimize {
     /// The study file
     pub study: PathBuf,
-    /// Compute only share i of N of the grid, into DIR/parts; `merge` puts the shares together
+    /// Compute only share i of N of the grid, into DIR/parts; `merge` combines the shares
     #[arg(long, value_name = "i/N")]
     pub shard: Option<Shard>,
-    /// How the search is run.
+    /// The options of the run.
     #[command(flatten)]
     pub running: Running,
 }
@@ -156,7 +156,7 @@ pub struct Merge {
     pub study: PathBuf,
     /// The parts [default: all in DIR/parts]
     pub parts: Vec<PathBuf>,
-    /// How the search is run.
+    /// The options of the run.
     #[command(flatten)]
     pub running: Running,
 }
@@ -177,10 +177,10 @@ pub struct Certify {
 pub struct Verify {
     /// A directory of results
     pub results: PathBuf,
-    /// Rows of each table that are run again, evenly spread over it
+    /// Number of rows of each table to recompute, evenly distributed over it
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     pub sample: u32,
-    /// Largest relative difference that counts as held; another machine may round otherwise
+    /// Largest relative difference that is accepted; another machine may round differently
     #[arg(long, value_name = "X", default_value_t = 0.0)]
     pub within: f64,
 }
@@ -202,7 +202,7 @@ pub struct Table2 {
     /// The study file
     #[arg(default_value = "studies/table2.json")]
     pub study: PathBuf,
-    /// How the search is run.
+    /// The options of the run.
     #[command(flatten)]
     pub running: Running,
 }
@@ -216,7 +216,7 @@ pub struct Track {
     /// The table that names the study of each damper; each is tuned for its own k1 as well
     #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
     pub study: PathBuf,
-    /// How the search is run.
+    /// The options of the run.
     #[command(flatten)]
     pub running: Running,
 }
@@ -227,7 +227,7 @@ pub struct Fronts {
     /// The study file
     #[arg(default_value = "studies/fronts.json")]
     pub study: PathBuf,
-    /// How the searches are run.
+    /// The options of the run.
     #[command(flatten)]
     pub running: Running,
 }
@@ -243,7 +243,7 @@ pub struct Simulate {
     /// Integration method
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).map(method))]
     pub solver: Option<Method>,
-    /// How every method but the hybrid meets a contact
+    /// Treatment of contacts by every method except the hybrid
     #[arg(long, value_name = "HOW", value_parser = PossibleValuesParser::new(["located", "stepped"]).map(contacts))]
     pub contacts: Option<Contacts>,
     /// Relative tolerance of a step
@@ -252,8 +252,8 @@ pub struct Simulate {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Also write the motion in the window to a CSV file. Its last column, moment, says why a row is there: "grid" (one each
-    /// --interval), or a moment between: "touch-down", "force-max", "lift-off" of each contact, "E1-max" of each maximum of E1
+    /// Also write the motion in the window to a CSV file. Its last column, moment, gives the kind of row: "grid" (one per
+    /// --interval), or an event in between: "touch-down", "force-max", "lift-off" of each contact, "E1-max" of each maximum of E1
     #[arg(long, value_name = "FILE.csv")]
     pub trajectory: Option<PathBuf>,
     /// Time between two rows of the trajectory's grid, s
@@ -266,10 +266,10 @@ pub struct Simulate {
 pub struct Evaluate {
     /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C
     pub study: PathBuf,
-    /// Answer with JSON objects, which say by how much limits are broken
+    /// Answer with JSON objects, which include the violation of limits
     #[arg(long)]
     pub json: bool,
-    /// Lines that are evaluated side by side, and threads of the runs of a value; the values are the same for any number [default: all cores]
+    /// Number of lines evaluated in parallel, and threads of the runs of each; the values are the same for any number [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }

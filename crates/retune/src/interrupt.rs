@@ -1,10 +1,9 @@
-//! Ctrl-C and SIGTERM. The journal holds everything computed so far, so there is nothing to save: the process prints the command
-//! that resumes the work, and ends. (On systems without signals Ctrl-C ends it silently, and nothing is lost either.)
+//! Ctrl-C and SIGTERM. The journal already holds everything computed so far, so nothing needs to be saved: the process prints the
+//! command that resumes the work and exits. (On systems without signals, Ctrl-C ends it without a message, and nothing is lost either.)
 
 /// The environment variable that the justfile sets to `just`, whose recipes are named like the commands; it replaces the program's
-/// name in the printed command.
-#[cfg(unix)]
-const RUN_AS: &str = "RETUNE_RUN_AS";
+/// name in printed commands.
+pub const RUN_AS: &str = "RETUNE_RUN_AS";
 
 /// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(unix)]
@@ -14,7 +13,7 @@ pub fn say_how_to_go_on() {
     use std::io::Write;
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(|| {
-        // SIGHUP is not among them: `nohup` must keep its meaning, and without it the run ends and can go on all the same.
+        // SIGHUP is not handled, so that `nohup` works as usual; without `nohup` the signal ends the run, which can be resumed all the same.
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {

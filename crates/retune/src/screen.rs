@@ -22,8 +22,8 @@ impl Screen {
     /// Shows a line of the result.
     ///
     /// # Errors
-    /// Standard output cannot be written. A reader that has gone (`retune ... | head`) is no error: the work is finished and
-    /// its files are written all the same.
+    /// Standard output cannot be written. A reader that has closed the pipe (`retune ... | head`) is not an error: the job is
+    /// completed and its files are written all the same.
     pub fn line(&self, text: impl Display) -> Result<(), Error> {
         let mut out = std::io::stdout().lock();
         match writeln!(out, "{}", visible(&text.to_string())).and_then(|()| out.flush()) {
@@ -52,12 +52,20 @@ impl Observer for Screen {
     }
 }
 
-/// Shows why a command failed. If standard error cannot be written, the exit code alone tells it.
+/// Shows why a command failed. If standard error cannot be written, only the exit code reports the failure.
 pub fn show_error(error: &Error) {
-    say("error", &error.to_string());
+    say("error", &as_typed(&error.to_string(), std::env::var(interrupt::RUN_AS).ok()));
 }
 
-/// Shows a line about an input that has no value. If standard error cannot be written, the answer alone tells it.
+/// A message whose commands begin with `run_as` instead of the program's name, if it is given.
+fn as_typed(words: &str, run_as: Option<String>) -> String {
+    match run_as {
+        Some(run_as) => words.replace("`retune ", &format!("`{run_as} ")),
+        None => words.to_owned(),
+    }
+}
+
+/// Shows why a line of input has no value. If standard error cannot be written, only the answer reports it.
 pub fn complain(words: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(words));
 }
@@ -67,13 +75,13 @@ fn say(what: &str, words: &str) {
     let _ = writeln!(std::io::stderr(), "{what}: {}", visible(words));
 }
 
-/// Shows the error in the arguments, or the help that they ask for. Returns the exit code.
+/// Shows an error in the arguments, or the help that was requested. Returns the exit code.
 pub fn show_usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() && error.kind() != clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     {
         let _ = write!(std::io::stderr(), "{}", visible(&error.render().to_string()));
     } else {
-        let _ = error.print(); // in colours; nothing that was typed is in it
+        let _ = error.print(); // in colour; it repeats nothing that the user typed
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }

@@ -54,7 +54,7 @@ impl Method {
     }
 }
 
-/// How a general-purpose method meets a contact. The hybrid always locates.
+/// Treatment of contacts by a general-purpose method. The hybrid always locates them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Contacts {

@@ -9,88 +9,89 @@ use retune_solver::{Contacts, Method, Settings, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A study: a structure with its damper, when to look at it, and what to tune. SI units throughout.
+/// A study: a structure with its damper, the time window of the evaluation, and the parameters to tune. SI units throughout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
+    /// The JSON Schema with which an editor completes and validates this file. Ignored by Retune.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// "study". A file without it is recognised by its other fields.
     #[serde(default, skip_serializing_if = "Kind::is_study")]
     #[schemars(extend("const" = "study"))]
     pub kind: Kind,
-    /// The version of Retune that wrote this file, when it did. Ignored.
+    /// The version of Retune that wrote this file, if it was written by Retune. Ignored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub retune: Option<String>,
-    /// Names the directory of the results; the file's own name if left out. Letters, digits, `-`, `_` and `.`.
+    /// Name of the results directory; by default the name of this file. Letters, digits, `-`, `_` and `.`.
     #[serde(default)]
     pub name: Option<String>,
-    /// The primary structure, the force on it, and the damper.
+    /// The primary structure, its excitation, and the damper.
     pub scene: Scene,
-    /// When maxima are taken.
+    /// The time window in which maxima are evaluated.
     pub window: Span,
-    /// How the motion is computed.
+    /// The numerical integration of the motion.
     #[serde(default)]
     pub solver: Solver,
-    /// What is tuned, and where it is looked for.
+    /// The optimisation: the tuned parameters, their bounds and the search.
     #[serde(default)]
     pub optimize: Option<Optimize>,
 }
 
-/// The window in which maxima are taken. Every run starts at rest at t = 0.
+/// The time window in which maxima are evaluated. Every run starts from rest at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Span {
-    /// t0, start of the window, s. The motion before it is a transient that counts for nothing; 0 takes the whole run.
+    /// t0, start of the window, s. The motion before t0 is treated as transient and discarded; 0 evaluates the whole run.
     pub t0: NonNegative,
     /// T, end of the window and of the run, s.
     #[serde(rename = "T")]
     pub end: Positive,
 }
 
-/// How the motion is computed.
+/// The numerical integration of the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Solver {
     /// The integration method.
     pub method: Method,
-    /// How every method but the hybrid meets a contact. The hybrid always locates it.
+    /// Treatment of contacts by every method except the hybrid, which always locates them.
     pub contacts: Contacts,
-    /// Relative tolerance of a step.
+    /// Relative tolerance of the local error of a step.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
     pub rtol: f64,
-    /// Absolute tolerance of a step, m and m/s (of the methods with an error estimate, but the hybrid).
+    /// Absolute tolerance of the local error of a step, m and m/s (adaptive methods only, except the hybrid).
     #[schemars(range(min = 0.0))]
     pub atol: f64,
-    /// Most steps a run may take.
+    /// Maximum number of steps of a run.
     pub max_steps: u64,
 }
 
-/// What is tuned: the damper's parameters that make E1max, the largest energy of the primary structure, small.
+/// The optimisation: damper parameters are tuned to minimise E1max, the largest energy of the primary structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Optimize {
     /// The parameters to tune; the others keep their values in `scene`.
     #[schemars(length(min = 1))]
     pub vary: Vec<Variable>,
-    /// Which E1max is made small. Default: the largest in `window` at the scene's omega.
+    /// The objective to minimise. Default: E1max in `window` at the omega of the scene.
     #[serde(default, skip_serializing_if = "Objective::is_default")]
     pub objective: Objective,
-    /// Smallest and largest value allowed for a tuned parameter; null for no largest value. Default: `[0, null]`.
+    /// Lower and upper bound of a tuned parameter; null for no upper bound. Default: `[0, null]`.
     #[serde(default)]
     pub bounds: PerVariable<(f64, Option<f64>)>,
-    /// Largest stroke (spring deflection), contact force and cavity allowed, and from when on. Default: none.
+    /// Limits on the stroke (spring deflection), the contact force and the cavity, and the time from which they apply. Default: none.
     #[serde(default, skip_serializing_if = "Limits::is_default")]
     pub limits: Limits,
-    /// The coarse grid (the paper's `surf`), over all tuned parameters or some of them. Without it, without `global` and without
-    /// `starts` the refinement starts at the damper of `scene`.
+    /// The coarse grid (the paper's `surf`), over some or all of the tuned parameters. Without `surf`, `global` and `starts` the
+    /// refinement starts from the damper of `scene`.
     #[serde(default)]
     pub surf: Option<PerVariable<GridAxis>>,
-    /// A global search beside the grid. Default: none; `{}` takes all its defaults.
+    /// A global search in addition to the grid. Default: none; `{}` selects it with its default settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub global: Option<GlobalSearch>,
-    /// Designs that start a refinement each, beside those that `surf` and `global` find. What one leaves out is that of `scene`.
+    /// Additional initial designs, each the start of one refinement, beside those found by `surf` and `global`. Parameters left out
+    /// take their value in `scene`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub starts: Vec<PerVariable<f64>>,
     /// The refinement (the paper's `fminsearch`).
@@ -109,7 +110,7 @@ pub struct GridAxis {
     /// Number of values.
     #[schemars(range(min = 1))]
     pub points: usize,
-    /// Equal differences or equal ratios.
+    /// Linear or logarithmic spacing.
     #[serde(default = "linear")]
     pub scale: Scale,
 }
@@ -118,25 +119,25 @@ pub struct GridAxis {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Refine {
-    /// How many of the grid's best points, and how many of the best basins, start a refinement each.
+    /// Number of best grid points, and of best basins, from which a refinement is started.
     #[schemars(range(min = 1))]
     pub starts: usize,
-    /// Grid steps between any two starts, along at least one axis.
+    /// Minimum separation of any two starts, in grid steps along at least one axis.
     pub apart: usize,
-    /// A run stops once its simplex is at most this wide and TolFun holds too.
+    /// Termination tolerance on the parameters: a run stops once the width of its simplex is at most TolX and TolFun is met as well.
     #[serde(rename = "TolX")]
     #[schemars(range(min = 0.0))]
     pub tol_x: f64,
-    /// A run stops once E1max differs by at most this over its simplex, J, and TolX holds too.
+    /// Termination tolerance on E1max, J: a run stops once E1max varies by at most TolFun over its simplex and TolX is met as well.
     #[serde(rename = "TolFun")]
     #[schemars(range(min = 0.0))]
     pub tol_fun: f64,
-    /// What TolX measures: false, the parameters in their units, as in MATLAB; true, the parameters divided by their starts.
+    /// Scaling of the parameters for TolX: false, in their SI units, as in MATLAB; true, divided by their initial values.
     pub scaled: bool,
-    /// Most iterations of a run. Default: 200 for each tuned parameter.
+    /// Maximum number of iterations of a run. Default: 200 for each tuned parameter.
     #[serde(rename = "MaxIter")]
     pub max_iter: Option<u64>,
-    /// Most evaluations of a run. Default: 200 for each tuned parameter.
+    /// Maximum number of evaluations of a run. Default: 200 for each tuned parameter.
     #[serde(rename = "MaxFunEvals")]
     pub max_fun_evals: Option<u64>,
 }

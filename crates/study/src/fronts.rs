@@ -1,4 +1,4 @@
-//! The study behind `retune fronts`: dampers to tune under ever looser bounds on the spring or on the stroke.
+//! The study behind `retune fronts`: dampers to tune under successively looser bounds on the spring or on the stroke.
 
 use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
@@ -12,34 +12,34 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Most samples of a band on which designs that were found are looked at again.
+/// Largest number of band samples on which the optimised designs are re-evaluated.
 const MOST_SAMPLES: usize = 10_000;
 
-/// What a damper is good for: the least E1max under bounds on its spring, and on its stroke.
+/// Pareto fronts of dampers: the least E1max under bounds on the spring stiffness, and on the stroke.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fronts {
-    /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
+    /// The JSON Schema with which an editor completes and validates this file. Ignored by Retune.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// "fronts". A file without it is recognised by its other fields.
     #[serde(default = "kind")]
     #[schemars(extend("const" = "fronts"))]
     pub kind: Kind,
-    /// The dampers. Each is compared with the first, and its searches start at the designs of those before it too.
+    /// The dampers. Each is compared with the first; its searches also start from the optimised designs of the dampers listed before it.
     #[schemars(length(min = 1))]
     pub dampers: Vec<FrontDamper>,
-    /// Largest k2 allowed, N/m; every study is tuned under each.
+    /// Upper bounds on k2, N/m. Every damper is tuned under each of them.
     #[schemars(length(min = 1))]
     pub k2: Vec<Positive>,
-    /// Largest stroke (spring deflection |x2 - x1 - D|) allowed, m, as the limit of that name in a study; every study is tuned under each, with k2 as free as its bounds say.
+    /// Limits on the stroke (spring deflection |x2 - x1 - D|), m, as `limits.stroke` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
     #[schemars(length(min = 1))]
     pub stroke: Vec<Positive>,
-    /// Samples of the bands on which the designs that were found are looked at again, to be compared.
+    /// Number of band samples on which the optimised designs are re-evaluated, so that they are compared on the same frequencies.
     #[serde(default = "samples")]
     #[schemars(range(min = 2, max = 10000))]
     pub samples: usize,
-    /// How many designs are certified: those that are furthest below the first damper under the same bound.
+    /// Number of designs to certify: those whose E1max is furthest below that of the first damper under the same bound.
     #[serde(default = "certificates")]
     pub certificates: usize,
 }
@@ -50,12 +50,12 @@ pub struct Fronts {
 pub struct FrontDamper {
     /// Its name in tables and figures.
     pub damper: String,
-    /// The study that tunes it, which must tune k2; a path as seen from this file. The damper in its scene is drawn beside those
-    /// that are found. A `surf` in it is left out.
+    /// The study that tunes it, which must tune k2; a path relative to this file. The damper of its scene is plotted beside the
+    /// optimised ones, as reference design. A `surf` stage in it is ignored.
     pub study: PathBuf,
 }
 
-/// What is bounded along a front.
+/// The quantity that is bounded along a front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sweep {
     /// The stiffness of the spring.

@@ -7,34 +7,34 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A global search before the refinement: the points of a scrambled Sobol sequence over a box, then a CMA-ES search from each of
-/// the best that lie apart. What several searches came to is one basin; the best basins are refined. The results are the same
-/// for the same seed, at any number of threads.
+/// the best points that are sufficiently apart. Searches that converge to the same design share a basin; the best basins are
+/// refined. The results depend on the seed, not on the number of threads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GlobalSearch {
-    /// Designs of the first look, spread evenly over the box.
+    /// Number of initial samples, distributed evenly over the box.
     #[schemars(range(min = 1, max = 65536))]
     pub samples: u32,
-    /// CMA-ES searches, each from one of the best of them.
+    /// Number of CMA-ES searches, each started from one of the best samples.
     #[schemars(range(min = 1, max = 1000))]
     pub searches: usize,
-    /// Least distance between two starts along at least one side of the box, as a share of that side.
+    /// Minimum distance between two starts along at least one side of the box, as a fraction of that side.
     pub apart: f64,
-    /// Standard deviation of the first generation of a search, as a share of each side.
+    /// Initial standard deviation of a search, as a fraction of each side.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
     pub spread: f64,
-    /// A search ends once its standard deviation is below this share of every side.
+    /// A search stops once its standard deviation is below this fraction of every side.
     #[schemars(range(min = 0.0))]
     pub tolerance: f64,
-    /// Most evaluations of a search.
+    /// Maximum number of evaluations of a search.
     #[schemars(range(min = 1))]
     pub evaluations: u64,
-    /// Ends of searches and of refinements nearer than this share of every side are one basin.
+    /// Final designs of searches and refinements closer than this fraction of every side belong to one basin.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
     pub basin: f64,
-    /// Chooses the designs of the first look and the random numbers of the searches.
+    /// Seed of the initial samples and of the random numbers of the searches.
     pub seed: u32,
-    /// The box; what is left out takes its bounds, in ratios where they span a decade or more.
+    /// The box. Sides left out are the bounds of the parameter, on a logarithmic scale where these span a decade or more.
     #[serde(rename = "box")]
     pub sides: PerVariable<BoxSide>,
 }
@@ -47,7 +47,7 @@ pub struct BoxSide {
     pub from: f64,
     /// Largest value.
     pub to: f64,
-    /// Whether distances are differences or ratios.
+    /// Whether distances are measured on a linear or a logarithmic scale.
     pub scale: Scale,
 }
 

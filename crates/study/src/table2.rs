@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table2 {
-    /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
+    /// The JSON Schema with which an editor completes and validates this file. Ignored by Retune.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// "table2". A file without it is recognised by its other fields.
@@ -36,7 +36,7 @@ fn kind() -> Kind {
 pub struct PaperRow {
     /// The damper's name in the table.
     pub damper: String,
-    /// The study that tunes it; a path as seen from this file.
+    /// The study that tunes it; a path relative to this file.
     pub study: PathBuf,
     /// The paper's design, from which the refinement starts.
     pub paper: Design,

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What is taken of the members' E1max.
+/// The statistic of E1max over the members.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 #[schemars(rename = "Of")]
@@ -17,30 +17,30 @@ pub enum Statistic {
     Mean,
     /// The largest.
     Worst,
-    /// The smallest that at least this share of the members does not exceed, above 0 and at most 1.
+    /// The quantile: the smallest value that at least this fraction of the members, above 0 and at most 1, does not exceed.
     Quantile(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
 }
 
-/// A deterministic ensemble about the scene, the same for every design: the points of a scrambled Sobol sequence.
+/// A deterministic ensemble of perturbed scenes, the same for every design: the points of a scrambled Sobol sequence.
 // Owen-scrambled Sobol points (B. Burley, Practical Hash-based Owen Scrambling, J. Comput. Graph. Tech. 9(4), 2020), so that a few
 // members fill their space evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ensemble {
-    /// How many members.
+    /// Number of members.
     #[schemars(range(min = 1, max = 65536))]
     pub members: u32,
-    /// Whether the force P cos(omega t + phase) begins at another phase in each member, evenly spread over a turn.
+    /// Whether each member has its own phase of the excitation P cos(omega t + phase), distributed evenly over 0 to 2π.
     #[serde(default = "yes")]
     pub phases: bool,
-    /// k1, k2, c2, D and C of each member are off by at most this share, independently and evenly spread.
+    /// Largest relative perturbation of k1, k2, c2, D and C of each member; perturbations are independent and uniformly distributed.
     #[serde(default = "errors")]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub errors: f64,
-    /// What is taken of the members' E1max.
+    /// The statistic of E1max over the members.
     #[serde(default)]
     pub statistic: Statistic,
-    /// Chooses the members.
+    /// Seed of the sequence.
     #[serde(default)]
     pub seed: u32,
 }

@@ -65,8 +65,8 @@ impl<T: Copy> PerLimit<T> {
     }
 }
 
-/// Largest values allowed. A design that breaks a limit is worse than any that keeps all; of two that do, the one that breaks
-/// them by less (the sum of reached / limit - 1) is better.
+/// Limits on a design. Any design that violates a limit ranks below every feasible one; of two infeasible designs the one with the
+/// smaller violation (the sum of reached / limit - 1) is better.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "LimitsGiven")]
@@ -80,9 +80,9 @@ pub struct Limits {
     /// Largest D + C, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cavity: Option<Positive>,
-    /// From when on stroke and force must keep their limits, s: 0, the default, for the whole run from rest on, t0 of `window` for
-    /// the motion that E1max is taken from. A settled motion counts in any case, and in whole blocks. The steady response has no
-    /// beginning: of it the limits hold for the steady motion alone.
+    /// Time from which the limits on stroke and force apply, s: 0, the default, for the whole run from rest; t0 of `window` for the
+    /// same motion as E1max. A settled motion is always included, in whole blocks. For the steady response the limits apply to the
+    /// steady-state motion alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<NonNegative>,
 }

@@ -7,55 +7,55 @@ use retune_solver::Settle;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which E1max is made small: a statistic over `ensemble` of the largest over `k1` of the largest over `omega` of the E1max that
-/// `response` takes from a run. What is left out stays as it is in `scene`.
+/// The objective to minimise: a statistic over `ensemble` of the maximum over `k1` of the maximum over `omega` of E1max, evaluated
+/// in each run as `response` specifies. Fields left out keep their nominal value, that of `scene`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Objective {
-    /// The worst over a band of omega; leave it out (or null) for the omega of `scene` alone.
+    /// Worst case over a band of excitation frequencies; omit it (or null) for the omega of `scene` alone.
     pub omega: Option<FrequencyBand>,
-    /// The worst over stiffnesses k1 of the structure, each with its own worst over `omega`; null for the k1 of `scene` alone.
+    /// Worst case over stiffnesses k1 of the structure, each with its own worst case over `omega`; null for the k1 of `scene` alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k1: Option<Stiffnesses>,
-    /// Where E1max is taken: in `window`, steady, or settled.
+    /// The part of the response in which E1max is evaluated: in `window`, steady, or settled.
     pub response: Response,
-    /// When a motion counts as settled, for the response "settled".
+    /// The criterion by which a motion is settled, for the response "settled".
     #[serde(skip_serializing_if = "is_default")]
     pub settle: Settle,
-    /// A statistic over phases of the force and small errors of parameters; null for the scene itself.
+    /// A statistic over phases of the excitation and small perturbations of the parameters; null for the nominal scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ensemble: Option<Ensemble>,
-    /// A weighted sum of objectives in the place of everything above.
+    /// A weighted sum of objectives, instead of all fields above.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sum: Vec<Part>,
 }
 
-/// A part of a weighted sum.
+/// A term of a weighted sum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// By what its E1max is multiplied.
+    /// The weight of its E1max.
     pub weight: Positive,
-    /// Which E1max it is.
+    /// Its objective.
     pub objective: Objective,
 }
 
-/// A band of angular frequencies: E1max is the largest over it, with its peaks refined between samples.
+/// A band of excitation frequencies, over which E1max is maximised; its peaks are refined between samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Band")]
 pub struct FrequencyBand {
-    /// Lowest angular frequency, rad/s.
+    /// Lower end, angular frequency, rad/s.
     pub from: Positive,
-    /// Highest angular frequency, rad/s.
+    /// Upper end, angular frequency, rad/s.
     pub to: Positive,
-    /// Evenly spaced frequencies at which runs are made first, both ends included; each maximum of them is then refined between
-    /// its neighbours by at most 12 more. What is found this way is a lower bound: a peak that shows at no sample is missed. The
+    /// Number of evenly spaced frequencies, both ends included, at which runs are made; each local maximum is then refined between
+    /// its neighbours with at most 12 further runs. The result is a lower bound: a peak narrower than the spacing can be missed. The
     /// steady response needs no samples: it is exact over the whole band.
     #[serde(default = "samples")]
     #[schemars(range(min = 2, max = 10000))]
     pub samples: usize,
-    /// Whether `from` and `to` are multiples of the structure's natural frequency √(k1/m1), whatever its k1 is, instead of rad/s.
+    /// Whether `from` and `to` are multiples of the natural frequency √(k1/m1) of the structure, for each k1, instead of rad/s.
     #[serde(default, skip_serializing_if = "is_false")]
     pub relative: bool,
 }
@@ -65,13 +65,13 @@ pub struct FrequencyBand {
 #[serde(rename_all = "lowercase")]
 #[schemars(rename = "K1")]
 pub enum Stiffnesses {
-    /// Each of these, N/m.
+    /// A list of values, N/m.
     Set(#[schemars(length(min = 1))] Vec<Positive>),
     /// A range.
     Range(StiffnessRange),
 }
 
-/// A range of stiffnesses, looked at as a band of omega is.
+/// A range of stiffnesses, sampled and refined like a band of frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "K1Range")]
@@ -80,23 +80,23 @@ pub struct StiffnessRange {
     pub from: Positive,
     /// Largest k1, N/m.
     pub to: Positive,
-    /// Evenly spaced values that are looked at first, both ends included; their maxima are then refined.
+    /// Number of evenly spaced values, both ends included; local maxima are then refined.
     #[schemars(range(min = 2, max = 10000))]
     pub samples: usize,
 }
 
-/// When E1max is taken.
+/// The part of the response in which E1max is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Response {
-    /// The largest in `window` of a run from rest.
+    /// The maximum in `window` of a run from rest.
     #[default]
     Window,
-    /// The largest once all transients have died, in closed form. A design whose damper would reach a wall has no value; the
-    /// solver only runs the design that was found.
+    /// The maximum of the steady-state response, in closed form. A design whose damper would reach a wall has no value; only the
+    /// optimised design is integrated in time.
     Steady,
-    /// The largest once the motion of a run from rest repeats, see `settle`; in `window`, if it does not by its end (the
-    /// result counts such runs). For motions with contacts too.
+    /// The maximum once the motion of a run from rest has become periodic, see `settle`; the maximum in `window` if it has not by the
+    /// end of the run (the number of such runs is reported). Valid for motions with contacts as well.
     Settled,
 }
 

@@ -5,21 +5,21 @@ use retune_model::{Coupled, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// When a motion counts as settled: its state returns after some periods of the force, throughout successive blocks of periods
-/// counted from t = 0. E1max is then that of the last of them.
+/// The criterion by which a motion is settled: its state recurs after a number of excitation periods, throughout successive
+/// blocks of periods counted from t = 0. E1max is then that of the last block.
 // States are compared at whole periods of the force: the structure's as a share of the largest `√(m1 v1² + k1 x1²)`, the damper's,
 // relative to the structure, of the largest `√((x2 - x1 - D)² + (v2 - v1)²/ω²)` at these moments.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settle {
-    /// Length of a block in periods of the force. A motion that repeats less often does not settle.
+    /// Length of a block, in excitation periods. A motion with a longer period does not settle.
     #[schemars(range(min = 1, max = 10000))]
     pub periods: u32,
-    /// How many blocks in a row must agree.
+    /// Number of consecutive blocks that must agree.
     #[schemars(range(min = 2, max = 100))]
     pub blocks: u32,
-    /// The most by which the state may still change, as a share of its size: from return to return, and all that is to follow if
-    /// the change keeps falling as it fell from block to block.
+    /// Tolerance on the state, relative to its size: on its change from one recurrence to the next, and on the sum of all future
+    /// changes, extrapolated from their decay from block to block.
     #[serde(deserialize_with = "positive")]
     #[schemars(with = "Positive")]
     pub tolerance: f64,
