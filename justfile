@@ -10,21 +10,21 @@ export RETUNE_RUN_AS := "just"
 default:
     @just --list --unsorted
 
-# Tune the SSVI NES of the paper: grid, fminsearch, log and figures into results/ssvi
+# The main job: tune the SSVI NES for its worst E1max over 5 to 8 rad/s, k2 at most 600 N/m: grid, fminsearch, certificate, figures into results/ssvi
 optimize-ssvi *OPTIONS:
     {{retune}} optimize studies/ssvi.json "$@"
 
-# Tune the linear TMD of the paper into results/tmd
+# Tune the linear TMD for the same into results/tmd
 optimize-tmd *OPTIONS:
     {{retune}} optimize studies/tmd.json "$@"
 
-# Tune the TMD for the worst over 5 to 8 rad/s, steady, into results/tmd-band
-optimize-tmd-band *OPTIONS:
-    {{retune}} optimize studies/tmd-band.json "$@"
+# Tune the TMD for the same, with k2 free, into results/tmd-free
+optimize-tmd-free *OPTIONS:
+    {{retune}} optimize studies/tmd-free.json "$@"
 
-# Tune the SSVI NES, no stiffer than the paper's TMD, for the worst over 5 to 8 rad/s: global search, certificate, into results/ssvi-band
-optimize-ssvi-band *OPTIONS:
-    {{retune}} optimize studies/ssvi-band.json "$@"
+# Tune the SSVI NES for the same, by a global search in the place of the grid, into results/ssvi-global
+optimize-ssvi-global *OPTIONS:
+    {{retune}} optimize studies/ssvi-global.json "$@"
 
 # Tune any study, for instance `just optimize studies/ssvi-robust.json`
 optimize STUDY *OPTIONS:
@@ -34,11 +34,11 @@ optimize STUDY *OPTIONS:
 merge STUDY *OPTIONS:
     {{retune}} merge "$@"
 
-# Certify a design: a study, the optimum.json of a search or the directory of its results, for instance `just certify studies/ssvi.json`
+# Certify a design: a study, the optimum.json of a search or the directory of its results, for instance `just certify results/ssvi`
 certify DESIGN *OPTIONS:
     {{retune}} certify "$@"
 
-# Re-optimise both rows of Table 2, beside the paper's
+# Re-optimise both rows of Table 2 for the worst over 5 to 8 rad/s, beside the paper's
 table2 *OPTIONS:
     {{retune}} table2 "$@"
 
@@ -60,7 +60,7 @@ verify RESULTS *OPTIONS:
 simulate STUDY="studies/ssvi.json" *OPTIONS:
     {{retune}} simulate "$@"
 
-# Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-band.json`
+# Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-free.json`
 evaluate STUDY *OPTIONS:
     {{retune}} evaluate "$@"
 

@@ -16,7 +16,7 @@ RETUNE = str(Path(sys.argv[1]).resolve())
 
 
 def study(name, points, end=None):
-    study = json.loads((HERE.parent / "studies" / "ssvi.json").read_text())
+    study = json.loads((HERE.parent / "studies" / "ssvi-resonance.json").read_text())
     study.pop("$schema", None)
     study["name"] = name
     for axis, count in zip(study["optimize"]["surf"].values(), points):

@@ -23,7 +23,7 @@ def ok(words):
 
 def study(k1=39500):
     """The paper's study with a grid of POINTS⁴ runs."""
-    study = json.loads((HERE.parent / "studies" / "ssvi.json").read_text())
+    study = json.loads((HERE.parent / "studies" / "ssvi-resonance.json").read_text())
     study["scene"]["primary"]["k1"] = k1
     study["name"] = "cluster"
     study.pop("$schema", None)

@@ -2,7 +2,7 @@
 
 Needs numpy, SciPy and a built program. From the root of the repository (`just rivals` builds first; named problems only, if any):
 
-    python3 tests/reference/rivals.py target/release/retune tmd-band ssvi-band
+    python3 tests/reference/rivals.py target/release/retune tmd-free ssvi-global
 
 The rivals ask `retune evaluate STUDY`. Retune's own searches run as `retune optimize STUDY --threads 1`, on one thread so that
 the order of their evaluations is one; they are counted in the journal, where every evaluation is written as it is made. Every
@@ -31,14 +31,14 @@ NO_VALUE = 1e6
 LEVELS = [("1 %", 1.01), ("0.1 %", 1.001)]
 # Each box with the sides that are searched in their logarithm, as Retune's global search does for a decade or more.
 PROBLEMS = {
-    "tmd-band": {
+    "tmd-free": {
         "title": "TMD over 5 … 8 rad/s, steady",
         "box": {"k2": (200, 6400, True), "c2": (2, 640, True)},
         "budget": 1500,
         "seeds": range(1, 11),
         "change": {},
     },
-    "ssvi-band": {
+    "ssvi-global": {
         "title": "SSVI NES over 5 … 8 rad/s, k2 at most 600 N/m",
         "box": {"k2": (10, 600, True), "c2": (1, 1000, True), "D": (0, 1, False), "C": (0, 2, False)},
         "budget": 2500,
@@ -220,8 +220,8 @@ def main():
             for method in RIVALS:
                 tasks += [pool.submit(run_rival, program, folder, name, method, seed) for seed in problem["seeds"]]
             for method, own in OWN.items():
-                grid = name == "tmd-band" and own is None
-                if name == "ssvi-band" and own == {}:
+                grid = name == "tmd-free" and own is None
+                if name == "ssvi-global" and own == {}:
                     continue  # that is its study
                 seeds = [1] if grid else problem["seeds"]
                 tasks += [pool.submit(run_own, program, folder, name, method, seed) for seed in seeds]

@@ -15,7 +15,7 @@ const LARGE: usize = 32;
 const SMALL: usize = 10;
 const PAIRS: usize = 5;
 
-/// The ranges of `studies/ssvi.json`, in the order of [`Variable::ALL`]: N/m, N·s/m, m, m.
+/// The ranges of `studies/ssvi-resonance.json`, in the order of [`Variable::ALL`]: N/m, N·s/m, m, m.
 const RANGES: [(f64, f64, Scale); 4] = [
     (50.0, 1600.0, Scale::Log),
     (10.0, 400.0, Scale::Log),

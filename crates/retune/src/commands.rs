@@ -5,6 +5,7 @@ use crate::screen::{self, Screen};
 use clap::CommandFactory;
 use retune_paper::Plan;
 use retune_study as study;
+use retune_workbench::design::Wishes;
 use retune_workbench::designs::Designs;
 use retune_workbench::evaluate::Streams;
 use retune_workbench::simulate::Trajectory;
@@ -21,9 +22,10 @@ use std::path::Path;
 /// # Errors
 /// Those of its job.
 pub fn run(command: Command) -> Result<(), Error> {
-    let all = Screen::new(false);
+    let all = Screen::new(false, false);
     match command {
         Command::Optimize(arguments) => optimize(&arguments),
+        Command::Design(arguments) => design(&arguments),
         Command::Merge(cli::Merge { study, parts, running }) => {
             let (request, screen) = running.request(&study);
             found(tune::merge::merge(&request, &parts, &screen)?)
@@ -73,6 +75,18 @@ fn optimize(cli::Optimize { study, shard, running }: &cli::Optimize) -> Result<(
         Some(shard) => tune::tune_share(&request, *shard, &screen),
         None => found(tune::tune(&request, &screen)?),
     }
+}
+
+fn design(arguments: &cli::Design) -> Result<(), Error> {
+    let cli::Design { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error, running } = arguments;
+    let out = running.out.clone().unwrap_or_else(|| "results/design".into());
+    let (mut request, screen) = running.request(&out);
+    request.out = Some(out);
+    let band = [band.first(), band.last()].map(|end| end.copied().unwrap_or(f64::NAN));
+    let (stroke, k2_max, k1_error) = (*stroke, *k2_max, *k1_error);
+    let (m1, k1, c1, force, mass) = (*m1, *k1, *c1, *force, *mass);
+    let wishes = Wishes { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error };
+    retune_workbench::design::design(&wishes, &request, &screen).map(drop)
 }
 
 /// A design that breaks the limits of its study has an exit code of its own.

@@ -11,12 +11,13 @@ use std::process::ExitCode;
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
     quiet: bool,
+    verbose: bool,
 }
 
 impl Screen {
-    /// A screen that shows results, and unless `quiet` also the log and progress.
-    pub fn new(quiet: bool) -> Self {
-        Self { quiet }
+    /// A screen that shows results, unless `quiet` also progress, and where `verbose` also the log.
+    pub fn new(quiet: bool, verbose: bool) -> Self {
+        Self { quiet, verbose }
     }
 
     /// Shows a line of the result.
@@ -36,10 +37,10 @@ impl Screen {
 
 impl Observer for Screen {
     fn result(&self, line: &str) -> Result<(), Error> {
-        self.line(line)
+        self.line(as_typed(line, std::env::var(interrupt::RUN_AS).ok()))
     }
     fn log(&self, line: &str) -> Result<(), Error> {
-        if self.quiet { Ok(()) } else { self.line(line) }
+        if self.verbose { self.line(line) } else { Ok(()) }
     }
     fn warn(&self, words: &str) {
         say("warning", words);

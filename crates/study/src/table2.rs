@@ -5,7 +5,7 @@ use super::format::Study;
 use super::kind::Kind;
 use super::read::read;
 use super::rule::Rule;
-use retune_model::Design;
+use retune_model::{Design, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -40,6 +40,9 @@ pub struct PaperRow {
     pub study: PathBuf,
     /// The paper's design, from which the refinement starts.
     pub paper: Design,
+    /// The E1max that the paper prints for it, J, if it does.
+    #[serde(rename = "E1max", default, skip_serializing_if = "Option::is_none")]
+    pub e1_max: Option<Positive>,
 }
 
 /// A damper's study with the paper's design in its scene.
@@ -49,6 +52,8 @@ pub struct PaperStudy {
     pub damper: String,
     /// The study; the design in its scene is the paper's.
     pub study: Study,
+    /// The E1max that the paper prints, J.
+    pub printed: Option<Positive>,
 }
 
 /// Reads the studies of a table, each with the paper's design in its scene.
@@ -70,7 +75,7 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
         if rows.iter().any(|other| other.study.name() == study.name()) {
             return Err(refuse(Rule::SameName { name: study.name().to_owned() }));
         }
-        rows.push(PaperStudy { damper: row.damper, study });
+        rows.push(PaperStudy { damper: row.damper, study, printed: row.e1_max });
     }
     if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok(rows) }
 }

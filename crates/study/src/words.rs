@@ -66,6 +66,11 @@ pub fn short(value: f64) -> String {
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
 }
 
+/// A number to some significant digits, as short as it can be.
+pub fn rounded(value: f64, digits: usize) -> String {
+    short(format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value))
+}
+
 /// The items with `separator` between them.
 pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(separator)

@@ -1,12 +1,14 @@
-//! A table of designs in the form of the paper's Table 2, as `table2` and `track` make it.
+//! Tables of designs in the form of the paper's Table 2, as `table2` and `track` make them.
 
 use crate::Error;
-use crate::tune::{Found, table2_header, table2_row};
+use crate::summary::TunedDamper;
+use crate::tune::{Optimum, table2_header, table2_row};
+use retune_model::Scene;
 use retune_store::Directory;
-use retune_study::{joined, short};
+use retune_study::{Study, joined, short};
 use serde::Serialize;
 
-/// A table of designs: the paper's columns, E1max, and one column of its own.
+/// A table of designs: the paper's columns, one column of its own, and what each design is worth.
 #[derive(Debug, Serialize)]
 pub struct Designs {
     /// The name of the column of its own.
@@ -25,9 +27,46 @@ pub struct Row {
     pub label: String,
     /// The name of the damper.
     pub damper: String,
-    /// The design, and its E1max.
+    /// The damper itself.
     #[serde(flatten)]
-    pub found: Found,
+    pub found: TunedDamper,
+    /// The E1max that the paper prints for it, J.
+    #[serde(rename = "E1max_printed", skip_serializing_if = "Option::is_none")]
+    pub printed: Option<f64>,
+    /// E1max by the objective of its study, J.
+    #[serde(rename = "E1max")]
+    pub e1_max: f64,
+    /// The same without a damper, J; infinite for an undamped structure at resonance.
+    #[serde(rename = "E1max_none")]
+    pub none: f64,
+    /// The verdict of its certificate.
+    pub verdict: &'static str,
+}
+
+impl Row {
+    /// A row with the design that a search has found.
+    pub fn of_optimum(label: &str, damper: &str, study: &Study, optimum: &Optimum) -> Self {
+        let found = optimum.found();
+        Self {
+            label: label.to_owned(),
+            damper: damper.to_owned(),
+            found: found.damper,
+            printed: None,
+            e1_max: found.e1_max,
+            none: without_damper(study),
+            verdict: optimum.verdict(),
+        }
+    }
+
+    /// By how many times E1max is smaller than without a damper.
+    fn reduction(&self) -> f64 {
+        self.none / self.e1_max
+    }
+}
+
+/// E1max of the structure of a study alone, by the objective of the study, J; NaN where it has none.
+pub fn without_damper(study: &Study) -> f64 {
+    study.energy(&Scene { damper: None, ..study.scene }).unwrap_or(f64::NAN)
 }
 
 impl Designs {
@@ -42,18 +81,39 @@ impl Designs {
 
     /// The table as CSV.
     pub fn csv(&self) -> String {
-        let mut text = format!("{},damper,m2,k2,c2,D,C,E1max\n", self.column);
-        for Row { label, damper, found: Found { damper: found, e1_max } } in &self.rows {
-            text += &format!("{label},{},{},{e1_max}\n", quoted(damper), joined(&found.values(), ","));
+        let mut text =
+            format!("{},damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,verdict\n", self.column);
+        for Row { label, damper, found, printed, e1_max, none, verdict } in &self.rows {
+            let printed = printed.map(|value| value.to_string()).unwrap_or_default();
+            let [label, damper] = [label, damper].map(|text| quoted(text));
+            let values = joined(&found.values(), ",");
+            text += &format!("{label},{damper},{values},{e1_max},{printed},{none},{verdict}\n");
         }
         text
     }
 
     /// The table as text, without an end of line.
     pub fn text(&self) -> String {
-        let mut lines = vec![format!("{:<14}{:<84}E1max, J", self.column, table2_header())];
-        for Row { label, damper, found: Found { damper: found, e1_max } } in &self.rows {
-            lines.push(format!("{label:<14}{:<84}{}", table2_row(damper, found), short(*e1_max)));
+        let any_printed = self.rows.iter().any(|row| row.printed.is_some());
+        let printed = |text: &str| if any_printed { format!("{text:<10}") } else { String::new() };
+        let mut lines = vec![format!(
+            "{:<14}{:<84}{}{:<11}{:<8}verdict",
+            self.column,
+            table2_header(),
+            printed("printed"),
+            "E1max, J",
+            "none /",
+        )];
+        for row in &self.rows {
+            lines.push(format!(
+                "{:<14}{:<84}{}{:<11}{:<8.2}{}",
+                row.label,
+                table2_row(&row.damper, &row.found),
+                printed(&row.printed.map(short).unwrap_or_default()),
+                short(row.e1_max),
+                row.reduction(),
+                row.verdict
+            ));
         }
         lines.join("\n")
     }

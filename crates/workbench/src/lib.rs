@@ -43,6 +43,7 @@
 pub mod artefact;
 pub mod certify;
 pub mod describe;
+pub mod design;
 pub mod designs;
 pub mod error;
 pub mod evaluate;

@@ -5,7 +5,7 @@ mod draw;
 mod fronts;
 mod page;
 
-pub use candidate::{Candidate, energy, finer};
+pub use candidate::{Candidate, energy, finer, look};
 pub use fronts::{Certified, Fronts, Row};
 
 use crate::artefact::{Content, Kind, artefact};

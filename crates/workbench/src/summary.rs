@@ -3,8 +3,7 @@
 use retune_model::{Damper, Design, Positive, Scene, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind};
-use retune_study::counted;
-use retune_study::{Solver, Span, Study, over};
+use retune_study::{Solver, Span, Study, counted, over, rounded};
 use serde::Serialize;
 
 /// The observations in the window of a run. SI units; a ratio 0/0 is null.
@@ -82,6 +81,12 @@ struct Walls<T> {
     obstacle: T,
 }
 
+impl<T> Walls<T> {
+    fn map<U>(self, of: impl Fn(T) -> U) -> Walls<U> {
+        Walls { primary: of(self.primary), obstacle: of(self.obstacle) }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Serialize)]
 struct FinalState {
     x1: f64,
@@ -151,6 +156,26 @@ impl Summary {
             rejected: work.rejected,
             evaluations: work.evaluations,
             parameters: scene,
+        }
+    }
+
+    /// The angular frequency of the run, rad/s.
+    pub fn omega(&self) -> f64 {
+        self.made_by.omega
+    }
+
+    /// The room and the strength that the damper needs, in words.
+    pub fn needs(&self) -> String {
+        let Walls { primary, obstacle } = self.force_max.map(|force| rounded(force, 4));
+        let stroke = rounded(self.spring_deflection_max, 4);
+        match self.scene {
+            SceneKind::Contact => format!(
+                "a stroke of {stroke} m, and walls for {primary} N on the structure and {obstacle} N on the obstacle (at \
+                 the worst frequency)"
+            ),
+            SceneKind::Linear | SceneKind::Bare => {
+                format!("a stroke of {stroke} m (at the worst frequency); it touches no wall")
+            }
         }
     }
 

@@ -62,12 +62,15 @@ pub fn track(
     let job = Job::of_studies(&KIND, request, json!({ "k1": k1 }), studies)?;
     job.run(request, watch, |directory| {
         let mut searches = Searches::new(directory, &job.order, watch);
+        let mut designs: Vec<(f64, Row)> = Vec::new();
         let tuned = rows
             .iter()
-            .map(|row| tune(row, stiffnesses, &mut searches, watch))
+            .map(|row| tune(row, stiffnesses, &mut searches, &mut designs, watch))
             .collect::<Result<Vec<Tuned>, Error>>()?;
+        designs.sort_by(|a, b| a.0.total_cmp(&b.0)); // stable: the dampers in their order under each stiffness
         let Searches { results: parts, infeasible, .. } = searches;
-        let table = Designs { column: "k1", rows: by_stiffness(&tuned), infeasible };
+        let table =
+            Designs { column: "k1", rows: designs.into_iter().map(|(_, row)| row).collect(), infeasible };
         let curves = retention(&tuned);
         directory.write("retention.csv", &csv(&tuned, &curves))?;
         directory.write("retention.svg", &draw::retention(&tuned, &curves))?;
@@ -77,25 +80,12 @@ pub fn track(
     })
 }
 
-/// All designs, smallest stiffness first, the dampers in their order under each.
-fn by_stiffness(tuned: &[Tuned]) -> Vec<Row> {
-    let of = |damper: &Tuned| {
-        let name = damper.name.clone();
-        let row = move |&(k1, found): &(f64, Found)| {
-            (k1, Row { label: k1.to_string(), damper: name.clone(), found })
-        };
-        damper.designs.iter().map(row).collect::<Vec<_>>()
-    };
-    let mut rows: Vec<(f64, Row)> = tuned.iter().flat_map(of).collect();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0)); // stable
-    rows.into_iter().map(|(_, row)| row).collect()
-}
-
 /// Tunes one damper for the stiffness of its study, then for each of `others`: upwards from there, then downwards.
 fn tune(
-    PaperStudy { damper: name, study }: &PaperStudy,
+    PaperStudy { damper: name, study, .. }: &PaperStudy,
     others: &[Setting],
     searches: &mut Searches,
+    rows: &mut Vec<(f64, Row)>,
     watch: &dyn Observer,
 ) -> Result<Tuned, Error> {
     let nominal = study.scene.primary.stiffness.get();
@@ -115,6 +105,7 @@ fn tune(
         ))?;
         let optimum = searches.tune(&study, &format!("k1-{k1}"))?;
         watch.log(&optimum.report())?;
+        rows.push((k1, Row::of_optimum(&k1.to_string(), name, &study, &optimum)));
         Ok(optimum.found())
     };
     let nominal_design = at(nominal, None)?;

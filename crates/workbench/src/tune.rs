@@ -95,7 +95,9 @@ fn run(
     let job = Job::of_study(&KIND, study, &request.out_of(study), &request.order(KIND.command))?;
     let done = job.run(request, watch, |results| {
         let answer = work(results)?;
-        Ok(Made { report: answer.report(), answer, parts: Vec::new() })
+        watch.log(&answer.search())?;
+        let report = format!("{}\n{}", answer.report(), answer.next(&job.out));
+        Ok(Made { report, answer, parts: Vec::new() })
     })?;
     if let Done::FinishedBefore = done {
         certify::check_limits_in(&job.out, study.name())?;
@@ -117,7 +119,7 @@ fn tuned(
 ) -> Result<Optimum, Error> {
     match results.journal().known() {
         0 => {}
-        known => watch.log(&format!("goes on: {} known", are(known, "value")))?,
+        known => watch.result(&format!("goes on: {} known", are(known, "value")))?,
     }
     let optimum = search_and_write(study, search, results, watch);
     if optimum.as_ref().is_err_and(|error| !matches!(error, Error::Store(_))) {

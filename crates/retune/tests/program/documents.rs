@@ -103,7 +103,7 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
 /// The tests' own scene of the paper is that of the studies.
 #[test]
 fn contract_the_scene_of_the_tests_is_that_of_the_studies() {
-    for (name, numbers) in [("ssvi.json", scenes::SSVI), ("tmd.json", scenes::TMD)] {
+    for (name, numbers) in [("ssvi-resonance.json", scenes::SSVI), ("tmd-resonance.json", scenes::TMD)] {
         let scene: retune_model::Scene =
             serde_json::from_value(committed(name)["scene"].clone()).expect("a scene");
         assert_eq!(scene, numbers.scene(), "{name}");

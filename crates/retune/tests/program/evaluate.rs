@@ -20,7 +20,7 @@ fn said(desk: &Desk, study: &str, options: &[&str], input: &[u8]) -> Answer {
 
 #[test]
 fn contract_a_line_is_answered_before_the_next_is_sent() {
-    let study = studies().join("tmd-band.json");
+    let study = studies().join("tmd-free.json");
     let mut child = Command::new(env!("CARGO_BIN_EXE_retune"))
         .args(["evaluate".as_ref(), study.as_os_str()])
         .stdin(Stdio::piped())

@@ -1,7 +1,7 @@
 //! Refusals as a user sees them: one clear message each, an exit code that says whose fault it is, and no file left. The messages
 //! about studies are tested in `study`, those of results in `workbench`.
 
-use crate::common::desk::{edited, global, studies, tiny};
+use crate::common::desk::{edited, flat, global, studies, tiny};
 use crate::common::{Answer, Desk};
 use serde_json::{Value, json};
 
@@ -106,9 +106,10 @@ fn contract_limits_that_no_design_keeps_exit_with_3() {
     let desk = Desk::new();
     desk.write_json("none.json", &global(json!({}), json!({ "stroke": 1e-6 })));
     let Answer { code, stdout, stderr } = desk.run(&["optimize", "none.json", "--quiet"]);
+    let stdout = flat(&stdout);
     assert!(stdout.contains("NO DESIGN KEEPS THE LIMITS; the nearest: stroke "), "{stdout}");
     let words = "no verdict, for the design breaks the limit of stroke: ";
-    assert!(stdout.contains(&format!("certificate: {words}")), "{stdout}");
+    assert!(stdout.contains(&format!("verdict {words}")), "{stdout}");
     assert_eq!(code, Some(3));
     assert!(stderr.starts_with(&format!("error: study none: the limits are not kept: {words}")), "{stderr}");
     for arguments in [&["optimize", "none.json", "--quiet", "--resume"][..], &["certify", "results/none"]] {

@@ -57,9 +57,27 @@ pub struct Short {
     predictable: bool,
     regime: String,
     exponent: f64,
+    /// The motion of the worst run in words.
+    #[serde(skip)]
+    sentence: String,
 }
 
 impl Short {
+    /// The verdict in words, with the error bar.
+    pub fn verdict_words(&self) -> String {
+        format!("{} (numerical error at most {:.0e} J)", self.words, self.error_bar)
+    }
+
+    /// Whether the value is one of many that practically equal designs have.
+    pub fn is_chaotic(&self) -> bool {
+        self.verdict == Some(Verdict::SingleChaoticRealisation)
+    }
+
+    /// The motion of the worst run in words.
+    pub fn motion_words(&self) -> &str {
+        &self.sentence
+    }
+
     /// The verdict in a word.
     pub fn verdict(&self) -> &'static str {
         self.verdict.map_or("none", Verdict::name)
@@ -112,10 +130,15 @@ impl Certificate {
         self.short().check_limits(self.made_by.study())
     }
 
+    /// The value of the objective, J.
+    pub fn e1_max(&self) -> f64 {
+        self.e1_max
+    }
+
     /// The short form.
     pub fn short(&self) -> Short {
         let Self { verdict, words, error_bar, predictable, motion, .. } = self.clone();
-        let Motion { regime, exponent, .. } = motion;
-        Short { verdict, words, error_bar, predictable, regime, exponent }
+        let Motion { regime, exponent, sentence, .. } = motion;
+        Short { verdict, words, error_bar, predictable, regime, exponent, sentence }
     }
 }

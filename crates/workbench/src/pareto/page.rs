@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, SAME};
 use super::fronts::{Certified, Fronts, Row};
 use retune_study::Sweep;
-use retune_study::short;
+use retune_study::{rounded, short};
 
 /// The page.
 pub(super) fn page(fronts: &Fronts) -> String {
@@ -126,7 +126,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
     let Certified { sweep, bound, design, reference, file, certificate } = one;
-    let [k2, c2, d, c] = design.at.values().map(|value| round(value, 4));
+    let [k2, c2, d, c] = design.at.values().map(|value| rounded(value, 4));
     let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
     format!(
         "- {}, {} at most {bound} {}: k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m with {} J (best {} under the same bound: {reference}). \
@@ -141,7 +141,7 @@ fn certificate(fronts: &Fronts, one: &Certified) -> String {
 }
 
 fn cells(design: &Candidate) -> String {
-    let [k2, c2, d, c] = design.at.values().map(|value| round(value, 4));
+    let [k2, c2, d, c] = design.at.values().map(|value| rounded(value, 4));
     format!(
         "{} | {k2} | {c2} | {d} | {c} | {} | {:.0} | {}",
         joule(design.e1_max),
@@ -157,10 +157,4 @@ fn joule(value: f64) -> String {
 
 fn metre(value: f64) -> String {
     format!("{value:.3}")
-}
-
-/// To some significant digits.
-fn round(value: f64, digits: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
-    short(rounded)
 }

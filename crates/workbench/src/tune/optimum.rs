@@ -1,5 +1,6 @@
 //! The result of a search: one type, from which `optimum.json` and the last lines on screen are made.
 
+mod answer;
 mod notes;
 
 use super::global::{Basins, Explored};
@@ -7,11 +8,13 @@ use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::Error;
 use crate::certify::Short;
+use crate::designs::without_damper;
 use crate::summary::{MadeBy, Summary, TunedDamper};
 use notes::{Goal, LimitNote, Met};
+use retune_model::Variable;
 use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
+use retune_study::short;
 use retune_study::{PerVariable, Search, Study};
-use retune_study::{counted, short};
 use serde::Serialize;
 
 /// The best design and how it was found. SI units.
@@ -25,7 +28,15 @@ pub struct Optimum {
     /// The meaning of E1max, if it is not that of a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
     objective: Option<Goal>,
+    /// The same without a damper, J; null if it has no bound.
+    #[serde(rename = "E1max_none")]
+    e1_max_none: f64,
+    /// The same with the damper of the study's scene, J; null if it cannot be run.
+    #[serde(rename = "E1max_study")]
+    e1_max_study: f64,
     on_bound: Vec<Met>,
+    /// The parameters in which the best point of the grid lies at its edge, where the grid could be wider.
+    on_edge: Vec<Variable>,
     /// The state of the study's limits, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<LimitNote>,
@@ -124,8 +135,11 @@ impl Optimum {
             damper_type: summary.damper_type(),
             damper: TunedDamper::of(&damper),
             e1_max: evaluation.energy,
+            e1_max_none: without_damper(study),
+            e1_max_study: study.energy(&study.scene).unwrap_or(f64::NAN),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),
+            on_edge: surf.map(|surf| notes::on_edge(search, surf)).unwrap_or_default(),
             limits: LimitNote::new(study, &evaluation, surf, explored, refined),
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
@@ -173,42 +187,6 @@ impl Optimum {
     /// The design at which the best refinement started.
     pub fn start(&self) -> Found {
         self.start
-    }
-
-    /// The last lines on screen.
-    pub fn report(&self) -> String {
-        let Refinement { tol_x, tol_x_mode, winner, runs, .. } = &self.refine;
-        let RunNote { iterations, func_count, stop, .. } = &runs[winner - 1];
-        let mut lines = vec![
-            String::new(),
-            table2_header(),
-            table2_row(self.damper_type, &self.damper),
-            format!("E1max = {} J; {}", short(self.e1_max), self.made_by),
-            format!(
-                "fminsearch, start {winner} of {}: {} after {}, {}; TolX {tol_x:e} is {tol_x_mode}",
-                runs.len(),
-                stop_words(*stop),
-                counted(*iterations, "iteration"),
-                counted(*func_count, "evaluation"),
-            ),
-        ];
-        lines.extend(self.global.as_ref().map(Basins::report));
-        lines.extend(self.limits.as_ref().map(LimitNote::report));
-        if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
-            lines.push(format!(
-                "note: {unsettled} of {} of this design had not settled at T; E1max is then that of the window",
-                counted(*runs, "run")
-            ));
-        }
-        lines.push(self.certificate.to_string());
-        lines.extend(notes::on_bound_words(&self.on_bound));
-        if let FailureNote { count, example: Some(example) } = &self.failures {
-            lines.push(format!(
-                "note: {} could not be computed, for instance {example}",
-                counted(*count, "design")
-            ));
-        }
-        lines.join("\n")
     }
 }
 

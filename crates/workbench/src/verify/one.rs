@@ -6,6 +6,7 @@ use super::table::{Row, Sample};
 use crate::Error;
 use crate::artefact::{Artefact, Content};
 use crate::certify::certify;
+use crate::designs::without_damper;
 use crate::resolved;
 use crate::summary::Summary;
 use crate::tune::objective::objective;
@@ -122,7 +123,11 @@ fn again(
 ) -> Result<Value, Error> {
     let scene = found.worst_run(tuned, objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
-    let mut again = json!({ "E1max": found.energy, "simulation": Summary::new(study, scene, &response) });
+    let mut again = json!({
+        "E1max": found.energy,
+        "E1max_none": without_damper(study),
+        "E1max_study": study.energy(&study.scene),
+        "simulation": Summary::new(study, scene, &response) });
     if !objective.goal().limits.is_empty() {
         let [stroke, force, cavity] = Limit::ALL.map(|limit| found.reached.get(limit));
         let (violation, feasible) = (found.violation, found.violation == 0.0);

@@ -16,7 +16,7 @@ fn contract_the_objective_is_described() {
     let line = "for the worst E1max over omega = 6 to 6.6 rad/s, in the window, on 5 samples and refined at their peaks";
     let band = said(&ssvi_band());
     assert!(band.contains(line), "{band}");
-    let steady = said(&committed("tmd-band.json"));
+    let steady = said(&committed("tmd-free.json"));
     assert!(steady.contains("for the worst E1max over omega = 5 to 8 rad/s, steady, exact"), "{steady}");
 }
 

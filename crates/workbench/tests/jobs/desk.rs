@@ -22,15 +22,17 @@ impl Desk {
         desk
     }
 
-    /// With the paper's table and its two studies, each changed by `change`.
+    /// With the paper's table and the studies of its two dampers at one frequency, each changed by `change`.
     pub fn with_table2(table: &str, change: impl Fn(&mut Value)) -> Self {
         let desk = Self::new();
-        for name in ["ssvi.json", "tmd.json"] {
-            let mut study = committed(name);
+        let mut rows = committed("table2.json");
+        for (row, name) in ["ssvi", "tmd"].into_iter().enumerate() {
+            let (mut study, file) = (committed(&format!("{name}-resonance.json")), format!("{name}.json"));
             change(&mut study);
-            desk.write_json(name, &study);
+            desk.write_json(&file, &study);
+            rows["rows"][row]["study"] = json!(file);
         }
-        desk.write_json(table, &committed("table2.json"));
+        desk.write_json(table, &rows);
         desk
     }
 
@@ -117,7 +119,7 @@ pub fn committed(name: &str) -> Value {
 
 /// A study of a few runs of a few seconds, with contacts.
 pub fn tiny() -> Value {
-    let mut study = committed("ssvi.json");
+    let mut study = committed("ssvi-resonance.json");
     study["window"] = json!({ "t0": 1, "T": 4 });
     study["optimize"] = json!({
         "vary": ["k2", "c2", "D", "C"],
@@ -200,4 +202,9 @@ pub fn altered(text: &str) -> String {
 
 pub fn count_lines(path: &Path) -> usize {
     std::fs::read(path).map_or(0, |bytes| bytes.iter().filter(|byte| **byte == b'\n').count())
+}
+
+/// A text with its lines and paragraphs joined: where a line is broken does not matter.
+pub fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

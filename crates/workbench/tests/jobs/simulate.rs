@@ -72,7 +72,7 @@ fn contract_a_trajectory_replaces_only_trajectories() {
 /// One cause and one remedy, immediately: a typing error must not start a run of a day.
 #[test]
 fn contract_values_that_nobody_means_are_told_with_what_helps() {
-    let study = retune_study::read(&studies().join("ssvi.json")).expect("a study");
+    let study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
     let too_fast = |error, what| matches!(error, SolverError::TooFast { remedy, .. } if remedy == what);
     let too_slow = |error, what| matches!(error, SolverError::TooSlow { remedy, .. } if remedy == what);
     type Expected<'a> = &'a dyn Fn(SolverError) -> bool;

@@ -24,7 +24,9 @@ fn paper_table2_puts_our_rows_beside_the_papers() {
     let desk = desk("table2.json");
     good(table2(&request(&desk, "table2.json", "out"), &Silent));
     let csv = desk.rows("out/table2.csv");
-    assert_eq!(csv[0].join(","), "origin,damper,m2,k2,c2,D,C,E1max");
+    assert_eq!(csv[0].join(","), "origin,damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,verdict");
+    let none = |row: usize| csv[row][9].parse::<f64>().expect("a number");
+    assert!((1..5).all(|row| none(row) > 0.0) && csv[1][8] == "563" && csv[2][8].is_empty());
     assert_eq!(csv[1][..7], ["paper", "SSVI NES", "60", "215", "232", "0.06", "0.36"]);
     assert_eq!(csv[2][..2], ["re-optimised", "SSVI NES"]);
     assert_eq!(csv[3][..7], ["paper", "TMD", "60", "600", "262", "2.08", "4.7"]);

@@ -1,6 +1,6 @@
 //! `tune`: from a study to its results.
 
-use crate::desk::{Desk, RESULTS, global, number, tiny};
+use crate::desk::{Desk, RESULTS, flat, global, number, tiny};
 use crate::observers::{Record, good};
 use crate::{found, request, search};
 use retune_workbench::Request;
@@ -10,9 +10,23 @@ use serde_json::json;
 #[test]
 fn contract_optimize_writes_every_result_with_its_columns() {
     let desk = Desk::with(&tiny());
-    let report = search(&desk, "study.json", "out").report();
+    let optimum = search(&desk, "study.json", "out");
     assert_eq!(desk.names("out"), RESULTS);
-    assert!(report.contains("TolX 1e-4 is absolute"), "{report}");
+    assert!(optimum.search().contains("TolX 1e-4 is absolute"), "{}", optimum.search());
+    // The answer: the damper, beside none and that of the study, in lines that fit a terminal.
+    let (report, json) = (optimum.report(), desk.read_json("out/optimum.json"));
+    assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
+    let said = flat(&report);
+    for (name, words) in [
+        ("E1max", "E1max {} J at omega"),
+        ("E1max_none", "instead {} J ("),
+        ("E1max_study", "damper, {} J ("),
+    ] {
+        let value = retune_study::rounded(number(&json, &format!("/{name}")), 4);
+        assert!(said.contains(&words.replace("{}", &value)), "{name}: {said}");
+    }
+    let k2 = retune_study::rounded(number(&json, "/k2"), 4);
+    assert!(said.contains(&format!("k2 = {k2} N/m, c2 = ")), "{said}");
 
     let surf = desk.rows("out/surf.csv");
     assert_eq!(surf[0], ["k2", "c2", "D", "C", "E1max"]);
@@ -98,8 +112,8 @@ fn contract_a_later_run_leaves_nothing_of_an_earlier_one() {
     let mut study = tiny();
     study["optimize"] = json!({ "vary": ["c2"], "refine": { "scaled": true, "TolX": 0.01 } });
     desk.write_json("study.json", &study);
-    let report = search(&desk, "study.json", "out").report();
-    assert!(report.contains("TolX 1e-2 is scaled"), "{report}");
+    let said = search(&desk, "study.json", "out").search();
+    assert!(said.contains("TolX 1e-2 is scaled"), "{said}");
     let expected = [
         ".notes.txt.tmp",
         "certificate.json",
@@ -152,7 +166,7 @@ fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
     study["optimize"]["refine"]["starts"] = json!(1);
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 10 });
     let desk = Desk::with(&study);
-    let report = search(&desk, "study.json", "out").report();
+    let report = flat(&search(&desk, "study.json", "out").report());
     let words = "mean of 2 members (all phases, errors to 0.1 %), worst over omega = 6 to 6.6 rad/s and k1";
     assert!(report.contains(words), "{report}");
     let optimum = desk.read_json("out/optimum.json");

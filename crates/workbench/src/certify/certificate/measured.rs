@@ -34,6 +34,9 @@ pub struct Run {
 #[derive(Clone, Debug, Serialize)]
 pub struct Motion {
     pub regime: String,
+    /// The same in words.
+    #[serde(skip)]
+    pub sentence: String,
     /// Whether it is chaotic, became periodic through chaos, or shows no period.
     pub irregular: bool,
     /// Largest Lyapunov exponent with its standard error, 1/s.
@@ -94,6 +97,7 @@ impl Motion {
         };
         Self {
             regime: regime.label(),
+            sentence: regime.sentence(),
             irregular: regime.transient.is_some()
                 || !matches!(regime.kind, Kind::Periodic | Kind::AmplitudeModulated),
             exponent: regime.exponent.value,

@@ -4,8 +4,8 @@ use super::super::global::Explored;
 use super::super::refine::{Refined, Run};
 use super::super::surf::Surf;
 use retune_model::Scene;
-use retune_optim::{Bounds, Evaluation, Limit, Limits, Objective, Response, Variable};
-use retune_study::{Search, Study, counted, joined, short};
+use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, Response, Variable};
+use retune_study::{Search, Study, joined};
 use serde::Serialize;
 
 /// The objective, and the ω at which E1max of the best design is reached, rad/s.
@@ -13,7 +13,7 @@ use serde::Serialize;
 pub(super) struct Goal {
     #[serde(flatten)]
     objective: Objective,
-    worst_omega: f64,
+    pub(super) worst_omega: f64,
     /// The stiffness k1 at which it is reached, N/m, if the objective has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     worst_k1: Option<f64>,
@@ -28,19 +28,19 @@ pub(super) struct Goal {
 /// The limits and the best design.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LimitNote {
-    allowed: Limits,
+    pub(super) allowed: Limits,
     /// The largest values in any run of the objective, SI units.
-    stroke: f64,
-    force: f64,
-    cavity: f64,
-    feasible: bool,
+    pub(super) stroke: f64,
+    pub(super) force: f64,
+    pub(super) cavity: f64,
+    pub(super) feasible: bool,
     /// The sum of reached / limit - 1 over the limits that are broken.
     violation: f64,
     /// The limits that are broken, or reached to within 1 %: they determine the optimum.
-    active: Vec<Limit>,
+    pub(super) active: Vec<Limit>,
     /// Designs that were evaluated, and those among them that were found to break a limit.
-    evaluations: u64,
-    infeasible: u64,
+    pub(super) evaluations: u64,
+    pub(super) infeasible: u64,
 }
 
 /// A parameter that ended on a bound.
@@ -53,6 +53,11 @@ pub(super) struct Met {
 }
 
 impl Goal {
+    /// The band of frequencies of its first term, if it has one.
+    pub(super) fn band(&self) -> Option<FrequencyBand> {
+        self.objective.terms().first().and_then(|(_, term)| term.omega)
+    }
+
     pub(super) fn new(study: &Study, evaluation: &Evaluation) -> Self {
         let objective = study.objective();
         let any = |is: fn(&Objective) -> bool| objective.terms().iter().any(|(_, term)| is(term));
@@ -92,22 +97,21 @@ impl LimitNote {
             infeasible: counts().map(|counts| counts.infeasible).sum(),
         })
     }
+}
 
-    pub(super) fn report(&self) -> String {
-        let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
-        let reached = [self.stroke, self.force, self.cavity];
-        let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
-            let allowed = allowed.get(limit)?;
-            let active = if active.contains(&limit) { ", active" } else { "" };
-            Some(format!("{limit} {} of {} {}{active}", short(reached), short(allowed), limit.unit()))
-        });
-        let kept = if *feasible { "limits kept" } else { "NO DESIGN KEEPS THE LIMITS; the nearest" };
-        format!(
-            "{kept}: {}; {infeasible} of {} broke one",
-            words.collect::<Vec<_>>().join("; "),
-            counted(*evaluations, "evaluation")
-        )
-    }
+/// The parameters in which the best point of the grid lies at its edge, and not on a bound.
+pub(super) fn on_edge(search: &Search, surf: &Surf) -> Vec<Variable> {
+    let best = surf.point(surf.best);
+    let mut steps = vec![0; surf.grid.dim()];
+    surf.grid.steps(surf.best, &mut steps);
+    let is_edge = |&i: &usize| {
+        let points = surf.grid.axes()[i].points();
+        let at_end = points > 1 && (steps[i] == 0 || steps[i] + 1 == points);
+        let place = search.variables.iter().position(|variable| *variable == surf.variables[i]);
+        let bounds = place.map(|place| search.options.bounds[place]);
+        at_end && bounds.is_none_or(|bounds| met(best[i], best[i], bounds).is_none())
+    };
+    (0..surf.variables.len()).filter(is_edge).map(|i| surf.variables[i]).collect()
 }
 
 /// Parameters that ended on a bound: to a thousandth of the larger of their first and last value, or to within rounding

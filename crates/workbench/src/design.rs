@@ -1,0 +1,107 @@
+//! `design`: from a structure and what its damper may be to an answer. Both dampers are tuned for their worst E1max over a band of
+//! frequencies, compared with none, certified, and tuned once more without each limit, which says what the limit costs.
+
+mod answer;
+mod wishes;
+
+pub use wishes::{Wish, Wishes};
+
+use crate::artefact::{Content, Kind, artefact};
+use crate::designs::{Designs, Row};
+use crate::job::{Done, Job, Made};
+use crate::pareto::look;
+use crate::searches::Searches;
+use crate::{Error, Observer, Request, resolved};
+use retune_optim::Limit;
+use retune_study::{Setting, Study};
+use serde_json::json;
+
+/// The files of an answer.
+pub static KIND: Kind = Kind {
+    command: "design",
+    answer: "designs.csv",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("designs.csv", Content::Designs),
+        artefact("designs.txt", Content::Derived),
+        artefact("answer.txt", Content::Derived),
+        artefact("studies-*.json", Content::Derived),
+    ],
+};
+
+/// A damper as it was designed.
+#[derive(Debug)]
+pub struct Designed {
+    /// Its name.
+    pub name: &'static str,
+    /// Its study, under all limits.
+    pub study: Study,
+    /// Its design under all limits, and those without one of them, in the order of [`Wishes::limits`].
+    pub rows: Vec<Row>,
+    /// The largest stroke of the design under all limits, m, and the largest contact force, N.
+    pub needs: [f64; 2],
+    /// Whether that design keeps its limits.
+    pub feasible: bool,
+    /// E1max with the stiffness k1 of the structure off by minus and plus its error, J, if an error is given.
+    pub detuned: Option<[f64; 2]>,
+}
+
+/// Tunes both dampers for a structure, and compares them.
+///
+/// # Errors
+/// A wish cannot be fulfilled, nothing can be computed, or the results cannot be written.
+pub fn design(
+    wishes: &Wishes,
+    request: &Request,
+    watch: &dyn Observer,
+) -> Result<Done<Vec<Designed>>, Error> {
+    wishes.check()?;
+    let dampers = [("TMD", wishes.tmd()?), ("SSVI NES", wishes.ssvi()?)];
+    let studies = dampers.iter().map(|(name, study)| (*name, study));
+    let job = Job::of_studies(&KIND, request, json!(wishes), studies)?;
+    job.run(request, watch, |directory| {
+        let mut searches = Searches::new(directory, &job.order, watch);
+        let designed = dampers
+            .iter()
+            .map(|(name, study)| one(wishes, name, study, &mut searches, watch))
+            .collect::<Result<Vec<Designed>, Error>>()?;
+        let rows = designed.iter().flat_map(|damper| damper.rows.clone()).collect();
+        Designs { column: "limits", rows, infeasible: None }.write("designs", directory)?;
+        for Designed { study, .. } in &designed {
+            directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
+        }
+        let answer = answer::answer(wishes, &designed, &job.out);
+        directory.write("answer.txt", &(answer.clone() + "\n"))?;
+        Ok(Made { answer: designed, report: format!("\n{answer}"), parts: searches.results })
+    })
+}
+
+/// Tunes one damper under all limits, then without each of them.
+fn one(
+    wishes: &Wishes,
+    name: &'static str,
+    study: &Study,
+    searches: &mut Searches,
+    watch: &dyn Observer,
+) -> Result<Designed, Error> {
+    watch.log(&format!("\n{name}"))?;
+    let found = searches.tune(study, "")?;
+    let mut rows = vec![Row::of_optimum("all", name, study, &found)];
+    for limit in wishes.limits() {
+        let free = wishes.without(limit);
+        let free = if name == "TMD" { free.tmd()? } else { free.ssvi()? };
+        watch.log(&format!("\n{name}, without the limit on {}", limit.words()))?;
+        let optimum = searches.tune(&free, &format!("without-{}", limit.name()))?;
+        rows.push(Row::of_optimum(&format!("no {}", limit.name()), name, study, &optimum));
+    }
+    let scene = study.scene_at(&found.found().damper.design).unwrap_or(study.scene);
+    let tuned = Study { scene, ..study.clone() };
+    let off = |share: f64| -> Result<f64, Error> {
+        let k1 = study.scene.primary.stiffness.get() * (1.0 + share);
+        Ok(study.energy(&tuned.scene_with(&[Setting::new("k1", k1)])?).unwrap_or(f64::NAN))
+    };
+    let detuned = wishes.k1_error.map(|error| Ok::<_, Error>([off(-error)?, off(error)?])).transpose()?;
+    let needs = look(&tuned)
+        .map_or([f64::NAN; 2], |seen| [Limit::Stroke, Limit::Force].map(|limit| seen.reached.get(limit)));
+    Ok(Designed { name, study: study.clone(), rows, needs, feasible: found.check_limits().is_ok(), detuned })
+}

@@ -1,0 +1,230 @@
+//! What is asked of a design, and the studies that follow from it.
+//!
+//! Bounds and grids scale with the structure: stiffnesses with Den Hartog's optimum k2 = m2 k1/m1 / (1 + μ)² and dampings with his
+//! c2 = 2 m2 ω2 √(3μ / (8 (1 + μ))) (J. P. Den Hartog, Mechanical Vibrations, 4th ed., section 3.3; μ = m2/m1), gaps with the amplitude of
+//! the structure without a damper.
+
+use crate::Error;
+use retune_study::read::from_text;
+use retune_study::{Rule, Study};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// The colliding surfaces of the paper: steel on a soft layer.
+const PAPERS_CONTACT: &str = include_str!("contact.json");
+
+/// What is asked of a design. SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wishes {
+    /// Mass of the structure, kg.
+    pub m1: f64,
+    /// Its stiffness, N/m.
+    pub k1: f64,
+    /// Its damping, N·s/m.
+    pub c1: f64,
+    /// Amplitude of the force on it, N.
+    #[serde(rename = "P")]
+    pub force: f64,
+    /// The angular frequencies of the force, rad/s.
+    pub band: [f64; 2],
+    /// Mass of the damper, kg.
+    pub mass: f64,
+    /// Largest stroke of its spring, m.
+    pub stroke: Option<f64>,
+    /// Largest stiffness of its spring, N/m.
+    pub k2_max: Option<f64>,
+    /// Share by which k1 may be off.
+    pub k1_error: Option<f64>,
+}
+
+/// A limit that is wished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// On the stroke.
+    Stroke,
+    /// On the stiffness.
+    K2,
+}
+
+impl Wish {
+    /// Its name in tables and directories.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stroke => "stroke-limit",
+            Self::K2 => "k2-limit",
+        }
+    }
+
+    /// Its name in a sentence.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Stroke => "the stroke",
+            Self::K2 => "k2",
+        }
+    }
+}
+
+impl Wishes {
+    /// Checks the wishes one by one.
+    ///
+    /// # Errors
+    /// The first that cannot be fulfilled, by its name on the command line.
+    pub fn check(&self) -> Result<(), Error> {
+        let refuse = |field: &str, value: String, allowed: &'static str| {
+            let rule = Rule::NotAllowed { field: format!("--{field}"), value, allowed };
+            Err(Error::Rule { name: "design".to_owned(), rule })
+        };
+        let positive = [
+            ("m1", Some(self.m1)),
+            ("k1", Some(self.k1)),
+            ("P", Some(self.force)),
+            ("mass", Some(self.mass)),
+            ("stroke", self.stroke),
+            ("k2-max", self.k2_max),
+        ];
+        for (field, value) in positive {
+            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+                return refuse(field, value.to_string(), "a number above 0");
+            }
+        }
+        if !(self.c1 >= 0.0 && self.c1.is_finite()) {
+            return refuse("c1", self.c1.to_string(), "a number not below 0");
+        }
+        let [from, to] = self.band;
+        if !(from > 0.0 && from < to && to.is_finite()) {
+            let band = format!("{from} to {to} rad/s");
+            return refuse("band", band, "two frequencies above 0, the lower one first");
+        }
+        if let Some(error) = self.k1_error.filter(|error| !(*error > 0.0 && *error < 1.0)) {
+            return refuse("k1-error", error.to_string(), "a share above 0 and below 1, for instance 0.1");
+        }
+        if self.mass > self.m1 {
+            let mass = self.mass.to_string();
+            return refuse("mass", mass, "a mass no larger than m1: a damper is lighter than its structure");
+        }
+        Ok(())
+    }
+
+    /// The limits that are wished.
+    pub fn limits(&self) -> Vec<Wish> {
+        let stroke = self.stroke.map(|_| Wish::Stroke);
+        stroke.into_iter().chain(self.k2_max.map(|_| Wish::K2)).collect()
+    }
+
+    /// The same without one limit.
+    #[must_use]
+    pub fn without(&self, limit: Wish) -> Self {
+        let mut wishes = self.clone();
+        match limit {
+            Wish::Stroke => wishes.stroke = None,
+            Wish::K2 => wishes.k2_max = None,
+        }
+        wishes
+    }
+
+    /// √(k1/m1), rad/s.
+    pub fn natural_frequency(&self) -> f64 {
+        (self.k1 / self.m1).sqrt()
+    }
+
+    /// Den Hartog's k2 (N/m) and c2 (N·s/m).
+    fn den_hartog(&self) -> [f64; 2] {
+        let ratio = self.mass / self.m1;
+        let frequency = self.natural_frequency() / (1.0 + ratio);
+        let zeta = (3.0 * ratio / (8.0 * (1.0 + ratio))).sqrt();
+        [self.mass * frequency * frequency, 2.0 * self.mass * frequency * zeta]
+    }
+
+    /// The largest steady displacement of the structure alone over the band, m; an undamped one counts as damped by 1 %.
+    fn amplitude(&self) -> f64 {
+        let natural = self.natural_frequency();
+        let damping = self.c1.max(0.02 * self.m1 * natural);
+        let [from, to] = self.band;
+        let omega = natural.clamp(from, to);
+        self.force / (self.k1 - self.m1 * omega * omega).hypot(damping * omega)
+    }
+
+    /// The study of the TMD: steady, in closed form, k2 and c2 free. Its walls are out of reach.
+    ///
+    /// # Errors
+    /// A number is beyond what a study may hold.
+    pub fn tmd(&self) -> Result<Study, Error> {
+        let [k2, c2] = self.den_hartog();
+        let far = 1e3 * self.amplitude().max(self.stroke.unwrap_or(0.0));
+        let most = self.k2_max.unwrap_or(20.0 * k2);
+        let start = [k2.min(most), c2];
+        let axis = |from: f64, to: f64| json!({ "from": from, "to": to, "points": 21, "scale": "log" });
+        let optimize = json!({
+            "vary": ["k2", "c2"],
+            "objective": { "omega": self.omega(), "response": "steady" },
+            "bounds": { "k2": [0, most], "c2": [0, 200.0 * c2] },
+            "surf": { "k2": axis(0.05 * k2.min(most), (4.0 * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
+            "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * self.energy() }
+        });
+        self.study("tmd", start, [far; 2], optimize)
+    }
+
+    /// The study of the SSVI NES: runs from rest, all four parameters free.
+    ///
+    /// # Errors
+    /// As [`Self::tmd`].
+    pub fn ssvi(&self) -> Result<Study, Error> {
+        let ([k2, c2], reach) = (self.den_hartog(), self.amplitude());
+        let most = self.k2_max.unwrap_or(4.0 * k2);
+        let start = [(0.1 * k2).min(most), c2];
+        let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
+        let stiffest = k2.min(most);
+        let optimize = json!({
+            "vary": ["k2", "c2", "D", "C"],
+            "objective": { "omega": self.omega() },
+            "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 4.0 * reach], "C": [0, 8.0 * reach] },
+            "surf": {
+                "k2": axis(0.08 * stiffest, stiffest, "log", 6),
+                "c2": axis(0.2 * c2, 4.0 * c2, "log", 6),
+                "D": axis(0.0, 0.8 * reach, "linear", 5),
+                "C": axis(0.2 * reach, 2.6 * reach, "linear", 5)
+            },
+            "refine": { "starts": 2, "scaled": true, "TolX": 1e-3, "TolFun": 1e-5 * self.energy(), "MaxFunEvals": 300 }
+        });
+        self.study("ssvi", start, [0.2 * reach, reach], optimize)
+    }
+
+    /// The energy of the structure without a damper at its worst, J, to scale tolerances by.
+    fn energy(&self) -> f64 {
+        0.5 * self.k1 * self.amplitude().powi(2)
+    }
+
+    fn omega(&self) -> Value {
+        json!({ "from": self.band[0], "to": self.band[1], "samples": 31 })
+    }
+
+    /// A study of 100 periods of the structure, the first half of which passes before maxima are taken. The colliding surfaces are the
+    /// paper's.
+    fn study(
+        &self,
+        name: &str,
+        [k2, c2]: [f64; 2],
+        [d, c]: [f64; 2],
+        mut optimize: Value,
+    ) -> Result<Study, Error> {
+        let period = std::f64::consts::TAU / self.natural_frequency();
+        if let Some(stroke) = self.stroke {
+            optimize["limits"] = json!({ "stroke": stroke, "from": 50.0 * period });
+        }
+        let contact: Value = serde_json::from_str(PAPERS_CONTACT).unwrap_or_default();
+        let study = json!({
+            "name": name,
+            "scene": {
+                "primary": { "m1": self.m1, "c1": self.c1, "k1": self.k1 },
+                "forcing": { "P": self.force, "omega": self.natural_frequency().clamp(self.band[0], self.band[1]) },
+                "damper": {
+                    "m2": self.mass, "k2": k2, "c2": c2, "D": d, "C": c,
+                    "contact": contact
+                }
+            },
+            "window": { "t0": 50.0 * period, "T": 100.0 * period },
+            "optimize": optimize
+        });
+        Ok(from_text(&study.to_string(), "design")?)
+    }
+}

@@ -1,0 +1,146 @@
+//! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
+
+use super::notes::{self, Goal, LimitNote};
+use super::{FailureNote, Optimum, RunNote, stop_words};
+use retune_model::Variable;
+use retune_study::{counted, rounded, short};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Columns of a terminal that lines are broken for.
+const COLUMNS: usize = 80;
+/// A space at which no line is broken.
+const HELD: &str = "\u{a0}";
+
+impl Optimum {
+    /// The last lines on screen.
+    pub fn report(&self) -> String {
+        let mut lines = vec![String::new()];
+        let mut say = |words: String| lines.push(wrapped(&words, "  "));
+        say(self.headline());
+        say(format!("  {}", self.compared()));
+        let [m2, k2, c2, d, c] = self.damper.values().map(|value| rounded(value, 4));
+        let values = format!("m2 = {m2} kg,k2 = {k2} N/m,c2 = {c2} N·s/m,D = {d} m,C = {c} m");
+        say(format!("  build    {}", values.replace(' ', HELD).replace(',', ", ")));
+        say(format!("  needs    {}", self.simulation.needs()));
+        say(format!("  motion   at the worst frequency it {}", self.certificate.motion_words()));
+        say(format!("  verdict  {}", self.certificate.verdict_words()));
+        if let Some(limits) = &self.limits {
+            say(format!("  {}", limits.report()));
+        }
+        self.notes().into_iter().for_each(|note| say(format!("  {note}")));
+        say(format!("  from     {}", self.made_by));
+        lines.join("\n")
+    }
+
+    /// How the search went, for the log.
+    pub fn search(&self) -> String {
+        let winner = self.refine.winner;
+        let RunNote { iterations, func_count, stop, .. } = &self.refine.runs[winner - 1];
+        let mut lines = vec![format!(
+            "\nfminsearch, start {winner} of {}: {} after {}, {}; TolX {:e} is {}",
+            self.refine.runs.len(),
+            stop_words(*stop),
+            counted(*iterations, "iteration"),
+            counted(*func_count, "evaluation"),
+            self.refine.tol_x,
+            self.refine.tol_x_mode,
+        )];
+        lines.extend(self.global.as_ref().map(super::Basins::report));
+        lines.join("\n")
+    }
+
+    /// What to do next with the results in `out`.
+    pub fn next(&self, out: &Path) -> String {
+        let single = self.objective.as_ref().is_none_or(|goal| goal.band().is_none());
+        if self.certificate.is_chaotic() && single {
+            return "next: give the study a band (`optimize.objective.omega`, docs/tuning.md): at this\n  \
+                    frequency alone E1max is one of many values that practically equal designs have"
+                .to_owned();
+        }
+        let (out, omega) = (out.display(), rounded(self.simulation.omega(), 6));
+        format!(
+            "next: record the motion at the worst frequency with\n  \
+             `retune simulate {out} --set omega={omega} --trajectory motion.csv`"
+        )
+    }
+
+    fn headline(&self) -> String {
+        let at = match self.objective.as_ref().filter(|goal| goal.band().is_some()) {
+            Some(goal) => format!(", worst {}", frequency(goal.worst_omega)),
+            None => format!(" {}", frequency(self.simulation.omega())),
+        };
+        format!("{}: E1max {} J{at}", self.damper_type, rounded(self.e1_max, 4))
+    }
+
+    /// The structure without a damper, and with the damper that the study began with.
+    fn compared(&self) -> String {
+        let times = |other: f64| match rounded(other / self.e1_max, 3).as_str() {
+            _ if !other.is_finite() => "without bound".to_owned(),
+            "1" => format!("{} J (as much)", rounded(other, 4)),
+            times => format!("{} J ({times} times as much)", rounded(other, 4)),
+        };
+        let study = if self.e1_max_study.is_nan() {
+            "no value with the damper of the study".to_owned()
+        } else {
+            format!("{} with the damper of the study", times(self.e1_max_study))
+        };
+        format!("instead  {} without a damper, {study}", times(self.e1_max_none))
+    }
+
+    /// All that a reader has to know before the design is used.
+    fn notes(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
+            lines.push(format!(
+                "note: {unsettled} of {} of this design had not settled at T; E1max is then that of the window",
+                counted(*runs, "run")
+            ));
+        }
+        lines.extend(notes::on_bound_words(&self.on_bound));
+        if !self.on_edge.is_empty() {
+            let names: Vec<&str> = self.on_edge.iter().map(|variable: &Variable| variable.symbol()).collect();
+            lines.push(format!(
+                "note: the best point of the grid lies at its edge in {}: a wider grid may lead elsewhere",
+                names.join(", ")
+            ));
+        }
+        if let FailureNote { count, example: Some(example) } = &self.failures {
+            let count = counted(*count, "design");
+            lines.push(format!("note: {count} could not be computed, for instance {example}"));
+        }
+        lines
+    }
+}
+
+/// A frequency in rad/s and Hz.
+fn frequency(omega: f64) -> String {
+    format!("at omega = {} rad/s ({} Hz)", rounded(omega, 4), rounded(omega / TAU, 4))
+}
+
+/// A paragraph in lines of at most [`COLUMNS`] columns.
+fn wrapped(text: &str, indent: &str) -> String {
+    let own = &text[..text.len() - text.trim_start().len()];
+    let further = format!("{own}{indent}       ");
+    let options = textwrap::Options::new(COLUMNS).initial_indent(own).subsequent_indent(&further);
+    textwrap::fill(text.trim_start(), options).replace(HELD, " ")
+}
+
+impl LimitNote {
+    pub(super) fn report(&self) -> String {
+        use retune_optim::Limit;
+        let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
+        let reached = [self.stroke, self.force, self.cavity];
+        let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
+            let allowed = allowed.get(limit)?;
+            let active = if active.contains(&limit) { ", active" } else { "" };
+            Some(format!("{limit} {} of {} {}{active}", short(reached), short(allowed), limit.unit()))
+        });
+        let kept = if *feasible { "limits kept" } else { "NO DESIGN KEEPS THE LIMITS; the nearest" };
+        format!(
+            "{kept}: {}; {infeasible} of {} broke one",
+            words.collect::<Vec<_>>().join("; "),
+            counted(*evaluations, "evaluation")
+        )
+    }
+}
