@@ -26,6 +26,10 @@ optimize-tmd-free *OPTIONS:
 optimize-ssvi-global *OPTIONS:
     {{retune}} optimize studies/ssvi-global.json "$@"
 
+# Design a damper for a structure of your own, for instance `just design --m1 500 --k1 20000 --c1 100 --P 800 --band 5 8 --mass 25`
+design *OPTIONS:
+    {{retune}} design "$@"
+
 # Tune any study, for instance `just optimize studies/ssvi-robust.json`
 optimize STUDY *OPTIONS:
     {{retune}} optimize "$@"

@@ -94,6 +94,10 @@ fn run(
 ) -> Result<Done<Optimum>, Error> {
     let job = Job::of_study(&KIND, study, &request.out_of(study), &request.order(KIND.command))?;
     let done = job.run(request, watch, |results| {
+        match results.journal().known() {
+            0 => {}
+            known => watch.result(&format!("goes on: {} known", are(known, "value")))?,
+        }
         let answer = work(results)?;
         watch.log(&answer.search())?;
         let report = format!("{}\n{}", answer.report(), answer.next(&job.out));
@@ -117,10 +121,6 @@ fn tuned(
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
-    match results.journal().known() {
-        0 => {}
-        known => watch.result(&format!("goes on: {} known", are(known, "value")))?,
-    }
     let optimum = search_and_write(study, search, results, watch);
     if optimum.as_ref().is_err_and(|error| !matches!(error, Error::Store(_))) {
         results.discard();

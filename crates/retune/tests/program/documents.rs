@@ -89,9 +89,18 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
     for line in commands.iter().filter(|line| !line.starts_with("schema ")) {
         assert!(line.ends_with(" \"$@\""), "{line}");
     }
-    for command in
-        ["optimize", "merge", "certify", "table2", "track", "fronts", "reproduce", "figure", "table"]
-    {
+    for command in [
+        "optimize",
+        "design",
+        "merge",
+        "certify",
+        "table2",
+        "track",
+        "fronts",
+        "reproduce",
+        "figure",
+        "table",
+    ] {
         let body = format!("\n    {{{{retune}}}} {command} \"$@\"\n");
         let recipe =
             justfile.split(&body).next().and_then(|before| before.lines().last()).unwrap_or_default();

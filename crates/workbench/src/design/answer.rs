@@ -11,21 +11,21 @@ const SAME: f64 = 0.05;
 
 /// The whole answer.
 pub(super) fn answer(wishes: &Wishes, designed: &[Designed], out: &Path) -> String {
-    let mut lines = vec![structure(wishes), String::new(), header(wishes)];
     let none = designed.first().and_then(|first| first.rows.first()).map_or(f64::NAN, |row| row.none);
-    lines.push(format!("{:<10}{:>9}", "none", number(none)));
-    lines.extend(designed.iter().map(|damper| line(wishes, damper)));
-    lines.push(String::new());
-    lines.extend(build(designed));
-    lines.extend(costs(wishes, designed));
-    lines.extend(designed.iter().filter_map(sure));
+    let table = [header(wishes), format!("{:<9}{:>9}", "none", number(none))];
+    let table = table.into_iter().chain(designed.iter().map(|damper| line(wishes, damper)));
     let out = out.display();
-    lines.push(format!("go on with {out}/studies-tmd.json and {out}/studies-ssvi.json"));
-    lines
-        .iter()
-        .map(|line| textwrap::fill(line, textwrap::Options::new(80).subsequent_indent("  ")))
-        .collect::<Vec<_>>()
-        .join("\n")
+    let studies = format!("Go on with {out}/studies-tmd.json and {out}/studies-ssvi.json.");
+    let words = build(designed)
+        .into_iter()
+        .chain(costs(wishes, designed))
+        .chain(designed.iter().filter_map(sure))
+        .chain([studies]);
+    let broken = textwrap::Options::new(80).subsequent_indent("  ");
+    let words: Vec<String> = words.map(|line| textwrap::fill(&line, &broken)).collect();
+    let structure = textwrap::fill(&structure(wishes), &broken);
+    let table: Vec<String> = table.collect();
+    format!("{structure}\n\n{}\n\n{}", table.join("\n"), words.join("\n"))
 }
 
 fn structure(wishes: &Wishes) -> String {
@@ -52,7 +52,7 @@ fn header(wishes: &Wishes) -> String {
     );
     if let Some(error) = wishes.k1_error {
         let percent = short(100.0 * error);
-        text += &format!("{:>9}{:>9}", format!("k1-{percent}%"), format!("k1+{percent}%"));
+        text += &format!("{:>8}{:>8}", format!("k1-{percent}%"), format!("k1+{percent}%"));
     }
     text
 }
@@ -60,19 +60,19 @@ fn header(wishes: &Wishes) -> String {
 fn line(wishes: &Wishes, damper: &Designed) -> String {
     let Some(row) = damper.rows.first() else { return String::new() };
     let [_, k2, c2, d, c] = row.found.values();
-    let gaps = if touches(damper) { [number(d), number(c)] } else { ["-".to_owned(), "-".to_owned()] };
+    let gaps = if touches(damper) { [metres(d), metres(c)] } else { ["-".to_owned(), "-".to_owned()] };
     let mut text = format!(
-        "{:<10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>8}",
+        "{:<9}{:>9}{:>9}{:>10}{:>10}{:>8}{:>8}",
         damper.name,
         number(row.e1_max),
         number(k2),
         number(c2),
-        number(damper.needs[0]),
+        metres(damper.needs[0]),
         gaps[0],
         gaps[1]
     );
     if let (Some(_), Some([less, more])) = (wishes.k1_error, damper.detuned) {
-        text += &format!("{:>9}{:>9}", number(less), number(more));
+        text += &format!("{:>8}{:>8}", number(less), number(more));
     }
     text
 }
@@ -141,4 +141,9 @@ fn short(value: f64) -> String {
 
 fn number(value: f64) -> String {
     if value.is_finite() { rounded(value, 4) } else { "no bound".to_owned() }
+}
+
+/// A length, m, to a tenth of a millimetre.
+fn metres(value: f64) -> String {
+    format!("{value:.4}")
 }

@@ -4,6 +4,7 @@ mod band;
 mod certify;
 mod damaged;
 mod describe;
+mod design;
 mod desk;
 mod evaluate;
 mod interrupted;
