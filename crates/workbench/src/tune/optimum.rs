@@ -1,6 +1,6 @@
 //! The result of a search: one type, from which `optimum.json` and the last lines on screen are made.
 
-mod notes;
+pub(crate) mod notes;
 
 use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
@@ -17,24 +17,24 @@ use serde::Serialize;
 /// The best design and how it was found. SI units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Optimum {
-    damper_type: &'static str,
+    pub(crate) damper_type: &'static str,
     #[serde(flatten)]
-    damper: TunedDamper,
+    pub(crate) damper: TunedDamper,
     #[serde(rename = "E1max")]
     e1_max: f64,
     /// The meaning of E1max, if it is not that of a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
-    objective: Option<Goal>,
-    on_bound: Vec<Met>,
+    pub(crate) objective: Option<Goal>,
+    pub(crate) on_bound: Vec<Met>,
     /// The state of the study's limits, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
-    limits: Option<LimitNote>,
+    pub(crate) limits: Option<LimitNote>,
     surf: Option<GridBest>,
     /// The result of the global search, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    global: Option<Basins>,
+    pub(crate) global: Option<Basins>,
     refine: Refinement,
-    failures: FailureNote,
+    pub(crate) failures: FailureNote,
     /// The short form of `certificate.json`.
     certificate: Short,
     simulation: Summary,
@@ -100,9 +100,9 @@ struct RunNote {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct FailureNote {
-    count: u64,
-    example: Option<String>,
+pub(crate) struct FailureNote {
+    pub(crate) count: u64,
+    pub(crate) example: Option<String>,
 }
 
 impl Optimum {
@@ -277,7 +277,7 @@ fn tol_x_mode(scaling: Scaling) -> &'static str {
     }
 }
 
-fn stop_words(stop: Stop) -> &'static str {
+pub(crate) fn stop_words(stop: Stop) -> &'static str {
     match stop {
         Stop::Converged => "converged",
         Stop::MaxIter => "stopped at MaxIter",

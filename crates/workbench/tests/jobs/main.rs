@@ -11,6 +11,7 @@ mod links;
 mod observers;
 mod pareto;
 mod replaced;
+mod report;
 mod shards;
 mod simulate;
 mod table2;
