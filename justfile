@@ -106,6 +106,10 @@ test-kills KILLS="240":
     RETUNE_KILLS={{KILLS}} cargo test --package retune --test kills -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
     mv results/robustness/kills.md.tmp results/robustness/kills.md && cat results/robustness/kills.md
 
+# Open the pages of results in a browser, narrow and wide, light and dark (needs python3 and chromium); for instance `just test-pages --shots target/pages`
+test-pages *OPTIONS:
+    python3 tests/pages.py "$@" results/ssvi/report.html results/tmd/report.html results/paper/index.html
+
 # Try the HyperQueue script for real, with two workers on this machine (needs python3; with `hq` on the path, too, one worker is killed): results/robustness/hyperqueue.txt
 test-hyperqueue:
     cargo build --release --package retune

@@ -17,6 +17,7 @@ pub mod parameter;
 pub mod poincare;
 pub mod record;
 pub mod regime;
+mod sentence;
 pub mod sweep;
 
 pub use lyapunov::Exponent;

@@ -16,6 +16,7 @@ pub struct Axis {
     pub(crate) scale: Scale,
     pub(crate) range: (f64, f64),
     pub(crate) names: Vec<(f64, String)>,
+    pub(crate) second: Option<Box<Axis>>,
 }
 
 impl Axis {
@@ -33,7 +34,7 @@ impl Axis {
     pub fn new(label: impl Into<String>, scale: Scale, (from, to): (f64, f64)) -> Self {
         let label = label.into();
         if !(from.is_finite() && to.is_finite()) || (scale == Scale::Log && from.min(to) <= 0.0) {
-            return Self { label, scale: Scale::Linear, range: (0.0, 1.0), names: Vec::new() };
+            return Self { label, scale: Scale::Linear, range: (0.0, 1.0), names: Vec::new(), second: None };
         }
         let (from, to) = (from.min(to), from.max(to));
         let flat = to - from <= 1e-12 * from.abs().max(to.abs());
@@ -45,7 +46,7 @@ impl Axis {
             }
             Scale::Log => (from / 1.05, to * 1.05),
         };
-        Self { label, scale, range, names: Vec::new() }
+        Self { label, scale, range, names: Vec::new(), second: None }
     }
 
     /// An axis from the smallest to the largest of the finite `values` (on a logarithmic scale: of those above zero).
@@ -61,6 +62,15 @@ impl Axis {
     /// An axis of things with names, each at its place; lines of a name are separated by `\n`.
     pub fn of_names(range: (f64, f64), names: Vec<(f64, String)>) -> Self {
         Self { names, ..Self::linear("", range) }
+    }
+
+    /// With a second scale for the same quantity in another unit: a label, and by what values are multiplied. That of an abscissa stands
+    /// above the frame; an ordinate has none.
+    #[must_use]
+    pub fn with_second(self, label: impl Into<String>, factor: f64) -> Self {
+        let range = (factor * self.range.0, factor * self.range.1);
+        let second = Self::new(label, self.scale, range);
+        Self { second: Some(Box::new(second)), ..self }
     }
 
     fn holding(

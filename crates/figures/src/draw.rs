@@ -183,7 +183,16 @@ fn draw_frame(svg: &mut Svg, layout: &Layout) {
     };
     for (value, length) in all(0).filter(|_| layout.chart.x.names.is_empty()) {
         let at = units(layout.at((value, f64::NAN)).0);
-        let _ = write!(path, "M{at} {bottom}v-{length}M{at} {top}v{length}");
+        let _ = write!(path, "M{at} {bottom}v-{length}");
+        if layout.chart.x.second.is_none() {
+            let _ = write!(path, "M{at} {top}v{length}");
+        }
+    }
+    if let Some(axis) = &layout.chart.x.second {
+        for (value, _) in &layout.second {
+            let at = units(layout.frame[0] + (layout.frame[2] - layout.frame[0]) * axis.share(*value));
+            let _ = write!(path, "M{at} {top}v{}", lengths[0]);
+        }
     }
     for (value, length) in all(1).filter(|_| layout.chart.y.names.is_empty()) {
         let at = units(layout.at((f64::NAN, value)).1);

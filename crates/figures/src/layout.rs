@@ -88,6 +88,8 @@ pub(crate) struct Layout<'a> {
     /// Ticks of abscissa and ordinate, with a label and without.
     pub ticks: [Vec<Tick>; 2],
     pub minor: [Vec<f64>; 2],
+    /// Ticks of the second scale of the abscissa, in its own unit.
+    pub second: Vec<Tick>,
     pub labels: Vec<Label>,
     pub bar: Option<Bar<'a>>,
 }
@@ -166,6 +168,9 @@ pub(crate) fn layout(
     if named {
         margins.top += numbers + 2.0;
     }
+    if x.second.is_some() {
+        margins.top += GAP + SMALL + row;
+    }
     if labelled && !x.label.is_empty() {
         margins.bottom += row;
     }
@@ -180,12 +185,17 @@ pub(crate) fn layout(
     margins.right = bar_width.max(names(chart)).max(2.0);
     margins = margins.with(least);
     // The last number may stand out on the right; then the frame ends earlier.
-    let mut x_ticks = Vec::new();
+    let (mut x_ticks, mut second) = (Vec::new(), Vec::new());
     for _ in 0..3 {
         let width = right - left - margins.left - margins.right;
         x_ticks = ticks(x, fit_across(x, width));
-        let over = |(value, text): &Tick| 0.5 * SMALL * ems(text) - width * (1.0 - x.share(*value));
-        let out = if labelled && !named { x_ticks.iter().map(over).fold(0.0, f64::max) } else { 0.0 };
+        second = x.second.as_deref().map(|axis| ticks(axis, fit_across(axis, width))).unwrap_or_default();
+        let out = |axis: &Axis, ticks: &[Tick]| {
+            let over = |(value, text): &Tick| 0.5 * SMALL * ems(text) - width * (1.0 - axis.share(*value));
+            ticks.iter().map(over).fold(0.0, f64::max)
+        };
+        let above = x.second.as_deref().map_or(0.0, |axis| out(axis, &second));
+        let out = if labelled && !named { out(x, &x_ticks).max(above) } else { above };
         if out <= margins.right {
             break;
         }
@@ -199,7 +209,7 @@ pub(crate) fn layout(
     });
     let minor = [minor(x, &x_ticks), minor(y, &y_ticks)];
     let mut layout =
-        Layout { chart, frame, margins, ticks: [x_ticks, y_ticks], minor, labels: Vec::new(), bar };
+        Layout { chart, frame, margins, ticks: [x_ticks, y_ticks], minor, second, labels: Vec::new(), bar };
     layout.labels = labels(&layout, [left, top, right, bottom], &title, labelled);
     layout
 }
@@ -232,6 +242,14 @@ fn labels(
             let above = top - 2.0 - LINE * SMALL * (rows - i as f64 - 0.5);
             all.push(Label::new(line, (at, if x.names.is_empty() { below } else { above }), 0));
         }
+    }
+    if let Some(axis) = x.second.as_deref() {
+        for (value, text) in &layout.second {
+            let at = left + (right - left) * axis.share(*value);
+            all.push(Label::new(text, (at, top - GAP - 0.5 * SMALL), 0));
+        }
+        let at = (middle(&axis.label), top - GAP - SMALL - 0.5 * row);
+        all.push(large(Label::new(&axis.label, at, 0)));
     }
     for (value, text) in &layout.ticks[1] {
         let (_, at) = layout.at((f64::NAN, *value));

@@ -3,8 +3,10 @@
 use super::item::{Grid, Item, Picture, Statement, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use retune_figures::Drawing;
+use retune_workbench::report::STYLE;
 
-const STYLE: &str = include_str!("page.css");
+/// What this page has beside the style of all pages.
+const OWN: &str = include_str!("page.css");
 
 /// The whole page.
 pub fn page(items: &[Item]) -> String {
@@ -21,7 +23,7 @@ pub fn page(items: &[Item]) -> String {
                 meta name="color-scheme" content="light dark";
                 link rel="icon" href="data:,";
                 title { "Retune: the paper on one page" }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(OWN)) }
             }
             body {
                 header {

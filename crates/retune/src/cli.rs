@@ -1,14 +1,17 @@
 //! What may be typed: commands, arguments and their help.
 
-use crate::screen::Screen;
+mod design;
+mod running;
+
+pub use design::Design;
+pub use running::Running;
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_solver::{Contacts, Method};
-use retune_store::Begin;
 use retune_study::{Setting, SettingError};
-use retune_workbench::Request;
 use retune_workbench::tune::shard::Shard;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
 #[derive(Debug, Parser)]
@@ -94,99 +97,6 @@ pub enum Kind {
     Fronts,
     /// The whole paper
     Paper,
-}
-
-/// The options of a run.
-#[derive(Debug, Args)]
-pub struct Running {
-    /// Directory of the results [default: results/<study>]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Threads of the grid; the results are the same for any number [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Print only the result, without progress
-    #[arg(long, conflicts_with = "verbose")]
-    pub quiet: bool,
-    /// Print every iteration as it is made, as the paper's Table 1 does
-    #[arg(long)]
-    pub verbose: bool,
-    /// Resume unfinished work, if there is any
-    #[arg(long, conflicts_with = "restart")]
-    pub resume: bool,
-    /// Discard unfinished work and start again
-    #[arg(long)]
-    pub restart: bool,
-    /// Replace results of another study in the directory, and files of the results' names that Retune did not make
-    #[arg(long)]
-    pub replace: bool,
-}
-
-impl Running {
-    /// The request to a job with a study file, and the screen that shows it.
-    pub fn request(&self, study: &Path) -> (Request, Screen) {
-        let begin = match (self.resume, self.restart) {
-            (true, _) => Begin::Resume,
-            (false, true) => Begin::Restart,
-            (false, false) => Begin::New,
-        };
-        let Self { out, threads, replace, quiet, verbose, .. } = self;
-        let request = Request {
-            study: study.to_owned(),
-            out: out.clone(),
-            threads: *threads,
-            begin,
-            replace: *replace,
-        };
-        (request, Screen::new(*quiet, *verbose))
-    }
-}
-
-/// `design`.
-#[derive(Debug, Args)]
-pub struct Design {
-    /// Mass of the structure, kg
-    #[arg(long, value_name = "KG")]
-    pub m1: f64,
-    /// Stiffness of the structure, N/m
-    #[arg(long, value_name = "N/m")]
-    pub k1: f64,
-    /// Damping of the structure, N·s/m
-    #[arg(long, value_name = "N·s/m")]
-    pub c1: f64,
-    /// Amplitude of the force, N
-    #[arg(long = "P", value_name = "N")]
-    pub force: f64,
-    /// Lowest and highest frequency of the force: rad/s, or Hz with the unit, for instance `--band 10Hz 14Hz`
-    #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = frequency)]
-    pub band: Vec<f64>,
-    /// Mass of the damper, kg
-    #[arg(long, value_name = "KG")]
-    pub mass: f64,
-    /// Largest stroke of the damper's spring, m
-    #[arg(long, value_name = "M")]
-    pub stroke: Option<f64>,
-    /// Largest stiffness of the damper's spring, N/m
-    #[arg(long, value_name = "N/m")]
-    pub k2_max: Option<f64>,
-    /// Share by which k1 may be off, for instance 0.1
-    #[arg(long, value_name = "SHARE")]
-    pub k1_error: Option<f64>,
-    /// The options of the run.
-    #[command(flatten)]
-    pub running: Running,
-}
-
-/// An angular frequency in rad/s; a number that ends with `Hz` is turned into it.
-fn frequency(text: &str) -> Result<f64, String> {
-    let (number, unit) = match text.trim().strip_suffix("Hz") {
-        Some(number) => (number, std::f64::consts::TAU),
-        None => (text, 1.0),
-    };
-    let number: Result<f64, _> = number.trim().parse();
-    number
-        .map(|number| unit * number)
-        .map_err(|_| "give a number in rad/s, or with its unit: 12Hz".to_owned())
 }
 
 /// `optimize`.

@@ -108,6 +108,11 @@ impl Study {
         Goal { objective: self.objective(), window: self.window.window(), limits }
     }
 
+    /// E1max of its structure without a damper by its objective, J; NaN where it has none, infinite where it has no bound.
+    pub fn energy_without_damper(&self) -> f64 {
+        self.energy(&Scene { damper: None, ..self.scene }).unwrap_or(f64::NAN)
+    }
+
     /// E1max of a scene by its objective, regardless of the limits, J; `None` if it cannot be run.
     pub fn energy(&self, scene: &Scene) -> Option<f64> {
         Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.energy)

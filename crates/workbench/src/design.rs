@@ -2,8 +2,10 @@
 //! frequencies, compared with none, certified, and tuned once more without each limit, which says what the limit costs.
 
 mod answer;
+mod designed;
 mod wishes;
 
+pub use designed::Designed;
 pub use wishes::{Wish, Wishes};
 
 use crate::artefact::{Content, Kind, artefact};
@@ -28,23 +30,6 @@ pub static KIND: Kind = Kind {
         artefact("studies-*.json", Content::Derived),
     ],
 };
-
-/// A damper as it was designed.
-#[derive(Debug)]
-pub struct Designed {
-    /// Its name.
-    pub name: &'static str,
-    /// Its study, under all limits.
-    pub study: Study,
-    /// Its design under all limits, and those without one of them, in the order of [`Wishes::limits`].
-    pub rows: Vec<Row>,
-    /// The largest stroke of the design under all limits, m, and the largest contact force, N.
-    pub needs: [f64; 2],
-    /// Whether that design keeps its limits.
-    pub feasible: bool,
-    /// E1max with the stiffness k1 of the structure off by minus and plus its error, J, if an error is given.
-    pub detuned: Option<[f64; 2]>,
-}
 
 /// Tunes both dampers for a structure, and compares them.
 ///

@@ -3,7 +3,6 @@
 use crate::Error;
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, table2_header, table2_row};
-use retune_model::Scene;
 use retune_store::Directory;
 use retune_study::{Study, joined, short};
 use serde::Serialize;
@@ -53,7 +52,7 @@ impl Row {
             found: found.damper,
             printed: None,
             e1_max: found.e1_max,
-            none: without_damper(study),
+            none: study.energy_without_damper(),
             verdict: optimum.verdict(),
         }
     }
@@ -62,11 +61,6 @@ impl Row {
     fn reduction(&self) -> f64 {
         self.none / self.e1_max
     }
-}
-
-/// E1max of the structure of a study alone, by the objective of the study, J; NaN where it has none.
-pub fn without_damper(study: &Study) -> f64 {
-    study.energy(&Scene { damper: None, ..study.scene }).unwrap_or(f64::NAN)
 }
 
 impl Designs {

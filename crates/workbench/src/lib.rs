@@ -50,6 +50,7 @@ pub mod evaluate;
 pub mod job;
 pub mod observer;
 pub mod pareto;
+pub mod report;
 pub mod request;
 pub mod resolved;
 pub mod searches;

@@ -1,21 +1,22 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
 pub mod band;
-mod global;
+pub(crate) mod global;
 pub mod log;
 pub mod merge;
 pub mod objective;
-mod optimum;
+pub(crate) mod optimum;
 pub mod pictures;
-mod refine;
+pub(crate) mod refine;
 pub mod shard;
-mod surf;
+pub(crate) mod surf;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::certify::{self, certify};
 use crate::job::{Done, Job, Made};
+use crate::report::{self, Findings};
 use crate::resolved;
 use crate::summary::Summary;
 use crate::{Error, Observer, Request};
@@ -42,6 +43,7 @@ pub static KIND: Kind = Kind {
         artefact("band.csv", Content::Band),
         artefact(OPTIMUM, Content::Optimum),
         artefact(certify::FILE, Content::Certificate),
+        artefact(report::FILE, Content::Derived),
         artefact("fminsearch.txt", Content::Derived),
         artefact("surf-*.svg", Content::Derived),
         artefact("convergence.svg", Content::Derived),
@@ -163,8 +165,22 @@ fn search_and_write(
     let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short())?;
     results.write_json(OPTIMUM, &optimum)?;
     pictures::draw(study, search, surf.as_ref(), &refined, results)?;
-    if study.objective().omega.is_some() {
-        band::write(study, design, results)?;
-    }
+    let band = if study.objective().omega.is_some() { band::write(study, design, results)? } else { None };
+    let findings = Findings {
+        study,
+        search,
+        surf: surf.as_ref(),
+        explored: explored.as_ref(),
+        refined: &refined,
+        optimum: &optimum,
+        certificate: &certificate,
+        evaluation: &found,
+        tuned: design,
+        worst: scene,
+        response: &response,
+        band,
+        on_grid,
+    };
+    report::write(&findings, results)?;
     Ok(optimum)
 }

@@ -33,6 +33,7 @@ fn contract_no_label_meets_another_or_the_frame_or_leaves_the_cell() {
     for i in 0..300 {
         let (x, y) = (random.axis("abscissa, unit"), random.axis("worst E1max, J"));
         let map = (i % 3 == 0).then(|| random.axis("E1max, J"));
+        let x = if i % 4 == 0 { x.with_second("abscissa, other unit", 0.159) } else { x };
         let chart = chart(x, y, map);
         let cell = [3.0, 5.0, 241.0, 5.0 + 110.0 + 120.0 * random.next()];
         let found = layout(&chart, cell, true, Margins::default());
@@ -84,4 +85,22 @@ fn contract_names_stand_above_in_their_lines() {
     let height = |text: &str| found.labels.iter().find(|label| label.text == text).expect("a label").at.1;
     assert!(height("one") < height("two") && height("two") == height("three"));
     assert!(height("three") < found.frame[1]);
+}
+
+/// 2π rad/s are one hertz.
+#[test]
+fn exact_a_second_scale_has_its_ticks_where_the_first_has_the_same_values() {
+    let hertz = 0.5 / std::f64::consts::PI;
+    let chart = chart(
+        Axis::linear("ω, rad/s", (5.0, 8.0)).with_second("f, Hz", hertz),
+        Axis::linear("y", (0.0, 1.0)),
+        None,
+    );
+    let found = layout(&chart, [0.0, 0.0, 241.0, 150.0], true, Margins::default());
+    assert!(found.second.len() >= 3, "{:?}", found.second);
+    for (value, text) in &found.second {
+        let label = found.labels.iter().find(|label| label.text == *text && label.at.1 < found.frame[1]);
+        let (at, _) = found.at((value / hertz, 0.0));
+        assert!(label.is_some_and(|label| (label.at.0 - at).abs() < 1e-9), "{text}");
+    }
 }

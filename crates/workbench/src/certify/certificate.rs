@@ -20,32 +20,32 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 pub struct Certificate {
     #[serde(flatten)]
-    made_by: MadeBy,
-    design: TunedDamper,
+    pub(crate) made_by: MadeBy,
+    pub(crate) design: TunedDamper,
     /// The objective's value, J.
     #[serde(rename = "E1max")]
-    e1_max: f64,
+    pub(crate) e1_max: f64,
     /// Largest difference of a run of the convergence study to the worst run, or of `finer` to the value, J.
-    error_bar: f64,
-    predictable: bool,
+    pub(crate) error_bar: f64,
+    pub(crate) predictable: bool,
     /// null where the design breaks a limit.
-    verdict: Option<Verdict>,
+    pub(crate) verdict: Option<Verdict>,
     /// The verdict in words.
-    words: String,
+    pub(crate) words: String,
     /// The rule that the verdict follows.
-    rule: String,
+    pub(crate) rule: String,
     /// The limits at the design and near it, where the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
-    limits: Option<Kept>,
+    pub(crate) limits: Option<Kept>,
     /// The run with the largest E1max that the value is made of.
-    worst_run: WorstRun,
-    convergence: Vec<Run>,
+    pub(crate) worst_run: WorstRun,
+    pub(crate) convergence: Vec<Run>,
     /// The objective with four times the samples of its bands, J, where it has bands that are sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
-    finer: Option<f64>,
-    motion: Motion,
-    sensitivity: Vec<Sensitivity>,
-    neighbourhood: Neighbourhood,
+    pub(crate) finer: Option<f64>,
+    pub(crate) motion: Motion,
+    pub(crate) sensitivity: Vec<Sensitivity>,
+    pub(crate) neighbourhood: Neighbourhood,
 }
 
 /// The short form that `optimum.json` has.

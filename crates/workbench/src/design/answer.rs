@@ -1,6 +1,7 @@
 //! The answer of `design` in words. Lines fit 80 columns.
 
-use super::{Designed, Wishes};
+use super::designed::Designed;
+use super::wishes::Wishes;
 use crate::designs::Row;
 use retune_study::rounded;
 use std::f64::consts::TAU;

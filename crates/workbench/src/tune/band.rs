@@ -16,16 +16,19 @@ const FINE: usize = 601;
 /// Factor on the number of the search's samples if each frequency is a run.
 const FINER: usize = 4;
 
-/// Writes `band.csv` and `band.svg`; `tuned` is the scene with the damper that was found. Missing values (a steady motion
+/// A frequency, rad/s, and there E1max without a damper, with that of the study and with the tuned one, J; NaN where there is none.
+pub(crate) type Rows = Vec<(f64, [f64; 3])>;
+
+/// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
 /// that reaches a wall, a run that fails) are empty fields and gaps.
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<(), Error> {
+pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<Option<Rows>, Error> {
     let objective = study.objective();
     let Some((term, band)) = first(&objective).and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
     else {
-        return Ok(());
+        return Ok(None);
     };
     let samples = if term.response == Response::Steady {
         FINE.max(band.samples)
@@ -36,7 +39,7 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
     let scenes = [Scene { damper: None, ..tuned }, study.scene, tuned];
     let worst = scenes.map(|scene| energy(study, scene, term));
     let single = Objective { omega: None, ..term.clone() };
-    let rows: Vec<(f64, [f64; 3])> = (0..samples)
+    let rows: Rows = (0..samples)
         .into_par_iter()
         .map(|i| {
             let omega = fine.at(i);
@@ -52,24 +55,24 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
     }
     results.write("band.csv", &csv)?;
     results.write("band.svg", &picture(study, &rows, worst))?;
-    Ok(())
+    Ok(Some(rows))
 }
 
 /// The scene at another frequency, rad/s.
-fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
+pub(crate) fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
     scene.forcing.frequency = NonNegative::new(omega).ok()?;
     Some(scene)
 }
 
 /// E1max of a scene as in a term, without limits, J; NaN if it has none.
-fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
+pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
     let goal = Goal { objective: term.clone(), window: study.window.window(), limits: Limits::default() };
     let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
     value.map_or(f64::NAN, |found| found.energy)
 }
 
 /// The first term of an objective.
-fn first(objective: &Objective) -> Option<&Objective> {
+pub(crate) fn first(objective: &Objective) -> Option<&Objective> {
     objective.terms().first().map(|(_, term)| *term)
 }
 

@@ -90,27 +90,27 @@ impl Explored {
 #[derive(Clone, Debug, Serialize)]
 pub struct Basins {
     /// Designs evaluated as samples and by the searches.
-    evaluations: u64,
+    pub(crate) evaluations: u64,
     /// Number of searches.
-    searches: usize,
+    pub(crate) searches: usize,
     /// Number of them that ended in the basin of the optimum.
-    reached_optimum: usize,
+    pub(crate) reached_optimum: usize,
     /// Best first.
-    basins: Vec<BasinNote>,
+    pub(crate) basins: Vec<BasinNote>,
 }
 
 /// A basin: its best design, and the searches and refinements that ended in it.
 #[derive(Clone, Debug, Serialize)]
-struct BasinNote {
+pub(crate) struct BasinNote {
     #[serde(flatten)]
-    design: PerVariable<f64>,
+    pub(crate) design: PerVariable<f64>,
     /// null if it breaks a limit.
     #[serde(rename = "E1max")]
-    e1_max: f64,
+    pub(crate) e1_max: f64,
     /// Searches that ended here.
-    searches: usize,
+    pub(crate) searches: usize,
     /// Refinements that ended here.
-    refinements: usize,
+    pub(crate) refinements: usize,
 }
 
 impl Basins {

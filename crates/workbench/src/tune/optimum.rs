@@ -1,14 +1,13 @@
 //! The result of a search: one type, from which `optimum.json` and the last lines on screen are made.
 
 mod answer;
-mod notes;
+pub(crate) mod notes;
 
 use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::Error;
 use crate::certify::Short;
-use crate::designs::without_damper;
 use crate::summary::{MadeBy, Summary, TunedDamper};
 use notes::{Goal, LimitNote, Met};
 use retune_model::Variable;
@@ -20,32 +19,32 @@ use serde::Serialize;
 /// The best design and how it was found. SI units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Optimum {
-    damper_type: &'static str,
+    pub(crate) damper_type: &'static str,
     #[serde(flatten)]
-    damper: TunedDamper,
+    pub(crate) damper: TunedDamper,
     #[serde(rename = "E1max")]
     e1_max: f64,
     /// The meaning of E1max, if it is not that of a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
-    objective: Option<Goal>,
+    pub(crate) objective: Option<Goal>,
     /// The same without a damper, J; null if it has no bound.
     #[serde(rename = "E1max_none")]
     e1_max_none: f64,
     /// The same with the damper of the study's scene, J; null if it cannot be run.
     #[serde(rename = "E1max_study")]
     e1_max_study: f64,
-    on_bound: Vec<Met>,
+    pub(crate) on_bound: Vec<Met>,
     /// The parameters in which the best point of the grid lies at its edge, where the grid could be wider.
-    on_edge: Vec<Variable>,
+    pub(crate) on_edge: Vec<Variable>,
     /// The state of the study's limits, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
-    limits: Option<LimitNote>,
+    pub(crate) limits: Option<LimitNote>,
     surf: Option<GridBest>,
     /// The result of the global search, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    global: Option<Basins>,
+    pub(crate) global: Option<Basins>,
     refine: Refinement,
-    failures: FailureNote,
+    pub(crate) failures: FailureNote,
     /// The short form of `certificate.json`.
     certificate: Short,
     simulation: Summary,
@@ -111,9 +110,9 @@ struct RunNote {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct FailureNote {
-    count: u64,
-    example: Option<String>,
+pub(crate) struct FailureNote {
+    pub(crate) count: u64,
+    pub(crate) example: Option<String>,
 }
 
 impl Optimum {
@@ -135,7 +134,7 @@ impl Optimum {
             damper_type: summary.damper_type(),
             damper: TunedDamper::of(&damper),
             e1_max: evaluation.energy,
-            e1_max_none: without_damper(study),
+            e1_max_none: study.energy_without_damper(),
             e1_max_study: study.energy(&study.scene).unwrap_or(f64::NAN),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),
@@ -255,7 +254,7 @@ fn tol_x_mode(scaling: Scaling) -> &'static str {
     }
 }
 
-fn stop_words(stop: Stop) -> &'static str {
+pub(crate) fn stop_words(stop: Stop) -> &'static str {
     match stop {
         Stop::Converged => "converged",
         Stop::MaxIter => "stopped at MaxIter",

@@ -6,7 +6,6 @@ use super::table::{Row, Sample};
 use crate::Error;
 use crate::artefact::{Artefact, Content};
 use crate::certify::certify;
-use crate::designs::without_damper;
 use crate::resolved;
 use crate::summary::Summary;
 use crate::tune::objective::objective;
@@ -125,7 +124,7 @@ fn again(
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let mut again = json!({
         "E1max": found.energy,
-        "E1max_none": without_damper(study),
+        "E1max_none": study.energy_without_damper(),
         "E1max_study": study.energy(&study.scene),
         "simulation": Summary::new(study, scene, &response) });
     if !objective.goal().limits.is_empty() {

@@ -167,7 +167,7 @@ pub fn longer() -> Value {
 }
 
 /// The files that a search with a grid writes.
-pub const RESULTS: [&str; 15] = [
+pub const RESULTS: [&str; 16] = [
     "certificate.json",
     "convergence.svg",
     "fminsearch-starts.csv",
@@ -175,6 +175,7 @@ pub const RESULTS: [&str; 15] = [
     "fminsearch.txt",
     "manifest.json",
     "optimum.json",
+    "report.html",
     "study.json",
     "surf-D-C.svg",
     "surf-c2-C.svg",

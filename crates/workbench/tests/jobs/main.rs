@@ -12,6 +12,7 @@ mod links;
 mod observers;
 mod pareto;
 mod replaced;
+mod report;
 mod shards;
 mod simulate;
 mod table2;

@@ -123,6 +123,7 @@ fn contract_a_later_run_leaves_nothing_of_an_earlier_one() {
         "manifest.json",
         "notes.txt",
         "optimum.json",
+        "report.html",
         "study.json",
     ];
     assert_eq!(desk.names("out"), expected);

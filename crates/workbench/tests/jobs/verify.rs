@@ -59,7 +59,7 @@ fn contract_results_are_verified_to_the_last_bit() {
     let desk = desk();
     let said = holds(&desk, "out", 7);
     let lines: Vec<&str> = said.lines().collect();
-    assert_eq!(lines[0], "  14 files as they were made");
+    assert_eq!(lines[0], "  15 files as they were made");
     assert_eq!(lines[1], "  surf.csv               7 of 24 rows run again: the same to the last bit");
     assert!(lines[2].starts_with("  fminsearch.csv         7 of "), "{said}");
     assert!(lines[3].starts_with("  fminsearch-starts.csv  7 of "), "{said}");

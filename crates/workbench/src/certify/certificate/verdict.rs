@@ -71,8 +71,7 @@ fn judge_energy(e1_max: f64, error_bar: f64, predictable: bool, measured: &Measu
     // Not a number is no evidence of anything small.
     let small = |value: f64| value <= WIDE * e1_max;
     let narrow = small(neighbourhood.width()) && small(error_bar);
-    let near =
-        format!("designs within {} % of it have {} to {} J", 100.0 * errors, short(*low), short(*high));
+    let near = format!("designs within {} % of it have {}", 100.0 * errors, between(*low, *high));
     if !narrow && (motion.irregular || !predictable) {
         let width = short(neighbourhood.width().max(error_bar));
         return (
@@ -86,13 +85,28 @@ fn judge_energy(e1_max: f64, error_bar: f64, predictable: bool, measured: &Measu
     // The parameter whose error of 1 % raises E1max most.
     let worst = sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
     let said = worst.map_or(String::new(), |Sensitivity { parameter, worst, worst_at_percent, .. }| {
-        format!("{parameter} off by {worst_at_percent:+} % gives {} J", short(*worst))
+        let gives =
+            if worst.is_finite() { format!("gives {} J", short(*worst)) } else { NO_VALUE.to_owned() };
+        format!("{parameter} off by {worst_at_percent:+} % {gives}")
     });
     match worst {
+        Some(worst) if worst.worst.is_infinite() => (Verdict::Sensitive, format!("sensitive: {said}")),
         Some(worst) if worst.worst > (1.0 + SENSITIVE) * e1_max => {
             (Verdict::Sensitive, format!("sensitive: {said}, {} times as much", short(worst.worst / e1_max)))
         }
         _ => (Verdict::Robust, format!("robust: at worst {said}")),
+    }
+}
+
+/// What is said of a design that cannot be computed.
+const NO_VALUE: &str = "has no value";
+
+/// A range of E1max in words; one that is infinite is of designs that cannot be computed.
+fn between(low: f64, high: f64) -> String {
+    match [low, high].map(f64::is_finite) {
+        [true, true] => format!("{} to {} J", short(low), short(high)),
+        [true, false] => format!("{} J or more, and some of them no value", short(low)),
+        _ => "no value".to_owned(),
     }
 }
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// The objective, and the ω at which E1max of the best design is reached, rad/s.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Goal {
+pub(crate) struct Goal {
     #[serde(flatten)]
     objective: Objective,
     pub(super) worst_omega: f64,
@@ -19,37 +19,37 @@ pub(super) struct Goal {
     worst_k1: Option<f64>,
     /// Of the runs of the best design, those that should have settled and did not; their E1max is that of the window.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) unsettled: Option<u64>,
+    pub(crate) unsettled: Option<u64>,
     /// Number of runs behind its value; a steady response in closed form counts as one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) runs: Option<u64>,
+    pub(crate) runs: Option<u64>,
 }
 
 /// The limits and the best design.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct LimitNote {
-    pub(super) allowed: Limits,
+pub(crate) struct LimitNote {
+    pub(crate) allowed: Limits,
     /// The largest values in any run of the objective, SI units.
-    pub(super) stroke: f64,
-    pub(super) force: f64,
-    pub(super) cavity: f64,
-    pub(super) feasible: bool,
+    pub(crate) stroke: f64,
+    pub(crate) force: f64,
+    pub(crate) cavity: f64,
+    pub(crate) feasible: bool,
     /// The sum of reached / limit - 1 over the limits that are broken.
     violation: f64,
     /// The limits that are broken, or reached to within 1 %: they determine the optimum.
-    pub(super) active: Vec<Limit>,
+    pub(crate) active: Vec<Limit>,
     /// Designs that were evaluated, and those among them that were found to break a limit.
-    pub(super) evaluations: u64,
-    pub(super) infeasible: u64,
+    pub(crate) evaluations: u64,
+    pub(crate) infeasible: u64,
 }
 
 /// A parameter that ended on a bound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
-pub(super) struct Met {
-    variable: Variable,
+pub(crate) struct Met {
+    pub(crate) variable: Variable,
     #[serde(skip)]
-    bound: f64,
+    pub(crate) bound: f64,
 }
 
 impl Goal {

@@ -1,0 +1,51 @@
+//! What may be typed for `design`.
+
+use super::running::Running;
+use clap::Args;
+
+/// `design`.
+#[derive(Debug, Args)]
+pub struct Design {
+    /// Mass of the structure, kg
+    #[arg(long, value_name = "KG")]
+    pub m1: f64,
+    /// Stiffness of the structure, N/m
+    #[arg(long, value_name = "N/m")]
+    pub k1: f64,
+    /// Damping of the structure, N·s/m
+    #[arg(long, value_name = "N·s/m")]
+    pub c1: f64,
+    /// Amplitude of the force, N
+    #[arg(long = "P", value_name = "N")]
+    pub force: f64,
+    /// Lowest and highest frequency of the force: rad/s, or Hz with the unit, for instance `--band 10Hz 14Hz`
+    #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = frequency)]
+    pub band: Vec<f64>,
+    /// Mass of the damper, kg
+    #[arg(long, value_name = "KG")]
+    pub mass: f64,
+    /// Largest stroke of the damper's spring, m
+    #[arg(long, value_name = "M")]
+    pub stroke: Option<f64>,
+    /// Largest stiffness of the damper's spring, N/m
+    #[arg(long, value_name = "N/m")]
+    pub k2_max: Option<f64>,
+    /// Share by which k1 may be off, for instance 0.1
+    #[arg(long, value_name = "SHARE")]
+    pub k1_error: Option<f64>,
+    /// The options of the run.
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// An angular frequency in rad/s; a number that ends with `Hz` is turned into it.
+fn frequency(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix("Hz") {
+        Some(number) => (number, std::f64::consts::TAU),
+        None => (text, 1.0),
+    };
+    let number: Result<f64, _> = number.trim().parse();
+    number
+        .map(|number| unit * number)
+        .map_err(|_| "give a number in rad/s, or with its unit: 12Hz".to_owned())
+}

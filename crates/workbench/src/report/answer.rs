@@ -1,0 +1,196 @@
+//! The answer: the damper, what it does, how sure that is, and what to do next.
+
+use super::findings::{Compared, Findings};
+use super::flags::Flag;
+use super::html::{Section, Table};
+use super::numbers::{compared, digits, four, frequency, millimetres};
+use maud::{Markup, html};
+use retune_model::{Damper, Variable};
+use retune_optim::{Evaluation, Limit, Response, Unusable};
+use retune_study::over;
+
+/// The answer in a line.
+pub fn title(findings: &Findings) -> String {
+    let (kind, value) = (findings.optimum.damper_type, four(findings.evaluation.energy));
+    if findings.evaluation.violation > 0.0 {
+        return format!("no design keeps the limits; the nearest, a {kind}, has E1max {value} J");
+    }
+    format!("tuned {kind}, E1max {value} J")
+}
+
+/// The section.
+pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Section {
+    let body = html! {
+        (lead(findings))
+        @if !flags.is_empty() {
+            ul.flags { @for flag in flags { li.flag data-flag=(flag.name) { (flag.words) } } }
+        }
+        (facts(findings, compared))
+        (parameters(findings))
+        @if let Some(table) = limits(findings) { (table.markup()) }
+        (next(findings, flags))
+    };
+    Section { id: "answer", title: "The answer", body }
+}
+
+/// What E1max is taken over, in words.
+pub fn objective(findings: &Findings) -> String {
+    let objective = findings.study.objective();
+    let omega = findings.study.scene.forcing.frequency.get();
+    let window = findings.study.window;
+    let window = format!("{} s to {} s of a run from rest", window.t0.get(), window.end.get());
+    let how = |response| match response {
+        Response::Window => format!("in the window from {window}"),
+        Response::Settled => "of the settled motion".to_owned(),
+        Response::Steady => "of the steady motion, in closed form".to_owned(),
+    };
+    let mut hows: Vec<String> = objective.terms().iter().map(|(_, term)| how(term.response)).collect();
+    hows.dedup();
+    format!("{}, {}", over(&objective, omega), hows.join(" and "))
+}
+
+fn lead(findings: &Findings) -> Markup {
+    let Evaluation { energy, .. } = findings.evaluation;
+    let touches = match findings.response.force_max.map(|force| force > 0.0) {
+        [true, true] => "strikes both walls of its cavity",
+        [true, false] => "strikes the structure, not the obstacle",
+        [false, true] => "strikes the obstacle, not the structure",
+        [false, false] => "touches neither wall of its cavity",
+    };
+    let several = findings.study.objective().terms().iter().any(|(_, term)| term.omega.is_some());
+    html! {
+        p.lead {
+            "With this damper the largest energy of the structure, E1max, is " strong { (four(*energy)) " J" }
+            " (" (objective(findings)) "). " @if several { "It is worst at" } @else { "The frequency is" }
+            " ω = " strong { (frequency(findings.worst_omega())) } "; there the damper " (touches) "."
+        }
+    }
+}
+
+fn facts(findings: &Findings, beside: &Compared) -> Markup {
+    let energy = findings.evaluation.energy;
+    let against = |other: &Result<Evaluation, Unusable>| match other {
+        Ok(other) => {
+            let words = compared(energy, other.energy).unwrap_or_else(|| "–".to_owned());
+            (
+                words,
+                format!(
+                    "{} J, worst at {}",
+                    four(other.energy),
+                    frequency(other.worst.scene.forcing.frequency.get())
+                ),
+            )
+        }
+        Err(reason) => ("–".to_owned(), format!("it has no value: {reason}")),
+    };
+    let none = against(&beside.none);
+    let study = against(&beside.study);
+    let certificate = findings.certificate;
+    let response = findings.response;
+    let verdict = certificate.verdict.map_or("no verdict", |_| findings.optimum.verdict());
+    let words = certificate
+        .words
+        .strip_prefix(verdict)
+        .map_or(certificate.words.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+    let [structure, obstacle] = response.force_max;
+    let impacts = response.impacts;
+    let fact = |name: &str, value: &str, more: &str| {
+        html! { div { dt { (name) } dd { strong { (value) } @if !more.is_empty() { span.more { (more) } } } } }
+    };
+    let span = findings.study.window;
+    let window = format!("{} s to {} s", span.t0.get(), span.end.get());
+    html! {
+        dl.facts {
+            (fact("Energy against no damper", &none.0, &none.1))
+            (fact("Energy against the damper of the study", &study.0, &study.1))
+            (fact("Certificate", verdict, &format!("{words}; E1max ± {} J", digits(certificate.error_bar, 2))))
+            (fact("Stroke", &millimetres(response.spring_deflection_max), &format!("largest spring deflection |x2 − x1 − D| at the worst frequency, {window}")))
+            (fact("Contact force", &format!("{} N", four(structure.max(obstacle))), &format!(
+                "{} N on the structure in {} impacts, {} N on the obstacle in {}, {window}",
+                four(structure), impacts[0], four(obstacle), impacts[1]
+            )))
+            (fact("Motion", &certificate.motion.regime, &format!(
+                "{} impacts on the structure and {} on the obstacle in a period of the force",
+                digits(certificate.motion.contacts_per_period[0], 3), digits(certificate.motion.contacts_per_period[1], 3)
+            )))
+        }
+    }
+}
+
+/// A parameter of the damper as a study file names it, with its name and its value.
+fn named(damper: &Damper) -> [(&'static str, &'static str, &'static str, f64, Option<Variable>); 5] {
+    let of = |variable: Variable, name| {
+        (variable.symbol(), name, variable.unit(), variable.get(damper), Some(variable))
+    };
+    [
+        ("m2", "mass", "kg", damper.mass.get(), None),
+        of(Variable::K2, "stiffness of the spring"),
+        of(Variable::C2, "damping"),
+        of(Variable::D, "distance to the structure at rest"),
+        of(Variable::C, "clearance to the obstacle at rest"),
+    ]
+}
+
+fn parameters(findings: &Findings) -> Markup {
+    let Some(damper) = findings.tuned.damper else { return html! {} };
+    let mut table =
+        Table::new("The damper", &["symbol", "name", "value", "unit", "damper of the study", "tuned"]);
+    for (symbol, name, unit, value, variable) in named(&damper) {
+        let before = findings.study.scene.damper.as_ref().map(named);
+        let before =
+            before.and_then(|all| all.into_iter().find(|one| one.0 == symbol)).map_or(f64::NAN, |one| one.3);
+        let tuned = variable.is_some_and(|variable| findings.search.variables.contains(&variable));
+        let tuned = if tuned { "tuned" } else { "given" };
+        table.row([
+            symbol.to_owned(),
+            name.to_owned(),
+            four(value),
+            unit.to_owned(),
+            four(before),
+            tuned.to_owned(),
+        ]);
+    }
+    table.markup()
+}
+
+fn limits(findings: &Findings) -> Option<Table> {
+    let note = findings.optimum.limits.as_ref()?;
+    let mut table = Table::new("Limits", &["limit", "largest in any run", "allowed", "unit", "state"]);
+    for (limit, reached) in Limit::ALL.into_iter().zip([note.stroke, note.force, note.cavity]) {
+        let Some(allowed) = note.allowed.get(limit) else { continue };
+        let state = match (reached > allowed, note.active.contains(&limit)) {
+            (true, _) => "broken",
+            (_, true) => "kept, and it determines the design",
+            _ => "kept",
+        };
+        table.row([
+            limit.to_string(),
+            four(reached),
+            four(allowed),
+            limit.unit().to_owned(),
+            state.to_owned(),
+        ]);
+    }
+    Some(table)
+}
+
+/// What to do next: what the flags ask for, else the checks that a design deserves before it is built.
+fn next(findings: &Findings, flags: &[Flag]) -> Markup {
+    let changes: Vec<&str> = flags.iter().filter_map(|flag| flag.change.as_deref()).collect();
+    let (omega, k1) = (findings.worst_omega(), findings.worst.primary.stiffness);
+    let other = k1 != findings.study.scene.primary.stiffness;
+    let k1 = if other { format!(" --set k1={}", k1.get()) } else { String::new() };
+    let simulate = format!("retune simulate optimum.json --set omega={omega}{k1} --trajectory motion.csv");
+    html! {
+        h3 { "What to do next" }
+        @if !changes.is_empty() {
+            p { "Give " code { "study.json" } " " (changes.join("; ")) ", and search again:" }
+            pre { code { "retune optimize study.json --out again" } }
+        }
+        p { "Look at the motion at the worst frequency, row by row:" }
+        pre { code { (simulate) } }
+        p { "Compute a sample of these results again, on your machine:" }
+        pre { code { "retune verify ." } }
+        p.note { "All commands are for the directory of this page." }
+    }
+}

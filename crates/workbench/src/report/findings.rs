@@ -1,0 +1,83 @@
+//! What a page is made of: the study, the stages of its search, and what came out of them.
+
+use crate::certify::Certificate;
+use crate::tune::band::Rows;
+use crate::tune::global::Explored;
+use crate::tune::optimum::Optimum;
+use crate::tune::refine::Refined;
+use crate::tune::surf::Surf;
+use rayon::prelude::*;
+use retune_model::Scene;
+use retune_optim::{Evaluation, Goal, Limits, Unusable};
+use retune_solver::Response;
+use retune_study::{Search, Study};
+
+/// What a page is made of.
+pub(crate) struct Findings<'a> {
+    pub study: &'a Study,
+    pub search: &'a Search,
+    pub surf: Option<&'a Surf>,
+    pub explored: Option<&'a Explored>,
+    pub refined: &'a Refined,
+    pub optimum: &'a Optimum,
+    pub certificate: &'a Certificate,
+    /// The value of the tuned damper.
+    pub evaluation: &'a Evaluation,
+    /// The scene of the study with the tuned damper.
+    pub tuned: Scene,
+    /// The same at its worst frequency and stiffness.
+    pub worst: Scene,
+    /// The run of that.
+    pub response: &'a Response,
+    /// E1max over the band of the objective, if it has one.
+    pub band: Option<Rows>,
+    /// Refinements that start on the grid; they come before the others.
+    pub on_grid: usize,
+}
+
+/// What the tuned damper is compared with: the value of the objective, or why there is none.
+pub(super) struct Compared {
+    /// Without a damper.
+    pub none: Result<Evaluation, Unusable>,
+    /// With the damper of the study.
+    pub study: Result<Evaluation, Unusable>,
+}
+
+impl Findings<'_> {
+    /// The three scenes of every comparison, in the order of `band.csv`: no damper, that of the study, the tuned one.
+    pub fn scenes(&self) -> [Scene; 3] {
+        [Scene { damper: None, ..self.tuned }, self.study.scene, self.tuned]
+    }
+
+    /// Computes what the tuned damper is compared with, by the same objective and regardless of limits.
+    pub(super) fn compared(&self) -> Compared {
+        let goal = Goal { limits: Limits::default(), ..self.study.goal() };
+        let settings = self.study.solver.settings();
+        let [none, study, _] = self.scenes();
+        let value = |scene: &Scene| goal.evaluate(scene, &settings, f64::INFINITY);
+        let mut found: Vec<_> = [none, study].par_iter().map(value).collect();
+        let study = found.pop().unwrap_or(Ok(*self.evaluation));
+        let none = found.pop().unwrap_or(Ok(*self.evaluation));
+        Compared { none, study }
+    }
+
+    /// The frequency of the worst run, rad/s.
+    pub fn worst_omega(&self) -> f64 {
+        self.worst.forcing.frequency.get()
+    }
+
+    /// Where a refinement began.
+    pub fn origin(&self, run: usize) -> &'static str {
+        let explored = self.explored.map_or(0, |explored| explored.basins.len().min(self.search.starts));
+        let ends = [self.on_grid, explored, self.search.given.len()];
+        let names = ["grid", "global search", "given"];
+        let mut before = 0;
+        for (count, name) in ends.into_iter().zip(names) {
+            before += count;
+            if run < before {
+                return name;
+            }
+        }
+        "the study's damper"
+    }
+}

@@ -1,0 +1,94 @@
+//! The elements of a page: sections, tables, figures.
+
+use maud::{Markup, PreEscaped, html};
+use retune_figures::Drawing;
+
+/// A section with its heading.
+pub struct Section {
+    /// The target of links to it.
+    pub id: &'static str,
+    pub title: &'static str,
+    pub body: Markup,
+}
+
+impl Section {
+    /// Its HTML.
+    pub fn markup(&self) -> Markup {
+        let heading = format!("{}-title", self.id);
+        html! {
+            section id=(self.id) aria-labelledby=(heading) {
+                h2 id=(heading) { (self.title) }
+                (self.body)
+            }
+        }
+    }
+}
+
+/// A table. The first cell of each row is the row's heading.
+pub struct Table {
+    pub caption: String,
+    pub head: Vec<String>,
+    pub rows: Vec<Vec<Markup>>,
+    /// Whether its cells break into lines.
+    pub wraps: bool,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(caption: impl Into<String>, head: &[&str]) -> Self {
+        let head = head.iter().map(|name| (*name).to_owned()).collect();
+        Self { caption: caption.into(), head, rows: Vec::new(), wraps: false }
+    }
+
+    /// The same for cells with words, which break into lines.
+    pub fn wrapping(caption: impl Into<String>, head: &[&str]) -> Self {
+        Self { wraps: true, ..Self::new(caption, head) }
+    }
+
+    /// Adds a row of texts.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().map(|text| html! { (text) }).collect());
+    }
+
+    /// Its HTML: it scrolls in its own box where it is wider than the page.
+    pub fn markup(&self) -> Markup {
+        html! {
+            div.scroll tabindex="0" role="group" aria-label=(self.caption) {
+                table class=[self.wraps.then_some("wrap")] {
+                    caption { (self.caption) }
+                    thead { tr { @for name in &self.head { th scope="col" { (name) } } } }
+                    tbody {
+                        @for row in &self.rows {
+                            tr { @for (i, cell) in row.iter().enumerate() {
+                                @if i == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                            } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A figure with its caption.
+pub fn figure(drawing: &Drawing, caption: Markup) -> Markup {
+    let Drawing { wide, narrow } = drawing;
+    let class = if narrow.is_some() { "wide" } else { "any" };
+    html! {
+        figure {
+            div.(class) { (svg(wide)) }
+            @if let Some(narrow) = narrow { div.narrow { (svg(narrow)) } }
+            figcaption { (caption) }
+        }
+    }
+}
+
+/// The drawing of an SVG file.
+fn svg(text: &str) -> Markup {
+    PreEscaped(text[text.find("<svg").unwrap_or(0)..].to_owned())
+}
+
+/// A link to a file beside the page.
+pub fn link(name: &str) -> Markup {
+    html! { a href=(name) { (name) } }
+}

@@ -1,0 +1,66 @@
+//! How numbers are written on a page.
+
+/// Hertz in a radian per second.
+pub const HERTZ: f64 = 0.5 / std::f64::consts::PI;
+
+/// A number to four significant digits; a dash for one that is not finite.
+pub fn four(value: f64) -> String {
+    digits(value, 4)
+}
+
+/// A number to some significant digits, as short as it can be.
+pub fn digits(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    let size = rounded.abs();
+    let text = if size != 0.0 && !(1e-4..1e7).contains(&size) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    };
+    text.replace('-', "−")
+}
+
+/// A length in millimetres.
+pub fn millimetres(metres: f64) -> String {
+    format!("{} mm", four(1e3 * metres))
+}
+
+/// A frequency in both units.
+pub fn frequency(omega: f64) -> String {
+    format!("{} rad/s ({} Hz)", four(omega), four(HERTZ * omega))
+}
+
+/// A value beside another: how many times less or more it is, and the change in percent.
+pub fn compared(value: f64, other: f64) -> Option<String> {
+    let times = other / value;
+    if !(times.is_finite() && times > 0.0) {
+        return None;
+    }
+    let percent = 100.0 * (value / other - 1.0);
+    let (times, more) = if times >= 1.0 { (times, "less") } else { (1.0 / times, "more") };
+    let sign = if percent > 0.0 { "+" } else { "" };
+    Some(format!("{} times {more} ({sign}{} %)", digits(times, 3), digits(percent, 3)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_four_digits_and_no_number_that_is_none() {
+        assert_eq!([four(225.807_184), four(0.039_044_485), four(60.0)], ["225.8", "0.03904", "60"]);
+        assert_eq!([four(-0.436_58), four(7.8e-9), four(0.0)], ["−0.4366", "7.8e−9", "0"]);
+        assert_eq!([four(f64::NAN), four(f64::INFINITY)], ["–", "–"]);
+        assert_eq!(millimetres(0.511_944), "511.9 mm");
+    }
+
+    #[test]
+    fn exact_a_value_beside_another() {
+        assert_eq!(compared(25.0, 100.0).as_deref(), Some("4 times less (−75 %)"));
+        assert_eq!(compared(100.0, 80.0).as_deref(), Some("1.25 times more (+25 %)"));
+        assert_eq!(compared(0.0, 80.0), None);
+    }
+}
