@@ -122,7 +122,12 @@ fn again(
 ) -> Result<Value, Error> {
     let scene = found.worst_run(tuned, objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
-    let mut again = json!({ "E1max": found.energy, "simulation": Summary::new(study, scene, &response) });
+    let mut simulation = json!(Summary::new(study, scene, &response));
+    if let Value::Object(fields) = &mut simulation {
+        let older = Summary::LATER.iter().all(|field| optimum["simulation"].get(field).is_none());
+        fields.retain(|name, _| !(older && Summary::LATER.contains(&name.as_str())));
+    }
+    let mut again = json!({ "E1max": found.energy, "simulation": simulation });
     if !objective.goal().limits.is_empty() {
         let [stroke, force, cavity] = Limit::ALL.map(|limit| found.reached.get(limit));
         let (violation, feasible) = (found.violation, found.violation == 0.0);
