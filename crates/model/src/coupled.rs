@@ -1,6 +1,7 @@
 //! Equation (1): the primary structure and the damper in its cavity, with Hertz contact on both walls.
 
 mod energies;
+mod structure;
 
 use crate::bare::largest;
 use crate::{Bare, Damper, Excitation, Forcing, Primary, hertz_force, hertz_force_slope};

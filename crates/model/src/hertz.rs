@@ -26,6 +26,12 @@ pub fn hertz_force_slope(stiffness: f64, z: f64) -> f64 {
     if z > 0.0 { 1.5 * stiffness * z.sqrt() } else { 0.0 }
 }
 
+/// `d²F/dz² = (3/4) K / √z`, N/m²; zero where the bodies do not touch, and unbounded towards first touch.
+#[inline]
+pub fn hertz_force_curvature(stiffness: f64, z: f64) -> f64 {
+    if z > 0.0 { 0.75 * stiffness / z.sqrt() } else { 0.0 }
+}
+
 /// Elastic energy stored in the contact, `(2/5) K z^(5/2)`, J.
 #[inline]
 pub fn hertz_energy(stiffness: f64, z: f64) -> f64 {
@@ -52,6 +58,9 @@ mod tests {
         assert!((slope / hertz_force_slope(k, z) - 1.0).abs() < 1e-8);
         let force = (hertz_energy(k, z + h) - hertz_energy(k, z - h)) / (2.0 * h);
         assert!((force / hertz_force(k, z) - 1.0).abs() < 1e-8);
-        assert_eq!([hertz_force(k, -z), hertz_force_slope(k, -z), hertz_energy(k, -z)], [0.0; 3]);
+        let curvature = (hertz_force_slope(k, z + h) - hertz_force_slope(k, z - h)) / (2.0 * h);
+        assert!((curvature / hertz_force_curvature(k, z) - 1.0).abs() < 1e-8);
+        let law = [hertz_force, hertz_force_slope, hertz_force_curvature, hertz_energy];
+        assert_eq!(law.map(|law| law(k, -z)), [0.0; 4]);
     }
 }

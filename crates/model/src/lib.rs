@@ -54,7 +54,7 @@ pub use bare::Bare;
 pub use coupled::{Coupled, Side};
 pub use design::{Design, Variable};
 pub use excitation::Excitation;
-pub use hertz::{hertz_energy, hertz_force, hertz_force_slope, hertz_stiffness};
+pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
 pub use regularised::bounds::{Growth, ORDERS};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Contact, Damper, Forcing, Primary, Scene};

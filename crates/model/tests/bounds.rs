@@ -28,26 +28,28 @@ fn lightness(n: &Numbers) -> [f64; 2] {
 }
 
 /// Picard's iteration of the equations in contact with every term taken by its size, from `[q, w, x1, v1]`: the series in `θ` of
-/// `x1`, `v1`, the spring's stretch and `w`.
-fn picard(n: &Numbers, system: &Coupled, side: Side, start: [f64; 4]) -> [Series; 4] {
+/// `x1`, `v1`, the spring's stretch and `w`, and those of their rates in time.
+fn picard(n: &Numbers, system: &Coupled, side: Side, start: [f64; 4]) -> [[Series; 4]; 2] {
     let constant = |value: f64| integral(value, &[0.0; 7]);
     let one = constant(1.0);
     let ([mut q, mut w, mut x, mut v], mut p) = (start.map(constant), constant(n.p));
     let beyond = (system.wall(side) - n.d).abs();
     let stretch = |q: &Series| sum(&[(1.0, &times(q, q)), (beyond, &one)]);
-    for _ in 0..8 {
+    let mut rates = [[0.0; 7]; 2];
+    for _ in 0..9 {
         let (cube, stretch) = (times(&q, &times(&q, &q)), stretch(&q));
         let outside = sum(&[(1.0 / n.m1, &p), (n.c1 / n.m1, &v), (n.k1 / n.m1, &x)]);
-        let accelerations = lightness(n).map(|by| {
+        rates = lightness(n).map(|by| {
             let push = sum(&[(system.hertz(side), &cube), (n.c2, &w), (n.k2, &stretch)]);
-            times(&q, &sum(&[(1.0, &outside), (by, &push)]))
+            sum(&[(1.0, &outside), (by, &push)])
         });
+        let accelerations = rates.map(|rate| times(&q, &rate));
         let (dx, dp) = (times(&q, &v), sum(&[(n.omega, &times(&q, &p))]));
         q = integral(start[0], &sum(&[(0.5, &w)]));
         [v, w] = [integral(start[3], &accelerations[0]), integral(start[1], &accelerations[1])];
         (x, p) = (integral(start[2], &dx), integral(n.p, &dp));
     }
-    [x, v, stretch(&q), w]
+    [[x, v, stretch(&q), w], [v, rates[0], w, rates[1]]]
 }
 
 #[test]
@@ -62,19 +64,26 @@ fn exact_bounds_on_a_piece_are_the_series_with_every_term_by_its_size() {
             equations.set_excitation(0.0, system.excitation(T));
             let [q, w, x, v] = [0.05, 0.8, 0.1, 0.6].map(|size| size * spread.logarithmic(0.3, 1.0));
             let state = [q, -w, x, -v, 0.0];
-            let expected = picard(&numbers, &system, side, [q, w, x, v]);
+            let [expected, expected_rates] = picard(&numbers, &system, side, [q, w, x, v]);
             let found = equations.growth(0.0, &state, &state);
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+                assert!((found / expected - 1.0).abs() < 1e-12, "{side:?} {found} {expected}");
+            }
+            let [again, found_rates] = equations.growth_of_rates(0.0, &state, &state);
+            assert_eq!(again, found);
+            for (found, expected) in found_rates.iter().flatten().zip(expected_rates.iter().flatten()) {
                 assert!((found / expected - 1.0).abs() < 1e-12, "{side:?} {found} {expected}");
             }
             // A piece is bounded by more than its ends, but by little more if it is short.
             let larger = [1.001 * q, w, x, v, 0.0];
             let wide = equations.growth(1e-4 * q / w, &state, &larger);
-            let expected = picard(&numbers, &system, side, [1.001 * q, w, x, v]);
+            let [expected, _] = picard(&numbers, &system, side, [1.001 * q, w, x, v]);
             for (found, expected) in wide.iter().flatten().zip(expected.iter().flatten()) {
                 assert!((1.0..2.0).contains(&(found / expected)), "{side:?} {found} {expected}");
             }
             assert!(equations.growth(1e6, &state, &larger)[0][0].is_infinite(), "too long a piece");
+            let [_, rates] = equations.growth_of_rates(1e6, &state, &larger);
+            assert!(rates[1][0].is_infinite(), "too long a piece");
         }
     }
 }

@@ -135,6 +135,9 @@ fn exact_rates_of_the_observed_quantities() {
         assert_rates(&system, "E1", |excitation, y| system.primary_energy_rates(excitation, y));
         assert_rates(&system, "E2", |excitation, y| system.damper_energy_rates(excitation, y));
         assert_rates(&system, "r", |excitation, y| system.relative_position_rates(excitation, y));
+        let motion = |excitation, y: &[f64; 4]| system.primary_motion(excitation, y);
+        assert_rates(&system, "x1", |excitation, y| [0, 1, 2].map(|i| motion(excitation, y)[i]));
+        assert_rates(&system, "a1", |excitation, y| [2, 3, 4].map(|i| motion(excitation, y)[i]));
     }
 }
 
@@ -149,4 +152,18 @@ fn exact_rates_of_the_bare_energy() {
     assert_close(found[0], 0.5 * (SSVI.m1 * 0.16 + SSVI.k1 * 0.0025), 1.0, 1e-12, "E1");
     assert_close(found[1], differences[0], found[1].abs(), 1e-10, "dE1/dt");
     assert_close(found[2], differences[1], found[2].abs(), 1e-10, "d²E1/dt²");
+}
+
+#[test]
+fn exact_rates_of_the_bare_motion() {
+    let bare = SSVI.bare();
+    let y = [0.05, 0.4];
+    let f = bare.derivative(bare.excitation(T), &y);
+    let motion =
+        |s: f64| bare.primary_motion(bare.excitation(T + s), &std::array::from_fn(|i| y[i] + s * f[i]));
+    let (found, differences) = (motion(0.0), slope(1e-3, motion));
+    assert_eq!(found[..3], [y[0], y[1], f[1]]);
+    for order in 0..4 {
+        assert_close(found[order + 1], differences[order], found[order + 1].abs(), 1e-10, "a rate");
+    }
 }

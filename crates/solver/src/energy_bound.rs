@@ -64,7 +64,8 @@ pub fn response(
         return Err(SolverError::Implausible { t: window.to, value, time, most: most(scene, window) });
     }
     let numbers = [found.e2_max.value, found.relative_displacement_max, found.spring_deflection_max];
-    let all = numbers.iter().chain(&found.force_max).chain(&found.final_state);
+    let structure = found.structure.all().map(|largest| largest.value);
+    let all = numbers.iter().chain(&found.force_max).chain(&found.final_state).chain(&structure);
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }
 

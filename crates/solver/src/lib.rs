@@ -60,7 +60,7 @@ pub use error::{Remedy, SolverError};
 pub use extremes::{Ask, Extremes, extremes};
 pub use hybrid::propagator::{Hybrid, Motion, Phase};
 pub use linear::steps;
-pub use response::{Extreme, Response, SceneKind, Work};
+pub use response::{Extreme, Response, SceneKind, StructureMaxima, Work};
 pub use run::Follower;
 pub use settings::{Contacts, Method, Settings, Window};
 pub use settle::{Settle, settled};

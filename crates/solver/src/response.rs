@@ -34,6 +34,27 @@ pub struct Work {
     pub evaluations: u64,
 }
 
+/// Largest values of the motion of the primary structure, each located as a maximum of its size, and when they are reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StructureMaxima {
+    /// `|x1|`, m.
+    pub displacement: Extreme,
+    /// `|v1|`, m/s.
+    pub velocity: Extreme,
+    /// `|a1|`, m/s², contact forces included.
+    pub acceleration: Extreme,
+    /// The force on the ground `|k1 x1 + c1 v1|`, N.
+    pub ground_force: Extreme,
+}
+
+impl StructureMaxima {
+    /// All of them, in this order.
+    pub fn all(&self) -> [Extreme; 4] {
+        let Self { displacement, velocity, acceleration, ground_force } = *self;
+        [displacement, velocity, acceleration, ground_force]
+    }
+}
+
 /// The observations of a run within its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
@@ -41,6 +62,8 @@ pub struct Response {
     pub e1_max: Extreme,
     /// Largest energy of the damper, the paper's E2, J; zero without a damper.
     pub e2_max: Extreme,
+    /// Largest values of the primary structure's motion.
+    pub structure: StructureMaxima,
     /// Touch-downs on the primary structure and on the obstacle.
     pub impacts: [u64; 2],
     /// Largest contact forces on the primary structure and on the obstacle, N.

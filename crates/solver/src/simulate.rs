@@ -3,11 +3,13 @@
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
+use crate::observe::Magnitude;
 use crate::observe::counters::{TouchDownTimes, TouchDowns};
 use crate::observe::observer::Unobserved;
 use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, RelativePosition};
 use crate::observe::running_maximum::RunningMaximum;
-use crate::response::{Extreme, Response, SceneKind};
+use crate::observe::structure::{Structure, StructureMotion};
+use crate::response::{Extreme, Response, SceneKind, StructureMaxima};
 use crate::run::{follow_bare, follow_coupled};
 use crate::settings::{Method, Settings, Window};
 use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
@@ -80,11 +82,14 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 }
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
-    let mut e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
-    let (state, work) = follow_bare(system, window, settings, &mut Unobserved, &mut e1)?;
+    let e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
+    let mut seen = (e1, watched(system));
+    let (state, work) = follow_bare(system, window, settings, &mut Unobserved, &mut seen)?;
+    let (e1, structure) = seen;
     Ok(Response {
         e1_max: e1.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
+        structure: maxima(&structure, window),
         impacts: [0; 2],
         force_max: [0.0; 2],
         relative_displacement_max: 0.0,
@@ -95,14 +100,37 @@ fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<R
     })
 }
 
+/// Observers of the largest displacement, velocity and acceleration of the structure and of its largest force on the ground.
+type Watched<'a, S, const N: usize> = [Magnitude<StructureMotion<'a, S, N>>; 4];
+
+fn watched<S: Structure<N>, const N: usize>(system: &S) -> Watched<'_, S, N> {
+    let quantities = [
+        StructureMotion::displacement,
+        StructureMotion::velocity,
+        StructureMotion::acceleration,
+        StructureMotion::ground_force,
+    ];
+    quantities.map(|quantity| Magnitude::new(|sign| quantity(system, sign), f64::INFINITY))
+}
+
+/// What they have seen. Rounding may not put a time outside the window.
+fn maxima<S: Structure<N>, const N: usize>(seen: &Watched<'_, S, N>, window: Window) -> StructureMaxima {
+    let [displacement, velocity, acceleration, ground_force] = seen.each_ref().map(|largest| {
+        let Extreme { value, time } = largest.record();
+        let time = if time > window.to { window.to } else { time };
+        Extreme { value, time: if time < window.from { window.from } else { time } }
+    });
+    StructureMaxima { displacement, velocity, acceleration, ground_force }
+}
+
 fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Result<Response, SolverError> {
     let position = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
     let e1 = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
     let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
     let mut before = TouchDowns::default();
-    let mut seen = ((e1, e2), ([1.0, -1.0].map(position), TouchDowns::default()));
+    let mut seen = ((e1, e2), ([1.0, -1.0].map(position), (TouchDowns::default(), watched(system))));
     let (final_state, work) = follow_coupled(system, window, settings, &mut before, &mut seen)?;
-    let ((e1, e2), ([farthest, nearest], TouchDowns(impacts))) = seen;
+    let ((e1, e2), ([farthest, nearest], (TouchDowns(impacts), structure))) = seen;
     let (nearest, farthest) = (-nearest.record().value, farthest.record().value);
     let e1_max = e1.record();
     let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
@@ -126,6 +154,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     Ok(Response {
         e1_max,
         e2_max: e2.record(),
+        structure: maxima(&structure, window),
         impacts,
         force_max,
         relative_displacement_max,

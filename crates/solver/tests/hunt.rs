@@ -8,9 +8,10 @@ mod problems;
 
 use problems::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
+use retune_model::Coupled;
 use retune_solver::observe::{
-    DamperEnergy, Knot, Observer, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum, Segment,
-    Unobserved,
+    DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum,
+    Segment, StructureMotion, Unobserved,
 };
 use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
 
@@ -103,8 +104,28 @@ fn pair<Q: Quantity<4>>(quantity: impl Fn() -> Q) -> Pair<Q> {
 
 /// The gain that the search missed, relative to the largest value; infinite if the search could not prove its record.
 fn missed<Q: Quantity<4>>((search, everywhere): &Pair<Q>, size: f64) -> f64 {
-    let missed = everywhere.largest - search.record().value;
-    if search.doubt() > ALLOWED * size {
+    relative(everywhere.largest - search.record().value, search.doubt(), size)
+}
+
+/// The largest motions of the structure: a fast search for either sign, and a slow one for each.
+type Sizes<'a> =
+    (Magnitude<StructureMotion<'a, Coupled, 4>>, [Everywhere<StructureMotion<'a, Coupled, 4>>; 2]);
+
+fn sizes<'a>(
+    system: &'a Coupled,
+    quantity: fn(&'a Coupled, f64) -> StructureMotion<'a, Coupled, 4>,
+) -> Sizes<'a> {
+    let quantity = |sign: f64| quantity(system, sign);
+    (Magnitude::new(quantity, f64::INFINITY), [1.0, -1.0].map(|sign| Everywhere::new(quantity(sign))))
+}
+
+fn missed_size((search, everywhere): &Sizes<'_>) -> f64 {
+    let largest = everywhere[0].largest.max(everywhere[1].largest);
+    relative(largest - search.record().value, search.doubt(), largest)
+}
+
+fn relative(missed: f64, doubt: f64, size: f64) -> f64 {
+    if doubt > ALLOWED * size {
         f64::INFINITY
     } else if missed <= 0.0 {
         0.0
@@ -123,21 +144,28 @@ impl Observer<4> for ContactPieces {
     }
 }
 
-/// The gains that the search missed in a scene, of E1, E2 and both ends of the relative displacement, and the number of contact pieces.
-fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 4], u64), SolverError> {
+/// The gains that the search missed in a scene, of E1, E2, both ends of the relative displacement, and the sizes of x1, v1, a1 and the
+/// force on the ground; and the number of contact pieces.
+fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 8], u64), SolverError> {
     let system = numbers.coupled();
     let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
     let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
-    let mut all = (energies, (sides, ContactPieces::default()));
+    let structure = [
+        sizes(&system, StructureMotion::displacement),
+        sizes(&system, StructureMotion::velocity),
+        sizes(&system, StructureMotion::acceleration),
+        sizes(&system, StructureMotion::ground_force),
+    ];
+    let mut all = (energies, (sides, (ContactPieces::default(), structure)));
     let mut hybrid = Hybrid::new(&system, rtol, 20.0, 20_000_000);
     let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     let middle = if from > 0.0 { hybrid.propagate(rest, from, &mut Unobserved)? } else { rest };
     hybrid.propagate(middle, 20.0, &mut all)?;
-    let ((e1, e2), ([far, near], ContactPieces(pieces))) = all;
+    let ((e1, e2), ([far, near], (ContactPieces(pieces), structure))) = all;
     let reach = far.1.largest.abs().max(near.1.largest.abs());
-    let found =
-        [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest), missed(&far, reach), missed(&near, reach)];
-    Ok((found, pieces))
+    let [x1, v1, a1, ground] = structure.each_ref().map(missed_size);
+    let [e1, e2] = [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest)];
+    Ok(([e1, e2, missed(&far, reach), missed(&near, reach), x1, v1, a1, ground], pieces))
 }
 
 /// A difference relative to a size; infinite for what is no number.
@@ -161,7 +189,7 @@ fn run(numbers: &Numbers, window: Window, method: Method, rtol: f64) -> Result<R
 /// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where their final states part, so that the
 /// motion cannot be predicted so far, or where DOP853 gives up. Where they differ DOP853 runs again, a hundred times as exact: after
 /// tens of contacts its own error may show.
-fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
+fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 11], Response)> {
     let window = Window { from, to: 20.0 };
     let hybrid =
         run(numbers, window, Method::Hybrid, 1e-12).unwrap_or_else(|error| panic!("{error}: {numbers:?}"));
@@ -181,11 +209,13 @@ fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 7], Response)> {
 /// By how much the hybrid and DOP853 may differ.
 const ALIKE: f64 = 1e-8;
 
-fn differences(a: &Response, b: &Response) -> [f64; 7] {
+fn differences(a: &Response, b: &Response) -> [f64; 11] {
     let force = b.force_max[0].max(b.force_max[1]).max(1.0);
     let stroke = b.spring_deflection_max;
     let late = apart(a.e1_max.time, b.e1_max.time, 1.0);
     // Where two maxima are equally high, or one is flat, its time says nothing.
+    let structure =
+        |i: usize| apart(a.structure.all()[i].value, b.structure.all()[i].value, b.structure.all()[i].value);
     let told_by_height = apart(a.e1_max.value, b.e1_max.value, b.e1_max.value) < 1e-13 || late < 1e-4;
     [
         apart(a.e1_max.value, b.e1_max.value, b.e1_max.value),
@@ -195,6 +225,10 @@ fn differences(a: &Response, b: &Response) -> [f64; 7] {
         apart(a.force_max[0], b.force_max[0], force).max(apart(a.force_max[1], b.force_max[1], force)),
         f64::from(u8::from(a.impacts != b.impacts)),
         if told_by_height { 0.0 } else { late },
+        structure(0),
+        structure(1),
+        structure(2),
+        structure(3),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use retune_model::{Damper, Design, Positive, Scene, energy_ratios};
 use retune_optim::Objective;
-use retune_solver::{Response, SceneKind};
+use retune_solver::{Response, SceneKind, StructureMaxima};
 use retune_study::{Solver, Span, Study, counted, over, rounded};
 use serde::Serialize;
 
@@ -23,6 +23,8 @@ pub struct Summary {
     r1: f64,
     #[serde(rename = "R2")]
     r2: f64,
+    #[serde(flatten)]
+    structure: Structure,
     impacts: Walls<u64>,
     /// Largest |x2 - x1| and |x2 - x1 - D|, m.
     relative_displacement_max: f64,
@@ -35,6 +37,43 @@ pub struct Summary {
     rejected: u64,
     evaluations: u64,
     parameters: Scene,
+}
+
+/// Largest sizes of the structure's displacement, velocity and acceleration and of its force on the ground, and when, s.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Structure {
+    /// |x1|, m.
+    x1max: f64,
+    #[serde(rename = "t_x1max")]
+    t_x1: f64,
+    /// |v1|, m/s.
+    v1max: f64,
+    #[serde(rename = "t_v1max")]
+    t_v1: f64,
+    /// |a1|, m/s².
+    a1max: f64,
+    #[serde(rename = "t_a1max")]
+    t_a1: f64,
+    /// |k1 x1 + c1 v1|, N.
+    ground_force_max: f64,
+    #[serde(rename = "t_ground_force_max")]
+    t_ground_force: f64,
+}
+
+impl Structure {
+    fn new(largest: &StructureMaxima) -> Self {
+        let StructureMaxima { displacement, velocity, acceleration, ground_force } = largest;
+        Self {
+            x1max: displacement.value,
+            t_x1: displacement.time,
+            v1max: velocity.value,
+            t_v1: velocity.time,
+            a1max: acceleration.value,
+            t_a1: acceleration.time,
+            ground_force_max: ground_force.value,
+            t_ground_force: ground_force.time,
+        }
+    }
 }
 
 /// A damper as in the paper's Table 2: m2 (kg) and its design.
@@ -146,6 +185,7 @@ impl Summary {
             t_e2_max: e2_max.time,
             r1,
             r2,
+            structure: Structure::new(&response.structure),
             impacts: Walls { primary: impacts[0], obstacle: impacts[1] },
             relative_displacement_max,
             spring_deflection_max,
@@ -177,6 +217,18 @@ impl Summary {
                 format!("a stroke of {stroke} m (at the worst frequency); it touches no wall")
             }
         }
+    }
+
+    /// The motion of the structure and its force on the ground, in words.
+    pub fn motion(&self) -> String {
+        let Structure { x1max, a1max, ground_force_max, .. } = &self.structure;
+        let [x1, a1, force] = [1e3 * x1max, *a1max, *ground_force_max].map(|value| rounded(value, 4));
+        format!("moves by {x1} mm, accelerates by {a1} m/s² and loads the ground with {force} N")
+    }
+
+    /// The largest displacement of the structure, m.
+    pub fn x1_max(&self) -> f64 {
+        self.structure.x1max
     }
 
     /// The paper's name for the damper: a TMD never touches.
@@ -216,6 +268,15 @@ impl std::fmt::Display for Summary {
             f,
             "rel. displ. {:.6} m, the largest relative displacement |x2 - x1|",
             self.relative_displacement_max
+        )?;
+        let Structure { x1max, t_x1, v1max, t_v1, a1max, t_a1, ground_force_max, t_ground_force } =
+            self.structure;
+        writeln!(f, "x1max       {x1max:<12.7} m at t = {t_x1:.4} s")?;
+        writeln!(f, "v1max       {v1max:<12.7} m/s at t = {t_v1:.4} s")?;
+        writeln!(f, "a1max       {a1max:<12.7} m/s² at t = {t_a1:.4} s")?;
+        writeln!(
+            f,
+            "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground |k1 x1 + c1 v1|"
         )?;
         writeln!(f, "model       {model}")?;
         write!(

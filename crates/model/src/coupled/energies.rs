@@ -98,7 +98,7 @@ impl Coupled {
 
     /// Equation (1) and its time derivative.
     #[inline(always)]
-    fn accelerations(
+    pub(super) fn accelerations(
         &self,
         &[cos, sin]: &[f64x4; 2],
         &[x1, v1, x2, v2]: &[f64x4; 4],
@@ -116,7 +116,7 @@ impl Coupled {
 
     /// The contact forces of both walls on the damper.
     #[inline(always)]
-    fn wall_forces(&self, y: &[f64x4; 4]) -> WallForces {
+    pub(super) fn wall_forces(&self, y: &[f64x4; 4]) -> WallForces {
         let [z1, z2] = self.indentation(&y.map(|lanes| lanes.to_array()[0]));
         let net = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
         let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
@@ -144,29 +144,29 @@ impl Coupled {
 
 /// The net contact force on the damper, N, and the sum of the slopes of both contact forces, N/m.
 #[derive(Clone, Copy)]
-struct WallForces {
-    net: f64x4,
-    slope: f64x4,
+pub(super) struct WallForces {
+    pub net: f64x4,
+    pub slope: f64x4,
 }
 
 impl WallForces {
-    const NONE: Self = Self { net: f64x4::ZERO, slope: f64x4::ZERO };
+    pub const NONE: Self = Self { net: f64x4::ZERO, slope: f64x4::ZERO };
 }
 
 /// Of the structure and of the damper: the acceleration, the sum of all forces but its own spring's on the structure and of all
 /// forces on the damper, and the rates of these sums.
-struct Accelerations {
-    a: [f64x4; 2],
-    force: [f64x4; 2],
-    force_rate: [f64x4; 2],
+pub(super) struct Accelerations {
+    pub a: [f64x4; 2],
+    pub force: [f64x4; 2],
+    pub force_rate: [f64x4; 2],
 }
 
 /// Evaluates at one moment a formula that is written for moments side by side.
 #[inline(always)]
-fn at_one_moment(
+pub(super) fn at_one_moment<const N: usize, const K: usize>(
     excitation: Excitation,
-    y: &[f64; 4],
-    rates: impl Fn(&[f64x4; 2], &[f64x4; 4]) -> [f64x4; 3],
-) -> [f64; 3] {
+    y: &[f64; N],
+    rates: impl Fn(&[f64x4; 2], &[f64x4; N]) -> [f64x4; K],
+) -> [f64; K] {
     rates(&excitation.map(f64x4::splat), &y.map(f64x4::splat)).map(|lanes| lanes.to_array()[0])
 }

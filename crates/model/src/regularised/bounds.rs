@@ -9,6 +9,13 @@ pub const ORDERS: usize = 7;
 /// `v1`, the spring's stretch `z + s (wall - D)` towards the wall and the speed `w = dz/dt` into it.
 pub type Growth<const K: usize> = [[f64; K]; 4];
 
+/// Series with every term by its size: of the numbers of [`Growth`], of `a1` and of `dw/dt`.
+struct Series<const K: usize> {
+    growth: Growth<K>,
+    a1: [f64; K],
+    rate: [f64; K],
+}
+
 /// Term `k` of the product of two series.
 #[inline(always)]
 fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
@@ -26,23 +33,45 @@ impl RegularisedContact {
     /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf).
     /// In the box each coefficient follows from those before it by the equations, with all terms taken as positive.
     pub fn growth(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Growth<ORDERS> {
+        let bounds = self.bounds_between(h, from, to);
+        bounds.map_or([[f64::INFINITY; ORDERS]; 4], |bounds| self.series::<ORDERS, false>(bounds).growth)
+    }
+
+    /// [`Self::growth`], and the same of the rates of its four numbers in *time*: of `v1`, `a1`, `w` and `dw/dt`.
+    pub fn growth_of_rates(
+        &self,
+        h: f64,
+        from: &RegularisedState,
+        to: &RegularisedState,
+    ) -> [Growth<ORDERS>; 2] {
+        let Some(bounds) = self.bounds_between(h, from, to) else {
+            return [[[f64::INFINITY; ORDERS]; 4]; 2];
+        };
+        let Series { growth, a1, rate } = self.series::<ORDERS, true>(bounds);
+        let [_, v1, _, w] = growth;
+        [growth, [v1, a1, w, rate]]
+    }
+
+    /// Bounds on `[q, w, x1, v1]` on a piece; `None` if it is too long for the proof.
+    fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<[f64; 4]> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let mut bounds = ends;
         for _ in 0..8 {
-            let [slopes, _] = self.series::<2>(bounds);
-            let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + 0.5 * h * slopes[i][1]);
+            let Series { growth: [x1, v1, _, w], .. } = self.series::<2, false>(bounds);
+            let slopes = [0.5 * bounds[1], w[1], x1[1], v1[1]];
+            let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + 0.5 * h * slopes[i]);
             if (0..4).all(|i| reach[i] <= bounds[i]) {
-                return self.series::<ORDERS>(bounds)[1];
+                return Some(bounds);
             }
             for i in 0..4 {
                 bounds[i] = bounds[i].max(1.05 * reach[i]);
             }
         }
-        [[f64::INFINITY; ORDERS]; 4]
+        None
     }
 
-    /// The series of `[q, w, x1, v1]`, and those of [`Growth`], from bounds on the first four.
-    fn series<const K: usize>(&self, [q0, w0, x0, v0]: [f64; 4]) -> [Growth<K>; 2] {
+    /// The series that follow from bounds on `[q, w, x1, v1]`; those of the accelerations to the last order only `IF_RATES`.
+    fn series<const K: usize, const IF_RATES: bool>(&self, [q0, w0, x0, v0]: [f64; 4]) -> Series<K> {
         let start = |bound: f64| {
             let mut series = [0.0; K];
             series[0] = bound;
@@ -56,20 +85,23 @@ impl RegularisedContact {
             z[k] = product(&q, &q, k);
             cube[k] = product(&z, &q, k);
             stretch[k] = z[k] + if k == 0 { self.stretch.abs() } else { 0.0 };
-            if k + 1 == K {
+            if k + 1 == K && !IF_RATES {
                 break;
             }
             let outside = self.primary[0] * excitation[k] + self.primary[1] * v1[k] + self.primary[2] * x1[k];
             let push =
                 |i: usize| self.hertz[i] * cube[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
             (a1[k], rate[k]) = (outside + push(0), outside + push(1));
+            if k + 1 == K {
+                break;
+            }
             let next = 1.0 / (k + 1) as f64;
             let (along, turned) = (product(&q, &v1, k), self.omega * product(&q, &excitation, k));
             (x1[k + 1], excitation[k + 1]) = (along * next, turned * next);
             (v1[k + 1], w[k + 1]) = (product(&q, &a1, k) * next, product(&q, &rate, k) * next);
             q[k + 1] = 0.5 * w[k] * next;
         }
-        [[q, w, x1, v1], [x1, v1, stretch, w]]
+        Series { growth: [x1, v1, stretch, w], a1, rate }
     }
 
     /// Bounds on the first Taylor coefficients in *time* over a whole contact of `duration` seconds that begins at `touch`

@@ -8,14 +8,18 @@ use wide::f64x4;
 /// `R` over `M h⁶`.
 pub const QUINTIC: f64 = 1.0 / 46080.0;
 
-/// A quantity as a polynomial of degree two in the deviation `d = y - y0` from rest: `constant + linear · d + Σ weight/2 (row · d)²`.
+/// A quantity as a polynomial of degree two in the deviation `d = y - y0` from rest, and linear in its rate:
+/// `constant + linear · d + rated · d' + Σ weight/2 (row · d)²`.
 #[derive(Clone, Copy, Debug)]
 pub struct Form<const N: usize> {
     linear: [f64; N],
+    rated: [f64; N],
     squares: [(f64, [f64; N]); 2],
     rest: [f64; N],
     /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
     sixth: [f64; 3],
+    /// The size of `rated · d'` in flight: a weight for the size of each component of the state, and what the force adds.
+    size_of_rated: ([f64; N], f64),
 }
 
 /// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
@@ -62,8 +66,38 @@ impl<const N: usize> Form<N> {
     /// `row · d`.
     pub fn linear<S: LinearSystem<N>>(system: &S, row: [f64; N]) -> Self {
         let [.., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
-        let sixth = [offset, slope, 0.0];
-        Self { linear: row, squares: [(0.0, row); 2], rest: system.linear().origin, sixth }
+        Self {
+            linear: row,
+            rated: [0.0; N],
+            squares: [(0.0, row); 2],
+            rest: system.linear().origin,
+            sixth: [offset, slope, 0.0],
+            size_of_rated: ([0.0; N], 0.0),
+        }
+    }
+
+    /// `row · d + rated · d'`.
+    pub fn rated<S: LinearSystem<N>>(system: &S, row: [f64; N], rated: [f64; N]) -> Self {
+        let of_row = Self::linear(system, row);
+        let [.., [slope, offset]] = derivative_bounds::<S, N, 8>(system, rated);
+        let [b0, b1, b2] = of_row.sixth;
+        let linear = system.linear();
+        let size =
+            |of: &[f64; N]| rated.iter().zip(of).map(|(weight, a)| times(weight.abs(), a.abs())).sum::<f64>();
+        let size_of_rated =
+            (linear.columns.map(|column| size(&column)), times(amplitude(system), size(&linear.input)));
+        Self { rated, sixth: [b0 + offset, b1 + slope, b2], size_of_rated, ..of_row }
+    }
+
+    /// What the force adds to it in flight at most.
+    pub fn size_of_force(&self) -> f64 {
+        self.size_of_rated.1
+    }
+
+    /// Whether it depends on the rate of the state, and with it on the force.
+    #[inline(always)]
+    pub fn is_rated(&self) -> bool {
+        self.rated != [0.0; N]
     }
 
     /// `(mass v² + stiffness x²) / 2` of the components `x` and `v = x'` of the deviation from rest.
@@ -88,8 +122,14 @@ impl<const N: usize> Form<N> {
             sixth[1] += binomial * (times(a, d) + times(b, c));
             sixth[0] += binomial * times(b, d);
         }
-        let squares = [(mass, unit(v)), (stiffness, unit(x))];
-        Self { linear: [0.0; N], squares, rest: linear.origin, sixth }
+        Self {
+            linear: [0.0; N],
+            rated: [0.0; N],
+            squares: [(mass, unit(v)), (stiffness, unit(x))],
+            rest: linear.origin,
+            sixth,
+            size_of_rated: ([0.0; N], 0.0),
+        }
     }
 
     /// A bound on the sixth time derivative in flight, wherever the energy norm of the state is at most `energy` (√J).
@@ -100,7 +140,7 @@ impl<const N: usize> Form<N> {
         if bound.is_nan() { f64::INFINITY } else { bound }
     }
 
-    /// The sum of the sizes of its terms, which sets its rounding error.
+    /// The sum of the sizes of its terms in flight, which sets its rounding error.
     pub fn size(&self, y: &[f64; N]) -> f64 {
         let size = |row: &[f64; N]| {
             row.iter()
@@ -110,7 +150,8 @@ impl<const N: usize> Form<N> {
                 .sum::<f64>()
         };
         let squares = self.squares.iter().map(|(weight, row)| 0.5 * weight * size(row).powi(2));
-        size(&self.linear) + squares.sum::<f64>()
+        let (rated, forced) = &self.size_of_rated;
+        size(&self.linear) + squares.sum::<f64>() + size(rated) + forced
     }
 
     /// A bound on how far the quantity leaves the quintic that meets it, its slope and its curvature at both ends, over `length`
@@ -121,6 +162,11 @@ impl<const N: usize> Form<N> {
     pub fn quintic_error(&self, motion: &[Polynomial<BLOCKS>; N], length: f64) -> f64 {
         let mut q = [0.0; 2 * TERMS];
         self.combined(&self.linear, motion, length).into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
+        if self.is_rated() {
+            let rates = motion.each_ref().map(Polynomial::derivative);
+            let rated = Self { rest: [0.0; N], ..*self }.combined(&self.rated, &rates, length);
+            rated.into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
+        }
         for (weight, row) in self.squares.iter().filter(|(weight, _)| *weight != 0.0) {
             let row = self.combined(row, motion, length);
             for (i, a) in row.into_iter().enumerate() {
@@ -159,19 +205,23 @@ impl<const N: usize> Form<N> {
 }
 
 impl Form<4> {
-    /// A bound on the Taylor coefficient of order `k` in a contact with the wall of this sign, from those of its motion.
-    pub fn in_contact<const K: usize>(&self, growth: &Growth<K>, k: usize) -> f64 {
+    /// A bound on the Taylor coefficient of order `k` in a contact, from those of its motion and, for what is linear in the rate of
+    /// the state, from those of that rate.
+    pub fn in_contact<const K: usize>(&self, growth: &Growth<K>, rates: &Growth<K>, k: usize) -> f64 {
         // x2 - D = x1 + sign (stretch), v2 = v1 + sign w.
-        let combined = |[x1, v1, x2, v2]: &[f64; 4]| -> [f64; K] {
-            let weights = [x1 + x2, v1 + v2, *x2, *v2].map(f64::abs);
+        let weights = |[x1, v1, x2, v2]: &[f64; 4]| [x1 + x2, v1 + v2, *x2, *v2].map(f64::abs);
+        let combined = |row: &[f64; 4]| -> [f64; K] {
+            let weights = weights(row);
             std::array::from_fn(|k| (0..4).map(|i| times(weights[i], growth[i][k])).sum())
         };
+        let rated = weights(&self.rated);
+        let rated: f64 = (0..4).map(|i| times(rated[i], rates[i][k])).sum();
         let square = |(weight, row): &(f64, [f64; 4])| {
             let row = combined(row);
             let products: f64 = (0..=k).map(|i| times(row[i], row[k - i])).sum();
             times(0.5 * weight, products)
         };
-        combined(&self.linear)[k] + self.squares.iter().map(square).sum::<f64>()
+        combined(&self.linear)[k] + self.squares.iter().map(square).sum::<f64>() + rated
     }
 }
 

@@ -2,15 +2,18 @@
 //!
 //! A method hands its motion over segment by segment, and nothing else is stored on the way, so a run allocates nothing. Read
 //! `observer` (the contract, and how observers compose), then `quantity` and `running_maximum` (E1max and its like), and for its
-//! proof `search` and `quintic`. `counters` see events alone; `displacement_range` gives stroke and contact forces.
+//! proof `search` and `quintic`. `structure` has the quantities of the structure's motion, `magnitude` the largest size of a quantity
+//! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces.
 
 pub mod counters;
 pub mod displacement_range;
+pub mod magnitude;
 pub mod observer;
 pub mod quantity;
 mod quintic;
 pub mod running_maximum;
 mod search;
+pub mod structure;
 
 // For callers of the crate; inside it every file names the file that it means.
 pub use crate::motion::form::Form;
@@ -18,6 +21,8 @@ pub use crate::motion::knot::Knot;
 pub use crate::motion::segment::Segment;
 pub use counters::{TouchDownTimes, TouchDowns};
 pub use displacement_range::DisplacementRange;
+pub use magnitude::Magnitude;
 pub use observer::{MOST_KNOTS, Observer, Path, Unobserved};
 pub use quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};
 pub use running_maximum::RunningMaximum;
+pub use structure::{Structure, StructureMotion};

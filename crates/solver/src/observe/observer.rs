@@ -11,8 +11,10 @@ pub trait Path<const N: usize> {
     fn pieces(&self) -> usize;
     /// Visits the times (s, since the first) and states at the knots in their order.
     fn states(&self, visit: impl FnMut(f64, &[f64; N]));
-    /// A bound on the second time derivative of a quantity; infinite where none is known.
+    /// A bound on the second time derivative of a quantity that depends on the state alone; infinite where none is known.
     fn second_derivative(&self, form: &Form<N>) -> f64;
+    /// A bound on the first time derivative of a quantity; infinite where none is known.
+    fn first_derivative(&self, form: &Form<N>) -> f64;
     /// Hands the segment that follows a knot to an observer.
     fn show(&self, piece: usize, observer: &mut impl Observer<N>);
 }

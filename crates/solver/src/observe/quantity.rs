@@ -8,8 +8,8 @@ use wide::f64x4;
 
 /// A quantity that depends on the force and the state.
 pub trait Quantity<const N: usize> {
-    /// Its value with its first two time derivatives. The value itself must depend on the state alone: between the ends of a
-    /// [`Path`](crate::observe::Path) it is evaluated without the force.
+    /// Its value with its first two time derivatives. The value itself must depend on the state alone, unless
+    /// [`Self::form`] says otherwise: between the ends of a [`Path`](crate::observe::Path) it is evaluated without the force.
     fn rates(&self, excitation: Excitation, y: &[f64; N]) -> [f64; 3];
     /// The same at moments of flight side by side, without contact forces even if rounding has left the damper inside a wall.
     #[inline(always)]
@@ -25,6 +25,15 @@ pub trait Quantity<const N: usize> {
     }
     /// The quantity as a polynomial in the state, from which its bounds follow.
     fn form(&self) -> &Form<N>;
+    /// Whether the value depends on the force and on contact forces, beside the state: that of a form with the rate of the state.
+    #[inline(always)]
+    fn is_forced(&self) -> bool {
+        false
+    }
+    /// The sum of the sizes of its terms, which sets its rounding error.
+    fn size(&self, y: &[f64; N]) -> f64 {
+        self.form().size(y)
+    }
 }
 
 impl<const N: usize> Knot<N> {

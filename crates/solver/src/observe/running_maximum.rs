@@ -30,9 +30,33 @@ impl<Q> RunningMaximum<Q> {
         self.search.record
     }
 
+    /// Takes over a record that is higher than its own, as that of the same quantity with the other sign.
+    #[inline(always)]
+    pub(super) fn raise(&mut self, record: Extreme) {
+        self.search.note(record.value, record.time);
+    }
+
     /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is proven.
     pub fn doubt(&self) -> f64 {
         self.search.doubt()
+    }
+}
+
+impl<Q> RunningMaximum<Q> {
+    /// [`Observer::path`] of a quantity that depends on the force; `values` are those without it.
+    fn forced_path<const N: usize>(&mut self, path: &impl Path<N>, times: &[f64], values: &[f64])
+    where
+        Q: Quantity<N>,
+    {
+        let form = self.search.quantity.form();
+        let (first, force) = (path.first_derivative(form), form.size_of_force());
+        for (piece, (times, values)) in times.windows(2).zip(values.windows(2)).enumerate() {
+            let most = 0.5 * (values[0] + values[1] + first * (times[1] - times[0])) + force;
+            let dropped = most <= self.search.record.value;
+            if !dropped {
+                path.show(piece, self);
+            }
+        }
     }
 }
 
@@ -61,7 +85,8 @@ where
     }
 
     /// Searches only between knots where the record could be broken: a quantity whose second derivative is at most `m` rises above
-    /// the larger of two values `t` seconds apart by at most `m t² / 8`.
+    /// the larger of two values `t` seconds apart by at most `m t² / 8`. A quantity that contact forces enter has no such `m`, but a
+    /// first derivative of at most some `m`: it rises above the mean of two values by at most `m t / 2`.
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
         let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
@@ -71,6 +96,9 @@ where
             times[count] = t;
             count += 1;
         });
+        if self.search.quantity.is_forced() {
+            return self.forced_path(path, &times[..count], &values[..count]);
+        }
         let second = path.second_derivative(self.search.quantity.form());
         for piece in 0..count - 1 {
             let rise = 0.125 * second * (times[piece + 1] - times[piece]).powi(2);

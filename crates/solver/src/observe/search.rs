@@ -126,8 +126,8 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         if self.halvings <= HALVINGS - SHARP {
-            let form = self.quantity.form();
-            let rounding = ROUNDING * f64::EPSILON * form.size(&a.1.y).max(form.size(&b.1.y));
+            let size = self.quantity.size(&a.1.y).max(self.quantity.size(&b.1.y));
+            let rounding = ROUNDING * f64::EPSILON * size;
             if highest <= self.record.value + rounding {
                 return;
             }

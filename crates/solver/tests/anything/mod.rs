@@ -134,6 +134,7 @@ impl Anything {
                 assert!(all.clone().all(|value| value.is_finite() && *value >= 0.0), "{found:?}: {self:?}");
                 assert!(found.final_state.iter().all(|value| value.is_finite()), "{found:?}: {self:?}");
                 assert!(found.work.steps <= settings.max_steps, "{found:?}: {self:?}");
+                self.check_structure(&found);
                 self.check_time(found.e1_max.time);
                 self.check_time(found.e2_max.time);
                 self.check_energy(found.e1_max.value);
@@ -142,6 +143,20 @@ impl Anything {
                 }
                 self.check_touches(&found);
             }
+        }
+    }
+
+    /// The largest motions of the structure are numbers, of the window, and none has more energy than E1max.
+    fn check_structure(&self, found: &Response) {
+        for largest in found.structure.all() {
+            assert!(largest.value.is_finite() && largest.value >= 0.0, "{found:?}: {self:?}");
+            self.check_time(largest.time);
+        }
+        let [m1, k1] = [self.scene.primary.mass.get(), self.scene.primary.stiffness.get()];
+        let [x1, v1] = [found.structure.displacement, found.structure.velocity].map(|largest| largest.value);
+        if self.settings.method == Method::Hybrid {
+            let most = 2.0 * found.e1_max.value * (1.0 + 1e-9);
+            assert!(m1 * v1 * v1 <= most && k1 * x1 * x1 <= most, "{found:?}: {self:?}");
         }
     }
 

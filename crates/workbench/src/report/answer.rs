@@ -109,6 +109,10 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
                 "{} N on the structure in {} impacts, {} N on the obstacle in {}, {window}",
                 four(structure), impacts[0], four(obstacle), impacts[1]
             )))
+            (fact("Displacement", &millimetres(response.structure.displacement.value), &format!(
+                "largest |x1| of the structure at the worst frequency, {window}; it accelerates by {} m/s² and loads the ground with {} N",
+                four(response.structure.acceleration.value), four(response.structure.ground_force.value)
+            )))
             (fact("Motion", &certificate.motion.regime, &format!(
                 "{} impacts on the structure and {} on the obstacle in a period of the force",
                 digits(certificate.motion.contacts_per_period[0], 3), digits(certificate.motion.contacts_per_period[1], 3)

@@ -19,6 +19,8 @@ pub struct Curves {
     pub omega: Vec<f64>,
     /// E1max, J.
     pub energy: [Vec<f64>; 3],
+    /// The largest displacement |x1| of the structure in the window of a run, mm.
+    pub displacement: [Vec<f64>; 3],
     /// Whether the objective looks at all of these frequencies, or at a single one only.
     pub is_objective: bool,
 }
@@ -34,7 +36,8 @@ impl Curves {
             }
             None => about(findings),
         };
-        Self { omega, energy, is_objective: own.is_some() }
+        let displacement = displacements(findings, &omega);
+        Self { omega, energy, displacement, is_objective: own.is_some() }
     }
 
     /// The largest of a curve, where there is one.
@@ -58,6 +61,16 @@ fn about(findings: &Findings) -> (Vec<f64>, [Vec<f64>; 3]) {
     let found: Vec<f64> = asked.into_par_iter().map(value).collect();
     let of = |scene: usize| found[scene * omega.len()..(scene + 1) * omega.len()].to_vec();
     (omega.clone(), [of(0), of(1), of(2)])
+}
+
+/// The amplitude of the structure at each frequency, mm.
+fn displacements(findings: &Findings, omega: &[f64]) -> [Vec<f64>; 3] {
+    let (window, settings) = (findings.study.window.window(), findings.study.solver.settings());
+    let value = |scene: Scene, omega: f64| {
+        let run = at(omega, scene).and_then(|scene| retune_solver::simulate(&scene, window, &settings).ok());
+        run.map_or(f64::NAN, |run| 1e3 * run.structure.displacement.value)
+    };
+    findings.scenes().map(|scene| omega.par_iter().map(|omega| value(scene, *omega)).collect())
 }
 
 fn frequencies(findings: &Findings) -> Vec<f64> {

@@ -19,14 +19,44 @@ const LINES: [(&str, Stroke); 3] = [
 /// Ratio of the largest values of two curves above which the smaller would be squashed on a linear scale.
 const SQUASHED: f64 = 10.0;
 
+/// A quantity that is drawn against the frequency.
+struct Curve {
+    name: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    values: fn(&Curves) -> &[Vec<f64>; 3],
+    worst: fn(&Findings) -> f64,
+}
+
+impl Curve {
+    const ENERGY: Self = Self {
+        name: "E1max",
+        label: "E1max, J",
+        unit: "J",
+        values: |curves| &curves.energy,
+        worst: |findings| findings.evaluation.worst.e1_max,
+    };
+    const DISPLACEMENT: Self = Self {
+        name: "Displacement amplitude",
+        label: "|x1|, mm",
+        unit: "mm",
+        values: |curves| &curves.displacement,
+        worst: |findings| 1e3 * findings.response.structure.displacement.value,
+    };
+}
+
 /// The section.
 pub fn section(findings: &Findings, compared: &Compared) -> Section {
     let curves = Curves::new(findings);
     let body = html! {
         (words(findings, compared, &curves))
-        (figure(&picture(findings, &curves), html! {
+        (figure(&picture(findings, &curves, Curve::ENERGY), html! {
             "E1max against the frequency of the force: " (LINES[0].0) ", " (LINES[1].0) ", " (LINES[2].0) ". "
             @if curves.is_objective { (link("band.csv")) } @else { "Outside of the dotted line nothing was asked of the search." }
+        }))
+        (figure(&picture(findings, &curves, Curve::DISPLACEMENT), html! {
+            "Largest displacement |x1| of the structure, from " (four(findings.study.window.t0.get())) " to "
+            (four(findings.study.window.end.get())) " s of a run from rest."
         }))
     };
     Section { id: "response", title: "Response over frequency", body }
@@ -51,18 +81,19 @@ fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
     } }
 }
 
-fn picture(findings: &Findings, curves: &Curves) -> Drawing {
+fn picture(findings: &Findings, curves: &Curves, curve: Curve) -> Drawing {
+    let Curve { name, label, unit, values, worst } = curve;
+    let (values, worst) = (values(curves), worst(findings));
     let omega = findings.worst_omega();
-    let top = curves.energy.each_ref().map(|curve| Curves::largest(curve));
+    let top = values.each_ref().map(|curve| Curves::largest(curve));
     let (high, low) = (
         top.into_iter().fold(0.0, f64::max),
         top.into_iter().filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min),
     );
     let log = high > SQUASHED * low;
     let range = (curves.omega.first().copied().unwrap_or(0.0), curves.omega.last().copied().unwrap_or(1.0));
-    let label = "E1max, J";
     let y = if log {
-        Axis::around(label, Scale::Log, curves.energy.iter().flatten().copied())
+        Axis::around(label, Scale::Log, values.iter().flatten().copied())
     } else {
         Axis::linear(label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 }))
     };
@@ -70,19 +101,18 @@ fn picture(findings: &Findings, curves: &Curves) -> Drawing {
     if !curves.is_objective {
         layers.push(Layer::Upright { x: omega, stroke: Stroke::new(GREY, 1.0, Dash::Dots) });
     }
-    for (curve, (_, stroke)) in curves.energy.iter().zip(LINES) {
+    for (curve, (_, stroke)) in values.iter().zip(LINES) {
         let points = curves.omega.iter().copied().zip(curve.iter().copied()).collect();
         layers.push(Layer::Line { points, stroke });
     }
     let mark = Mark { rim: true, ..Mark::new(Shape::Disc, VERMILION, 5.0) };
-    let worst = findings.evaluation.worst.e1_max;
     layers.push(Layer::Marks { points: vec![(omega, worst)], mark });
     let mut legend: Vec<(Key, String)> =
         LINES.iter().map(|(name, stroke)| (Key::Line(*stroke), (*name).to_owned())).collect();
     legend.push((
         Key::Mark(mark),
         format!(
-            "{}: {} J at {} rad/s",
+            "{}: {} {unit} at {} rad/s",
             if curves.is_objective { "worst" } else { "tuned for" },
             four(worst),
             four(omega)
@@ -96,11 +126,11 @@ fn picture(findings: &Findings, curves: &Curves) -> Drawing {
         height: 210.0,
     };
     let said: Vec<String> =
-        LINES.iter().zip(top).map(|((name, _), top)| format!("{name} {} J", four(top))).collect();
+        LINES.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
     drawing(&Sheet {
-        title: "E1max against the frequency of the force".to_owned(),
+        title: format!("{name} against the frequency of the force"),
         description: format!(
-            "E1max against ω from {} to {} rad/s on a {} scale. Highest points: {}.",
+            "{name} against ω from {} to {} rad/s on a {} scale. Highest points: {}.",
             four(range.0),
             four(range.1),
             if log { "logarithmic" } else { "linear" },

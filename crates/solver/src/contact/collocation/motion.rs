@@ -9,6 +9,7 @@ use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::each;
 use crate::observe::observer::{Observer, Path};
+use retune_model::Growth;
 
 /// A contact from touch-down to lift-off.
 pub(super) struct Collision<'a, const N: usize, const M: usize> {
@@ -103,6 +104,14 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         }
     }
 
+    /// Bounds on the motion over the whole contact.
+    #[inline(always)]
+    fn growth(&self) -> Option<Growth<3>> {
+        let Collisions { equations, amplitude, .. } = self.of;
+        let touch = equations.regularise(&self.touch.y);
+        equations.growth_over_contact(&touch, self.depth.sqrt(), self.duration, *amplitude)
+    }
+
     fn knot(&self, knot: usize) -> Knot<4> {
         let elapsed = self.time(knot) * self.duration;
         let (y, root) = match knot {
@@ -139,14 +148,15 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
 
     #[inline(always)]
     fn second_derivative(&self, form: &Form<4>) -> f64 {
-        let touch = self.of.equations.regularise(&self.touch.y);
-        let growth = self.of.equations.growth_over_contact(
-            &touch,
-            self.depth.sqrt(),
-            self.duration,
-            self.of.amplitude,
-        );
-        growth.map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, 2)) // 2! of a Taylor coefficient
+        // 2! of a Taylor coefficient
+        self.growth().map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, &[[0.0; 3]; 4], 2))
+    }
+
+    fn first_derivative(&self, form: &Form<4>) -> f64 {
+        self.growth().map_or(f64::INFINITY, |growth| {
+            let rates = growth.map(|[_, first, second]| [first, 2.0 * second, 0.0]);
+            form.in_contact::<3>(&growth, &rates, 1)
+        })
     }
 
     /// The segment between two knots is integrated from the first of them.

@@ -68,8 +68,12 @@ impl Segment<4> for Piece<'_> {
             let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
             [knot.clock[0], w, x1, v1, 0.0]
         });
-        let growth = self.equations.growth(h, &from, &to);
-        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(&growth, 6)) // 6! of a Taylor coefficient
+        let [growth, rates] = if form.is_rated() {
+            self.equations.growth_of_rates(h, &from, &to)
+        } else {
+            [self.equations.growth(h, &from, &to), [[0.0; ORDERS]; 4]]
+        };
+        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(&growth, &rates, 6)) // 6! of a Taylor coefficient
     }
 }
 

@@ -49,6 +49,12 @@ fn exact_error_of_a_quintic_is_that_of_the_product_of_the_motions() {
         let row: Vec<f64> = x.iter().zip(&v).map(|(x, v)| 2.0 * x - 0.5 * v).collect();
         let found = linear.quintic_error(&motion, h);
         assert!((found / expected(&row, h) - 1.0).abs() < 1e-12, "{h}: {found} {}", expected(&row, h));
+        // 2 x - 0.5 v + 3 v': the derivative of a polynomial has one term less.
+        let rated = Form::rated(&structure, [2.0, -0.5], [0.0, 3.0]);
+        let slope = (0..TERMS).map(|k| v.get(k + 1).map_or(0.0, |next| 3.0 * (k + 1) as f64 * next));
+        let with_rate: Vec<f64> = row.iter().zip(slope).map(|(a, b)| a + b).collect();
+        let (found, expected) = (rated.quintic_error(&motion, h), expected(&with_rate, h));
+        assert!((found / expected - 1.0).abs() < 1e-12, "{h}: {found} {expected}");
     }
 }
 
@@ -59,6 +65,9 @@ fn exact_size_is_the_quantity_with_every_term_by_its_size() {
     let expected = 0.5 * (STIFFNESS * 0.04 + MASS * 0.09);
     assert!((energy.size(&[-0.2, 0.3]) / expected - 1.0).abs() < 1e-14);
     assert!((Form::linear(&structure, [2.0, -0.5]).size(&[-0.2, 0.3]) / 0.55 - 1.0).abs() < 1e-14);
+    // v' = (8 cos 2t - 0.7 v - 50 x) / 3.
+    let rated = Form::rated(&structure, [2.0, -0.5], [0.0, 3.0]).size(&[-0.2, 0.3]);
+    assert!((rated / (0.55 + 8.0 + 0.21 + 10.0) - 1.0).abs() < 1e-14, "{rated}");
 }
 
 /// Free and undamped, `x = cos νt`: the sixth derivatives of row and energy are at most what the bounds say, and those of a free
@@ -81,6 +90,8 @@ fn exact_bounds_in_flight_of_a_free_oscillation() {
     }
     let linear = Form::linear(&free, [1.0, 0.0]).sixth_in_flight(energy);
     assert!((linear / natural.powi(6) - 1.0).abs() < 1e-12, "{linear}");
+    let rated = Form::rated(&free, [0.0, 0.0], [0.0, 1.0]).sixth_in_flight(energy);
+    assert!((rated / natural.powi(8) - 1.0).abs() < 1e-12, "{rated}");
     // Of the energy, the part that no other force changes: v G with G = 0.
     let constant = Form::energy(&free, [MASS, STIFFNESS], [0, 1]).sixth_in_flight(energy);
     assert!(constant < 1e-9 * STIFFNESS * natural.powi(6), "{constant}");

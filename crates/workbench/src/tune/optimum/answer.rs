@@ -23,7 +23,8 @@ impl Optimum {
         let values = format!("m2 = {m2} kg,k2 = {k2} N/m,c2 = {c2} N·s/m,D = {d} m,C = {c} m");
         say(format!("  build    {}", values.replace(' ', HELD).replace(',', ", ")));
         say(format!("  needs    {}", self.simulation.needs()));
-        say(format!("  motion   at the worst frequency it {}", self.certificate.motion_words()));
+        say(format!("  there    the structure {}", self.simulation.motion()));
+        say(format!("  motion   {}", self.certificate.motion_words()));
         say(format!("  verdict  {}", self.certificate.verdict_words()));
         if let Some(limits) = &self.limits {
             say(format!("  {}", limits.report()));

@@ -1,0 +1,85 @@
+//! The motion of the primary structure with its time derivatives, for the largest displacement, velocity, acceleration and force on
+//! the ground.
+
+use super::Coupled;
+use super::energies::{Accelerations, WallForces, at_one_moment};
+use crate::{Bare, Excitation, hertz_force, hertz_force_curvature};
+use wide::f64x4;
+
+impl Bare {
+    /// `[x1, v1, a1, da1/dt, d²a1/dt²]` of the structure without a damper, in m, m/s, …: equation (1) and its time derivatives.
+    #[inline]
+    pub fn primary_motion(&self, excitation: Excitation, y: &[f64; 2]) -> [f64; 5] {
+        at_one_moment(excitation, y, |excitation, y| self.primary_motion_in_flight(excitation, y))
+    }
+
+    /// [`Self::primary_motion`] of four moments side by side.
+    #[inline(always)]
+    pub fn primary_motion_in_flight(&self, &[cos, sin]: &[f64x4; 2], &[x1, v1]: &[f64x4; 2]) -> [f64x4; 5] {
+        let Self { m1, c1, k1, omega, .. } = *self;
+        let a1 = (cos - v1 * c1 - x1 * k1) / m1;
+        let jerk = (sin * -omega - a1 * c1 - v1 * k1) / m1;
+        [x1, v1, a1, jerk, (cos * (-omega * omega) - jerk * c1 - a1 * k1) / m1]
+    }
+
+    /// `[k1, c1]`: the weights of `x1` and `v1` in the force that the structure transmits to the ground, `k1 x1 + c1 v1`, N.
+    pub fn ground_force_weights(&self) -> [f64; 2] {
+        [self.k1, self.c1]
+    }
+}
+
+impl Coupled {
+    /// `[x1, v1, a1, da1/dt, d²a1/dt²]` of the structure, in m, m/s, …: equation (1) and its time derivatives. At a wall the last one
+    /// grows without bound as a contact begins or ends, for Hertz's force goes with `z^(3/2)`; it is finite at `z = 0` itself, where
+    /// the wall is taken to be out of reach.
+    #[inline]
+    pub fn primary_motion(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 5] {
+        at_one_moment(excitation, y, |excitation, lanes| {
+            let bend = f64x4::splat(self.wall_bend(y));
+            self.primary_motion_under(excitation, lanes, self.wall_forces(lanes), bend)
+        })
+    }
+
+    /// [`Self::primary_motion`] of four moments side by side at which the damper touches no wall.
+    #[inline(always)]
+    pub fn primary_motion_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 5] {
+        self.primary_motion_under(excitation, y, WallForces::NONE, f64x4::ZERO)
+    }
+
+    /// `d²(F_con(z1) - F_con(z2)) / dr²`, N/m².
+    fn wall_bend(&self, y: &[f64; 4]) -> f64 {
+        let [z1, z2] = self.indentation(y);
+        hertz_force_curvature(self.hertz[0], z1) - hertz_force_curvature(self.hertz[1], z2)
+    }
+
+    #[inline(always)]
+    fn primary_motion_under(
+        &self,
+        excitation: &[f64x4; 2],
+        y: &[f64x4; 4],
+        walls: WallForces,
+        bend: f64x4,
+    ) -> [f64x4; 5] {
+        let &[x1, v1, _, v2] = y;
+        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let Accelerations { a: [a1, a2], force_rate: [g_rate, on_damper_rate], .. } =
+            self.accelerations(excitation, y, walls);
+        let (jerk, jerk_2) = ((g_rate - v1 * k1) / m1, on_damper_rate / self.m2);
+        let (speed, apart) = (v2 - v1, a2 - a1);
+        let on_damper_bend =
+            bend * speed * speed - walls.slope * apart - (jerk_2 - jerk) * self.c2 - apart * self.k2;
+        let g_bend = excitation[0] * (-omega * omega) - jerk * c1 - on_damper_bend;
+        [x1, v1, a1, jerk, (g_bend - a1 * k1) / m1]
+    }
+
+    /// What the contact forces add to the sizes of the terms of `a1`, m/s²: they follow from an indentation that is a difference of
+    /// positions, whose rounding they magnify.
+    pub fn contact_size(&self, y: &[f64; 4]) -> f64 {
+        let [z1, z2] = self.indentation(y);
+        let position = y[0].abs() + y[2].abs();
+        let size = |hertz: f64, z: f64, wall: f64| {
+            if z > 0.0 { hertz_force(hertz, z) * (1.0 + 1.5 * (position + wall) / z) } else { 0.0 }
+        };
+        (size(self.hertz[0], z1, 0.0) + size(self.hertz[1], z2, self.span)) / self.bare.m1
+    }
+}
