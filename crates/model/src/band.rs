@@ -13,7 +13,7 @@
 mod factors;
 mod roots;
 
-use crate::{Bare, Coupled};
+use crate::{Bare, Coupled, Measure};
 use factors::{Factors, Numerator, ON_RESONANCE, Piece, Point};
 
 /// A largest value over a band, and where it is reached.
@@ -37,6 +37,51 @@ impl Worst {
 }
 
 impl Bare {
+    /// Largest steady value of a quantity over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`; as
+    /// [`Self::steady_e1_max`]. Stroke and contact force are zero without a damper.
+    pub fn steady_max(&self, measure: Measure, [from, to]: [f64; 2]) -> Worst {
+        if measure == Measure::Energy {
+            return self.steady_e1_max([from, to]);
+        }
+        let mut worst = Worst::NONE;
+        if matches!(measure, Measure::Stroke | Measure::ContactForce) {
+            return Worst { value: 0.0, frequency: from };
+        }
+        for end in [from, to] {
+            worst.note(end, self.steady(end).largest(self, end, measure));
+        }
+        // |X1|² = (P/m1)² / ((u - u0)² + u r²), r = c1/m1: by 1, by u, by u² and by k1² + u c1², the last of which is largest at
+        // u² + 2 g u = 2 g u0 with g = (k1/c1)². `past` is u - u0 without a difference.
+        let (u0, rate) = (self.k1 / self.m1, self.c1 / self.m1);
+        let half = 0.5 * rate * rate;
+        let (u, past) = match measure {
+            Measure::Displacement => (u0 - half, -half),
+            Measure::Velocity => (u0, 0.0),
+            Measure::Acceleration => {
+                let u = u0 / (1.0 - half / u0);
+                (u, u * (half / u0))
+            }
+            Measure::GroundForce => {
+                let share = 2.0 * u0 * (self.c1 / self.k1).powi(2);
+                let root = 1.0 + (1.0 + share).sqrt();
+                (2.0 * u0 / root, -u0 * share / (root * root))
+            }
+            Measure::Energy | Measure::Stroke | Measure::ContactForce => return worst,
+        };
+        let omega = u.max(0.0).sqrt();
+        if from * (1.0 - ON_RESONANCE) <= omega && omega <= to * (1.0 + ON_RESONANCE) {
+            let x1 = self.p / (self.m1 * past.hypot(omega * rate));
+            let by = match measure {
+                Measure::Velocity => omega,
+                Measure::Acceleration => u,
+                Measure::GroundForce => self.k1.hypot(omega * self.c1),
+                _ => 1.0,
+            };
+            worst.note(omega.clamp(from, to.max(from)), by * x1);
+        }
+        worst
+    }
+
     /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`. Infinite at the
     /// resonance of an undamped structure, also where the band ends on it to 8 roundings.
     pub fn steady_e1_max(&self, [from, to]: [f64; 2]) -> Worst {
@@ -64,51 +109,38 @@ impl Coupled {
     /// damper touches neither wall (compare [`Self::steady_stroke_max`] with `D` and `C`). Infinite at a resonance of an undamped
     /// system, also where the band ends on it to 8 roundings.
     pub fn steady_e1_max(&self, band: [f64; 2]) -> Worst {
-        self.worst(band, Quantity::Energy)
+        self.steady_max(Measure::Energy, band)
     }
 
     /// Largest amplitude `|X1|`, m, of the primary structure over a band; as [`Self::steady_e1_max`].
     pub fn steady_displacement_max(&self, band: [f64; 2]) -> Worst {
-        self.worst(band, Quantity::Displacement)
+        self.steady_max(Measure::Displacement, band)
     }
 
     /// Largest steady stroke (spring deflection) `|X2 - X1|`, m, over a band; as [`Self::steady_e1_max`].
     pub fn steady_stroke_max(&self, band: [f64; 2]) -> Worst {
-        self.worst(band, Quantity::Stroke)
+        self.steady_max(Measure::Stroke, band)
     }
 
-    fn worst(&self, [from, to]: [f64; 2], quantity: Quantity) -> Worst {
+    /// Largest steady value of a quantity over a band; as [`Self::steady_e1_max`]. The contact force is zero, as long as the damper
+    /// touches neither wall.
+    pub fn steady_max(&self, measure: Measure, [from, to]: [f64; 2]) -> Worst {
         let mut worst = Worst::NONE;
-        if from < to {
+        if from < to && measure != Measure::ContactForce {
             let factors = Factors::new(self, to * to);
-            Search { system: self, factors, quantity, band: [from, to], worst: &mut worst }.run();
+            Search { system: self, factors, measure, band: [from, to], worst: &mut worst }.run();
         } else {
-            let steady = self.steady(from);
-            worst.note(
-                from,
-                match quantity {
-                    Quantity::Energy => steady.e1_max,
-                    Quantity::Displacement => steady.x1.norm(),
-                    Quantity::Stroke => steady.stroke(),
-                },
-            );
+            worst.note(from, self.steady(from).largest(self.bare(), from, measure));
         }
         worst
     }
 }
 
-/// The quantity to be maximised, a multiple of `V / M` or of its square root.
-#[derive(Clone, Copy)]
-enum Quantity {
-    Energy,
-    Displacement,
-    Stroke,
-}
-
 struct Search<'a> {
     system: &'a Coupled,
     factors: Factors,
-    quantity: Quantity,
+    /// The quantity to be maximised, a multiple of `V / M` or of its square root.
+    measure: Measure,
     band: [f64; 2],
     worst: &'a mut Worst,
 }
@@ -155,26 +187,31 @@ impl Search<'_> {
 
     /// `V` from a cut on to the next.
     fn numerator(&self, from: &Point) -> Numerator {
-        match self.quantity {
-            Quantity::Energy if from.past(&self.factors.primary) < 0.0 => Numerator::Damper,
-            Quantity::Energy => Numerator::DamperBySquare,
-            Quantity::Displacement => Numerator::Damper,
-            Quantity::Stroke => Numerator::Square,
+        match self.measure {
+            Measure::Energy if from.past(&self.factors.primary) < 0.0 => Numerator::Damper,
+            Measure::Energy | Measure::Velocity => Numerator::DamperBySquare,
+            Measure::Displacement => Numerator::Damper,
+            Measure::Acceleration => Numerator::DamperByFourth,
+            Measure::GroundForce => {
+                let Bare { k1, c1, .. } = *self.system.bare();
+                Numerator::DamperByGround([k1 * k1, c1 * c1 * self.factors.unit])
+            }
+            Measure::Stroke | Measure::ContactForce => Numerator::Square,
         }
     }
 
     fn value(&self, numerator: Numerator, ratio: f64) -> f64 {
         let Bare { m1, k1, p, .. } = *self.system.bare();
         let amplitude = p / (m1 * self.factors.unit);
-        match (self.quantity, numerator) {
-            (Quantity::Energy, Numerator::Damper) => 0.5 * k1 * amplitude * amplitude * ratio,
-            (Quantity::Energy, Numerator::DamperBySquare) => {
-                0.5 * m1 * self.factors.unit * amplitude * amplitude * ratio
-            }
-            (Quantity::Energy, Numerator::Square) => {
-                unreachable!("the energy is the structure's (see `numerator`)")
-            }
-            (Quantity::Displacement | Quantity::Stroke, _) => amplitude * ratio.sqrt(),
+        let unit = self.factors.unit;
+        let size = amplitude * ratio.sqrt();
+        match self.measure {
+            // Below its own frequency the structure's spring holds the largest energy, above it its mass (see `numerator`).
+            Measure::Energy if numerator == Numerator::Damper => 0.5 * k1 * amplitude * amplitude * ratio,
+            Measure::Energy => 0.5 * m1 * unit * amplitude * amplitude * ratio,
+            Measure::Velocity => size * unit.sqrt(),
+            Measure::Acceleration => size * unit,
+            Measure::Displacement | Measure::GroundForce | Measure::Stroke | Measure::ContactForce => size,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Steady response of the linear scenes in closed form: no damper, or a damper that never touches.
 
-use crate::{Bare, Coupled};
+use crate::{Bare, Coupled, Measure};
 use nalgebra::Complex;
 
 /// Amplitudes of a steady harmonic motion `x1 = Re(X1 e^{iωt})`, `x2 - D = Re(X2 e^{iωt})`.
@@ -17,6 +17,21 @@ pub struct Steady {
 }
 
 impl Steady {
+    /// The amplitude of a quantity at the angular frequency of the response, of the structure `bare`: largest values over a period.
+    /// Zero for contact forces, for the response is that of a damper that touches nothing.
+    pub fn largest(&self, bare: &Bare, omega: f64, measure: Measure) -> f64 {
+        let x1 = self.x1.norm();
+        match measure {
+            Measure::Energy => self.e1_max,
+            Measure::Displacement => x1,
+            Measure::Velocity => omega * x1,
+            Measure::Acceleration => omega * omega * x1,
+            Measure::GroundForce => bare.k1.hypot(omega * bare.c1) * x1,
+            Measure::Stroke => self.stroke(),
+            Measure::ContactForce => 0.0,
+        }
+    }
+
     /// The stroke: the largest deflection of the damper's spring, `|x2 - x1 - D| = |X2 - X1|`, m.
     pub fn stroke(&self) -> f64 {
         (self.x2 - self.x1).norm()

@@ -2,7 +2,7 @@
 
 mod scenes;
 
-use retune_model::{Coupled, Worst};
+use retune_model::{Coupled, Measure, Worst};
 use scenes::{Numbers, SSVI, Spread, TMD};
 
 /// The largest of `f` over `count` even places, sharpened by golden sections between the neighbours of each.
@@ -39,7 +39,7 @@ fn reference_worst_is_that_of_dense_sampling_refined() {
         let from = spread.logarithmic(0.5, 8.0);
         let band = [from, from * spread.logarithmic(1.01, 6.0)];
         let (system, bare) = (numbers.coupled(), numbers.bare());
-        let pairs = [
+        let mut pairs = vec![
             (system.steady_e1_max(band), sampled(|omega| system.steady(omega).e1_max, band, 4001)),
             (system.steady_stroke_max(band), sampled(|omega| system.steady(omega).stroke(), band, 4001)),
             (
@@ -48,6 +48,14 @@ fn reference_worst_is_that_of_dense_sampling_refined() {
             ),
             (bare.steady_e1_max(band), sampled(|omega| bare.steady(omega).e1_max, band, 4001)),
         ];
+        for measure in Measure::ALL.into_iter().filter(|measure| *measure != Measure::ContactForce) {
+            let at = |omega: f64| system.steady(omega).largest(&bare, omega, measure);
+            pairs.push((system.steady_max(measure, band), sampled(at, band, 4001)));
+            if measure != Measure::Stroke {
+                let at = |omega: f64| bare.steady(omega).largest(&bare, omega, measure);
+                pairs.push((bare.steady_max(measure, band), sampled(at, band, 4001)));
+            }
+        }
         for (Worst { value, frequency }, expected) in pairs {
             assert!((value / expected - 1.0).abs() < 1e-12, "{numbers:?} {band:?}: {value} {expected}");
             assert!(band[0] <= frequency && frequency <= band[1]);
@@ -105,6 +113,43 @@ fn exact_bare_peak_is_that_of_the_text_books() {
     // Displacement resonance: |X1| = P / (k1 2ζ √(1 - ζ²)).
     let amplitude = SSVI.p / (SSVI.k1 * 2.0 * zeta * (1.0 - zeta * zeta).sqrt());
     assert!((worst.value / (0.5 * SSVI.k1 * amplitude * amplitude) - 1.0).abs() < 1e-12);
+}
+
+/// The resonances of one degree of freedom: of displacement below ω0, of velocity at ω0, where `|V1| = P/c1`, of acceleration above it,
+/// and of the force on the ground at `ω² = ω0² (√(1 + 8ζ²) - 1) / 4ζ²` (S. Rao, Mechanical Vibrations, on transmissibility).
+#[test]
+fn exact_bare_resonances_are_those_of_the_text_books() {
+    let bare = SSVI.bare();
+    let natural = (SSVI.k1 / SSVI.m1).sqrt();
+    let zeta = SSVI.c1 / (2.0 * (SSVI.k1 * SSVI.m1).sqrt());
+    let (z2, narrow) = (zeta * zeta, 2.0 * zeta * (1.0 - zeta * zeta).sqrt());
+    let expected = [
+        (Measure::Displacement, SSVI.p / (SSVI.k1 * narrow), (1.0 - 2.0 * z2).sqrt()),
+        (Measure::Velocity, SSVI.p / SSVI.c1, 1.0),
+        (Measure::Acceleration, SSVI.p / (SSVI.m1 * narrow), 1.0 / (1.0 - 2.0 * z2).sqrt()),
+    ];
+    for (measure, value, frequency) in expected {
+        let worst = bare.steady_max(measure, [5.0, 8.0]);
+        assert!((worst.value / value - 1.0).abs() < 1e-12, "{measure:?} {worst:?} {value}");
+        assert!((worst.frequency / (natural * frequency) - 1.0).abs() < 1e-12, "{measure:?} {worst:?}");
+    }
+    let worst = bare.steady_max(Measure::GroundForce, [5.0, 8.0]);
+    let g = (((1.0 + 8.0 * z2).sqrt() - 1.0) / (4.0 * z2)).sqrt();
+    let transmitted =
+        ((1.0 + (2.0 * zeta * g).powi(2)) / ((1.0 - g * g).powi(2) + (2.0 * zeta * g).powi(2))).sqrt();
+    assert!((worst.frequency / (natural * g) - 1.0).abs() < 1e-10, "{worst:?}");
+    assert!((worst.value / (SSVI.p * transmitted) - 1.0).abs() < 1e-12, "{worst:?}");
+    for measure in [Measure::Stroke, Measure::ContactForce] {
+        assert_eq!(bare.steady_max(measure, [5.0, 8.0]).value, 0.0);
+    }
+}
+
+#[test]
+fn contract_measures_have_the_names_of_study_files() {
+    for measure in Measure::ALL {
+        assert_eq!(serde_json::to_value(measure).expect("a name"), measure.name());
+    }
+    assert_eq!(Measure::default(), Measure::Energy);
 }
 
 /// Den Hartog (Mechanical Vibrations, 4th ed. 1956, section 3.3): without damping of the structure all curves of |X1| pass through

@@ -135,12 +135,16 @@ fn about(b: f64, c: f64) -> [f64; 2] {
 }
 
 /// The numerator `V`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Numerator {
     /// `N`.
     Damper,
     /// `u N`.
     DamperBySquare,
+    /// `u² N`.
+    DamperByFourth,
+    /// `(a + b u) N`, neither weight below zero.
+    DamperByGround([f64; 2]),
     /// `u²`.
     Square,
 }
@@ -177,11 +181,14 @@ impl Piece {
         let v = match numerator {
             Numerator::Damper => damper,
             Numerator::DamperBySquare => u * damper,
+            Numerator::DamperByFourth => u * u * damper,
+            Numerator::DamperByGround([a, b]) => (a + b * u) * damper,
             Numerator::Square => u * u,
         };
         v / (real * real + u * self.drag * z * z)
     }
 
+    /// `V` and its slope; of `u² N` both over `u`, which is positive.
     fn numerator(&self, numerator: Numerator) -> ([f64; 4], [f64; 3]) {
         let [a, b] = self.u;
         let u = &self.u;
@@ -195,6 +202,16 @@ impl Piece {
                 product(&damper, u),
                 sum(&product::<2, 2, 3>(&damper_slope, u), &times(&damper, self.forward)),
             ),
+            // (u² N)' / u = u N' + 2 N
+            Numerator::DamperByFourth => (
+                product(&damper, u),
+                sum(&product::<2, 2, 3>(&damper_slope, u), &times(&damper, 2.0 * self.forward)),
+            ),
+            Numerator::DamperByGround([a, b]) => {
+                let weight = u.map(|u| a + b * u);
+                let slope = product::<2, 2, 3>(&damper_slope, &weight);
+                (product(&damper, &weight), sum(&slope, &times(&damper, b * self.forward)))
+            }
             Numerator::Square => (
                 product::<3, 2, 4>(&product(u, u), &ONE),
                 product(&[2.0 * self.forward * a, 2.0 * self.forward * b], &ONE),
@@ -224,7 +241,8 @@ impl Piece {
     pub fn bounds(&self, numerator: Numerator) -> [f64; 2] {
         let ([v0, v1, v2, v3], _) = self.numerator(numerator);
         let ([m0, m1, m2, m3, m4], _) = self.denominator();
-        [v0.max(v1 / 3.0).max(v2 / 3.0).max(v3), m0.min(m1 / 4.0).min(m2 / 6.0).min(m3 / 4.0).min(m4)]
+        let by = if numerator == Numerator::DamperByFourth { self.u[0].max(self.u[1]) } else { 1.0 };
+        [by * v0.max(v1 / 3.0).max(v2 / 3.0).max(v3), m0.min(m1 / 4.0).min(m2 / 6.0).min(m3 / 4.0).min(m4)]
     }
 
     /// `W = V' M - V M'`, the sign of the slope of `V / M` by `s`, as Bernstein coefficients.

@@ -13,13 +13,20 @@ pub const QUINTIC: f64 = 1.0 / 46080.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Form<const N: usize> {
     linear: [f64; N],
-    rated: [f64; N],
+    rated: Option<Rated<N>>,
     squares: [(f64, [f64; N]); 2],
     rest: [f64; N],
     /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
     sixth: [f64; 3],
-    /// The size of `rated · d'` in flight: a weight for the size of each component of the state, and what the force adds.
-    size_of_rated: ([f64; N], f64),
+}
+
+/// The part of a quantity that is linear in the rate of the state.
+#[derive(Clone, Copy, Debug)]
+struct Rated<const N: usize> {
+    row: [f64; N],
+    /// Its size in flight: a weight for the size of each component of the state, and what the force adds.
+    size: [f64; N],
+    force: f64,
 }
 
 /// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
@@ -68,11 +75,10 @@ impl<const N: usize> Form<N> {
         let [.., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
         Self {
             linear: row,
-            rated: [0.0; N],
+            rated: None,
             squares: [(0.0, row); 2],
             rest: system.linear().origin,
             sixth: [offset, slope, 0.0],
-            size_of_rated: ([0.0; N], 0.0),
         }
     }
 
@@ -84,20 +90,23 @@ impl<const N: usize> Form<N> {
         let linear = system.linear();
         let size =
             |of: &[f64; N]| rated.iter().zip(of).map(|(weight, a)| times(weight.abs(), a.abs())).sum::<f64>();
-        let size_of_rated =
-            (linear.columns.map(|column| size(&column)), times(amplitude(system), size(&linear.input)));
-        Self { rated, sixth: [b0 + offset, b1 + slope, b2], size_of_rated, ..of_row }
+        let rated = Rated {
+            row: rated,
+            size: linear.columns.map(|column| size(&column)),
+            force: times(amplitude(system), size(&linear.input)),
+        };
+        Self { rated: Some(rated), sixth: [b0 + offset, b1 + slope, b2], ..of_row }
     }
 
     /// What the force adds to it in flight at most.
     pub fn size_of_force(&self) -> f64 {
-        self.size_of_rated.1
+        self.rated.map_or(0.0, |rated| rated.force)
     }
 
     /// Whether it depends on the rate of the state, and with it on the force.
     #[inline(always)]
     pub fn is_rated(&self) -> bool {
-        self.rated != [0.0; N]
+        self.rated.is_some()
     }
 
     /// `(mass v² + stiffness x²) / 2` of the components `x` and `v = x'` of the deviation from rest.
@@ -124,11 +133,10 @@ impl<const N: usize> Form<N> {
         }
         Self {
             linear: [0.0; N],
-            rated: [0.0; N],
+            rated: None,
             squares: [(mass, unit(v)), (stiffness, unit(x))],
             rest: linear.origin,
             sixth,
-            size_of_rated: ([0.0; N], 0.0),
         }
     }
 
@@ -150,8 +158,8 @@ impl<const N: usize> Form<N> {
                 .sum::<f64>()
         };
         let squares = self.squares.iter().map(|(weight, row)| 0.5 * weight * size(row).powi(2));
-        let (rated, forced) = &self.size_of_rated;
-        size(&self.linear) + squares.sum::<f64>() + size(rated) + forced
+        let rated = self.rated.as_ref().map_or(0.0, |rated| size(&rated.size) + rated.force);
+        size(&self.linear) + squares.sum::<f64>() + rated
     }
 
     /// A bound on how far the quantity leaves the quintic that meets it, its slope and its curvature at both ends, over `length`
@@ -162,9 +170,9 @@ impl<const N: usize> Form<N> {
     pub fn quintic_error(&self, motion: &[Polynomial<BLOCKS>; N], length: f64) -> f64 {
         let mut q = [0.0; 2 * TERMS];
         self.combined(&self.linear, motion, length).into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
-        if self.is_rated() {
+        if let Some(rated) = &self.rated {
             let rates = motion.each_ref().map(Polynomial::derivative);
-            let rated = Self { rest: [0.0; N], ..*self }.combined(&self.rated, &rates, length);
+            let rated = Self { rest: [0.0; N], ..*self }.combined(&rated.row, &rates, length);
             rated.into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
         }
         for (weight, row) in self.squares.iter().filter(|(weight, _)| *weight != 0.0) {
@@ -214,8 +222,10 @@ impl Form<4> {
             let weights = weights(row);
             std::array::from_fn(|k| (0..4).map(|i| times(weights[i], growth[i][k])).sum())
         };
-        let rated = weights(&self.rated);
-        let rated: f64 = (0..4).map(|i| times(rated[i], rates[i][k])).sum();
+        let rated = self.rated.as_ref().map_or(0.0, |rated| {
+            let weights = weights(&rated.row);
+            (0..4).map(|i| times(weights[i], rates[i][k])).sum()
+        });
         let square = |(weight, row): &(f64, [f64; 4])| {
             let row = combined(row);
             let products: f64 = (0..=k).map(|i| times(row[i], row[k - i])).sum();
