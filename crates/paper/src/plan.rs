@@ -102,7 +102,9 @@ impl<'a> Plan<'a> {
         let studies: Result<[PaperStudy; 2], _> = rows.try_into();
         let [ssvi, tmd] =
             studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
-        Ok(Self { file, ssvi: ssvi.study, tmd: tmd.study, watch })
+        // The page has objectives of its own; of the studies it takes the scenes, the window and the solver.
+        let [ssvi, tmd] = [ssvi, tmd].map(|row| Study { optimize: None, ..row.study });
+        Ok(Self { file, ssvi, tmd, watch })
     }
 
     /// The scenes without damper, with SSVI NES and with TMD at a stiffness.

@@ -48,8 +48,7 @@ pub fn table2(plan: &Plan, searches: &mut Searches) -> Result<Item, Error> {
         plan.made_by("fminsearch from the paper's rows, parameters scaled by the start, each between 0 and 20 times its start, at most 400 evaluations at one frequency and 150 (SSVI NES) or 400 (TMD) in the worst case; worst case: E1max over ω in 5–8 rad/s, on 31 frequencies and their peaks while the SSVI NES is tuned, on 301 and their peaks in the table, in closed form while the TMD is tuned. Each search is a study with results of its own, below table2/."),
     );
     let bar = plan.watch.progress("table 2", 8);
-    let stiffer = plan.ssvi.scene_with(&STIFFER.map(|(name, value)| Setting::new(name, value)))?;
-    let stiffer = Study { scene: stiffer, ..plan.ssvi.clone() };
+    let stiffer = plan.ssvi.with(&STIFFER.map(|(name, value)| Setting::new(name, value)))?;
     let [ssvi, tmd] = [&plan.ssvi, &plan.tmd];
     let (all, linear) = (&Variable::ALL[..], &[Variable::K2, Variable::C2][..]);
     let sampled = || over_band(SAMPLES, Response::Window);

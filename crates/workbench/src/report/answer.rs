@@ -7,7 +7,7 @@ use super::numbers::{compared, digits, four, frequency, millimetres};
 use maud::{Markup, html};
 use retune_model::{Damper, Variable};
 use retune_optim::{Evaluation, Limit, Response, Unusable};
-use retune_study::over;
+use retune_study::{counted, over};
 
 /// The answer in a line.
 pub fn title(findings: &Findings) -> String {
@@ -106,17 +106,14 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             (fact("Certificate", verdict, &format!("{words}; E1max ± {} J", digits(certificate.error_bar, 2))))
             (fact("Stroke", &millimetres(response.spring_deflection_max), &format!("largest spring deflection |x2 − x1 − D| at the worst frequency, {window}")))
             (fact("Contact force", &format!("{} N", four(structure.max(obstacle))), &format!(
-                "{} N on the structure in {} impacts, {} N on the obstacle in {}, {window}",
-                four(structure), impacts[0], four(obstacle), impacts[1]
+                "{} N on the structure in {}, {} N on the obstacle in {}, {window}",
+                four(structure), counted(impacts[0], "impact"), four(obstacle), counted(impacts[1], "impact")
             )))
             (fact("Displacement", &millimetres(response.structure.displacement.value), &format!(
                 "largest |x1| of the structure at the worst frequency, {window}; it accelerates by {} m/s² and loads the ground with {} N",
                 four(response.structure.acceleration.value), four(response.structure.ground_force.value)
             )))
-            (fact("Motion", &certificate.motion.regime, &format!(
-                "{} impacts on the structure and {} on the obstacle in a period of the force",
-                digits(certificate.motion.contacts_per_period[0], 3), digits(certificate.motion.contacts_per_period[1], 3)
-            )))
+            (fact("Motion", &certificate.motion.regime, &format!("at the worst frequency it {}", certificate.motion.sentence)))
         }
     }
 }

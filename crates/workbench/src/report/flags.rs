@@ -102,32 +102,15 @@ fn on_bound(findings: &Findings) -> Option<Flag> {
     })
 }
 
-/// The best start of the grid is at the first or last value of an axis.
+/// The best point of the grid is at the first or last value of an axis that could be longer.
 fn edge(findings: &Findings) -> Option<Flag> {
-    let surf = findings.surf?;
-    if findings.refined.winner >= findings.on_grid {
-        return None;
-    }
-    let start = &findings.refined.best().rows.first()?.best;
-    let at_edge: Vec<_> = surf
-        .variables
-        .iter()
-        .zip(surf.grid.axes())
-        .filter(|(variable, axis)| {
-            let place = findings.search.variables.iter().position(|other| other == *variable);
-            let is_end = |place: usize| {
-                [axis.from(), axis.to()].iter().any(|end| (start[place] - end).abs() <= 1e-9 * end.abs())
-            };
-            axis.points() > 1 && place.is_some_and(is_end)
-        })
-        .map(|(variable, _)| *variable)
-        .collect();
-    (!at_edge.is_empty()).then(|| {
-        let names = joined(&at_edge, ", ");
+    let on_edge = &findings.optimum.on_edge;
+    (!on_edge.is_empty()).then(|| {
+        let names = joined(on_edge, ", ");
         Flag {
             name: "grid-edge",
             words: format!(
-                "The start that led to the optimum is at the edge of the grid in {names}: there may be better designs beyond it."
+                "The best point of the grid lies at its edge in {names}: there may be better designs beyond it."
             ),
             change: Some(format!("a grid that reaches farther in {names}")),
         }
