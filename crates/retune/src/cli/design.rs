@@ -2,6 +2,7 @@
 
 use super::running::Running;
 use clap::Args;
+use retune_workbench::design::frequency;
 
 /// `design`.
 #[derive(Debug, Args)]
@@ -36,16 +37,4 @@ pub struct Design {
     /// The options of the run.
     #[command(flatten)]
     pub running: Running,
-}
-
-/// An angular frequency in rad/s; a number that ends with `Hz` is turned into it.
-fn frequency(text: &str) -> Result<f64, String> {
-    let (number, unit) = match text.trim().strip_suffix("Hz") {
-        Some(number) => (number, std::f64::consts::TAU),
-        None => (text, 1.0),
-    };
-    let number: Result<f64, _> = number.trim().parse();
-    number
-        .map(|number| unit * number)
-        .map_err(|_| "give a number in rad/s, or with its unit: 12Hz".to_owned())
 }

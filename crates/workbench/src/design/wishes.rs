@@ -9,6 +9,7 @@ use retune_study::read::from_text;
 use retune_study::{Rule, Study};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use std::f64::consts::TAU;
 
 /// The colliding surfaces of the paper: steel on a soft layer.
 const PAPERS_CONTACT: &str = include_str!("contact.json");
@@ -207,7 +208,7 @@ impl Wishes {
         [d, c]: [f64; 2],
         mut optimize: Value,
     ) -> Result<Study, Error> {
-        let period = std::f64::consts::TAU / self.natural_frequency();
+        let period = TAU / self.natural_frequency();
         if let Some(stroke) = self.stroke {
             optimize["limits"] = json!({ "stroke": stroke, "from": 50.0 * period });
         }
@@ -226,5 +227,33 @@ impl Wishes {
             "optimize": optimize
         });
         Ok(from_text(&study.to_string(), "design")?)
+    }
+}
+
+/// An angular frequency, rad/s, from a number in rad/s or one in Hz with its unit: `75`, `12Hz`.
+///
+/// # Errors
+/// It is neither.
+pub fn frequency(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix("Hz") {
+        Some(number) => (number, TAU),
+        None => (text, 1.0),
+    };
+    let number: Result<f64, _> = number.trim().parse();
+    number
+        .map(|number| unit * number)
+        .map_err(|_| "give a number in rad/s, or one in Hz with its unit: 12Hz".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_a_frequency_may_be_given_in_hertz() {
+        assert_eq!(frequency("6.28"), Ok(6.28));
+        assert_eq!(frequency("2Hz"), Ok(2.0 * TAU));
+        assert_eq!(frequency(" 2 Hz "), Ok(2.0 * TAU));
+        assert!(["", "Hz", "2kHz", "two"].iter().all(|text| frequency(text).is_err()));
     }
 }
