@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn contract_a_frequency_may_be_given_in_hertz() {
-        assert_eq!(frequency("6.28"), Ok(6.28));
+        assert_eq!(frequency("5.5"), Ok(5.5));
         assert_eq!(frequency("2Hz"), Ok(2.0 * TAU));
         assert_eq!(frequency(" 2 Hz "), Ok(2.0 * TAU));
         assert!(["", "Hz", "2kHz", "two"].iter().all(|text| frequency(text).is_err()));
