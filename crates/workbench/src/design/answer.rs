@@ -100,8 +100,11 @@ fn build(designed: &[Designed]) -> Vec<String> {
     };
     let reduction = choice.rows.first().map_or(f64::NAN, |row| row.none / row.e1_max);
     let other = feasible.iter().find(|damper| damper.name != choice.name);
-    let beside =
-        other.map_or(String::new(), |other| format!("; the {} has {} J", other.name, number(best(other))));
+    let beside = other.map_or(String::new(), |other| {
+        let idle = other.name == "SSVI NES" && !touches(other);
+        let idle = if idle { ", and strikes nothing either: it has become a TMD" } else { "" };
+        format!("; the {} has {} J{idle}", other.name, number(best(other)))
+    });
     let touching = if choice.name == "SSVI NES" && !touches(choice) {
         " Its walls are out of reach: it has become a TMD."
     } else {
