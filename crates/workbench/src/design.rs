@@ -15,7 +15,7 @@ use crate::pareto::look;
 use crate::searches::Searches;
 use crate::{Error, Observer, Request, resolved};
 use retune_optim::Limit;
-use retune_study::{Setting, Study};
+use retune_study::{Rule, Setting, Study};
 use serde_json::json;
 
 /// The files of an answer.
@@ -79,7 +79,9 @@ fn one(
         let optimum = searches.tune(&free, &format!("without-{}", limit.name()))?;
         rows.push(Row::of_optimum(&format!("no {}", limit.name()), name, study, &optimum));
     }
-    let scene = study.scene_at(&found.found().damper.design).unwrap_or(study.scene);
+    let scene = study
+        .scene_at(&found.found().damper.design)
+        .ok_or_else(|| Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper })?;
     let tuned = Study { scene, ..study.clone() };
     let off = |share: f64| -> Result<f64, Error> {
         let k1 = study.scene.primary.stiffness.get() * (1.0 + share);

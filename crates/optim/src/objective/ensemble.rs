@@ -1,5 +1,5 @@
 //! A deterministic ensemble of scenes about one: other phases of the force, small errors of parameters. Where the motion is
-//! irregular one run is a draw from a distribution; a statistic of the ensemble is a property of the design.
+//! irregular one run is a single realisation of a distribution; a statistic of the ensemble is a property of the design.
 
 use crate::chunks::{TOGETHER, in_groups};
 use retune_model::{NonNegative, OutOfRange, Scene};
