@@ -41,6 +41,7 @@
 mod band;
 mod bare;
 mod coupled;
+mod den_hartog;
 mod design;
 mod excitation;
 mod hertz;
@@ -53,6 +54,7 @@ mod value;
 pub use band::Worst;
 pub use bare::Bare;
 pub use coupled::{Coupled, Side};
+pub use den_hartog::den_hartog;
 pub use design::{Design, Variable};
 pub use excitation::Excitation;
 pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};

@@ -84,6 +84,29 @@ fn exact_den_hartog_fixed_points() {
     }
 }
 
+/// With Den Hartog's k2 both fixed points are √(1 + 2/μ) static deflections high, and with his c2 the curve rises hardly above them.
+#[test]
+fn exact_den_hartogs_damper_levels_the_fixed_points() {
+    let numbers = scenes::Numbers { c1: 0.0, ..TMD };
+    let scene = numbers.scene();
+    let [k2, c2] = retune_model::den_hartog(&scene.primary, numbers.m2);
+    let mu = numbers.m2 / numbers.m1;
+    let height = numbers.p / numbers.k1 * (1.0 + 2.0 / mu).sqrt();
+    let amplitude =
+        |c2: f64, omega: f64| scenes::Numbers { k2, c2, ..numbers }.coupled().steady(omega).x1.norm();
+    let omega_n = (numbers.k1 / numbers.m1).sqrt();
+    let half = 1.0 / (1.0 + mu);
+    let root = half * (mu / (2.0 + mu)).sqrt();
+    for g2 in [half - root, half + root] {
+        let x1 = amplitude(c2, g2.sqrt() * omega_n);
+        assert!((x1 / height - 1.0).abs() < 1e-10, "{g2}: {x1} {height}");
+    }
+    let highest =
+        |c2: f64| (0..4000).map(|i| amplitude(c2, omega_n * (0.6 + 2e-4 * f64::from(i)))).fold(0.0, f64::max);
+    assert!(highest(c2) < 1.005 * height, "{} {height}", highest(c2));
+    assert!(highest(0.7 * c2) > 1.01 * height && highest(1.4 * c2) > 1.01 * height);
+}
+
 /// An undamped absorber tuned to the force holds an undamped structure still.
 #[test]
 fn exact_undamped_absorber() {

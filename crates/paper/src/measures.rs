@@ -10,7 +10,7 @@ use retune_solver::{Settings, Window};
 const BAND: [f64; 2] = [5.0, 8.0];
 pub const SAMPLES: usize = 301;
 
-/// Least, median and largest of some values.
+/// Least, median and largest of some energies, J.
 pub struct Spread {
     pub least: f64,
     pub median: f64,

@@ -80,13 +80,12 @@ fn statement(statement: &Statement) -> Markup {
 }
 
 fn figure(picture: &Picture) -> Markup {
-    let svg = |text: &str| PreEscaped(text[text.find("<svg").unwrap_or(0)..].to_owned());
     let Drawing { wide, narrow } = &picture.drawing;
     let class = if narrow.is_some() { "wide" } else { "any" };
     html! {
         figure {
-            div.(class) role="img" aria-label=(picture.caption) { (svg(wide)) }
-            @if let Some(narrow) = narrow { div.narrow role="img" aria-label=(picture.caption) { (svg(narrow)) } }
+            div.(class) role="img" aria-label=(picture.caption) { (PreEscaped(wide)) }
+            @if let Some(narrow) = narrow { div.narrow role="img" aria-label=(picture.caption) { (PreEscaped(narrow)) } }
             figcaption { (picture.caption) " " a href={ (picture.name) ".svg" } { (picture.name) ".svg" } }
         }
     }

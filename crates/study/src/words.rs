@@ -1,6 +1,7 @@
 //! An objective in words, for figures, tables and the screen; numbers and counts in words.
 
 use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
+use std::f64::consts::TAU;
 use std::fmt::Display;
 
 /// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
@@ -69,6 +70,11 @@ pub fn short(value: f64) -> String {
 /// A number to some significant digits, as short as it can be.
 pub fn rounded(value: f64, digits: usize) -> String {
     short(format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value))
+}
+
+/// An angular frequency, rad/s, to four digits in both units: `6.28 rad/s (0.9995 Hz)`.
+pub fn frequency(omega: f64) -> String {
+    format!("{} rad/s ({} Hz)", rounded(omega, 4), rounded(omega / TAU, 4))
 }
 
 /// The items with `separator` between them.

@@ -130,11 +130,6 @@ impl Certificate {
         self.short().check_limits(self.made_by.study())
     }
 
-    /// The value of the objective, J.
-    pub fn e1_max(&self) -> f64 {
-        self.e1_max
-    }
-
     /// The short form.
     pub fn short(&self) -> Short {
         let Self { verdict, words, error_bar, predictable, motion, .. } = self.clone();

@@ -1,10 +1,10 @@
 //! What is asked of a design, and the studies that follow from it.
 //!
-//! Bounds and grids scale with the structure: stiffnesses with Den Hartog's optimum k2 = m2 k1/m1 / (1 + μ)² and dampings with his
-//! c2 = 2 m2 ω2 √(3μ / (8 (1 + μ))) (J. P. Den Hartog, Mechanical Vibrations, 4th ed., section 3.3; μ = m2/m1), gaps with the amplitude of
-//! the structure without a damper.
+//! Bounds and grids scale with the structure: stiffnesses and dampings with those of Den Hartog's damper, gaps with the amplitude of the
+//! structure without a damper.
 
 use crate::Error;
+use retune_model::{Bare, Scene, den_hartog};
 use retune_study::read::from_text;
 use retune_study::{Rule, Study};
 use serde::{Deserialize, Serialize};
@@ -123,26 +123,32 @@ impl Wishes {
         wishes
     }
 
+    /// The structure and the force on it, at the frequency of the band that is nearest to its own.
+    fn bare(&self) -> Result<Scene, Error> {
+        let natural = self.natural_frequency();
+        let study = json!({
+            "name": "bare",
+            "scene": {
+                "primary": { "m1": self.m1, "c1": self.c1, "k1": self.k1 },
+                "forcing": { "P": self.force, "omega": natural.clamp(self.band[0], self.band[1]) }
+            },
+            "window": { "t0": 0, "T": 1 }
+        });
+        Ok(from_text(&study.to_string(), "design")?.scene)
+    }
+
     /// √(k1/m1), rad/s.
     pub fn natural_frequency(&self) -> f64 {
         (self.k1 / self.m1).sqrt()
     }
 
-    /// Den Hartog's k2 (N/m) and c2 (N·s/m).
-    fn den_hartog(&self) -> [f64; 2] {
-        let ratio = self.mass / self.m1;
-        let frequency = self.natural_frequency() / (1.0 + ratio);
-        let zeta = (3.0 * ratio / (8.0 * (1.0 + ratio))).sqrt();
-        [self.mass * frequency * frequency, 2.0 * self.mass * frequency * zeta]
-    }
-
-    /// The largest steady displacement of the structure alone over the band, m; an undamped one counts as damped by 1 %.
-    fn amplitude(&self) -> f64 {
-        let natural = self.natural_frequency();
-        let damping = self.c1.max(0.02 * self.m1 * natural);
-        let [from, to] = self.band;
-        let omega = natural.clamp(from, to);
-        self.force / (self.k1 - self.m1 * omega * omega).hypot(damping * omega)
+    /// Den Hartog's k2 (N/m) and c2 (N·s/m), and the largest steady displacement (m) of the structure alone over the band. An undamped
+    /// structure counts as damped by 1 %.
+    fn scales(&self) -> Result<([f64; 2], f64), Error> {
+        let damped = Self { c1: self.c1.max(0.02 * self.m1 * self.natural_frequency()), ..self.clone() };
+        let Scene { primary, forcing, .. } = damped.bare()?;
+        let response = Bare::new(&primary, &forcing).steady(forcing.frequency.get());
+        Ok((den_hartog(&primary, self.mass), response.x1.norm()))
     }
 
     /// The study of the TMD: steady, in closed form, k2 and c2 free. Its walls are out of reach.
@@ -150,8 +156,8 @@ impl Wishes {
     /// # Errors
     /// A number is beyond what a study may hold.
     pub fn tmd(&self) -> Result<Study, Error> {
-        let [k2, c2] = self.den_hartog();
-        let far = 1e3 * self.amplitude().max(self.stroke.unwrap_or(0.0));
+        let ([k2, c2], reach) = self.scales()?;
+        let far = 1e3 * reach.max(self.stroke.unwrap_or(0.0));
         let most = self.k2_max.unwrap_or(20.0 * k2);
         let start = [k2.min(most), c2];
         let axis = |from: f64, to: f64| json!({ "from": from, "to": to, "points": 21, "scale": "log" });
@@ -160,7 +166,7 @@ impl Wishes {
             "objective": { "omega": self.omega(), "response": "steady" },
             "bounds": { "k2": [0, most], "c2": [0, 200.0 * c2] },
             "surf": { "k2": axis(0.05 * k2.min(most), (4.0 * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
-            "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * self.energy() }
+            "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * self.energy(reach) }
         });
         self.study("tmd", start, [far; 2], optimize)
     }
@@ -170,7 +176,7 @@ impl Wishes {
     /// # Errors
     /// As [`Self::tmd`].
     pub fn ssvi(&self) -> Result<Study, Error> {
-        let ([k2, c2], reach) = (self.den_hartog(), self.amplitude());
+        let ([k2, c2], reach) = self.scales()?;
         let most = self.k2_max.unwrap_or(4.0 * k2);
         let start = [(0.1 * k2).min(most), c2];
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
@@ -185,14 +191,14 @@ impl Wishes {
                 "D": axis(0.0, 0.8 * reach, "linear", 5),
                 "C": axis(0.2 * reach, 2.6 * reach, "linear", 5)
             },
-            "refine": { "starts": 2, "scaled": true, "TolX": 1e-3, "TolFun": 1e-5 * self.energy(), "MaxFunEvals": 300 }
+            "refine": { "starts": 2, "scaled": true, "TolX": 1e-3, "TolFun": 1e-5 * self.energy(reach), "MaxFunEvals": 300 }
         });
         self.study("ssvi", start, [0.2 * reach, reach], optimize)
     }
 
-    /// The energy of the structure without a damper at its worst, J, to scale tolerances by.
-    fn energy(&self) -> f64 {
-        0.5 * self.k1 * self.amplitude().powi(2)
+    /// The energy that the structure's spring stores at a displacement of `reach` (m), J: the scale of tolerances.
+    fn energy(&self, reach: f64) -> f64 {
+        0.5 * self.k1 * reach.powi(2)
     }
 
     fn omega(&self) -> Value {
@@ -212,12 +218,13 @@ impl Wishes {
         if let Some(stroke) = self.stroke {
             optimize["limits"] = json!({ "stroke": stroke, "from": 50.0 * period });
         }
+        let bare = self.bare()?;
         let contact: Value = serde_json::from_str(PAPERS_CONTACT).unwrap_or_default();
         let study = json!({
             "name": name,
             "scene": {
-                "primary": { "m1": self.m1, "c1": self.c1, "k1": self.k1 },
-                "forcing": { "P": self.force, "omega": self.natural_frequency().clamp(self.band[0], self.band[1]) },
+                "primary": bare.primary,
+                "forcing": bare.forcing,
                 "damper": {
                     "m2": self.mass, "k2": k2, "c2": c2, "D": d, "C": c,
                     "contact": contact

@@ -6,7 +6,6 @@ use crate::tune::global::Explored;
 use crate::tune::optimum::Optimum;
 use crate::tune::refine::Refined;
 use crate::tune::surf::Surf;
-use rayon::prelude::*;
 use retune_model::Scene;
 use retune_optim::{Evaluation, Goal, Limits, Unusable};
 use retune_solver::Response;
@@ -55,9 +54,7 @@ impl Findings<'_> {
         let settings = self.study.solver.settings();
         let [none, study, _] = self.scenes();
         let value = |scene: &Scene| goal.evaluate(scene, &settings, f64::INFINITY);
-        let mut found: Vec<_> = [none, study].par_iter().map(value).collect();
-        let study = found.pop().unwrap_or(Ok(*self.evaluation));
-        let none = found.pop().unwrap_or(Ok(*self.evaluation));
+        let (none, study) = rayon::join(|| value(&none), || value(&study));
         Compared { none, study }
     }
 

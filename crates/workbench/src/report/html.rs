@@ -76,16 +76,11 @@ pub fn figure(drawing: &Drawing, caption: Markup) -> Markup {
     let class = if narrow.is_some() { "wide" } else { "any" };
     html! {
         figure {
-            div.(class) { (svg(wide)) }
-            @if let Some(narrow) = narrow { div.narrow { (svg(narrow)) } }
+            div.(class) { (PreEscaped(wide)) }
+            @if let Some(narrow) = narrow { div.narrow { (PreEscaped(narrow)) } }
             figcaption { (caption) }
         }
     }
-}
-
-/// The drawing of an SVG file.
-fn svg(text: &str) -> Markup {
-    PreEscaped(text[text.find("<svg").unwrap_or(0)..].to_owned())
 }
 
 /// A link to a file beside the page.

@@ -1,5 +1,8 @@
 //! How numbers are written on a page.
 
+pub use retune_study::frequency;
+use retune_study::rounded;
+
 /// Hertz in a radian per second.
 pub const HERTZ: f64 = 0.5 / std::f64::consts::PI;
 
@@ -13,24 +16,12 @@ pub fn digits(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
-    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
-    let size = rounded.abs();
-    let text = if size != 0.0 && !(1e-4..1e7).contains(&size) {
-        format!("{rounded:e}")
-    } else {
-        rounded.to_string()
-    };
-    text.replace('-', "−")
+    rounded(value, digits).replace('-', "−")
 }
 
 /// A length in millimetres.
 pub fn millimetres(metres: f64) -> String {
     format!("{} mm", four(1e3 * metres))
-}
-
-/// A frequency in both units.
-pub fn frequency(omega: f64) -> String {
-    format!("{} rad/s ({} Hz)", four(omega), four(HERTZ * omega))
 }
 
 /// A value beside another: how many times less or more it is, and the change in percent.

@@ -3,8 +3,8 @@
 use super::notes::{self, Goal, LimitNote};
 use super::{FailureNote, Optimum, RunNote, stop_words};
 use retune_model::Variable;
-use retune_study::{counted, rounded, short};
-use std::f64::consts::TAU;
+use retune_optim::Limit;
+use retune_study::{counted, frequency, rounded, short};
 use std::path::Path;
 
 /// Columns of a terminal that lines are broken for.
@@ -68,8 +68,8 @@ impl Optimum {
 
     fn headline(&self) -> String {
         let at = match self.objective.as_ref().filter(|goal| goal.band().is_some()) {
-            Some(goal) => format!(", worst {}", frequency(goal.worst_omega)),
-            None => format!(" {}", frequency(self.simulation.omega())),
+            Some(goal) => format!(", worst at omega = {}", frequency(goal.worst_omega)),
+            None => format!(" at omega = {}", frequency(self.simulation.omega())),
         };
         format!("{}: E1max {} J{at}", self.damper_type, rounded(self.e1_max, 4))
     }
@@ -114,11 +114,6 @@ impl Optimum {
     }
 }
 
-/// A frequency in rad/s and Hz.
-fn frequency(omega: f64) -> String {
-    format!("at omega = {} rad/s ({} Hz)", rounded(omega, 4), rounded(omega / TAU, 4))
-}
-
 /// A paragraph in lines of at most [`COLUMNS`] columns.
 fn wrapped(text: &str, indent: &str) -> String {
     let own = &text[..text.len() - text.trim_start().len()];
@@ -129,7 +124,6 @@ fn wrapped(text: &str, indent: &str) -> String {
 
 impl LimitNote {
     pub(super) fn report(&self) -> String {
-        use retune_optim::Limit;
         let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
         let reached = [self.stroke, self.force, self.cavity];
         let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
