@@ -8,7 +8,7 @@ use nalgebra::Complex;
 pub struct Steady {
     /// Complex amplitude of the primary structure, m.
     pub x1: Complex<f64>,
-    /// Complex amplitude of the damper about `D`, m; zero without a damper.
+    /// Complex amplitude of the damper about `D`, m; that of the structure without a damper, so that the stroke is zero.
     pub x2: Complex<f64>,
     /// Largest energy of the primary structure over a period, `|X1|² max(k1, m1 ω²) / 2`, J.
     pub e1_max: f64,
@@ -49,7 +49,7 @@ impl Bare {
     pub fn steady(&self, omega: f64) -> Steady {
         let m_omega2 = self.m1 * omega * omega;
         let x1 = self.force() / Complex::new(self.k1 - m_omega2, omega * self.c1);
-        Steady { x1, x2: Complex::ZERO, e1_max: largest_energy(x1, self.k1, m_omega2), e2_max: 0.0 }
+        Steady { x1, x2: x1, e1_max: largest_energy(x1, self.k1, m_omega2), e2_max: 0.0 }
     }
 }
 

@@ -89,7 +89,7 @@ fn exact_statistics_are_those_of_the_members() {
         .map(|i| {
             let (scene, phase) = ensemble(Statistic::Mean).member(&SSVI.scene(), i).expect("a member");
             let ask = Ask { phase, ..Ask::default() };
-            extremes(&scene, WINDOW, &Settings::default(), ask).expect("a run").e1_max.value
+            extremes(&scene, WINDOW, &Settings::default(), ask).expect("a run").largest.value
         })
         .collect();
     let mut sorted = each.clone();

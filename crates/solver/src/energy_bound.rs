@@ -3,7 +3,7 @@
 use crate::error::SolverError;
 use crate::response::{Extreme, Response};
 use crate::settings::{Method, Settings, Window};
-use retune_model::{Bare, Scene};
+use retune_model::{Bare, Measure, Scene};
 
 /// Allowance for rounding in the bound on the energy, relative.
 const SLACK: f64 = 1e-6;
@@ -38,6 +38,39 @@ pub fn energy(
         return Err(SolverError::Implausible { t: window.to, value, time, most });
     }
     Ok(maximum)
+}
+
+/// Returns a largest value of what is measured that is within the bound: an energy, or a displacement or a velocity by the energy
+/// that the structure has at least there. Rounding may not put its time outside the window.
+///
+/// # Errors
+/// As [`energy`].
+pub fn largest(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    measure: Measure,
+    maximum: Extreme,
+) -> Result<Extreme, SolverError> {
+    let Extreme { value, time } = maximum;
+    if measure == Measure::Energy {
+        return energy(scene, window, settings, maximum);
+    }
+    if window.from >= window.to {
+        return Ok(maximum); // an empty window
+    }
+    if !value.is_finite() {
+        return Err(SolverError::NonFinite { t: window.to });
+    }
+    let time = time.clamp(window.from, window.to);
+    let bare = Bare::new(&scene.primary, &scene.forcing);
+    let at_least = match measure {
+        Measure::Displacement => bare.primary_energy(value, 0.0),
+        Measure::Velocity => bare.primary_energy(0.0, value),
+        _ => 0.0,
+    };
+    energy(scene, window, settings, Extreme { value: at_least, time })?;
+    Ok(Extreme { value, time })
 }
 
 /// The most energy that the force can give in a run, J.

@@ -1,41 +1,47 @@
-//! The largest values on which a study may set limits: E1max, stroke and contact force, for any phase of the force. Only those that
-//! are asked for are computed.
+//! What a study makes small, and what it may set limits on: the largest value of a [`Measure`], stroke and contact force, for any phase
+//! of the force. Only those that are asked for are computed.
 
 use crate::energy_bound;
 use crate::error::SolverError;
+use crate::linear::steps::Steps;
+use crate::motion::segment::Segment;
 use crate::observe::displacement_range::DisplacementRange;
-use crate::observe::observer::Unobserved;
+use crate::observe::magnitude::Magnitude;
+use crate::observe::observer::{Observer, Path, Unobserved};
 use crate::observe::quantity::{BareEnergy, PrimaryEnergy};
 use crate::observe::running_maximum::RunningMaximum;
+use crate::observe::structure::{Structure, StructureMotion};
 use crate::response::Extreme;
 use crate::run::{follow_bare, follow_coupled};
 use crate::settings::{Settings, Window};
 use crate::simulate::e1_max;
-use retune_model::{Bare, Coupled, Scene};
+use retune_model::{Bare, Coupled, Measure, Scene};
 
 /// The question put to a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ask {
-    /// φ of the force `P cos(ωt + φ)`, rad. The run starts at rest at t = 0.
+    /// What is measured.
+    pub measure: Measure,
+    /// φ of the force `P cos(ωt + φ)`, rad. The run starts at t = 0.
     pub phase: f64,
-    /// The time, s, from which on stroke and contact forces are observed too: 0 for the whole run, whatever the window of E1max;
-    /// `None` if they are not needed.
+    /// The time, s, from which on stroke and contact forces are observed too: 0 for the whole run, whatever the window of what is
+    /// measured; `None` if they are not needed.
     pub walls: Option<f64>,
-    /// The run may end early, with any value above this one (J), once E1max exceeds it.
+    /// The run may end early, with any value above this one, in the unit of what is measured, once that exceeds it.
     pub cutoff: f64,
 }
 
 impl Default for Ask {
     fn default() -> Self {
-        Self { phase: 0.0, walls: None, cutoff: f64::INFINITY }
+        Self { measure: Measure::Energy, phase: 0.0, walls: None, cutoff: f64::INFINITY }
     }
 }
 
 /// The largest values of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    /// Largest energy of the primary structure, J, and when.
-    pub e1_max: Extreme,
+    /// Largest value of what is measured, in its unit, and when.
+    pub largest: Extreme,
     /// The stroke: largest spring deflection `|x2 - x1 - D|`, m; 0 where it was not asked for, or without a damper.
     pub stroke: f64,
     /// Largest contact force on either wall, N; 0 where it was not asked for, or without a damper.
@@ -44,7 +50,7 @@ pub struct Extremes {
     pub settled: bool,
 }
 
-/// The largest E1 over a window, and the stroke and the force from [`Ask::walls`] to its end.
+/// The largest value of [`Ask::measure`] over a window, and the stroke and the force from [`Ask::walls`] to its end.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -54,44 +60,153 @@ pub fn extremes(
     settings: &Settings,
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
-    let nothing = |e1_max| Extremes { e1_max, stroke: 0.0, force: 0.0, settled: true };
-    if ask.phase == 0.0 && ask.walls.is_none() {
-        return Ok(nothing(e1_max(scene, window, settings, ask.cutoff)?));
+    if ask.phase == 0.0 && ask.walls.is_none() && ask.measure == Measure::Energy {
+        let largest = e1_max(scene, window, settings, ask.cutoff)?;
+        return Ok(Extremes { largest, stroke: 0.0, force: 0.0, settled: true });
     }
     let seen = match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing).with_phase(ask.phase);
-            let mut e1 = RunningMaximum::new(BareEnergy::new(&system), ask.cutoff);
-            follow_bare(&system, window, settings, &mut Unobserved, &mut e1)?;
-            nothing(e1.record())
+            in_bare(&system, window, settings, ask)
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-            let mut before = ask.walls.map(|from| DisplacementRange::new(&system, from));
-            let mut seen = maxima(&system, ask);
-            follow_coupled(&system, window, settings, &mut before, &mut seen)?;
-            let ([stroke, force], seen) = (stroke_and_force(before.as_ref()), read(&seen));
-            Extremes { stroke: stroke.max(seen.stroke), force: force.max(seen.force), ..seen }
+            in_coupled(&system, window, settings, ask)
         }
     };
-    energy_bound::energy(scene, window, settings, seen.e1_max)?;
-    Ok(seen)
+    let seen = seen.map_err(|error| energy_bound::error(window, error))?;
+    let largest = energy_bound::largest(scene, window, settings, ask.measure, seen.largest)?;
+    Ok(Extremes { largest, ..seen })
 }
 
-/// E1max, and the range of the damper where stroke and force are asked for.
-pub(crate) type Maxima<'a> = (RunningMaximum<PrimaryEnergy<'a>>, Option<DisplacementRange<'a>>);
+fn in_bare(
+    system: &Bare,
+    window: Window,
+    settings: &Settings,
+    ask: Ask,
+) -> Result<Extremes, SolverError> {
+    let largest = match motion(ask.measure) {
+        Some(quantity) => {
+            let mut size = Magnitude::new(|sign| quantity(system, sign), ask.cutoff);
+            follow_bare(system, window, settings, &mut Unobserved, &mut size)?;
+            size.record()
+        }
+        None if ask.measure == Measure::Energy => {
+            let mut e1 = RunningMaximum::new(BareEnergy::new(system), ask.cutoff);
+            follow_bare(system, window, settings, &mut Unobserved, &mut e1)?;
+            e1.record()
+        }
+        // There is no damper that could move or touch.
+        None => Extreme { value: 0.0, time: window.from },
+    };
+    Ok(Extremes { largest, stroke: 0.0, force: 0.0, settled: true })
+}
+
+fn in_coupled(
+    system: &Coupled,
+    window: Window,
+    settings: &Settings,
+    ask: Ask,
+) -> Result<Extremes, SolverError> {
+    let mut before = ask.walls.map(|from| DisplacementRange::new(system, from, f64::INFINITY));
+    let mut seen = maxima(system, ask);
+    follow_coupled(system, window, settings, &mut before, &mut seen)?;
+    let ([stroke, force], seen) = (stroke_and_force(before.as_ref()), read(&seen));
+    Ok(Extremes { stroke: stroke.max(seen.stroke), force: force.max(seen.force), ..seen })
+}
+
+/// What is measured, and the range of the damper where stroke and force are asked for.
+pub(crate) type Maxima<'a> = (Peak<'a>, Option<DisplacementRange<'a>>);
 
 pub(crate) fn maxima(system: &Coupled, ask: Ask) -> Maxima<'_> {
-    let e1 = RunningMaximum::new(PrimaryEnergy::new(system), ask.cutoff);
-    (e1, ask.walls.map(|from| DisplacementRange::new(system, from)))
+    let range = ask.walls.map(|from| DisplacementRange::new(system, from, f64::INFINITY));
+    (Peak::new(system, ask.measure, ask.cutoff), range)
 }
 
-pub(crate) fn read((e1, range): &Maxima<'_>) -> Extremes {
+pub(crate) fn read((peak, range): &Maxima<'_>) -> Extremes {
     let [stroke, force] = stroke_and_force(range.as_ref());
-    Extremes { e1_max: e1.record(), stroke, force, settled: true }
+    Extremes { largest: peak.record(), stroke, force, settled: true }
 }
 
 /// The stroke, m, and the largest force, N; 0 where they were not asked for.
 fn stroke_and_force(range: Option<&DisplacementRange<'_>>) -> [f64; 2] {
-    range.map_or([0.0; 2], DisplacementRange::stroke_and_force)
+    range.map_or([0.0; 2], |range| [range.stroke(), range.force()].map(|largest| largest.value.max(0.0)))
+}
+
+/// The observer of a [`Measure`].
+pub(crate) enum Peak<'a> {
+    Energy(RunningMaximum<PrimaryEnergy<'a>>),
+    Motion(Magnitude<StructureMotion<'a, Coupled, 4>>),
+    Stroke(DisplacementRange<'a>),
+    Force(DisplacementRange<'a>),
+}
+
+impl<'a> Peak<'a> {
+    fn new(system: &'a Coupled, measure: Measure, cutoff: f64) -> Self {
+        if let Some(quantity) = motion(measure) {
+            return Self::Motion(Magnitude::new(|sign| quantity(system, sign), cutoff));
+        }
+        match measure {
+            Measure::Stroke => Self::Stroke(DisplacementRange::new(system, 0.0, cutoff)),
+            Measure::ContactForce => Self::Force(DisplacementRange::new(system, 0.0, cutoff)),
+            _ => Self::Energy(RunningMaximum::new(PrimaryEnergy::new(system), cutoff)),
+        }
+    }
+
+    fn record(&self) -> Extreme {
+        match self {
+            Self::Energy(e1) => e1.record(),
+            Self::Motion(size) => size.record(),
+            Self::Stroke(range) => range.stroke(),
+            Self::Force(range) => range.force(),
+        }
+    }
+}
+
+/// The quantity of the structure's motion that a measure is the largest size of; `None` for the energy and for the damper's.
+fn motion<'a, S: Structure<N>, const N: usize>(
+    measure: Measure,
+) -> Option<fn(&'a S, f64) -> StructureMotion<'a, S, N>> {
+    match measure {
+        Measure::Displacement => Some(StructureMotion::displacement),
+        Measure::Velocity => Some(StructureMotion::velocity),
+        Measure::Acceleration => Some(StructureMotion::acceleration),
+        Measure::GroundForce => Some(StructureMotion::ground_force),
+        Measure::Energy | Measure::Stroke | Measure::ContactForce => None,
+    }
+}
+
+impl Observer<4> for Peak<'_> {
+    #[inline(always)]
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        match self {
+            Self::Energy(e1) => e1.segment(segment),
+            Self::Motion(size) => size.segment(segment),
+            Self::Stroke(range) | Self::Force(range) => range.segment(segment),
+        }
+    }
+    #[inline(always)]
+    fn path(&mut self, path: &impl Path<4>) {
+        match self {
+            Self::Energy(e1) => e1.path(path),
+            Self::Motion(size) => size.path(path),
+            Self::Stroke(range) | Self::Force(range) => range.path(path),
+        }
+    }
+    #[inline(always)]
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        match self {
+            Self::Energy(e1) => e1.steps(steps),
+            Self::Motion(size) => size.steps(steps),
+            Self::Stroke(range) | Self::Force(range) => range.steps(steps),
+        }
+    }
+    fn satisfied(&self) -> bool {
+        match self {
+            Self::Energy(e1) => Observer::<4>::satisfied(e1),
+            Self::Motion(size) => size.satisfied(),
+            Self::Stroke(range) => range.stroke().value > range.cutoff(),
+            Self::Force(range) => range.force().value > range.cutoff(),
+        }
+    }
 }

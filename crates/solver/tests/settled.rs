@@ -3,18 +3,19 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_model::Scene;
+use retune_model::{Measure, Scene};
 use retune_solver::{Ask, Extremes, Method, Settings, Settle, Window, extremes, settled};
 use scenes::{Numbers, SSVI, Spread};
 
 /// Of the settled motion alone.
-const SETTLED: Ask = Ask { phase: 0.0, walls: Some(f64::INFINITY), cutoff: f64::INFINITY };
+const SETTLED: Ask =
+    Ask { measure: Measure::Energy, phase: 0.0, walls: Some(f64::INFINITY), cutoff: f64::INFINITY };
 
 /// The extremes of the settled motion; none where it does not settle in 400 s or is answered in closed form.
 fn rest(scene: &Scene) -> Option<Extremes> {
     let window = Window { from: 50.0, to: 400.0 };
     let found = settled(scene, window, Settle::default(), &Settings::default(), SETTLED).expect("a run");
-    (found.settled && found.e1_max.time < window.to).then_some(found)
+    (found.settled && found.largest.time < window.to).then_some(found)
 }
 
 /// Those of a run five times as long.
@@ -28,7 +29,7 @@ fn late(scene: &Scene) -> Extremes {
 fn difference(found: Extremes, late: Extremes) -> [f64; 3] {
     let share = |a: f64, b: f64, most: f64| (a - b).abs() / most;
     [
-        share(found.e1_max.value, late.e1_max.value, 1e-3 * late.e1_max.value),
+        share(found.largest.value, late.largest.value, 1e-3 * late.largest.value),
         share(found.stroke, late.stroke, 1e-3 * late.stroke),
         share(found.force, late.force, (1e-2 * late.force).max(0.1)),
     ]
@@ -106,6 +107,6 @@ fn exact_a_slow_decay_has_not_settled_before_all_that_is_left_of_it_is_small() {
     let found =
         settled(&numbers.scene(), window, Settle::default(), &settings, Ask::default()).expect("a run");
     let steady = numbers.bare().steady(numbers.omega).e1_max;
-    let error = (found.e1_max.value / steady - 1.0).abs();
+    let error = (found.largest.value / steady - 1.0).abs();
     assert!(found.settled && error < 5e-5, "{} {error:e}", found.settled);
 }

@@ -1,6 +1,6 @@
-//! The value that a search minimises: E1max composed over frequencies, stiffnesses, an ensemble and several terms, under limits.
+//! The value that a search minimises: a quantity composed over frequencies, stiffnesses, an ensemble and several terms, under limits.
 //!
-//! `value = Σ weight · statistic over the ensemble of (largest over k1 of (largest over ω of E1max))`. Each level is one
+//! `value = Σ weight · statistic over the ensemble of (largest over k1 of (largest over ω of the quantity))`. Each level is one
 //! function of a cutoff, above which it may stop; every stopping rule is exact: a value not above the cutoff is computed in
 //! full.
 
@@ -26,17 +26,17 @@ pub struct Goal {
 }
 
 impl From<Window> for Goal {
-    /// The largest E1 in a window, without limits.
+    /// E1max in a window, without limits.
     fn from(window: Window) -> Self {
         Self { objective: Objective::default(), window, limits: Limits::default() }
     }
 }
 
-/// The run with the largest E1max among those behind a value.
+/// The run with the largest quantity among those behind a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Its E1max, J.
-    pub e1_max: f64,
+    /// That quantity, in its unit.
+    pub largest: f64,
     /// Its scene, with the parameter errors of its ensemble member.
     pub scene: Scene,
     /// Phase of its force, rad.
@@ -48,9 +48,9 @@ pub struct Place {
 /// The value of a design and the quantities behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
-    /// The value that searches minimise: the energy of a feasible design, above [`INFEASIBLE`] for any other.
+    /// The value that searches minimise: the quantity of a feasible design, above [`INFEASIBLE`] for any other.
     pub value: f64,
-    /// The weighted sum of the terms, J.
+    /// The weighted sum of the terms, in the unit of the quantity.
     pub energy: f64,
     /// Total violation of the limits; see [`Limits::violation`].
     pub violation: f64,
@@ -88,7 +88,7 @@ impl Goal {
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
     pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
         let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
-        let nothing = Place { e1_max: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
+        let nothing = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
         let mut reached = PerLimit::default();
         reached.set(Limit::Cavity, cavity);
         let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
@@ -114,7 +114,7 @@ impl Goal {
         })
     }
 
-    /// The weighted sum, J.
+    /// The weighted sum, in the unit of the quantity.
     fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
         if self.objective.sum.is_empty() {
             return watch.term(scene, (0, &self.objective), cutoff); // the common case, without an allocation
@@ -150,7 +150,7 @@ struct Watch<'a> {
 /// A term with its number.
 type Numbered<'a> = (usize, &'a Objective);
 
-/// The largest E1max (J), stroke (m) and contact force (N) of some runs; all but the first are 0 if no limit needs them.
+/// The largest quantity, stroke (m) and contact force (N) of some runs; all but the first are 0 if no limit needs them.
 type Largest = [f64; 3];
 
 impl Watch<'_> {
@@ -175,7 +175,7 @@ impl Watch<'_> {
             Some(Stiffnesses::Range(range)) => self.worst_over(&range.band(), at, cutoff),
             Some(Stiffnesses::Set(set)) => {
                 let above = |results: &[Result<Largest, Unusable>]| match results.last() {
-                    Some(Ok([e1_max, ..])) => *e1_max > cutoff,
+                    Some(Ok([largest, ..])) => *largest > cutoff,
                     Some(Err(_)) => true,
                     None => false,
                 };
@@ -197,7 +197,7 @@ impl Watch<'_> {
         let own = scene.forcing.frequency.get();
         let band = term.1.omega.map(|band| band.of(&scene.primary));
         if term.1.response == Response::Steady {
-            return self.steady(scene, band.map_or([own; 2], |band| [band.from, band.to]), term.0);
+            return self.steady(scene, band.map_or([own; 2], |band| [band.from, band.to]), term);
         }
         let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
         match band {
@@ -228,21 +228,26 @@ impl Watch<'_> {
     ) -> Result<Largest, Unusable> {
         let mut scene = *scene;
         scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
-        let ask = Ask { phase, walls: self.limits.walls_from(), cutoff };
+        let ask = Ask { measure: term.quantity, phase, walls: self.limits.walls_from(), cutoff };
         let found = match term.response {
             Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
             Response::Window => extremes(&scene, self.window, self.settings, ask)?,
-            Response::Steady => return self.steady(&scene, [omega; 2], number),
+            Response::Steady => return self.steady(&scene, [omega; 2], (number, term)),
         };
-        let place = Place { e1_max: found.e1_max.value, scene, phase, term: number };
-        self.see(place, found.stroke, found.force, found.settled);
-        Ok([found.e1_max.value, found.stroke, found.force])
+        let largest = found.largest.value;
+        self.see(Place { largest, scene, phase, term: number }, found.stroke, found.force, found.settled);
+        Ok([largest, found.stroke, found.force])
     }
 
-    fn steady(&self, scene: &Scene, band: [f64; 2], number: usize) -> Result<Largest, Unusable> {
+    fn steady(
+        &self,
+        scene: &Scene,
+        band: [f64; 2],
+        (number, term): Numbered,
+    ) -> Result<Largest, Unusable> {
         let Scene { primary, forcing, damper } = scene;
         let (worst, stroke) = match damper {
-            None => (Bare::new(primary, forcing).steady_e1_max(band), 0.0),
+            None => (Bare::new(primary, forcing).steady_max(term.quantity, band), 0.0),
             Some(damper) => {
                 let system = Coupled::new(primary, forcing, damper);
                 let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
@@ -250,12 +255,12 @@ impl Watch<'_> {
                 if stroke >= room {
                     return Err(Unusable::Touches { omega, stroke, room });
                 }
-                (system.steady_e1_max(band), stroke)
+                (system.steady_max(term.quantity, band), stroke)
             }
         };
         let mut scene = *scene;
         scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
-        let place = Place { e1_max: worst.value, scene, phase: 0.0, term: number };
+        let place = Place { largest: worst.value, scene, phase: 0.0, term: number };
         self.see(place, stroke, 0.0, true);
         Ok([worst.value, stroke, 0.0])
     }
@@ -270,7 +275,7 @@ impl Watch<'_> {
         }
         let key = |place: &Place| {
             let Scene { primary, forcing, .. } = place.scene;
-            [-place.e1_max, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]
+            [-place.largest, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]
         };
         // Of equal ones the first by term, ω, k1 and phase.
         let order =

@@ -1,23 +1,26 @@
-//! An objective: which E1max is made small. A study file is read into this, and this is what a search evaluates.
+//! An objective: what is made small, and over what. A study file is read into this, and this is what a search evaluates.
 
 use super::band::Band;
 use super::ensemble::Ensemble;
-use retune_model::{Positive, Primary};
+use retune_model::{Measure, Positive, Primary};
 use retune_solver::Settle;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The objective to minimise: a statistic over `ensemble` of the maximum over `k1` of the maximum over `omega` of E1max, evaluated
+/// The objective to minimise: a statistic over `ensemble` of the maximum over `k1` of the maximum over `omega` of `quantity`, evaluated
 /// in each run as `response` specifies. Fields left out keep their nominal value, that of `scene`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Objective {
+    /// What is made small: E1max (J) if left out. Of a sum all terms have the same.
+    #[serde(skip_serializing_if = "is_energy")]
+    pub quantity: Measure,
     /// Worst case over a band of excitation frequencies; omit it (or null) for the omega of `scene` alone.
     pub omega: Option<FrequencyBand>,
     /// Worst case over stiffnesses k1 of the structure, each with its own worst case over `omega`; null for the k1 of `scene` alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k1: Option<Stiffnesses>,
-    /// The part of the response in which E1max is evaluated: in `window`, steady, or settled.
+    /// The part of the response in which the quantity is evaluated: in `window`, steady, or settled.
     pub response: Response,
     /// The criterion by which a motion is settled, for the response "settled".
     #[serde(skip_serializing_if = "is_default")]
@@ -34,13 +37,13 @@ pub struct Objective {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// The weight of its E1max.
+    /// The weight of its value.
     pub weight: Positive,
     /// Its objective.
     pub objective: Objective,
 }
 
-/// A band of excitation frequencies, over which E1max is maximised; its peaks are refined between samples.
+/// A band of excitation frequencies, over which the quantity is maximised; its peaks are refined between samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Band")]
@@ -85,7 +88,7 @@ pub struct StiffnessRange {
     pub samples: usize,
 }
 
-/// The part of the response in which E1max is evaluated.
+/// The part of the response in which the quantity is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Response {
@@ -103,6 +106,11 @@ pub enum Response {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
 fn is_false(value: &bool) -> bool {
     !value
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_energy(quantity: &Measure) -> bool {
+    *quantity == Measure::Energy
 }
 
 fn is_default(settle: &Settle) -> bool {
@@ -145,6 +153,11 @@ impl Objective {
                 objective.terms().into_iter().map(|(own, term)| (weight.get() * own, term))
             })
             .collect()
+    }
+
+    /// What is made small; the terms of a sum have the same.
+    pub fn quantity(&self) -> Measure {
+        self.sum.first().map_or(self.quantity, |part| part.objective.quantity())
     }
 
     /// Changes each of [`Self::terms`].

@@ -7,37 +7,52 @@ use crate::linear::steps::Steps;
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
+use crate::response::Extreme;
 use retune_model::{Coupled, Side, hertz_force};
 
 /// The ends of the relative displacement `x2 - x1` from a time on.
 pub struct DisplacementRange<'a> {
     system: &'a Coupled,
     from: f64,
+    cutoff: f64,
     /// Whether that time has passed.
     began: bool,
     ends: [RunningMaximum<RelativePosition<'a>>; 2],
 }
 
 impl<'a> DisplacementRange<'a> {
-    /// Watches a damper from time `from` (s) on.
-    pub fn new(system: &'a Coupled, from: f64) -> Self {
+    /// Watches a damper from time `from` (s) on; `cutoff` is for whoever reads it.
+    pub fn new(system: &'a Coupled, from: f64, cutoff: f64) -> Self {
         let end = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
-        Self { system, from, began: from <= 0.0, ends: [1.0, -1.0].map(end) }
+        Self { system, from, cutoff, began: from <= 0.0, ends: [1.0, -1.0].map(end) }
     }
 
-    /// The stroke, m, and the largest contact force, N; 0 while no motion has been seen.
-    pub fn stroke_and_force(&self) -> [f64; 2] {
-        let [farthest, nearest] = &self.ends;
-        let (far, near) = (farthest.record().value, -nearest.record().value);
-        if far < near {
-            return [0.0; 2]; // -∞ and ∞: no motion has been seen
+    /// The value above which its reader needs no more.
+    pub fn cutoff(&self) -> f64 {
+        self.cutoff
+    }
+
+    /// The stroke, m, and when; `-∞` and NaN while no motion has been seen.
+    pub fn stroke(&self) -> Extreme {
+        let rest = self.system.rest_distance();
+        self.larger(|_, place| (place - rest).abs())
+    }
+
+    /// The largest contact force on either wall, N, and when; `-∞` and NaN while no motion has been seen.
+    pub fn force(&self) -> Extreme {
+        let system = self.system;
+        self.larger(|side, place| hertz_force(system.hertz(side), side.sign() * (place - system.wall(side))))
+    }
+
+    /// The larger of a value at both ends of the range, the one nearest to each wall.
+    fn larger(&self, value: impl Fn(Side, f64) -> f64) -> Extreme {
+        let [farthest, nearest] = self.ends.each_ref().map(RunningMaximum::record);
+        if farthest.value == f64::NEG_INFINITY {
+            return farthest;
         }
-        let (system, rest) = (self.system, self.system.rest_distance());
-        let force = |side: Side, z: f64| hertz_force(system.hertz(side), z);
-        [
-            (far - rest).abs().max((near - rest).abs()),
-            force(Side::Primary, -near).max(force(Side::Obstacle, far - system.wall(Side::Obstacle))),
-        ]
+        let far = Extreme { value: value(Side::Obstacle, farthest.value), ..farthest };
+        let near = Extreme { value: value(Side::Primary, -nearest.value), ..nearest };
+        if near.value > far.value { near } else { far }
     }
 }
 

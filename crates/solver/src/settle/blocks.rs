@@ -80,7 +80,7 @@ impl<'a> Blocks<'a> {
     fn keep(&mut self, block: Extremes) {
         let counts = self.begin(self.done) >= self.from;
         self.unsettled = match self.unsettled {
-            Some((all, true)) if block.e1_max.value <= all.e1_max.value => Some((all, true)),
+            Some((all, true)) if block.largest.value <= all.largest.value => Some((all, true)),
             Some((_, true)) => Some((block, true)),
             Some((_, false)) | None => Some((block, counts)),
         };
@@ -96,7 +96,7 @@ impl<'a> Blocks<'a> {
             Some(block) => block,
             None => {
                 let last = read(&self.now);
-                if last.e1_max.value.is_finite() {
+                if last.largest.value.is_finite() {
                     self.keep(last); // the block that the end of the run cut short
                 }
                 // A run in which no motion was seen has no block.
