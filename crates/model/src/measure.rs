@@ -55,6 +55,19 @@ impl Measure {
         }
     }
 
+    /// What it is, in words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Energy => "the largest energy of the structure",
+            Self::Displacement => "the largest displacement of the structure",
+            Self::Velocity => "the largest velocity of the structure",
+            Self::Acceleration => "the largest acceleration of the structure",
+            Self::GroundForce => "the largest force on the ground",
+            Self::Stroke => "the largest stroke of the damper",
+            Self::ContactForce => "the largest contact force",
+        }
+    }
+
     /// The SI unit.
     pub const fn unit(self) -> &'static str {
         match self {

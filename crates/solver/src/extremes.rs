@@ -79,12 +79,7 @@ pub fn extremes(
     Ok(Extremes { largest, ..seen })
 }
 
-fn in_bare(
-    system: &Bare,
-    window: Window,
-    settings: &Settings,
-    ask: Ask,
-) -> Result<Extremes, SolverError> {
+fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Result<Extremes, SolverError> {
     let largest = match motion(ask.measure) {
         Some(quantity) => {
             let mut size = Magnitude::new(|sign| quantity(system, sign), ask.cutoff);

@@ -49,7 +49,8 @@ fn exact_half_a_period_of_the_force_mirrors_a_linear_motion() {
             assert!((here.value / quarter.value - 1.0).abs() > 1e-3, "{here:?} {quarter:?}");
         }
     }
-    let [here, round] = [0.0, 2.0 * PI].map(|phase| seen(&SSVI.scene(), Method::Hybrid, phase, false).largest);
+    let [here, round] =
+        [0.0, 2.0 * PI].map(|phase| seen(&SSVI.scene(), Method::Hybrid, phase, false).largest);
     assert!((here.value / round.value - 1.0).abs() < 1e-7, "{here:?} {round:?}");
 }
 

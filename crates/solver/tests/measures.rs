@@ -91,6 +91,9 @@ fn contract_settled_measures_of_impacts_are_those_of_a_late_window() {
         let settings = Settings::default();
         let found = settled(&scene, all, Settle::default(), &settings, ask).expect("a run");
         let run = extremes(&scene, late, &settings, ask).expect("a run").largest.value;
-        assert!(found.settled && (found.largest.value / run - 1.0).abs() < 1e-3, "{measure:?} {found:?} {run}");
+        assert!(
+            found.settled && (found.largest.value / run - 1.0).abs() < 1e-3,
+            "{measure:?} {found:?} {run}"
+        );
     }
 }

@@ -3,6 +3,7 @@
 use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
+use super::objective::check_energy;
 use super::per_variable::PerVariable;
 use super::read::read;
 use super::rule::Rule;
@@ -176,6 +177,8 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     for FrontDamper { damper, study } in plan.said.dampers.clone() {
         let study_file = directory.join(&study);
         let study = read(&study_file)?;
+        check_energy(&study)
+            .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
         for sweep in Sweep::ALL {
             for value in plan.values(sweep) {
                 bounded(&study, sweep, value, Vec::new())

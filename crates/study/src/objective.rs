@@ -2,7 +2,7 @@
 
 use super::format::Study;
 use super::rule::Rule;
-use retune_model::Scene;
+use retune_model::{Measure, Scene};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
 };
@@ -26,7 +26,20 @@ pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(),
         }
         let part =
             |(i, part): (usize, &Part)| check(&part.objective, &field(&format!("sum[{i}].objective")), omega);
-        return objective.sum.iter().enumerate().try_for_each(part);
+        objective.sum.iter().enumerate().try_for_each(part)?;
+        let other = objective.sum.iter().position(|part| part.objective.quantity() != objective.quantity());
+        return match other {
+            Some(i) => bad(
+                field(&format!("sum[{i}].objective.quantity")),
+                objective.sum[i].objective.quantity().name().to_owned(),
+                "the same quantity in all parts, for only values of one unit can be added",
+            ),
+            None => Ok(()),
+        };
+    }
+    if objective.response == Response::Steady && objective.quantity == Measure::ContactForce {
+        let allowed = "another quantity, or another response: what is steady touches no wall";
+        return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
     }
     let band = |name: &str, unit, [from, to]: [f64; 2], samples: usize| {
         if from >= to {
@@ -81,6 +94,21 @@ pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(),
     }
 }
 
+/// Refuses a study that makes another quantity than E1max small, for tables that have no place for it.
+///
+/// # Errors
+/// [`Rule::NotAllowed`].
+pub(super) fn check_energy(study: &Study) -> Result<(), Rule> {
+    match study.quantity() {
+        Measure::Energy => Ok(()),
+        other => Err(Rule::NotAllowed {
+            field: "optimize.objective.quantity".to_owned(),
+            value: other.name().to_owned(),
+            allowed: "E1max: the tables of this command hold energies",
+        }),
+    }
+}
+
 /// Checks the rules that serde cannot; `end` is the end of the run, s.
 ///
 /// # Errors
@@ -102,18 +130,23 @@ impl Study {
         self.optimize.as_ref().map(|optimize| optimize.objective.clone()).unwrap_or_default()
     }
 
+    /// What its search makes small.
+    pub fn quantity(&self) -> Measure {
+        self.objective().quantity()
+    }
+
     /// The objective of its search with its window and limits.
     pub fn goal(&self) -> Goal {
         let limits = self.optimize.as_ref().map(|optimize| optimize.limits).unwrap_or_default();
         Goal { objective: self.objective(), window: self.window.window(), limits }
     }
 
-    /// E1max of its structure without a damper by its objective, J; NaN where it has none, infinite where it has no bound.
+    /// The value of its structure without a damper by its objective; NaN where it has none, infinite where it has no bound.
     pub fn energy_without_damper(&self) -> f64 {
         self.energy(&Scene { damper: None, ..self.scene }).unwrap_or(f64::NAN)
     }
 
-    /// E1max of a scene by its objective, regardless of the limits, J; `None` if it cannot be run.
+    /// The value of a scene by its objective, regardless of the limits, in the unit of its quantity; `None` if it cannot be run.
     pub fn energy(&self, scene: &Scene) -> Option<f64> {
         Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.energy)
     }

@@ -3,6 +3,7 @@
 use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
+use super::objective::check_energy;
 use super::read::read;
 use super::rule::Rule;
 use retune_model::{Design, Positive};
@@ -85,5 +86,6 @@ fn at_design(study: Study, design: Design) -> Result<Study, Rule> {
     let scene = study.scene_at(&design).ok_or(Rule::NoDamper)?;
     let study = Study { scene, ..study };
     study.search()?;
+    check_energy(&study)?;
     Ok(study)
 }

@@ -212,7 +212,7 @@ fn contract_invalid_bands_are_refused() {
     );
     refused(
         json!({ "omga": { "from": 5, "to": 8 } }),
-        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: omega, k1, response, settle, ensemble, sum",
+        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, response, settle, ensemble, sum",
     );
     refused(
         json!({ "response": "stead" }),
@@ -310,7 +310,17 @@ fn contract_invalid_objectives_are_refused() {
         ),
         (
             json!({ "response": "steady", "sum": [{ "weight": 1, "objective": {} }] }),
-            "optimize.objective.sum: stands in the place of omega, k1, response, settle and ensemble",
+            "optimize.objective.sum: stands in the place of quantity, omega, k1, response, settle and ensemble",
+        ),
+        (
+            json!({ "quantity": "contact_force", "response": "steady" }),
+            "optimize.objective.quantity: contact_force is not allowed here: give another quantity, or another response",
+        ),
+        (
+            json!({ "sum": [
+                { "weight": 1, "objective": {} }, { "weight": 1, "objective": { "quantity": "x1max" } }
+            ] }),
+            "optimize.objective.sum[1].objective.quantity: x1max is not allowed here: give the same quantity in all parts",
         ),
         (
             json!({ "sum": [{ "weight": 1, "objective": { "omega": { "from": 8, "to": 5 } } }] }),

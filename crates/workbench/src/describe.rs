@@ -1,5 +1,6 @@
 //! Descriptions of study files in words, for `check`.
 
+use retune_model::Measure;
 use retune_optim::{Limit, Part, Response};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, Sweep, counted, joined, over, short};
 
@@ -72,6 +73,7 @@ fn goal(study: &Study) -> Vec<String> {
     let mut lines = Vec::new();
     let objective = study.objective();
     let omega = study.scene.forcing.frequency.get();
+    let name = study.quantity().name();
     let steady = objective.response == Response::Steady;
     let how = match (objective.response, objective.omega) {
         (Response::Window, Some(band)) => {
@@ -87,17 +89,19 @@ fn goal(study: &Study) -> Vec<String> {
     if !objective.sum.is_empty() {
         lines.push(format!("for the {}", over(&objective, omega)));
         let part = |part: &Part| {
-            format!("  {} times E1max, {}", short(part.weight.get()), over(&part.objective, omega))
+            format!("  {} times {name}, {}", short(part.weight.get()), over(&part.objective, omega))
         };
         lines.extend(objective.sum.iter().map(part));
     } else if objective.ensemble.is_none() && objective.k1.is_none() && objective.omega.is_none() {
         if steady {
-            lines.push("for the steady E1max".to_owned());
+            lines.push(format!("for the steady {name}"));
         } else if objective.response == Response::Settled {
-            lines.push("for the settled E1max".to_owned());
+            lines.push(format!("for the settled {name}"));
+        } else if study.quantity() != Measure::Energy {
+            lines.push(format!("for {name} in the window"));
         }
     } else {
-        let words = over(&objective, omega).replacen("worst over", "worst E1max over", 1);
+        let words = over(&objective, omega).replacen("worst over", &format!("worst {name} over"), 1);
         lines.push(format!("for the {words}, {how}"));
     }
     let limits = study.goal().limits;

@@ -17,7 +17,8 @@ pub const PROTOCOL: &str = "\
 A design is a line on standard input: one number in SI units for each parameter that the study tunes, in the order k2 c2 D C, with \
 blanks or commas between them. Each line, an empty one too, is answered by one line on standard output, in order:
 
-  160.605      E1max by the study's objective, J, of a design that keeps the limits
+  160.605      the value by the study's objective (E1max in J, or what optimize.objective.quantity names) of a design that keeps \
+the limits
   inf          the design breaks a limit
   error: ...   the design has no value, or the line is no design; the same goes to standard error with the number of the line \
 (the first 100), and the exit code at the end is 1
@@ -27,7 +28,7 @@ A line has at most 4096 bytes. The end of the input ends the program.
 
 With --json the answer is an object: {\"E1max\": 190.2, \"violation\": 0.02, \"stroke\": 0.153}. E1max is then given whether limits \
 are kept or not; violation is the sum of reached / limit - 1 over the limits that are broken, 0 if none is; then follows what is \
-reached of each limit that the study sets (stroke and cavity in m, force in N). A line without a value is {\"error\": \"...\"}.
+reached of each limit that the study sets (stroke and cavity in m, force in N). Another quantity has its own name in the place of E1max. A line without a value is {\"error\": \"...\"}.
 
 An optimiser that takes constraints (SciPy's NonlinearConstraint, MATLAB's nonlcon, Optuna's constraints_func) makes E1max small \
 under violation <= 0. One that takes none, and has to find its way to designs that keep the limits, makes E1max small where violation \
@@ -165,7 +166,10 @@ fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> Stri
     };
     let limits = objective.goal().limits;
     // An empty sum of excesses is -0.
-    let mut fields = vec![("E1max", found.energy), ("violation", found.violation + 0.0)];
+    let mut fields = vec![
+        (objective.goal().objective.quantity().name(), found.energy),
+        ("violation", found.violation + 0.0),
+    ];
     let set = Limit::ALL.into_iter().filter(|limit| limits.get(*limit).is_some());
     fields.extend(set.map(|limit| (limit.name(), found.reached.get(limit))));
     let fields: Vec<String> =

@@ -147,8 +147,9 @@ fn search_and_write(
         starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
     }
     let refined = refine::refine(study, search, starts, results, watch)?;
-    let basins =
-        explored.as_ref().map(|found| Basins::new(found, search, &refined, results.journal(), on_grid));
+    let basins = explored
+        .as_ref()
+        .map(|found| Basins::new(found, study.quantity(), search, &refined, results.journal(), on_grid));
     results.journal().check()?;
     if let Some(basins) = &basins {
         basins.write(&refined.objective, results)?;

@@ -239,12 +239,7 @@ impl Watch<'_> {
         Ok([largest, found.stroke, found.force])
     }
 
-    fn steady(
-        &self,
-        scene: &Scene,
-        band: [f64; 2],
-        (number, term): Numbered,
-    ) -> Result<Largest, Unusable> {
+    fn steady(&self, scene: &Scene, band: [f64; 2], (number, term): Numbered) -> Result<Largest, Unusable> {
         let Scene { primary, forcing, damper } = scene;
         let (worst, stroke) = match damper {
             None => (Bare::new(primary, forcing).steady_max(term.quantity, band), 0.0),

@@ -10,8 +10,9 @@ pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, Wor
 pub use verdict::Verdict;
 
 use crate::Error;
+use crate::amount::Amount;
 use crate::summary::{MadeBy, TunedDamper};
-use retune_model::Damper;
+use retune_model::{Damper, Measure};
 use retune_optim::Evaluation;
 use retune_study::Study;
 use serde::Serialize;
@@ -22,10 +23,10 @@ pub struct Certificate {
     #[serde(flatten)]
     pub(crate) made_by: MadeBy,
     pub(crate) design: TunedDamper,
-    /// The objective's value, J.
-    #[serde(rename = "E1max")]
-    pub(crate) e1_max: f64,
-    /// Largest difference of a run of the convergence study to the worst run, or of `finer` to the value, J.
+    /// The objective's value.
+    #[serde(flatten)]
+    pub(crate) value: Amount,
+    /// Largest difference of a run of the convergence study to the worst run, or of `finer` to the value.
     pub(crate) error_bar: f64,
     pub(crate) predictable: bool,
     /// null where the design breaks a limit.
@@ -37,10 +38,10 @@ pub struct Certificate {
     /// The limits at the design and near it, where the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limits: Option<Kept>,
-    /// The run with the largest E1max that the value is made of.
+    /// The run with the largest value that the value is made of.
     pub(crate) worst_run: WorstRun,
     pub(crate) convergence: Vec<Run>,
-    /// The objective with four times the samples of its bands, J, where it has bands that are sampled.
+    /// The objective with four times the samples of its bands, where it has bands that are sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) finer: Option<f64>,
     pub(crate) motion: Motion,
@@ -54,6 +55,8 @@ pub struct Short {
     verdict: Option<Verdict>,
     words: String,
     error_bar: f64,
+    #[serde(skip)]
+    quantity: Measure,
     predictable: bool,
     regime: String,
     exponent: f64,
@@ -65,7 +68,7 @@ pub struct Short {
 impl Short {
     /// The verdict in words, with the error bar.
     pub fn verdict_words(&self) -> String {
-        format!("{} (numerical error at most {:.0e} J)", self.words, self.error_bar)
+        format!("{} (numerical error at most {:.0e} {})", self.words, self.error_bar, self.quantity.unit())
     }
 
     /// Whether the value is one of many that practically equal designs have.
@@ -100,18 +103,19 @@ impl Certificate {
         let missed = measured.finer.map_or(0.0, |finer| (finer - own.energy).abs());
         let error_bar =
             measured.convergence.iter().map(|run| run.error(&measured.worst_run)).fold(missed, f64::max);
-        let predictable = verdict::is_predictable(error_bar, measured.worst_run.e1_max);
-        let (verdict, words) = verdict::judge(own.energy, error_bar, predictable, &measured);
+        let predictable = verdict::is_predictable(error_bar, measured.worst_run.value.value);
+        let value = Amount::new(study.quantity(), own.energy);
+        let (verdict, words) = verdict::judge(value, error_bar, predictable, &measured);
         let Measured { worst_run, convergence, finer, motion, sensitivity, neighbourhood, limits } = measured;
         Self {
             made_by: MadeBy::new(study),
             design: TunedDamper::of(damper),
-            e1_max: own.energy,
+            value,
             error_bar,
             predictable,
             verdict,
             words,
-            rule: verdict::rule(limits.is_some()),
+            rule: verdict::rule(value.quantity, limits.is_some()),
             limits,
             worst_run,
             convergence,
@@ -132,8 +136,8 @@ impl Certificate {
 
     /// The short form.
     pub fn short(&self) -> Short {
-        let Self { verdict, words, error_bar, predictable, motion, .. } = self.clone();
+        let Self { verdict, words, error_bar, value, predictable, motion, .. } = self.clone();
         let Motion { regime, exponent, sentence, .. } = motion;
-        Short { verdict, words, error_bar, predictable, regime, exponent, sentence }
+        Short { verdict, words, error_bar, quantity: value.quantity, predictable, regime, exponent, sentence }
     }
 }

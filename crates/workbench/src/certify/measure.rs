@@ -4,6 +4,7 @@ use super::certificate::{
     Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Run, Sensitivity, WorstRun,
 };
 use crate::Error;
+use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Scene};
@@ -51,9 +52,14 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
     let record = follow(&own.worst.scene, None, Stretch::default(), &settings)?;
     let motion = Motion::new(&classify(&record));
     let limits = Kept::new(&goal.limits, &own.reached, &near);
-    let Place { e1_max, scene, phase, .. } = own.worst;
-    let worst_run =
-        WorstRun { e1_max, omega: scene.forcing.frequency.get(), k1: scene.primary.stiffness.get(), phase };
+    let Place { largest, scene, phase, .. } = own.worst;
+    let quantity = study.quantity();
+    let worst_run = WorstRun {
+        value: Amount::new(quantity, largest),
+        omega: scene.forcing.frequency.get(),
+        k1: scene.primary.stiffness.get(),
+        phase,
+    };
     let measured = Measured { worst_run, convergence, finer, motion, sensitivity, neighbourhood, limits };
     Ok(Certificate::new(study, damper, &own, measured))
 }
@@ -70,13 +76,14 @@ fn finer(goal: &Goal) -> Option<Goal> {
     any.then_some(goal)
 }
 
-/// E1max of the worst run by every method of the convergence study.
+/// The value of the worst run by every method of the convergence study.
 fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Run>, SolverError> {
     let (response, settle) =
         goal.term(worst.term).map_or((Response::Steady, STEADY), |term| (term.response, term.settle));
+    let quantity = goal.objective.quantity();
     let run = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
-        let ask = Ask { phase: worst.phase, ..Ask::default() };
+        let ask = Ask { measure: quantity, phase: worst.phase, ..Ask::default() };
         let found = match response {
             Response::Window => extremes(&worst.scene, goal.window, &settings, ask)?,
             Response::Settled => settled(&worst.scene, goal.window, settle, &settings, ask)?,
@@ -84,7 +91,7 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
                 settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?
             }
         };
-        Ok(Run { method, rtol, e1_max: found.e1_max.value })
+        Ok(Run { method, rtol, value: Amount::new(quantity, found.largest.value) })
     };
     CONVERGENCE.par_iter().map(run).collect()
 }
@@ -132,7 +139,7 @@ fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings, near: &mut Vec
 
 /// The result of a scene.
 struct Look {
-    /// J, infinite where there is none.
+    /// Infinite where there is none.
     energy: f64,
     reached: PerLimit<f64>,
 }

@@ -3,7 +3,7 @@
 use super::findings::{Compared, Findings};
 use super::flags::Flag;
 use super::html::{Section, Table};
-use super::numbers::{compared, digits, four, frequency, millimetres};
+use super::numbers::{amount, compared, digits, four, frequency, millimetres};
 use maud::{Markup, html};
 use retune_model::{Damper, Variable};
 use retune_optim::{Evaluation, Limit, Response, Unusable};
@@ -11,11 +11,12 @@ use retune_study::{counted, over};
 
 /// The answer in a line.
 pub fn title(findings: &Findings) -> String {
-    let (kind, value) = (findings.optimum.damper_type, four(findings.evaluation.energy));
+    let (kind, quantity) = (findings.optimum.damper_type, findings.quantity());
+    let (name, value) = (quantity.name(), amount(findings.evaluation.energy, quantity));
     if findings.evaluation.violation > 0.0 {
-        return format!("no design keeps the limits; the nearest, a {kind}, has E1max {value} J");
+        return format!("no design keeps the limits; the nearest, a {kind}, has {name} {value}");
     }
-    format!("tuned {kind}, E1max {value} J")
+    format!("tuned {kind}, {name} {value}")
 }
 
 /// The section.
@@ -33,7 +34,7 @@ pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Sect
     Section { id: "answer", title: "The answer", body }
 }
 
-/// What E1max is taken over, in words.
+/// What the value is taken over, in words.
 pub fn objective(findings: &Findings) -> String {
     let objective = findings.study.objective();
     let omega = findings.study.scene.forcing.frequency.get();
@@ -50,7 +51,7 @@ pub fn objective(findings: &Findings) -> String {
 }
 
 fn lead(findings: &Findings) -> Markup {
-    let Evaluation { energy, .. } = findings.evaluation;
+    let (Evaluation { energy, .. }, quantity) = (findings.evaluation, findings.quantity());
     let touches = match findings.response.force_max.map(|force| force > 0.0) {
         [true, true] => "strikes both walls of its cavity",
         [true, false] => "strikes the structure, not the obstacle",
@@ -60,7 +61,7 @@ fn lead(findings: &Findings) -> Markup {
     let several = findings.study.objective().terms().iter().any(|(_, term)| term.omega.is_some());
     html! {
         p.lead {
-            "With this damper the largest energy of the structure, E1max, is " strong { (four(*energy)) " J" }
+            "With this damper " (quantity.words()) ", " (quantity.name()) ", is " strong { (amount(*energy, quantity)) }
             " (" (objective(findings)) "). " @if several { "It is worst at" } @else { "The frequency is" }
             " ω = " strong { (frequency(findings.worst_omega())) } "; there the damper " (touches) "."
         }
@@ -68,15 +69,15 @@ fn lead(findings: &Findings) -> Markup {
 }
 
 fn facts(findings: &Findings, beside: &Compared) -> Markup {
-    let energy = findings.evaluation.energy;
+    let (energy, quantity) = (findings.evaluation.energy, findings.quantity());
     let against = |other: &Result<Evaluation, Unusable>| match other {
         Ok(other) => {
             let words = compared(energy, other.energy).unwrap_or_else(|| "–".to_owned());
             (
                 words,
                 format!(
-                    "{} J, worst at {}",
-                    four(other.energy),
+                    "{}, worst at {}",
+                    amount(other.energy, quantity),
                     frequency(other.worst.scene.forcing.frequency.get())
                 ),
             )
@@ -101,9 +102,9 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     let window = format!("{} s to {} s", span.t0.get(), span.end.get());
     html! {
         dl.facts {
-            (fact("Energy against no damper", &none.0, &none.1))
-            (fact("Energy against the damper of the study", &study.0, &study.1))
-            (fact("Certificate", verdict, &format!("{words}; E1max ± {} J", digits(certificate.error_bar, 2))))
+            (fact("Against no damper", &none.0, &none.1))
+            (fact("Against the damper of the study", &study.0, &study.1))
+            (fact("Certificate", verdict, &format!("{words}; {} ± {} {}", quantity.name(), digits(certificate.error_bar, 2), quantity.unit())))
             (fact("Stroke", &millimetres(response.spring_deflection_max), &format!("largest spring deflection |x2 − x1 − D| at the worst frequency, {window}")))
             (fact("Contact force", &format!("{} N", four(structure.max(obstacle))), &format!(
                 "{} N on the structure in {}, {} N on the obstacle in {}, {window}",

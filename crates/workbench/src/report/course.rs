@@ -3,6 +3,7 @@
 use super::findings::Findings;
 use super::html::{Section, Table, figure, link};
 use super::numbers::four;
+use crate::amount::label;
 use crate::tune::log::worth;
 use crate::tune::optimum::stop_words;
 use maud::html;
@@ -27,21 +28,28 @@ pub fn section(findings: &Findings, results: &Directory) -> Section {
         (starts(findings).markup())
         @if let Some(table) = basins(findings) { (table.markup()) }
         @if let Some(svg) = convergence {
-            (figure(&svg.into(), html! { "E1max and the tuned parameters over the best refinement. " (link("convergence.svg")) }))
+            (figure(&svg.into(), html! { (findings.quantity().name()) " and the tuned parameters over the best refinement. " (link("convergence.svg")) }))
         }
     };
     Section { id: "search", title: "How the search went", body }
 }
 
 fn stages(findings: &Findings) -> Table {
+    let quantity = findings.quantity();
     let mut table = Table::new(
         "Stages of the search",
-        &["stage", "evaluations", "broke a limit", "could not be computed", "best E1max"],
+        &[
+            "stage",
+            "evaluations",
+            "broke a limit",
+            "could not be computed",
+            &format!("best {}", quantity.name()),
+        ],
     );
     let mut row = |stage: &str, counts: retune_optim::Counts, failed: u64, best: f64| {
         let counts = [counts.evaluations, counts.infeasible, failed].map(|count| count.to_string());
         let [evaluations, infeasible, failed] = counts;
-        table.row([stage.to_owned(), evaluations, infeasible, failed, worth(best)]);
+        table.row([stage.to_owned(), evaluations, infeasible, failed, worth(best, quantity)]);
     };
     if let Some(surf) = findings.surf {
         row("grid", surf.counts, surf.failures.count, surf.values[surf.best]);
@@ -56,11 +64,12 @@ fn stages(findings: &Findings) -> Table {
 }
 
 fn starts(findings: &Findings) -> Table {
+    let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
     let mut head: Vec<String> = [
         "refinement",
         "starts from",
-        "E1max there, J",
-        "E1max found, J",
+        &format!("{name} there, {unit}"),
+        &format!("{name} found, {unit}"),
         "iterations",
         "evaluations",
         "stop",
@@ -91,7 +100,9 @@ fn starts(findings: &Findings) -> Table {
 fn basins(findings: &Findings) -> Option<Table> {
     let found = findings.optimum.global.as_ref()?;
     let mut head: Vec<String> =
-        ["basin", "searches that reached it", "refinements", "E1max, J"].map(str::to_owned).to_vec();
+        ["basin", "searches that reached it", "refinements", &label(findings.quantity())]
+            .map(str::to_owned)
+            .to_vec();
     head.extend(findings.search.variables.iter().map(|variable| format!("{variable}, {}", variable.unit())));
     let caption = format!(
         "Basins: that of the optimum was reached by {} of {}",
@@ -106,7 +117,7 @@ fn basins(findings: &Findings) -> Option<Table> {
             .variables
             .iter()
             .map(|variable| four(basin.design.get(*variable).unwrap_or(f64::NAN)));
-        table.row(counts.into_iter().chain([four(basin.e1_max)]).chain(design));
+        table.row(counts.into_iter().chain([four(basin.found.value)]).chain(design));
     }
     Some(table)
 }

@@ -17,8 +17,8 @@ const CLOSER: i32 = 10;
 pub struct Curves {
     /// rad/s, ascending.
     pub omega: Vec<f64>,
-    /// E1max, J.
-    pub energy: [Vec<f64>; 3],
+    /// What the search made small, in its unit.
+    pub value: [Vec<f64>; 3],
     /// The largest displacement |x1| of the structure in the window of a run, mm.
     pub displacement: [Vec<f64>; 3],
     /// Whether the objective looks at all of these frequencies, or at a single one only.
@@ -29,15 +29,15 @@ impl Curves {
     /// Computes them.
     pub fn new(findings: &Findings) -> Self {
         let own = findings.band.as_ref().filter(|rows| !rows.is_empty());
-        let (omega, energy) = match own {
+        let (omega, value) = match own {
             Some(rows) => {
-                let energy = [0, 1, 2].map(|scene| rows.iter().map(|row| row.1[scene]).collect());
-                (rows.iter().map(|row| row.0).collect(), energy)
+                let value = [0, 1, 2].map(|scene| rows.iter().map(|row| row.1[scene]).collect());
+                (rows.iter().map(|row| row.0).collect(), value)
             }
             None => about(findings),
         };
         let displacement = displacements(findings, &omega);
-        Self { omega, energy, displacement, is_objective: own.is_some() }
+        Self { omega, value, displacement, is_objective: own.is_some() }
     }
 
     /// The largest of a curve, where there is one.

@@ -6,7 +6,7 @@ use crate::tune::global::Explored;
 use crate::tune::optimum::Optimum;
 use crate::tune::refine::Refined;
 use crate::tune::surf::Surf;
-use retune_model::Scene;
+use retune_model::{Measure, Scene};
 use retune_optim::{Evaluation, Goal, Limits, Unusable};
 use retune_solver::Response;
 use retune_study::{Search, Study};
@@ -28,7 +28,7 @@ pub(crate) struct Findings<'a> {
     pub worst: Scene,
     /// The run of that.
     pub response: &'a Response,
-    /// E1max over the band of the objective, if it has one.
+    /// The quantity over the band of the objective, if it has one.
     pub band: Option<Rows>,
     /// Refinements that start on the grid; they come before the others.
     pub on_grid: usize,
@@ -43,6 +43,11 @@ pub(super) struct Compared {
 }
 
 impl Findings<'_> {
+    /// What the search made small.
+    pub fn quantity(&self) -> Measure {
+        self.study.quantity()
+    }
+
     /// The three scenes of every comparison, in the order of `band.csv`: no damper, that of the study, the tuned one.
     pub fn scenes(&self) -> [Scene; 3] {
         [Scene { damper: None, ..self.tuned }, self.study.scene, self.tuned]

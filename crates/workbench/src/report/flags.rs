@@ -1,7 +1,7 @@
 //! What a reader must know before using the answer: each flag says what is so, where, and what to do about it.
 
 use super::findings::Findings;
-use super::numbers::four;
+use super::numbers::{amount, four};
 use crate::tune::optimum::notes::Goal;
 use crate::tune::optimum::stop_words;
 use retune_optim::{Limit, Stop};
@@ -31,8 +31,9 @@ pub fn flags(findings: &Findings) -> Vec<Flag> {
             flag(
                 "not-predictable",
                 format!(
-                    "E1max of the worst run is not predictable: equally good ways to compute it differ by up to {} J.",
-                    four(findings.certificate.error_bar)
+                    "{} of the worst run is not predictable: equally good ways to compute it differ by up to {}.",
+                    findings.quantity().name(),
+                    amount(findings.certificate.error_bar, findings.quantity())
                 ),
             )
         }),
@@ -137,8 +138,9 @@ fn irregular(findings: &Findings) -> Flag {
     Flag {
         name: "irregular",
         words: format!(
-            "The motion at the worst frequency is irregular ({}): designs that are practically equal can differ much in E1max.",
-            motion.regime
+            "The motion at the worst frequency is irregular ({}): designs that are practically equal can differ much in {}.",
+            motion.regime,
+            findings.quantity().name()
         ),
         change: Some(
             "a statistic over small errors as the objective (optimize.objective.ensemble)".to_owned(),
@@ -150,7 +152,7 @@ fn unsettled(findings: &Findings) -> Option<String> {
     let Goal { unsettled, runs, .. } = findings.optimum.objective.as_ref()?;
     let (unsettled, runs) = (unsettled.filter(|count| *count > 0)?, (*runs)?);
     Some(format!(
-        "{unsettled} of {} of this design had not settled at the end of the run; E1max is then that of the window.",
+        "{unsettled} of {} of this design had not settled at the end of the run; their value is that of the window.",
         counted(runs, "run")
     ))
 }

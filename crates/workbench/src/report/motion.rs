@@ -4,6 +4,7 @@ use super::findings::Findings;
 use super::html::{Section, Table, figure};
 use super::numbers::{digits, four, frequency, millimetres};
 use crate::Error;
+use crate::amount::label;
 use maud::html;
 use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Scale, Sheet, Stroke, Width, drawing};
@@ -87,12 +88,13 @@ fn words(findings: &Findings) -> Table {
 
 /// The same run by other methods.
 fn methods(findings: &Findings) -> Table {
+    let quantity = findings.quantity();
     let mut table = Table::new(
-        "E1max of the worst run by other methods and tolerances",
-        &["method", "relative tolerance", "E1max, J"],
+        format!("{} of the worst run by other methods and tolerances", quantity.name()),
+        &["method", "relative tolerance", &label(quantity)],
     );
     for run in &findings.certificate.convergence {
-        table.row([run.method.name().to_owned(), format!("{:e}", run.rtol), digits(run.e1_max, 10)]);
+        table.row([run.method.name().to_owned(), format!("{:e}", run.rtol), digits(run.value.value, 10)]);
     }
     table
 }

@@ -1,5 +1,6 @@
 //! How numbers are written on a page.
 
+use retune_model::Measure;
 pub use retune_study::frequency;
 use retune_study::rounded;
 
@@ -17,6 +18,11 @@ pub fn digits(value: f64, digits: usize) -> String {
         return "–".to_owned();
     }
     rounded(value, digits).replace('-', "−")
+}
+
+/// A value with the unit of its quantity, to four digits.
+pub fn amount(value: f64, quantity: Measure) -> String {
+    format!("{} {}", four(value), quantity.unit())
 }
 
 /// A length in millimetres.

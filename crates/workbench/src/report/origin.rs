@@ -20,7 +20,7 @@ pub fn section(findings: &Findings, files: &[String], study: &str) -> Section {
     row("Retune", version);
     row("arithmetic of the machine", arithmetic);
     row("tuned parameters", joined(&findings.search.variables, ", "));
-    row("objective", format!("E1max, {}", objective(findings)));
+    row("objective", format!("{}, {}", findings.quantity().name(), objective(findings)));
     row("window", format!("{} s to {} s", window.t0.get(), window.end.get()));
     row("method", format!("{}, relative tolerance {:e}", solver.method.name(), solver.rtol));
     row("rule of the certificate", findings.certificate.rule.clone());

@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use super::html::{Section, Table, figure, link};
-use super::numbers::{digits, four};
+use super::numbers::{amount, digits, four};
 use maud::{Markup, html};
 use retune_optim::{Bounds, energy};
 use retune_store::Directory;
@@ -33,12 +33,13 @@ pub fn section(findings: &Findings, files: &[String], results: &Directory) -> Se
 }
 
 fn words(findings: &Findings) -> Markup {
-    let found = four(findings.evaluation.energy);
+    let quantity = findings.quantity();
+    let found = amount(findings.evaluation.energy, quantity);
     match findings.surf {
         None => html! { p { "This search had no grid." } },
         Some(surf) => html! { p {
-            "The best of " (surf.grid.len()) " points of the grid has " (four(energy(surf.values[surf.best]))) " J; the design that was found has "
-            (found) " J."
+            "The best of " (surf.grid.len()) " points of the grid has " (amount(energy(surf.values[surf.best]), quantity)) "; the design that was found has "
+            (found) "."
         } },
     }
 }

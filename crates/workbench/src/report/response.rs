@@ -3,7 +3,8 @@
 use super::curves::{ABOUT, Curves};
 use super::findings::{Compared, Findings};
 use super::html::{Section, figure, link};
-use super::numbers::{HERTZ, four, frequency};
+use super::numbers::{HERTZ, amount, four, frequency};
+use crate::amount::label;
 use maud::{Markup, html};
 use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};
 use retune_figures::{
@@ -20,29 +21,36 @@ const LINES: [(&str, Stroke); 3] = [
 const SQUASHED: f64 = 10.0;
 
 /// A quantity that is drawn against the frequency.
-struct Curve {
+struct Curve<'a> {
     name: &'static str,
-    label: &'static str,
+    label: String,
     unit: &'static str,
-    values: fn(&Curves) -> &[Vec<f64>; 3],
-    worst: fn(&Findings) -> f64,
+    values: &'a [Vec<f64>; 3],
+    worst: f64,
 }
 
-impl Curve {
-    const ENERGY: Self = Self {
-        name: "E1max",
-        label: "E1max, J",
-        unit: "J",
-        values: |curves| &curves.energy,
-        worst: |findings| findings.evaluation.worst.e1_max,
-    };
-    const DISPLACEMENT: Self = Self {
-        name: "Displacement amplitude",
-        label: "|x1|, mm",
-        unit: "mm",
-        values: |curves| &curves.displacement,
-        worst: |findings| 1e3 * findings.response.structure.displacement.value,
-    };
+impl<'a> Curve<'a> {
+    /// What the search made small.
+    fn objective(findings: &Findings, curves: &'a Curves) -> Self {
+        let quantity = findings.quantity();
+        Self {
+            name: quantity.name(),
+            label: label(quantity),
+            unit: quantity.unit(),
+            values: &curves.value,
+            worst: findings.evaluation.worst.largest,
+        }
+    }
+
+    fn displacement(findings: &Findings, curves: &'a Curves) -> Self {
+        Self {
+            name: "Displacement amplitude",
+            label: "|x1|, mm".to_owned(),
+            unit: "mm",
+            values: &curves.displacement,
+            worst: 1e3 * findings.response.structure.displacement.value,
+        }
+    }
 }
 
 /// The section.
@@ -50,11 +58,11 @@ pub fn section(findings: &Findings, compared: &Compared) -> Section {
     let curves = Curves::new(findings);
     let body = html! {
         (words(findings, compared, &curves))
-        (figure(&picture(findings, &curves, Curve::ENERGY), html! {
-            "E1max against the frequency of the force: " (LINES[0].0) ", " (LINES[1].0) ", " (LINES[2].0) ". "
+        (figure(&picture(findings, &curves, Curve::objective(findings, &curves)), html! {
+            (findings.quantity().name()) " against the frequency of the force: " (LINES[0].0) ", " (LINES[1].0) ", " (LINES[2].0) ". "
             @if curves.is_objective { (link("band.csv")) } @else { "Outside of the dotted line nothing was asked of the search." }
         }))
-        (figure(&picture(findings, &curves, Curve::DISPLACEMENT), html! {
+        (figure(&picture(findings, &curves, Curve::displacement(findings, &curves)), html! {
             "Largest displacement |x1| of the structure, from " (four(findings.study.window.t0.get())) " to "
             (four(findings.study.window.end.get())) " s of a run from rest."
         }))
@@ -63,27 +71,27 @@ pub fn section(findings: &Findings, compared: &Compared) -> Section {
 }
 
 fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
+    let quantity = findings.quantity();
     let worst = |of: &Result<retune_optim::Evaluation, retune_optim::Unusable>| {
-        of.as_ref().map_or_else(|_| "none".to_owned(), |of| format!("{} J", four(of.energy)))
+        of.as_ref().map_or_else(|_| "none".to_owned(), |of| amount(of.energy, quantity))
     };
     let omega = findings.worst_omega();
     if curves.is_objective {
         return html! { p {
             "The objective is the worst over this band: " (worst(&compared.none)) " without a damper, " (worst(&compared.study))
-            " with that of the study, " (four(findings.evaluation.energy)) " J with the tuned one, at " (frequency(omega)) "."
+            " with that of the study, " (amount(findings.evaluation.energy, quantity)) " with the tuned one, at " (frequency(omega)) "."
         } };
     }
-    let top = curves.energy.each_ref().map(|curve| Curves::largest(curve));
+    let top = curves.value.each_ref().map(|curve| Curves::largest(curve));
     html! { p {
         "The search looked at ω = " (frequency(omega)) " alone, and the band here is outside of its objective: ± " (100.0 * ABOUT)
-        " % of the natural frequency about it, for the reader to see how sharp the tuning is. In this band the largest E1max is "
-        (four(top[0])) " J without a damper, " (four(top[1])) " J with that of the study, and " (four(top[2])) " J with the tuned one."
+        " % of the natural frequency about it, for the reader to see how sharp the tuning is. In this band the largest " (quantity.name()) " is "
+        (amount(top[0], quantity)) " without a damper, " (amount(top[1], quantity)) " with that of the study, and " (amount(top[2], quantity)) " with the tuned one."
     } }
 }
 
-fn picture(findings: &Findings, curves: &Curves, curve: Curve) -> Drawing {
+fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     let Curve { name, label, unit, values, worst } = curve;
-    let (values, worst) = (values(curves), worst(findings));
     let omega = findings.worst_omega();
     let top = values.each_ref().map(|curve| Curves::largest(curve));
     let (high, low) = (
@@ -93,9 +101,9 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve) -> Drawing {
     let log = high > SQUASHED * low;
     let range = (curves.omega.first().copied().unwrap_or(0.0), curves.omega.last().copied().unwrap_or(1.0));
     let y = if log {
-        Axis::around(label, Scale::Log, values.iter().flatten().copied())
+        Axis::around(&*label, Scale::Log, values.iter().flatten().copied())
     } else {
-        Axis::linear(label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 }))
+        Axis::linear(&*label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 }))
     };
     let mut layers = Vec::new();
     if !curves.is_objective {

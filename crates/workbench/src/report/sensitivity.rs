@@ -1,13 +1,15 @@
-//! The sensitivity of E1max to small errors, from the certificate.
+//! The sensitivity of the value to small errors, from the certificate.
 
 use super::findings::Findings;
 use super::html::{Section, Table, figure, link};
-use super::numbers::{digits, four};
+use super::numbers::{amount, digits, four};
+use crate::amount::label;
 use maud::html;
 use retune_figures::colour::{BLACK, BLUE, SKY, VERMILION};
 use retune_figures::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing, scale_for,
 };
+use retune_model::Measure;
 
 /// Height of a bar, pt, and half of it as a share of the distance between two.
 const ROW: f64 = 17.0;
@@ -16,43 +18,43 @@ const HALF: f64 = 0.32;
 /// The section.
 pub fn section(findings: &Findings) -> Section {
     let near = &findings.certificate.neighbourhood;
+    let quantity = findings.quantity();
+    let name = quantity.name();
+    let said = |value: f64| said(value, quantity);
     let body = html! {
         p {
             "Of " (near.members) " designs whose k1, k2, c2, D and C are off by at most " (digits(100.0 * near.errors, 3))
-            " %, nine in ten have an E1max from " (joules(near.low)) " to " (joules(near.high)) ", and half have less than "
-            (joules(near.median)) ". The design itself has " (joules(findings.certificate.e1_max)) "."
+            " %, nine in ten have an " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
+            (said(near.median)) ". The design itself has " (said(findings.certificate.value.value)) "."
         }
         (figure(&picture(findings), html! {
-            "The largest E1max with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
+            "The largest " (name) " with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
         }))
         (table(findings).markup())
     };
     Section { id: "sensitivity", title: "Sensitivity to small errors", body }
 }
 
-/// An energy; one that is infinite is of a design that cannot be computed.
-fn joules(value: f64) -> String {
-    if value.is_finite() {
-        format!("{} J", four(value))
-    } else {
-        "no value (it cannot be computed)".to_owned()
-    }
+/// A value; one that is infinite is of a design that cannot be computed.
+fn said(value: f64, quantity: Measure) -> String {
+    if value.is_finite() { amount(value, quantity) } else { "no value (it cannot be computed)".to_owned() }
 }
 
 fn table(findings: &Findings) -> Table {
     let certificate = findings.certificate;
+    let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
     let head = [
         "parameter",
         "value",
-        "change for 1 % more, J",
-        "largest within 1 %, J",
+        &format!("change for 1 % more, {unit}"),
+        &format!("largest within 1 %, {unit}"),
         "at, %",
         "against the design, %",
     ];
-    let mut table = Table::new("E1max with one parameter off", &head);
+    let mut table = Table::new(format!("{name} with one parameter off"), &head);
     for one in &certificate.sensitivity {
         let sign = |value: f64, text: String| if value > 0.0 { format!("+{text}") } else { text };
-        let percent = 100.0 * (one.worst / certificate.e1_max - 1.0);
+        let percent = 100.0 * (one.worst / certificate.value.value - 1.0);
         table.row([
             one.parameter.to_owned(),
             four(one.value),
@@ -66,8 +68,9 @@ fn table(findings: &Findings) -> Table {
 }
 
 fn picture(findings: &Findings) -> Drawing {
-    let certificate = findings.certificate;
-    let (own, near) = (certificate.e1_max, &certificate.neighbourhood);
+    let (certificate, quantity) = (findings.certificate, findings.quantity());
+    let name = quantity.name();
+    let (own, near) = (certificate.value.value, &certificate.neighbourhood);
     let bars = &certificate.sensitivity;
     let place = |i: usize| -(i as f64);
     let bar = |i: usize, ends: (f64, f64), colour| Layer::Band {
@@ -95,21 +98,21 @@ fn picture(findings: &Findings) -> Drawing {
         bars.iter().map(|one| one.worst).chain([own, near.low, near.median, near.high]).collect();
     let chart = Chart {
         title: String::new(),
-        x: Axis::around("E1max, J", scale_for(&values), values.iter().copied()),
+        x: Axis::around(label(quantity), scale_for(&values), values.iter().copied()),
         y: Axis::of_names((place(last) - 0.7, 0.7), names),
         layers,
         height: ROW * (last as f64 + 1.4) + 30.0,
     };
     let said: Vec<String> =
-        bars.iter().map(|one| format!("{} {} J", one.parameter, four(one.worst))).collect();
+        bars.iter().map(|one| format!("{} {}", one.parameter, amount(one.worst, quantity))).collect();
     drawing(&Sheet {
-        title: "E1max with one parameter off by at most 1 %".to_owned(),
+        title: format!("{name} with one parameter off by at most 1 %"),
         description: format!(
-            "A bar for each parameter from the design's E1max, {} J, to the largest: {}. Neighbours: {} to {} J.",
-            four(own),
+            "A bar for each parameter from the design's {name}, {}, to the largest: {}. Neighbours: {} to {}.",
+            amount(own, quantity),
             said.join(", "),
             four(near.low),
-            four(near.high)
+            amount(near.high, quantity)
         ),
         width: Width::Page,
         charts: vec![chart],

@@ -1,11 +1,12 @@
-//! The band of a tuned damper: E1max against ω without a damper, with the damper of the study, and with the tuned one.
+//! The band of a tuned damper: the objective against ω without a damper, with the damper of the study, and with the tuned one.
 
 use crate::Error;
+use crate::amount::{self, measured};
 use crate::summary::MadeBy;
 use rayon::prelude::*;
 use retune_figures::colour::{BLACK, BLUE, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
-use retune_model::{NonNegative, Scene};
+use retune_model::{Measure, NonNegative, Scene};
 use retune_optim::{Band, Goal, Limits, Objective, Response};
 use retune_store::Directory;
 use retune_study::Study;
@@ -16,7 +17,7 @@ const FINE: usize = 601;
 /// Factor on the number of the search's samples if each frequency is a run.
 const FINER: usize = 4;
 
-/// A frequency, rad/s, and there E1max without a damper, with that of the study and with the tuned one, J; NaN where there is none.
+/// A frequency, rad/s, and there the quantity without a damper, with that of the study and with the tuned one; NaN where there is none.
 pub(crate) type Rows = Vec<(f64, [f64; 3])>;
 
 /// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
@@ -48,7 +49,7 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
         })
         .collect();
 
-    let mut csv = "omega,E1max_none,E1max_study,E1max_tuned\n".to_owned();
+    let mut csv = format!("omega,{}\n", columns(study.quantity()).join(","));
     for (omega, energies) in &rows {
         let fields = energies.map(|e| if e.is_finite() { e.to_string() } else { String::new() });
         csv += &format!("{omega},{}\n", fields.join(","));
@@ -58,13 +59,18 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
     Ok(Some(rows))
 }
 
+/// The columns of the three curves.
+pub(crate) fn columns(quantity: Measure) -> [String; 3] {
+    ["none", "study", "tuned"].map(|of| format!("{}_{of}", quantity.name()))
+}
+
 /// The scene at another frequency, rad/s.
 pub(crate) fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
     scene.forcing.frequency = NonNegative::new(omega).ok()?;
     Some(scene)
 }
 
-/// E1max of a scene as in a term, without limits, J; NaN if it has none.
+/// The quantity of a scene as in a term, without limits; NaN if it has none.
 pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
     let goal = Goal { objective: term.clone(), window: study.window.window(), limits: Limits::default() };
     let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
@@ -76,7 +82,7 @@ pub(crate) fn first(objective: &Objective) -> Option<&Objective> {
     objective.terms().first().map(|(_, term)| *term)
 }
 
-/// E1max of a scene at its own frequency, J, as in `band.csv`; NaN if it has none.
+/// The quantity of a scene at its own frequency, as in `band.csv`; NaN if it has none.
 pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
     let objective = study.objective();
     first(&objective)
@@ -89,7 +95,12 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
         ("the study's damper", Stroke::new(BLUE, 1.1, Dash::Long)),
         ("tuned for the band", Stroke::new(VERMILION, 1.3, Dash::Solid)),
     ];
-    let said = |value: f64| if value.is_finite() { format!(": {} J", short(value)) } else { String::new() };
+    let quantity = study.quantity();
+    let name = quantity.name();
+    let said = |value: f64| match value.is_finite() {
+        true => format!(": {}", measured(value, quantity)),
+        false => String::new(),
+    };
     let words: Vec<String> = (0..3).map(|i| format!("{}{}", LINES[i].0, said(worst[i]))).collect();
     let layers = LINES.iter().enumerate().map(|(i, &(_, stroke))| {
         let points = rows.iter().map(|(omega, energies)| (*omega, energies[i])).collect();
@@ -100,14 +111,14 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
     let chart = Chart {
         title: String::new(),
         x: Axis::linear("ω, rad/s", (first, last)),
-        y: Axis::linear("E1max, J", (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
+        y: Axis::linear(amount::label(quantity), (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
         layers: layers.collect(),
         height: 160.0,
     };
     svg(&Sheet {
-        title: "E1max over the band".to_owned(),
+        title: format!("{name} over the band"),
         description: format!(
-            "E1max against ω from {} to {} rad/s. The worst of each curve: {}.",
+            "{name} against ω from {} to {} rad/s. The worst of each curve: {}.",
             short(first),
             short(last),
             words.join("; ")

@@ -5,7 +5,8 @@ use super::objective::{kept, objective};
 use super::refine::{Refined, Run};
 use crate::Error;
 use crate::Observer;
-use retune_model::Design;
+use crate::amount::{Amount, measured};
+use retune_model::{Design, Measure};
 use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
 use retune_store::{Directory, Journal};
 use retune_study::{PerVariable, Search, Study};
@@ -61,7 +62,7 @@ pub(super) fn global(
     let basins = basins(value, &space, &ends, apart);
     let counts = objective.counts();
     let explored = Explored { searches, basins, space, apart, failures, counts };
-    watch.log(&explored.report(search, begun.elapsed().as_secs_f64()))?;
+    watch.log(&explored.report(search, study.quantity(), begun.elapsed().as_secs_f64()))?;
     Ok(Some(explored))
 }
 
@@ -71,7 +72,7 @@ impl Explored {
         self.basins.iter().take(count).map(|basin| basin.best.x.clone()).collect()
     }
 
-    fn report(&self, search: &Search, seconds: f64) -> String {
+    fn report(&self, search: &Search, quantity: Measure, seconds: f64) -> String {
         let best = &self.basins[0].best;
         let at = search.variables.iter().zip(&best.x);
         let at: Vec<String> = at.map(|(variable, value)| format!("{variable} = {}", short(*value))).collect();
@@ -80,7 +81,7 @@ impl Explored {
             counted(self.counts.evaluations, "evaluation"),
             counted(self.searches.len() as u64, "search"),
             counted(self.basins.len() as u64, "place"),
-            worth(best.value),
+            worth(best.value, quantity),
             at.join(", ")
         )
     }
@@ -105,8 +106,8 @@ pub(crate) struct BasinNote {
     #[serde(flatten)]
     pub(crate) design: PerVariable<f64>,
     /// null if it breaks a limit.
-    #[serde(rename = "E1max")]
-    pub(crate) e1_max: f64,
+    #[serde(flatten)]
+    pub(crate) found: Amount,
     /// Searches that ended here.
     pub(crate) searches: usize,
     /// Refinements that ended here.
@@ -118,6 +119,7 @@ impl Basins {
     /// refinement. In `runs` the refinements of basins follow `skip` others, in the order of the basins.
     pub(super) fn new(
         explored: &Explored,
+        quantity: Measure,
         search: &Search,
         refined: &Refined,
         journal: &Journal,
@@ -137,7 +139,7 @@ impl Basins {
         let notes =
             basins(value, &explored.space, &points, explored.apart).into_iter().map(|basin| BasinNote {
                 design: PerVariable::of(&search.variables, &basin.best.x),
-                e1_max: energy(basin.best.value),
+                found: Amount::new(quantity, energy(basin.best.value)),
                 searches: basin
                     .reached_by
                     .iter()
@@ -157,12 +159,13 @@ impl Basins {
 
     /// Writes `basins.csv`.
     pub(super) fn write(&self, objective: &PeakEnergy, results: &Directory) -> Result<(), Error> {
-        let mut csv = "basin,searches,refinements,k2,c2,D,C,E1max\n".to_owned();
+        let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);
+        let mut csv = format!("basin,searches,refinements,k2,c2,D,C,{}\n", quantity.name());
         for (i, basin) in self.basins.iter().enumerate() {
-            let BasinNote { design: at, e1_max, searches, refinements } = basin;
+            let BasinNote { design: at, found, searches, refinements } = basin;
             let x: Vec<f64> = objective.variables().iter().filter_map(|&v| at.get(v)).collect();
             let damper = objective.damper(&x)?;
-            let value = if e1_max.is_nan() { String::new() } else { e1_max.to_string() };
+            let value = if found.value.is_nan() { String::new() } else { found.value.to_string() };
             csv += &format!(
                 "{},{searches},{refinements},{},{value}\n",
                 i + 1,
@@ -175,8 +178,10 @@ impl Basins {
     /// A line on screen.
     pub(super) fn report(&self) -> String {
         let Self { searches, reached_optimum, basins, .. } = self;
-        let next = basins.get(1).map_or(f64::NAN, |basin| basin.e1_max);
-        let next = if next.is_nan() { String::new() } else { format!("; the next has {} J", short(next)) };
+        let next = basins.get(1).map(|basin| basin.found).filter(|found| !found.value.is_nan());
+        let next = next.map_or_else(String::new, |Amount { value, quantity, .. }| {
+            format!("; the next has {}", measured(value, quantity))
+        });
         let lonely = match reached_optimum {
             0 => "no search came to it, a given start or the grid did",
             1 => "a lonely one: more searches may find better",

@@ -1,17 +1,25 @@
 //! The formats of a refinement's log.
 
+use crate::amount::measured;
+use retune_model::Measure;
 use retune_optim::{Row, energy};
-use retune_study::{joined, short};
+use retune_study::joined;
 
 /// Columns of `fminsearch.csv`.
-pub const CSV_HEADER: &str = "iteration,func_count,procedure,k2,c2,D,C,E1max";
+pub fn csv_header(quantity: Measure) -> String {
+    format!("iteration,func_count,procedure,k2,c2,D,C,{}", quantity.name())
+}
 
 /// Columns of `fminsearch.txt`: those of the paper's Table 1.
-pub const TXT_HEADER: &str = "k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         E1max J";
+pub fn table1_header(quantity: Measure) -> String {
+    let value = format!("{} {}", quantity.name(), quantity.unit());
+    format!("k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         {value}")
+}
 
 /// Columns of the log on screen.
-pub const SCREEN_HEADER: &str =
-    " iter evals  k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         E1max J         procedure";
+pub fn screen_header(quantity: Measure) -> String {
+    format!(" iter evals  {:<79} procedure", table1_header(quantity))
+}
 
 /// A row of `fminsearch.csv`, with k2, c2, D and C (SI units); numbers to the last bit.
 pub fn csv(row: &Row, values: &[f64; 4]) -> String {
@@ -32,9 +40,9 @@ pub fn screen(row: &Row, values: &[f64; 4]) -> String {
 }
 
 /// A value of the objective in words.
-pub fn worth(value: f64) -> String {
-    let energy = energy(value);
-    if energy.is_nan() { "no feasible design".to_owned() } else { format!("{} J", short(energy)) }
+pub fn worth(value: f64, quantity: Measure) -> String {
+    let value = energy(value);
+    if value.is_nan() { "no feasible design".to_owned() } else { measured(value, quantity) }
 }
 
 /// A number as in the paper's Table 1: `2.203750E+002`.

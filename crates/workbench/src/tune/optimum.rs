@@ -7,10 +7,11 @@ use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::Error;
+use crate::amount::Amount;
 use crate::certify::Short;
 use crate::summary::{MadeBy, Summary, TunedDamper};
 use notes::{Goal, LimitNote, Met};
-use retune_model::Variable;
+use retune_model::{Measure, Variable};
 use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
 use retune_study::short;
 use retune_study::{PerVariable, Search, Study};
@@ -22,17 +23,17 @@ pub struct Optimum {
     pub(crate) damper_type: &'static str,
     #[serde(flatten)]
     pub(crate) damper: TunedDamper,
-    #[serde(rename = "E1max")]
-    e1_max: f64,
-    /// The meaning of E1max, if it is not that of a window at the scene's omega.
+    #[serde(flatten)]
+    value: Amount,
+    /// The meaning of that value, if it is not E1max in a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) objective: Option<Goal>,
-    /// The same without a damper, J; null if it has no bound.
-    #[serde(rename = "E1max_none")]
-    e1_max_none: f64,
-    /// The same with the damper of the study's scene, J; null if it cannot be run.
-    #[serde(rename = "E1max_study")]
-    e1_max_study: f64,
+    /// The same without a damper; null if it has no bound.
+    #[serde(flatten)]
+    none: Amount,
+    /// The same with the damper of the study's scene; null if it cannot be run.
+    #[serde(flatten)]
+    study: Amount,
     pub(crate) on_bound: Vec<Met>,
     /// The parameters in which the best point of the grid lies at its edge, where the grid could be wider.
     pub(crate) on_edge: Vec<Variable>,
@@ -61,13 +62,13 @@ pub(super) struct Searched<'a> {
     pub basins: Option<Basins>,
 }
 
-/// A damper that was found, and its E1max.
+/// A damper that was found, and its value by the objective.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Found {
     /// The damper.
     #[serde(flatten)]
     pub damper: TunedDamper,
-    /// E1max, J.
+    /// E1max, J, or the value of the study's quantity.
     #[serde(rename = "E1max")]
     pub e1_max: f64,
 }
@@ -77,8 +78,8 @@ pub struct Found {
 struct GridBest {
     points: usize,
     best: PerVariable<f64>,
-    #[serde(rename = "E1max")]
-    e1_max: f64,
+    #[serde(flatten)]
+    value: Amount,
 }
 
 /// The refinements.
@@ -99,11 +100,11 @@ struct Refinement {
 #[derive(Clone, Debug, Serialize)]
 struct RunNote {
     start: PerVariable<f64>,
-    #[serde(rename = "E1max_start")]
-    e1_max_start: f64,
+    #[serde(flatten)]
+    at_start: Amount,
     found: PerVariable<f64>,
-    #[serde(rename = "E1max")]
-    e1_max: f64,
+    #[serde(flatten)]
+    value: Amount,
     iterations: u64,
     func_count: u64,
     stop: Stop,
@@ -126,16 +127,16 @@ impl Optimum {
         evaluation: Evaluation,
         certificate: Short,
     ) -> Result<Self, Error> {
-        let best = refined.best();
+        let (best, quantity) = (refined.best(), study.quantity());
         let damper = refined.objective.damper(&best.minimum.x)?;
         let over = |values: &[f64]| PerVariable::of(&search.variables, values);
         let refine = study.optimize.as_ref().map(|optimize| optimize.refine).unwrap_or_default();
         Ok(Self {
             damper_type: summary.damper_type(),
             damper: TunedDamper::of(&damper),
-            e1_max: evaluation.energy,
-            e1_max_none: study.energy_without_damper(),
-            e1_max_study: study.energy(&study.scene).unwrap_or(f64::NAN),
+            value: Amount::new(quantity, evaluation.energy),
+            none: Amount::of(quantity, "_none", study.energy_without_damper()),
+            study: Amount::of(quantity, "_study", study.energy(&study.scene).unwrap_or(f64::NAN)),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),
             on_edge: surf.map(|surf| notes::on_edge(search, surf)).unwrap_or_default(),
@@ -143,7 +144,7 @@ impl Optimum {
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
                 best: PerVariable::of(&surf.variables, &surf.point(surf.best)),
-                e1_max: energy(surf.values[surf.best]),
+                value: Amount::new(quantity, energy(surf.values[surf.best])),
             }),
             global: basins,
             refine: Refinement {
@@ -151,7 +152,7 @@ impl Optimum {
                 tol_x: refine.tol_x,
                 tol_fun: refine.tol_fun,
                 winner: refined.winner + 1,
-                runs: refined.runs.iter().map(|run| RunNote::new(run, over)).collect(),
+                runs: refined.runs.iter().map(|run| RunNote::new(run, quantity, over)).collect(),
             },
             failures: FailureNote::new(&[
                 surf.map(|surf| &surf.failures),
@@ -167,7 +168,7 @@ impl Optimum {
 
     /// The best design.
     pub fn found(&self) -> Found {
-        Found { damper: self.damper, e1_max: self.e1_max }
+        Found { damper: self.damper, e1_max: self.value.value }
     }
 
     /// The verdict of its certificate.
@@ -219,18 +220,18 @@ fn start(refined: &Refined) -> Result<Found, Error> {
 }
 
 impl RunNote {
-    fn new(run: &Run, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
+    fn new(run: &Run, quantity: Measure, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
         let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
-        let (start, e1_max_start) = match run.rows.first() {
+        let (start, at_start) = match run.rows.first() {
             Some(row) => (over(&row.best), energy(row.value)),
             None => (PerVariable::default(), f64::NAN),
         };
         let (iterations, func_count) = (*iterations, *func_count);
         Self {
             start,
-            e1_max_start,
+            at_start: Amount::of(quantity, "_start", at_start),
             found: over(x),
-            e1_max: energy(*value),
+            value: Amount::new(quantity, energy(*value)),
             iterations,
             func_count,
             stop: *stop,

@@ -4,15 +4,13 @@ use super::log::worth;
 use super::refine::Refined;
 use super::surf::Surf;
 use crate::Error;
+use crate::amount;
 use crate::summary::MadeBy;
 use retune_figures::colour::BLUE;
 use retune_figures::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, Width, scale_for, svg};
 use retune_optim::{Variable, energy};
 use retune_store::Directory;
 use retune_study::{Search, Study};
-
-/// The label of E1max.
-pub const ENERGY: &str = "E1max, J";
 
 /// Draws all figures.
 pub(super) fn draw(
@@ -22,23 +20,23 @@ pub(super) fn draw(
     refined: &Refined,
     results: &Directory,
 ) -> Result<(), Error> {
-    let made_by = MadeBy::new(study).to_string();
     if let Some(surf) = surf {
         let free: Vec<usize> =
             (0..surf.variables.len()).filter(|&axis| surf.grid.axes()[axis].points() > 1).collect();
         for (i, &x) in free.iter().enumerate() {
             for &y in &free[i + 1..] {
                 let name = format!("surf-{}-{}.svg", surf.variables[x], surf.variables[y]);
-                results.write(&name, &heat_map(surf, [x, y], search, refined, &made_by))?;
+                results.write(&name, &heat_map(surf, [x, y], search, refined, study))?;
             }
         }
     }
-    results.write("convergence.svg", &convergence(search, refined, &made_by))?;
+    results.write("convergence.svg", &convergence(search, refined, study))?;
     Ok(())
 }
 
 /// The surface over two axes of the grid: the least E1max over all other axes.
-fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined, made_by: &str) -> String {
+fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined, study: &Study) -> String {
+    let quantity = study.quantity();
     let [columns, lines] = [x, y].map(|axis| surf.grid.axes()[axis].points());
     let mut least = vec![f64::INFINITY; columns * lines];
     let mut steps = vec![0; surf.grid.dim()];
@@ -56,24 +54,28 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
     let others = (0..surf.variables.len()).filter(|axis| *axis != x && *axis != y);
     let others: Vec<String> = others.map(|axis| surf.variables[axis].to_string()).collect();
     let what = match others.as_slice() {
-        [] => "E1max at each point of the grid.".to_owned(),
-        others => format!("Least E1max over the grid in {}.", others.join(" and ")),
+        [] => format!("{} at each point of the grid.", quantity.name()),
+        others => format!("Least {} over the grid in {}.", quantity.name(), others.join(" and ")),
     };
     let places = [
         Place {
             at: (best[x], best[y]),
-            label: format!("best of the grid, {}", worth(surf.values[surf.best])),
+            label: format!("best of the grid, {}", worth(surf.values[surf.best], quantity)),
         },
         Place {
             at: (found(x), found(y)),
-            label: format!("refined, {}", worth(refined.best().minimum.value)),
+            label: format!("refined, {}", worth(refined.best().minimum.value, quantity)),
         },
     ];
-    let (chart, legend) =
-        retune_figures::heat_map(&[x, y].map(|axis| nodes(surf, axis)), &least, ENERGY, &places);
+    let (chart, legend) = retune_figures::heat_map(
+        &[x, y].map(|axis| nodes(surf, axis)),
+        &least,
+        &amount::label(quantity),
+        &places,
+    );
     let [over, and] = [x, y].map(|axis| surf.variables[axis]);
     svg(&Sheet {
-        title: format!("E1max over {over} and {and}"),
+        title: format!("{} over {over} and {and}", quantity.name()),
         description: format!(
             "A map of {columns} by {lines} cells. {what} Marked: {}.",
             places.map(|place| place.label).join("; ")
@@ -83,7 +85,7 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
         columns: 1,
         stacked: false,
         legend,
-        caption: vec![what, made_by.to_owned()],
+        caption: vec![what, MadeBy::new(study).to_string()],
     })
 }
 
@@ -98,8 +100,9 @@ fn nodes(surf: &Surf, axis: usize) -> Nodes {
     Nodes { label: label(surf.variables[axis]), scale, values }
 }
 
-/// E1max and each tuned parameter against the iteration of the best run.
-fn convergence(search: &Search, refined: &Refined, made_by: &str) -> String {
+/// The objective and each tuned parameter against the iteration of the best run.
+fn convergence(search: &Search, refined: &Refined, study: &Study) -> String {
+    let quantity = study.quantity();
     let rows = &refined.best().rows;
     let chart = |label: String, scale: Option<Scale>, values: Vec<f64>, height: f64| {
         let x = rows.iter().map(|row| row.iteration as f64);
@@ -110,7 +113,7 @@ fn convergence(search: &Search, refined: &Refined, made_by: &str) -> String {
     };
     let energies: Vec<f64> = rows.iter().map(|row| energy(row.value)).collect();
     let ends = [energies.first(), energies.last()].map(|e| e.copied().unwrap_or(f64::NAN));
-    let mut charts = vec![chart(ENERGY.to_owned(), None, energies, 95.0)];
+    let mut charts = vec![chart(amount::label(quantity), None, energies, 95.0)];
     for (i, &variable) in search.variables.iter().enumerate() {
         let values = rows.iter().map(|row| row.best[i]).collect();
         charts.push(chart(label(variable), Some(Scale::Linear), values, 65.0));
@@ -118,13 +121,14 @@ fn convergence(search: &Search, refined: &Refined, made_by: &str) -> String {
     if let Some(last) = charts.last_mut() {
         last.height += 25.0;
     }
+    let name = quantity.name();
     let what = format!("Best vertex of the simplex, start {} of {}.", refined.winner + 1, refined.runs.len());
     svg(&Sheet {
         title: "Convergence of the refinement".to_owned(),
         description: format!(
-            "E1max and the tuned parameters against the iteration, one below the other. {what} E1max from {} to {} in {} iterations.",
-            worth(ends[0]),
-            worth(ends[1]),
+            "{name} and the tuned parameters against the iteration, one below the other. {what} {name} from {} to {} in {} iterations.",
+            worth(ends[0], quantity),
+            worth(ends[1], quantity),
             rows.last().map_or(0, |row| row.iteration)
         ),
         width: Width::Column,
@@ -132,7 +136,7 @@ fn convergence(search: &Search, refined: &Refined, made_by: &str) -> String {
         columns: 1,
         stacked: true,
         legend: Vec::new(),
-        caption: vec![what, made_by.to_owned()],
+        caption: vec![what, MadeBy::new(study).to_string()],
     })
 }
 

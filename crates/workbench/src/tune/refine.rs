@@ -1,6 +1,6 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
-use super::log::{self, CSV_HEADER, TXT_HEADER};
+use super::log;
 use super::objective::{kept, objective};
 use crate::Error;
 use crate::Observer;
@@ -50,7 +50,7 @@ pub(super) fn refine(
 ) -> Result<Refined, Error> {
     let objective = objective(study, search, &search.variables);
     let mut all = results.file("fminsearch-starts.csv")?;
-    all.push_line(&format!("start,{CSV_HEADER}"))?;
+    all.push_line(&format!("start,{}", log::csv_header(study.quantity())))?;
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
@@ -58,7 +58,7 @@ pub(super) fn refine(
             "\nfminsearch, start {} of {}\n{}",
             number + 1,
             starts.len(),
-            log::SCREEN_HEADER
+            log::screen_header(study.quantity())
         ))?;
         let run = run(&objective, search, start, results.journal(), |row, design| {
             all.push_line(&format!("{},{}", number + 1, log::csv(row, design)))?;
@@ -109,8 +109,8 @@ fn run(
 fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
     let mut csv = results.file("fminsearch.csv")?;
     let mut txt: Pending = results.file("fminsearch.txt")?;
-    csv.push(&format!("{CSV_HEADER}\n"))?;
-    txt.push(&format!("{TXT_HEADER}\n"))?;
+    csv.push(&format!("{}\n", log::csv_header(study.quantity())))?;
+    txt.push(&format!("{}\n", log::table1_header(study.quantity())))?;
     for row in &refined.best().rows {
         let design = Design::of(&refined.objective.damper(&row.best)?).values();
         csv.push(&format!("{}\n", log::csv(row, &design)))?;

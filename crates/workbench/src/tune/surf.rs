@@ -1,10 +1,10 @@
-//! The coarse stage: E1max on a grid.
+//! The coarse stage: the objective on a grid.
 
 use super::log::worth;
 use super::objective::objective;
 use crate::Error;
 use crate::Observer;
-use retune_model::Design;
+use retune_model::{Design, Measure};
 use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
 use retune_store::Directory;
 use retune_study::{Search, Study};
@@ -14,13 +14,13 @@ use std::time::Instant;
 // A journal must hold every grid that a study may have.
 const _: () = assert!(retune_study::MOST_GRID_POINTS <= retune_store::MOST_POINTS);
 
-/// E1max at every point of the grid.
+/// The objective at every point of the grid.
 pub struct Surf {
     /// The grid's parameters, in the order of its axes.
     pub variables: Vec<Variable>,
     /// The grid.
     pub grid: Grid,
-    /// E1max at each point, J; +∞ where it could not be computed.
+    /// Its value at each point; +∞ where it could not be computed.
     pub values: Vec<f64>,
     /// The number of the best point.
     pub best: usize,
@@ -68,17 +68,23 @@ pub(super) fn surf(
     let Some(&best) = best_separated(&grid, &values, 1, 0).first() else {
         return Err(Error::NoStart(failures));
     };
-    write(&objective, &grid, &values, results)?;
+    write(&objective, &grid, &values, study.quantity(), results)?;
     let counts = objective.counts();
     let surf = Surf { variables, grid, values, best, failures, counts };
-    watch.log(&surf.report(begun.elapsed().as_secs_f64()))?;
+    watch.log(&surf.report(study.quantity(), begun.elapsed().as_secs_f64()))?;
     Ok(Some(surf))
 }
 
-/// A row for each point, all four parameters and E1max.
-fn write(objective: &PeakEnergy, grid: &Grid, values: &[f64], results: &Directory) -> Result<(), Error> {
+/// A row for each point, all four parameters and the value.
+fn write(
+    objective: &PeakEnergy,
+    grid: &Grid,
+    values: &[f64],
+    quantity: Measure,
+    results: &Directory,
+) -> Result<(), Error> {
     let mut file = results.file("surf.csv")?;
-    file.push(&format!("{},E1max\n", joined(&Variable::ALL, ",")))?;
+    file.push(&format!("{},{}\n", joined(&Variable::ALL, ","), quantity.name()))?;
     let mut point = vec![0.0; grid.dim()];
     for (i, value) in values.iter().enumerate() {
         grid.point(i, &mut point);
@@ -112,7 +118,7 @@ impl Surf {
         chosen.into_iter().map(start).collect()
     }
 
-    fn report(&self, seconds: f64) -> String {
+    fn report(&self, quantity: Measure, seconds: f64) -> String {
         let failed = match self.failures.count {
             0 => String::new(),
             count => format!("; {count} could not be computed"),
@@ -124,7 +130,7 @@ impl Surf {
             .zip(point)
             .map(|(variable, value)| format!("{variable} = {value}"))
             .collect();
-        let least = worth(self.values[self.best]);
-        format!("surf: {seconds:.1} s; least E1max {least} at {}{failed}", at.join(", "))
+        let least = worth(self.values[self.best], quantity);
+        format!("surf: {seconds:.1} s; least {} {least} at {}{failed}", quantity.name(), at.join(", "))
     }
 }

@@ -122,10 +122,11 @@ fn again(
 ) -> Result<Value, Error> {
     let scene = found.worst_run(tuned, objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
+    let name = study.quantity().name();
     let mut again = json!({
-        "E1max": found.energy,
-        "E1max_none": study.energy_without_damper(),
-        "E1max_study": study.energy(&study.scene),
+        name: found.energy,
+        format!("{name}_none"): study.energy_without_damper(),
+        format!("{name}_study"): study.energy(&study.scene),
         "simulation": Summary::new(study, scene, &response) });
     if !objective.goal().limits.is_empty() {
         let [stroke, force, cavity] = Limit::ALL.map(|limit| found.reached.get(limit));
@@ -152,16 +153,17 @@ pub fn certificate(study: &Study, said: &Value, name: &str, report: &mut Report<
     }
 }
 
-/// E1max by the objective of a study for a design, J; infinite where it has none.
+/// The value by the objective of a study for a design; infinite where it has none.
 pub fn energy(study: &Study, design: &Design) -> f64 {
     study.scene_at(design).and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
-/// The check of a row of a search: the minimised value, or the E1max of a basin, which is empty where the design breaks a limit.
+/// The check of a row of a search: the minimised value, or the value of a basin, which is empty where the design breaks a limit.
 fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
-    let text = row.text("E1max");
+    let name = objective.goal().objective.quantity().name();
+    let text = row.text(name);
     let basin = !row.text("basin").is_empty();
-    if !(basin && text.is_empty()) && row.number("E1max").is_nan() {
+    if !(basin && text.is_empty()) && row.number(name).is_nan() {
         return Check::never();
     }
     let design = row.design();
@@ -171,19 +173,15 @@ fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
         let value = found.map_or(f64::INFINITY, |found| found.value);
         if basin { retune_optim::energy(value) } else { value }
     };
-    Check { said: row.number("E1max"), again: Box::new(again) }
+    Check { said: row.number(name), again: Box::new(again) }
 }
 
 /// The checks of the curves over the band: without damper, with that of the study, with the best.
 fn curves<'a>(study: &'a Study, tuned: Scene, sample: &Sample) -> Vec<Check<'a>> {
     let mut checks = Vec::new();
     for row in sample.rows() {
-        let scenes: [_; CURVES] = [
-            ("E1max_none", Scene { damper: None, ..tuned }),
-            ("E1max_study", study.scene),
-            ("E1max_tuned", tuned),
-        ];
-        for (column, mut scene) in scenes {
+        let scenes: [_; CURVES] = [Scene { damper: None, ..tuned }, study.scene, tuned];
+        for (column, mut scene) in band::columns(study.quantity()).iter().zip(scenes) {
             checks.push(match NonNegative::new(row.number("omega")) {
                 Ok(omega) => {
                     scene.forcing.frequency = omega;

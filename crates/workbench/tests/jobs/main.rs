@@ -11,6 +11,7 @@ mod interrupted;
 mod links;
 mod observers;
 mod pareto;
+mod quantity;
 mod replaced;
 mod report;
 mod shards;

@@ -1,6 +1,7 @@
 //! The measurements that a certificate is made from.
 
 use super::limits::Kept;
+use crate::amount::Amount;
 use retune_dynamics::{Kind, Regime};
 use retune_solver::Method;
 use serde::Serialize;
@@ -10,24 +11,24 @@ pub const FINER: usize = 4;
 /// The quantiles of the neighbours between which their width is measured.
 const WITHIN: [f64; 2] = [0.05, 0.95];
 
-/// The run with the largest E1max.
+/// The run with the largest value.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct WorstRun {
-    #[serde(rename = "E1max")]
-    pub e1_max: f64,
+    #[serde(flatten)]
+    pub value: Amount,
     pub omega: f64,
     pub k1: f64,
     /// φ of the force P cos(ωt + φ), rad.
     pub phase: f64,
 }
 
-/// E1max of the worst run by a method.
+/// The value of the worst run by a method.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Run {
     pub method: Method,
     pub rtol: f64,
-    #[serde(rename = "E1max")]
-    pub e1_max: f64,
+    #[serde(flatten)]
+    pub value: Amount,
 }
 
 /// The motion of the worst run.
@@ -47,25 +48,25 @@ pub struct Motion {
     pub confidence: f64,
 }
 
-/// The sensitivity of E1max to an error of one parameter.
+/// The sensitivity of the objective to an error of one parameter.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sensitivity {
     pub parameter: &'static str,
     pub value: f64,
-    /// Slope, J for 1 % more of the parameter.
+    /// Slope, the change for 1 % more of the parameter.
     pub slope_per_percent: f64,
-    /// The largest E1max within 1 % of it, J, and where; null if a design there cannot be run.
+    /// The largest value within 1 % of it, and where; null if a design there cannot be run.
     pub worst: f64,
     pub worst_at_percent: f64,
 }
 
-/// The distribution of E1max among designs within manufacturing errors.
+/// The distribution of the objective among designs within manufacturing errors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Neighbourhood {
     pub members: usize,
     /// Largest relative error of k1, k2, c2, D and C.
     pub errors: f64,
-    /// 5 %, 50 % and 95 % of the members have less, J; null where they cannot be run.
+    /// 5 %, 50 % and 95 % of the members have less; null where they cannot be run.
     pub low: f64,
     pub median: f64,
     pub high: f64,
@@ -83,9 +84,9 @@ pub struct Measured {
 }
 
 impl Run {
-    /// Difference to the worst run of the study's own method, J.
+    /// Difference to the worst run of the study's own method.
     pub fn error(&self, worst: &WorstRun) -> f64 {
-        (self.e1_max - worst.e1_max).abs()
+        (self.value.value - worst.value.value).abs()
     }
 }
 

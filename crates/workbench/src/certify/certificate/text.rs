@@ -1,34 +1,41 @@
 //! A certificate as text.
 
 use super::{Certificate, FINER, Motion, Neighbourhood, Run, Sensitivity, Short, WorstRun};
+use crate::amount::Amount;
 use retune_study::short;
 
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { words, error_bar, regime, exponent, .. } = self;
-        write!(f, "certificate: {words}\n  E1max ± {error_bar:.1e} J, ")?;
+        let Self { words, error_bar, quantity, regime, exponent, .. } = self;
+        write!(f, "certificate: {words}\n  {} ± {error_bar:.1e} {}, ", quantity.name(), quantity.unit())?;
         write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
     }
 }
 
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { made_by, design, e1_max, error_bar, worst_run, motion, neighbourhood, .. } = self;
+        let Self { made_by, design, value, error_bar, worst_run, motion, neighbourhood, .. } = self;
         let [m2, k2, c2, d, c] = design.values().map(short);
         writeln!(f, "{made_by}")?;
         writeln!(f, "design        m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m")?;
         let predictable = if self.predictable { "predictable" } else { "not predictable" };
-        writeln!(f, "E1max         {} J ± {error_bar:.1e} J, {predictable}", short(*e1_max))?;
-        let WorstRun { e1_max, omega, k1, phase } = worst_run;
+        let Amount { quantity, value, .. } = *value;
+        let (name, unit) = (quantity.name(), quantity.unit());
+        writeln!(f, "{name:<14}{} {unit} ± {error_bar:.1e} {unit}, {predictable}", short(value))?;
+        let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let (omega, k1) = (short(*omega), short(*k1));
-        writeln!(f, "worst run     {} J at omega = {omega} rad/s, k1 = {k1} N/m{phase}", short(*e1_max))?;
-        for Run { method, rtol, e1_max } in &self.convergence {
+        writeln!(
+            f,
+            "worst run     {} {unit} at omega = {omega} rad/s, k1 = {k1} N/m{phase}",
+            short(value.value)
+        )?;
+        for Run { method, rtol, value } in &self.convergence {
             let method = format!("{} {rtol:e}", method.name());
-            writeln!(f, "  {method:<14}{e1_max:.10} J")?;
+            writeln!(f, "  {method:<14}{:.10} {unit}", value.value)?;
         }
         if let Some(finer) = self.finer {
-            writeln!(f, "finer band    {} J with {FINER} times the samples", short(finer))?;
+            writeln!(f, "finer band    {} {unit} with {FINER} times the samples", short(finer))?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
@@ -37,16 +44,16 @@ impl std::fmt::Display for Certificate {
             f,
             "contacts      {a:.2} on the structure, {b:.2} on the obstacle in a period of the force"
         )?;
-        writeln!(f, "parameter     slope, J for 1 % more    worst within 1 %")?;
+        writeln!(f, "parameter     {:<25}worst within 1 %", format!("slope, {unit} for 1 % more"))?;
         for Sensitivity { parameter, slope_per_percent, worst, worst_at_percent, .. } in &self.sensitivity {
             let slope = format!("{slope_per_percent:+.4}");
-            writeln!(f, "  {parameter:<12}{slope:<25}{} J at {worst_at_percent:+} %", short(*worst))?;
+            writeln!(f, "  {parameter:<12}{slope:<25}{} {unit} at {worst_at_percent:+} %", short(*worst))?;
         }
         let Neighbourhood { members, errors, low, median, high } = neighbourhood;
         let [low, median, high] = [low, median, high].map(|energy| short(*energy));
         writeln!(
             f,
-            "neighbours    {members} within {} %: 90 % of them have {low} to {high} J, the median {median} J",
+            "neighbours    {members} within {} %: 90 % of them have {low} to {high} {unit}, the median {median} {unit}",
             100.0 * errors
         )?;
         if let Some(limits) = &self.limits {

@@ -2,6 +2,7 @@
 
 use super::notes::{self, Goal, LimitNote};
 use super::{FailureNote, Optimum, RunNote, stop_words};
+use crate::amount::Amount;
 use retune_model::Variable;
 use retune_optim::Limit;
 use retune_study::{counted, frequency, rounded, short};
@@ -56,7 +57,7 @@ impl Optimum {
         let single = self.objective.as_ref().is_none_or(|goal| goal.band().is_none());
         if self.certificate.is_chaotic() && single {
             return "next: give the study a band (`optimize.objective.omega`, docs/tuning.md): at this\n  \
-                    frequency alone E1max is one of many values that practically equal designs have"
+                    frequency alone the value is one of many that practically equal designs have"
                 .to_owned();
         }
         let (out, omega) = (out.display(), rounded(self.simulation.omega(), 6));
@@ -71,22 +72,22 @@ impl Optimum {
             Some(goal) => format!(", worst at omega = {}", frequency(goal.worst_omega)),
             None => format!(" at omega = {}", frequency(self.simulation.omega())),
         };
-        format!("{}: E1max {} J{at}", self.damper_type, rounded(self.e1_max, 4))
+        format!("{}: {} {}{at}", self.damper_type, self.value.quantity.name(), self.value.words())
     }
 
     /// The structure without a damper, and with the damper that the study began with.
     fn compared(&self) -> String {
-        let times = |other: f64| match rounded(other / self.e1_max, 3).as_str() {
-            _ if !other.is_finite() => "without bound".to_owned(),
-            "1" => format!("{} J (as much)", rounded(other, 4)),
-            times => format!("{} J ({times} times as much)", rounded(other, 4)),
+        let times = |other: Amount| match rounded(other.value / self.value.value, 3).as_str() {
+            _ if !other.value.is_finite() => "without bound".to_owned(),
+            "1" => format!("{} (as much)", other.words()),
+            times => format!("{} ({times} times as much)", other.words()),
         };
-        let study = if self.e1_max_study.is_nan() {
+        let study = if self.study.value.is_nan() {
             "no value with the damper of the study".to_owned()
         } else {
-            format!("{} with the damper of the study", times(self.e1_max_study))
+            format!("{} with the damper of the study", times(self.study))
         };
-        format!("instead  {} without a damper, {study}", times(self.e1_max_none))
+        format!("instead  {} without a damper, {study}", times(self.none))
     }
 
     /// All that a reader has to know before the design is used.
@@ -94,7 +95,7 @@ impl Optimum {
         let mut lines = Vec::new();
         if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
             lines.push(format!(
-                "note: {unsettled} of {} of this design had not settled at T; E1max is then that of the window",
+                "note: {unsettled} of {} of this design had not settled at T; their value is that of the window",
                 counted(*runs, "run")
             ));
         }
