@@ -1,7 +1,7 @@
 //! The largest steady response over a band of frequencies, in closed form: without samples no narrow peak can hide between them.
 //!
 //! With `u = ω²` the square of an amplitude is `V / M`, two polynomials in `u`, so it is largest at an end of the band or where
-//! the sign of `W = V' M - V M'` (of degree 6 at most) falls through zero. The band is cut wherever a factor of `V` or `M` is zero
+//! the sign of `W = V' M - V M'` (of degree 7 at most, powers of `u` taken out) falls through zero. The band is cut wherever a factor of `V` or `M` is zero
 //! (`band/factors.rs`), so on a piece all factors keep their signs. Then `V`, `M` and the terms of their slopes, in the Bernstein basis,
 //! are made of sums and products without a difference: each is known to some 20 roundings of its own size, however small.
 //! The computed `W` is off by at most `γ (|V'| M + V |M'|)`, slopes taken term by term, `γ` about 1e-14, and its roots are isolated
@@ -13,8 +13,8 @@
 mod factors;
 mod roots;
 
-use crate::{Bare, Coupled, Measure};
-use factors::{Factors, Numerator, ON_RESONANCE, Piece, Point};
+use crate::{Bare, Coupled, Measure, Source};
+use factors::{Factors, Numerator, Piece, Point};
 
 /// A largest value over a band, and where it is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,68 +37,23 @@ impl Worst {
 }
 
 impl Bare {
-    /// Largest steady value of a quantity over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`; as
-    /// [`Self::steady_e1_max`]. Stroke and contact force are zero without a damper.
+    /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`. Infinite at the
+    /// resonance of an undamped structure, also where the band ends on it to 8 roundings.
+    pub fn steady_e1_max(&self, band: [f64; 2]) -> Worst {
+        self.steady_max(Measure::Energy, band)
+    }
+
+    /// Largest steady value of a quantity over a band; as [`Self::steady_e1_max`]. Stroke and contact force are zero without a
+    /// damper; the force on the ground under a moving base is not known in closed form, and infinite.
     pub fn steady_max(&self, measure: Measure, [from, to]: [f64; 2]) -> Worst {
-        if measure == Measure::Energy {
-            return self.steady_e1_max([from, to]);
-        }
-        let mut worst = Worst::NONE;
         if matches!(measure, Measure::Stroke | Measure::ContactForce) {
             return Worst { value: 0.0, frequency: from };
         }
-        for end in [from, to] {
-            worst.note(end, self.steady(end).largest(self, end, measure));
-        }
-        // |X1|² = (P/m1)² / ((u - u0)² + u r²), r = c1/m1: by 1, by u, by u² and by k1² + u c1², the last of which is largest at
-        // u² + 2 g u = 2 g u0 with g = (k1/c1)². `past` is u - u0 without a difference.
-        let (u0, rate) = (self.k1 / self.m1, self.c1 / self.m1);
-        let half = 0.5 * rate * rate;
-        let (u, past) = match measure {
-            Measure::Displacement => (u0 - half, -half),
-            Measure::Velocity => (u0, 0.0),
-            Measure::Acceleration => {
-                let u = u0 / (1.0 - half / u0);
-                (u, u * (half / u0))
-            }
-            Measure::GroundForce => {
-                let share = 2.0 * u0 * (self.c1 / self.k1).powi(2);
-                let root = 1.0 + (1.0 + share).sqrt();
-                (2.0 * u0 / root, -u0 * share / (root * root))
-            }
-            Measure::Energy | Measure::Stroke | Measure::ContactForce => return worst,
-        };
-        let omega = u.max(0.0).sqrt();
-        if from * (1.0 - ON_RESONANCE) <= omega && omega <= to * (1.0 + ON_RESONANCE) {
-            let x1 = self.p / (self.m1 * past.hypot(omega * rate));
-            let by = match measure {
-                Measure::Velocity => omega,
-                Measure::Acceleration => u,
-                Measure::GroundForce => self.k1.hypot(omega * self.c1),
-                _ => 1.0,
-            };
-            worst.note(omega.clamp(from, to.max(from)), by * x1);
-        }
-        worst
-    }
-
-    /// Largest steady E1max, J, over the band `[from, to]` of angular frequencies, rad/s, `0 < from <= to`. Infinite at the
-    /// resonance of an undamped structure, also where the band ends on it to 8 roundings.
-    pub fn steady_e1_max(&self, [from, to]: [f64; 2]) -> Worst {
         let mut worst = Worst::NONE;
-        for end in [from, to] {
-            worst.note(end, self.steady(end).e1_max);
-        }
-        // Up to u0 = k1/m1 E1max is the spring's, from there on the mass's: `(P/m1)² / ((u - u0)² + u (c1/m1)²)` by k1/2 and by m1 u/2.
-        // The first is largest at `u0 - (c1/m1)²/2`, the second at u0.
-        let (natural, rate) = (self.k1 / self.m1, self.c1 / self.m1);
-        let below = 0.5 * rate * rate;
-        for (u, below) in [(natural, 0.0), (natural - below, below)] {
-            let omega = u.max(0.0).sqrt();
-            if from * (1.0 - ON_RESONANCE) <= omega && omega <= to * (1.0 + ON_RESONANCE) {
-                let amplitude = self.p / (self.m1 * below.hypot(omega * rate));
-                worst.note(omega.clamp(from, to.max(from)), 0.5 * amplitude * amplitude * self.k1);
-            }
+        if from < to {
+            Search::new(self, Factors::of_bare(self, to * to), false, measure, [from, to], &mut worst).run();
+        } else {
+            worst.note(from, self.steady(from).largest(self, from, measure));
         }
         worst
     }
@@ -128,7 +83,7 @@ impl Coupled {
         let mut worst = Worst::NONE;
         if from < to && measure != Measure::ContactForce {
             let factors = Factors::new(self, to * to);
-            Search { system: self, factors, measure, band: [from, to], worst: &mut worst }.run();
+            Search::new(self.bare(), factors, true, measure, [from, to], &mut worst).run();
         } else {
             worst.note(from, self.steady(from).largest(self.bare(), from, measure));
         }
@@ -137,17 +92,44 @@ impl Coupled {
 }
 
 struct Search<'a> {
-    system: &'a Coupled,
+    bare: &'a Bare,
     factors: Factors,
+    /// Whether the structure has a damper.
+    damper: bool,
     /// The quantity to be maximised, a multiple of `V / M` or of its square root.
     measure: Measure,
+    /// Amplitude of the force, N, over `u^power` and the root of `weight`.
+    force: f64,
+    power: i32,
+    weight: Option<[f64; 2]>,
     band: [f64; 2],
     worst: &'a mut Worst,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(
+        bare: &'a Bare,
+        factors: Factors,
+        damper: bool,
+        measure: Measure,
+        band: [f64; 2],
+        worst: &'a mut Worst,
+    ) -> Self {
+        let (force, power, weight) = match bare.source() {
+            Source::Force(amplitude) => (amplitude.get(), 0, None),
+            Source::Imbalance(imbalance) => (imbalance.get() * factors.unit, 2, None),
+            Source::Base(base) => (base.get(), 0, Some(ground(bare, factors.unit))),
+            Source::Decay(_) => (0.0, 0, None),
+        };
+        Self { bare, factors, damper, measure, force, power, weight, band, worst }
+    }
+
     /// Looks at every cut of the band, then at every maximum between two cuts that can be higher.
     fn run(&mut self) {
+        if self.weight.is_some() && self.measure == Measure::GroundForce {
+            self.worst.note(self.band[0], f64::INFINITY);
+            return;
+        }
         let [from, to] = self.band.map(|end| self.factors.end(end));
         let inside =
             self.factors.cuts().into_iter().filter(|cut| cut.past(&from) > 0.0 && to.past(cut) > 0.0);
@@ -174,7 +156,7 @@ impl Search<'_> {
             };
             let [v, m] = piece.bounds(numerator);
             if self.value(numerator, v / m) > self.worst.value {
-                roots::falls(piece.slope(numerator), &mut |s| self.note(&piece, numerator, s));
+                piece.falls(numerator, &mut |s| self.note(&piece, numerator, s));
             }
         }
     }
@@ -187,31 +169,45 @@ impl Search<'_> {
 
     /// `V` from a cut on to the next.
     fn numerator(&self, from: &Point) -> Numerator {
-        match self.measure {
-            Measure::Energy if from.past(&self.factors.primary) < 0.0 => Numerator::Damper,
-            Measure::Energy | Measure::Velocity => Numerator::DamperBySquare,
-            Measure::Displacement => Numerator::Damper,
-            Measure::Acceleration => Numerator::DamperByFourth,
-            Measure::GroundForce => {
-                let Bare { k1, c1, .. } = *self.system.bare();
-                Numerator::DamperByGround([k1 * k1, c1 * c1 * self.factors.unit])
-            }
-            Measure::Stroke | Measure::ContactForce => Numerator::Square,
+        // Below its own frequency the structure's spring holds the largest energy, above it its mass.
+        let by_square = self.measure == Measure::Velocity
+            || self.measure == Measure::Energy && from.past(&self.factors.primary) >= 0.0;
+        let own = match self.measure {
+            Measure::GroundForce => Some(ground(self.bare, self.factors.unit)),
+            _ if by_square => Some([0.0, 1.0]),
+            _ => None,
+        };
+        let fourth = if matches!(self.measure, Measure::Acceleration | Measure::Stroke) { 2 } else { 0 };
+        let (power, weight) = match (self.weight, own) {
+            // Of two weights the one that is a power of u counts as such.
+            (Some(weight), Some(_)) => (1, Some(weight)),
+            (weight, own) => (0, weight.or(own)),
+        };
+        Numerator {
+            power: self.power + fourth + power,
+            weight: weight.unwrap_or([1.0, 0.0]),
+            damper: self.damper && self.measure != Measure::Stroke,
         }
     }
 
     fn value(&self, numerator: Numerator, ratio: f64) -> f64 {
-        let Bare { m1, k1, p, .. } = *self.system.bare();
-        let amplitude = p / (m1 * self.factors.unit);
+        let Bare { m1, k1, .. } = *self.bare;
         let unit = self.factors.unit;
+        let amplitude = self.force / (m1 * unit);
         let size = amplitude * ratio.sqrt();
+        // Whether the spring or the mass holds the energy shows in the numerator, see there.
+        let springs = numerator.power == self.power && numerator.weight == self.weight.unwrap_or([1.0, 0.0]);
         match self.measure {
-            // Below its own frequency the structure's spring holds the largest energy, above it its mass (see `numerator`).
-            Measure::Energy if numerator == Numerator::Damper => 0.5 * k1 * amplitude * amplitude * ratio,
+            Measure::Energy if springs => 0.5 * k1 * amplitude * amplitude * ratio,
             Measure::Energy => 0.5 * m1 * unit * amplitude * amplitude * ratio,
             Measure::Velocity => size * unit.sqrt(),
             Measure::Acceleration => size * unit,
             Measure::Displacement | Measure::GroundForce | Measure::Stroke | Measure::ContactForce => size,
         }
     }
+}
+
+/// `[k1², c1²]` by which `1` and `u` make up `|k1 + iω c1|²`.
+fn ground(bare: &Bare, unit: f64) -> [f64; 2] {
+    [bare.k1 * bare.k1, bare.c1 * bare.c1 * unit]
 }

@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{Excitation, Forcing, Primary};
+use crate::{Excitation, Forcing, Primary, Source};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -9,28 +9,63 @@ pub struct Bare {
     pub(crate) m1: f64,
     pub(crate) c1: f64,
     pub(crate) k1: f64,
-    pub(crate) p: f64,
     pub(crate) omega: f64,
+    source: Source,
+    /// Amplitude of the force at ω, N, and its phase, rad: φ, and by how much the force leads the motion of a base.
+    amplitude: f64,
     phase: f64,
+    lead: f64,
 }
 
 impl Bare {
     /// Collects the numbers of a structure and its forcing.
     pub fn new(primary: &Primary, forcing: &Forcing) -> Self {
-        Self {
+        let bare = Self {
             m1: primary.mass.get(),
             c1: primary.damping.get(),
             k1: primary.stiffness.get(),
-            p: forcing.amplitude.get(),
             omega: forcing.frequency.get(),
+            source: forcing.source,
+            amplitude: 0.0,
             phase: 0.0,
+            lead: 0.0,
+        };
+        let [amplitude, lead] = bare.amplitude_and_lead(bare.omega);
+        Self { amplitude, lead, ..bare }
+    }
+
+    /// The amplitude of the force at the angular frequency `omega`, N, and by how much it leads, rad. A base that moves by `y` pushes
+    /// the structure by `k1 y + c1 dy/dt`.
+    fn amplitude_and_lead(&self, omega: f64) -> [f64; 2] {
+        match self.source {
+            Source::Force(amplitude) => [amplitude.get(), 0.0],
+            Source::Imbalance(imbalance) => [imbalance.get() * omega * omega, 0.0],
+            Source::Base(base) => {
+                [base.get() * self.k1.hypot(omega * self.c1), (omega * self.c1).atan2(self.k1)]
+            }
+            Source::Decay(_) => [0.0; 2],
         }
     }
 
-    /// The same under the force `P cos(ωt + φ)`, φ in rad. Time still begins at 0.
+    /// The forcing's kind and size.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// Whether the base moves, so that its force goes through the ground.
+    pub fn is_on_moving_base(&self) -> bool {
+        matches!(self.source, Source::Base(_))
+    }
+
+    /// The same under the force `P cos(ωt + φ)`, or on a base that moves by `Y cos(ωt + φ)`, φ in rad. Time still begins at 0.
     #[must_use]
     pub fn with_phase(self, phase: f64) -> Self {
         Self { phase, ..self }
+    }
+
+    /// m1, kg.
+    pub fn mass(&self) -> f64 {
+        self.m1
     }
 
     /// Angular frequency ω of the force, rad/s.
@@ -38,20 +73,29 @@ impl Bare {
         self.omega
     }
 
-    /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N, with the amplitude and the phase of whatever forces the structure.
     pub fn excitation(&self, t: f64) -> Excitation {
-        let (sin, cos) = (self.omega * t + self.phase).sin_cos();
-        [self.p * cos, self.p * sin]
+        let (sin, cos) = (self.omega * t + (self.phase + self.lead)).sin_cos();
+        [self.amplitude * cos, self.amplitude * sin]
     }
 
-    /// The complex amplitude `P e^{iφ}` of the force, N.
-    pub(crate) fn force(&self) -> Complex<f64> {
-        Complex::from_polar(self.p, self.phase)
+    /// The complex amplitude `P e^{iφ}` of the force at the angular frequency `omega`, N.
+    pub(crate) fn force(&self, omega: f64) -> Complex<f64> {
+        let [amplitude, lead] = self.amplitude_and_lead(omega);
+        Complex::from_polar(amplitude, self.phase + lead)
     }
 
     /// State at rest, `[0, 0]`.
     pub fn rest(&self) -> [f64; 2] {
         [0.0; 2]
+    }
+
+    /// State at t = 0: at rest, or where a free decay starts.
+    pub fn start(&self) -> [f64; 2] {
+        match self.source {
+            Source::Decay(start) => [start.x1.get(), start.v1.get()],
+            _ => self.rest(),
+        }
     }
 
     /// Equation (1) without a damper: `[v1, a1]`, m/s and m/s².
@@ -102,13 +146,14 @@ impl Bare {
     /// Largest growth of `√(2E)`, `P / √m1`, √J/s, with `E` the mechanical energy of the structure and of the damper: the power of
     /// the force is at most `P |v1| <= P √(2E / m1)`, and everything else only dissipates energy.
     pub fn energy_norm_growth(&self) -> f64 {
-        self.p / self.m1.sqrt()
+        self.amplitude / self.m1.sqrt()
     }
 
-    /// The energy bound: the most energy that the force can supply within `t` seconds from rest, J, `(P t)² / (2 m1)`; see
-    /// [`Self::energy_norm_growth`].
+    /// The energy bound: the most energy that there can be after `t` seconds, J. `√(2E)` grows by at most
+    /// [`Self::energy_norm_growth`], so from rest it is `(P t)² / (2 m1)`.
     pub fn most_energy(&self, t: f64) -> f64 {
-        0.5 * (self.energy_norm_growth() * t).powi(2)
+        let [x1, v1] = self.start();
+        0.5 * ((2.0 * self.primary_energy(x1, v1)).sqrt() + self.energy_norm_growth() * t).powi(2)
     }
 
     /// A bound on `|x1|`, m, over a stretch of so many seconds that ends at `x1` and on which the primary energy is at most `e1`:

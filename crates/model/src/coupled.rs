@@ -4,7 +4,7 @@ mod energies;
 mod structure;
 
 use crate::bare::largest;
-use crate::{Bare, Damper, Excitation, Forcing, Primary, hertz_force, hertz_force_slope};
+use crate::{Bare, Damper, Excitation, Finite, Forcing, Primary, Source, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
 
 /// The two walls of the cavity.
@@ -76,6 +76,23 @@ impl Coupled {
         [0.0, 0.0, self.d, 0.0]
     }
 
+    /// State at t = 0: at rest, or where a free decay starts, by default with the damper's spring at rest.
+    pub fn start(&self) -> [f64; 4] {
+        match self.bare.source() {
+            Source::Decay(start) => {
+                let x1 = start.x1.get();
+                [x1, start.v1.get(), start.x2.map_or(x1 + self.d, Finite::get), start.v2.get()]
+            }
+            _ => self.rest(),
+        }
+    }
+
+    /// The energy bound with a damper; see [`Bare::most_energy`]. Walls store what an overlap at the start gives them.
+    pub fn most_energy(&self, t: f64) -> f64 {
+        let start = (2.0 * self.total_energy(&self.start())).sqrt();
+        0.5 * (start + self.energy_norm_growth() * t).powi(2)
+    }
+
     /// Position `D` of the damper relative to the structure where its spring is at rest, m.
     pub fn rest_distance(&self) -> f64 {
         self.d
@@ -92,6 +109,11 @@ impl Coupled {
     /// Hertz stiffness of a wall, N/m^1.5.
     pub fn hertz(&self, side: Side) -> f64 {
         self.hertz[side as usize]
+    }
+
+    /// `[m1, m2]`, kg.
+    pub fn masses(&self) -> [f64; 2] {
+        [self.bare.m1, self.m2]
     }
 
     /// `1/m1 + 1/m2`, 1/kg: the relative acceleration of the two bodies per unit of force between them.

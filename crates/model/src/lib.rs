@@ -1,6 +1,7 @@
 //! The physics of a damper on a forced oscillator: one copy of each formula of the paper, beside its equation number.
 //!
-//! A heavy *primary structure* (PS; `m1, c1, k1`) is excited by `F(t) = P cos ωt`. A light damper (`m2, c2, k2`) moves in a
+//! A heavy *primary structure* (PS; `m1, c1, k1`) is excited by `F(t) = P cos ωt`, by a rotating imbalance or by its base, or
+//! decays from a start ([`Forcing`]). A light damper (`m2, c2, k2`) moves in a
 //! cavity of the PS: it touches the PS where `x2 - x1 <= 0` and the obstacle (the cavity's far wall, which moves with the
 //! PS) where `x2 - x1 >= D + C`. Its spring is at rest at `x2 - x1 = D`.
 //!
@@ -44,6 +45,7 @@ mod coupled;
 mod den_hartog;
 mod design;
 mod excitation;
+mod forcing;
 mod hertz;
 mod measure;
 mod regularised;
@@ -57,13 +59,14 @@ pub use coupled::{Coupled, Side};
 pub use den_hartog::den_hartog;
 pub use design::{Design, Variable};
 pub use excitation::Excitation;
+pub use forcing::{Forcing, Source, Start};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
 pub use measure::Measure;
 pub use regularised::bounds::{Growth, ORDERS};
 pub use regularised::{RegularisedContact, RegularisedState};
-pub use scene::{Contact, Damper, Forcing, Primary, Scene};
+pub use scene::{Contact, Damper, Primary, Scene};
 pub use steady::Steady;
-pub use value::{NonNegative, OutOfRange, PoissonRatio, Positive};
+pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive};
 
 /// Energy ratios of section 3: `R1 = E1max / (E1max + E2max)` and `R2 = E2max / (E1max + E2max)`, dimensionless.
 ///

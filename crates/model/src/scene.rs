@@ -1,6 +1,6 @@
 //! The parameters of a scene, with the paper's symbols in files and words in code. The mapping is written here, once.
 
-use crate::{NonNegative, PoissonRatio, Positive, hertz_stiffness};
+use crate::{Forcing, NonNegative, PoissonRatio, Positive, hertz_stiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Scene {
     /// The heavy oscillator whose vibration is to be reduced.
     pub primary: Primary,
-    /// The harmonic force on the primary structure, F(t) = P cos(omega t).
+    /// What makes the primary structure move.
     pub forcing: Forcing,
     /// The damper; leave it out (or null) for the bare primary structure.
     #[serde(default)]
@@ -43,18 +43,6 @@ impl Primary {
     pub fn half_power_half_width(&self) -> f64 {
         0.5 * self.damping.get() / self.mass.get()
     }
-}
-
-/// The harmonic force on the primary structure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Forcing {
-    /// P, amplitude of the force, N.
-    #[serde(rename = "P")]
-    pub amplitude: NonNegative,
-    /// omega, angular frequency of the force, rad/s.
-    #[serde(rename = "omega")]
-    pub frequency: NonNegative,
 }
 
 /// The damper: a mass on a spring and a dashpot in a cavity of the primary structure.

@@ -26,6 +26,9 @@ impl Steady {
             Measure::Displacement => x1,
             Measure::Velocity => omega * x1,
             Measure::Acceleration => omega * omega * x1,
+            Measure::GroundForce if bare.is_on_moving_base() => {
+                (Complex::new(bare.k1, omega * bare.c1) * self.x1 - bare.force(omega)).norm()
+            }
             Measure::GroundForce => bare.k1.hypot(omega * bare.c1) * x1,
             Measure::Stroke => self.stroke(),
             Measure::ContactForce => 0.0,
@@ -44,11 +47,11 @@ fn largest_energy(amplitude: Complex<f64>, k: f64, m_omega2: f64) -> f64 {
 }
 
 impl Bare {
-    /// Steady response at the angular frequency `omega` (rad/s) under the force amplitude of this structure:
+    /// Steady response at the angular frequency `omega` (rad/s) under the forcing of this structure:
     /// `X1 = P e^{iφ} / (k1 - m1 ω² + iω c1)`. Infinite at the resonance of an undamped structure.
     pub fn steady(&self, omega: f64) -> Steady {
         let m_omega2 = self.m1 * omega * omega;
-        let x1 = self.force() / Complex::new(self.k1 - m_omega2, omega * self.c1);
+        let x1 = self.force(omega) / Complex::new(self.k1 - m_omega2, omega * self.c1);
         Steady { x1, x2: x1, e1_max: largest_energy(x1, self.k1, m_omega2), e2_max: 0.0 }
     }
 }
@@ -67,7 +70,7 @@ impl Coupled {
         let spring = Complex::new(k2, omega * c2);
         let dynamic = Complex::new(k2 - m2 * omega2, omega * c2);
         let primary = Complex::new(k1 - m1 * omega2, omega * c1);
-        let scale = self.bare().force() / (primary * dynamic - spring * (m2 * omega2));
+        let scale = self.bare().force(omega) / (primary * dynamic - spring * (m2 * omega2));
         let (x1, x2) = (dynamic * scale, spring * scale);
         Steady {
             x1,

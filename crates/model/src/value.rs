@@ -61,10 +61,28 @@ range_type!(
     NonNegative, "a finite number not below 0", ("minimum" = 0.0), |v| v.is_finite() && v >= 0.0
 );
 range_type!(
+    /// A finite number of either sign: a position, a velocity.
+    Finite, "a finite number", ("type" = "number"), f64::is_finite
+);
+range_type!(
     /// Poisson's ratio of an isotropic elastic solid, -1 < ν <= 0.5.
     PoissonRatio, "a number above -1 and at most 0.5", ("exclusiveMinimum" = -1.0, "maximum" = 0.5),
     |v| v > -1.0 && v <= 0.5
 );
+
+impl Default for NonNegative {
+    /// Zero.
+    fn default() -> Self {
+        Self(0.0)
+    }
+}
+
+impl Default for Finite {
+    /// Zero.
+    fn default() -> Self {
+        Self(0.0)
+    }
+}
 
 #[cfg(test)]
 mod tests {

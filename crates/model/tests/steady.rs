@@ -57,7 +57,7 @@ fn exact_steady_response_solves_the_linear_system() {
         let (expected, found) = (solved(a, b, omega, numbers.p), bare.steady(omega));
         assert!((found.x1 - expected[0]).norm() < 1e-12 * expected.norm());
         assert!((found.e1_max / sampled(expected[0], omega, numbers.m1, numbers.k1) - 1.0).abs() < 1e-6);
-        assert_eq!((found.e2_max, found.stroke()), (0.0, found.x1.norm()));
+        assert_eq!((found.e2_max, found.stroke()), (0.0, 0.0));
     }
 }
 

@@ -5,11 +5,13 @@ use super::plan::Plan;
 use rayon::prelude::*;
 use retune_dynamics::parameter::evenly;
 use retune_figures::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
+use retune_model::Measure;
 use retune_optim::{PeakEnergy, Variable};
 use retune_study::Study;
 use retune_study::short;
 use retune_workbench::Error;
-use retune_workbench::tune::pictures::{ENERGY, label};
+use retune_workbench::amount;
+use retune_workbench::tune::pictures::label;
 
 /// A surface of Figure 2.
 struct Surface {
@@ -136,7 +138,7 @@ fn surface(
         Place { at: (found.best[0], found.best[1]), label: format!("best node, {:.0} J", found.best_value) },
         Place { at: (paper[0], paper[1]), label: format!("the paper's, {:.0} J", found.paper_value) },
     ];
-    let (chart, legend) = heat_map(&sides, &values, ENERGY, &places);
+    let (chart, legend) = heat_map(&sides, &values, &amount::label(Measure::Energy), &places);
     let [a, b] = surface.variables;
     let svg = svg(&Sheet {
         title: format!("{}: E1max over {a} and {b}", surface.title),

@@ -5,12 +5,12 @@ use super::measures::{Spread, at_omega, energy, near};
 use super::plan::Plan;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
-use retune_model::Scene;
+use retune_model::{Measure, Scene};
 use retune_optim::{Failures, Minimum, Objective, Options, PeakEnergy, Row, Stop, Variable, minimize};
 use retune_solver::{Settings, Window};
 use retune_study::Setting;
 use retune_workbench::Error;
-use retune_workbench::tune::log::{CSV_HEADER, csv, scientific};
+use retune_workbench::tune::log::{csv, csv_header, scientific};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
@@ -190,7 +190,7 @@ fn log(rows: &[Row], found: &Minimum, name: &str, item: &mut Item) {
     }
     item.grids.push(grid);
     let lines: String = rows.iter().map(|row| csv(row, &design(row)) + "\n").collect();
-    item.data.push((format!("table1-from-{}.csv", name.replace(' ', "-")), format!("{CSV_HEADER}\n{lines}")));
+    item.data.push((format!("table1-from-{}.csv", name.replace(' ', "-")), format!("{}\n{lines}", csv_header(Measure::Energy))));
 }
 
 /// Row 3 from the published optimum, by a stub objective for which the k2-vertex is the worst.

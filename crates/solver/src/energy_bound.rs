@@ -3,7 +3,7 @@
 use crate::error::SolverError;
 use crate::response::{Extreme, Response};
 use crate::settings::{Method, Settings, Window};
-use retune_model::{Bare, Measure, Scene};
+use retune_model::{Bare, Coupled, Measure, Scene};
 
 /// Allowance for rounding in the bound on the energy, relative.
 const SLACK: f64 = 1e-6;
@@ -73,9 +73,12 @@ pub fn largest(
     Ok(Extreme { value, time })
 }
 
-/// The most energy that the force can give in a run, J.
+/// The most energy that there can be at the end of a run, J.
 fn most(scene: &Scene, window: Window) -> f64 {
-    Bare::new(&scene.primary, &scene.forcing).most_energy(window.to)
+    match &scene.damper {
+        None => Bare::new(&scene.primary, &scene.forcing).most_energy(window.to),
+        Some(damper) => Coupled::new(&scene.primary, &scene.forcing, damper).most_energy(window.to),
+    }
 }
 
 /// Returns a response whose numbers are all finite and whose energy is within the bound.
@@ -144,7 +147,7 @@ mod tests {
         let mass = Positive::new(2.0).expect("a mass");
         let scene = Scene {
             primary: Primary { mass, damping: number(0.0), stiffness: number(0.0) },
-            forcing: Forcing { amplitude: number(4.0), frequency: number(0.0) },
+            forcing: Forcing::force(number(4.0), number(0.0)),
             damper: None,
         };
         let window = Window { from: 1.0, to: 3.0 };

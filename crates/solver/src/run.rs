@@ -15,7 +15,7 @@ use retune_model::{Bare, Coupled};
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// Follows the bare structure from rest at t = 0: `before` sees the motion to the window, `observer` that inside it.
+/// Follows the bare structure from its start at t = 0: `before` sees the motion to the window, `observer` that inside it.
 pub fn follow_bare(
     system: &Bare,
     window: Window,
@@ -24,7 +24,7 @@ pub fn follow_bare(
     observer: &mut impl Observer<2>,
 ) -> Followed<2> {
     if let Some(method) = General::of(settings.method) {
-        let mut run = Run::new(system, settings, 0.0, system.rest(), settings.longest_step(window.to));
+        let mut run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
         method.follow(&mut run, window.from, before)?;
         method.follow(&mut run, window.to, observer)?;
         return Ok((run.state(), run.work));
@@ -37,7 +37,7 @@ pub fn follow_bare(
     Ok((free.state(), free.work))
 }
 
-/// Follows a structure and its damper from rest at t = 0: `before` sees the motion to the window, `observer` that inside it.
+/// Follows a structure and its damper from their start at t = 0: `before` sees the motion to the window, `observer` that inside it.
 #[inline(always)]
 pub fn follow_coupled(
     system: &Coupled,
@@ -47,14 +47,15 @@ pub fn follow_coupled(
     observer: &mut impl Observer<4>,
 ) -> Followed<4> {
     if let Some(method) = General::of(settings.method) {
-        let mut run = Run::new(system, settings, 0.0, system.rest(), settings.longest_step(window.to));
+        let mut run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
         method.follow(&mut run, window.from, before)?;
         method.follow(&mut run, window.to, observer)?;
         return Ok((run.state(), run.work));
     }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-    let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
-    let middle = if window.from > 0.0 { hybrid.propagate(rest, window.from, before)? } else { rest };
+    let y = system.start();
+    let start = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
+    let middle = if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
     let end = hybrid.propagate(middle, window.to, observer)?;
     Ok((end.y, hybrid.work))
 }

@@ -140,8 +140,9 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     if settings.method == Method::Hybrid {
         for side in Side::BOTH {
             let i = side as usize;
-            let rests = system.wall(side) == system.rest_distance();
-            if !rests && before.0[i] + impacts[i] == 0 {
+            // One that starts at a wall, or inside it, is in contact without a touch-down.
+            let starts_there = system.indentation(&system.start())[i] >= 0.0;
+            if !starts_there && before.0[i] + impacts[i] == 0 {
                 let reach = system.bare().reach(e1_max.value, final_state[0], window.to - window.from);
                 let position = 2.0 * reach + system.rest_distance() + relative_displacement_max;
                 depths[i] = energy_bound::untouched(depths[i], position, window.to)?;

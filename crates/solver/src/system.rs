@@ -25,6 +25,8 @@ pub trait System<const N: usize> {
 pub trait LinearSystem<const N: usize>: System<N> {
     /// The numbers of that flow.
     fn linear(&self) -> Linear<N>;
+    /// The state at t = 0.
+    fn start(&self) -> [f64; N];
     /// Complex amplitudes of the steady motion about the origin, or `None` if there is none (undamped resonance).
     fn steady(&self) -> Option<[Complex<f64>; N]>;
     /// A norm of the deviation of a state from the origin that never grows without force, √J: `√(2E)`.
@@ -101,6 +103,9 @@ impl LinearSystem<2> for Bare {
             fastest: self.fastest(),
         }
     }
+    fn start(&self) -> [f64; 2] {
+        Bare::start(self)
+    }
     fn steady(&self) -> Option<[Complex<f64>; 2]> {
         let steady = Bare::steady(self, self.frequency());
         finite([steady.x1], self.frequency()).map(|[x1]| x1)
@@ -127,6 +132,9 @@ impl LinearSystem<4> for Coupled {
             rate: self.rate(),
             fastest: self.fastest(),
         }
+    }
+    fn start(&self) -> [f64; 4] {
+        Coupled::start(self)
     }
     fn steady(&self) -> Option<[Complex<f64>; 4]> {
         let omega = self.bare().frequency();
@@ -164,7 +172,7 @@ mod tests {
         let mass = Positive::new(3e-4).expect("above 0");
         let number = |value| NonNegative::new(value).expect("not below 0");
         let primary = Primary { mass, damping: number(0.1), stiffness: number(7.0) };
-        let forcing = Forcing { amplitude: number(5.0), frequency: number(2.0) };
+        let forcing = Forcing::force(number(5.0), number(2.0));
         let bare = Bare::new(&primary, &forcing);
         let found = [
             LinearSystem::energy_norm(&bare, &[0.3, -2.0]),

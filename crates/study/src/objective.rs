@@ -2,7 +2,7 @@
 
 use super::format::Study;
 use super::rule::Rule;
-use retune_model::{Measure, Scene};
+use retune_model::{Forcing, Measure, Scene, Source};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
 };
@@ -15,7 +15,9 @@ const MOST_SAMPLES: usize = 10_000;
 ///
 /// # Errors
 /// The first [`Rule`] that is broken.
-pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(), Rule> {
+pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Result<(), Rule> {
+    let omega = forcing.frequency.get();
+    let decays = matches!(forcing.source, Source::Decay(_));
     let field = |name: &str| format!("{path}.{name}");
     let bad =
         |field: String, value: String, allowed: &'static str| Err(Rule::NotAllowed { field, value, allowed });
@@ -25,7 +27,7 @@ pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(),
             return Err(Rule::SumAndMore { path: path.to_owned() });
         }
         let part =
-            |(i, part): (usize, &Part)| check(&part.objective, &field(&format!("sum[{i}].objective")), omega);
+            |(i, part): (usize, &Part)| check(&part.objective, &field(&format!("sum[{i}].objective")), forcing);
         objective.sum.iter().enumerate().try_for_each(part)?;
         let other = objective.sum.iter().position(|part| part.objective.quantity() != objective.quantity());
         return match other {
@@ -40,6 +42,16 @@ pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(),
     if objective.response == Response::Steady && objective.quantity == Measure::ContactForce {
         let allowed = "another quantity, or another response: what is steady touches no wall";
         return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
+    }
+    let based = matches!(forcing.source, Source::Base(_));
+    if objective.response == Response::Steady && objective.quantity == Measure::GroundForce && based {
+        let allowed = "another response: on a moving base this quantity has no closed form here";
+        return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
+    }
+    if decays && (objective.omega.is_some() || objective.response != Response::Window) {
+        let name = if objective.omega.is_some() { "omega" } else { "response" };
+        let allowed = "nothing: a free decay has no frequency, and all there is of it is in the window";
+        return bad(field(name), "what is given".to_owned(), allowed);
     }
     let band = |name: &str, unit, [from, to]: [f64; 2], samples: usize| {
         if from >= to {
@@ -71,6 +83,7 @@ pub(super) fn check(objective: &Objective, path: &str, omega: f64) -> Result<(),
     }
     if objective.omega.is_none()
         && omega == 0.0
+        && !decays
         && (objective.ensemble.is_some() || objective.response == Response::Settled)
     {
         return bad(

@@ -65,7 +65,7 @@ impl Study {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         let variables = varied(&optimize.vary)?;
-        check(&optimize.objective, "optimize.objective", self.scene.forcing.frequency.get())?;
+        check(&optimize.objective, "optimize.objective", &self.scene.forcing)?;
         check_limits(&optimize.limits, self.window.end.get())?;
         let tuned = |field, variable: &Variable| match variables.contains(variable) {
             true => Ok(()),

@@ -2,12 +2,13 @@
 
 use super::format::Study;
 use super::rule::Rule;
-use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene};
+use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene, Source};
 use std::str::FromStr;
 use thiserror::Error;
 
 /// The names that may be set.
-const NAMES: [&str; 13] = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "P", "omega", "R", "T", "t0"];
+const NAMES: [&str; 15] =
+    ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "P", "imbalance", "base", "omega", "R", "T", "t0"];
 
 /// A parsed `NAME=VALUE`.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +47,14 @@ pub enum SettingError {
         name: &'static str,
         /// Its value and the allowed values.
         source: OutOfRange,
+    },
+    /// A parameter that the forcing of the scene does not have.
+    #[error("{name}: the forcing of the scene is given by `{has}`")]
+    Forcing {
+        /// The parameter.
+        name: &'static str,
+        /// What the forcing is given by.
+        has: &'static str,
     },
     /// A parameter of the damper in a scene without one.
     #[error("{name}: the scene has no damper")]
@@ -123,7 +132,9 @@ impl Study {
             "m1" => primary.mass.get(),
             "c1" => primary.damping.get(),
             "k1" => primary.stiffness.get(),
-            "P" => forcing.amplitude.get(),
+            "P" | "imbalance" | "base" => {
+                forcing.amplitude().filter(|(own, _)| *own == name)?.1.get()
+            }
             "omega" => forcing.frequency.get(),
             "t0" => self.window.t0.get(),
             "T" => self.window.end.get(),
@@ -147,7 +158,13 @@ impl Study {
             "m1" => primary.mass = positive()?,
             "c1" => primary.damping = not_negative()?,
             "k1" => primary.stiffness = not_negative()?,
-            "P" => forcing.amplitude = not_negative()?,
+            "P" | "imbalance" | "base" => match forcing.amplitude() {
+                Some((own, _)) if own == name => *forcing = forcing.with_amplitude(not_negative()?),
+                own => return Err(SettingError::Forcing { name, has: own.map_or("start", |own| own.0) }),
+            },
+            "omega" if matches!(forcing.source, Source::Decay(_)) => {
+                return Err(SettingError::Forcing { name, has: "start" });
+            }
             "omega" => forcing.frequency = not_negative()?,
             "t0" => self.window.t0 = not_negative()?,
             "T" => self.window.end = positive()?,

@@ -1,6 +1,6 @@
 //! Descriptions of study files in words, for `check`.
 
-use retune_model::Measure;
+use retune_model::{Forcing, Measure, Source};
 use retune_optim::{Limit, Part, Response};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, Sweep, counted, joined, over, short};
 
@@ -21,12 +21,12 @@ pub fn fronts(plan: &FrontsPlan) -> String {
 
 /// Describes a study.
 pub fn study(study: &Study) -> String {
-    let (primary, forcing) = (study.scene.primary, study.scene.forcing);
+    let primary = study.scene.primary;
     let mut lines = vec![format!(
-        "study {}: k1 = {} N/m, forced at omega = {} rad/s; maxima from t0 = {} s to T = {} s",
+        "study {}: k1 = {} N/m, {}; maxima from t0 = {} s to T = {} s",
         study.name(),
         primary.stiffness.get(),
-        forcing.frequency.get(),
+        forced(&study.scene.forcing),
         study.window.t0.get(),
         study.window.end.get(),
     )];
@@ -43,6 +43,17 @@ pub fn study(study: &Study) -> String {
         lines.extend(goal(study));
     }
     lines.join("\n  ")
+}
+
+/// The forcing in words.
+fn forced(forcing: &Forcing) -> String {
+    let at = format!("at omega = {} rad/s", forcing.frequency.get());
+    match forcing.source {
+        Source::Force(amplitude) => format!("forced by P = {} N {at}", amplitude.get()),
+        Source::Imbalance(imbalance) => format!("forced by an imbalance of {} kg·m {at}", imbalance.get()),
+        Source::Base(base) => format!("on a base that moves by {} m {at}", base.get()),
+        Source::Decay(_) => "decaying freely".to_owned(),
+    }
 }
 
 /// Where the refinements of a search start.

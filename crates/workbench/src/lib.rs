@@ -40,7 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod amount;
+pub mod amount;
 pub mod artefact;
 pub mod certify;
 pub mod describe;

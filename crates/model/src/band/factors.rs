@@ -3,9 +3,10 @@
 //! In `u = ω²` over a unit: `|X1|² = (P/m1)² N / M` and `|X2 - X1|² = (P/m1)² u² / M` with
 //! `N = (u - u_d)² + u (c2/m2)²` and `M = (u - u_1)² (u - u_2)² + u ℓ² (u - u_z)²`. `u_1 <= u_2` are the natural frequencies (of the real
 //! part of the determinant), `u_d = k2/m2` that of the damper alone and `u_p = k1/m1` that of the structure; `u_z` is where the
-//! imaginary part is zero, and `ℓ = c1/m1 + c2/m2 + c2/m1`. `u_d`, `u_p` and `u_z` lie between `u_1` and `u_2`.
+//! imaginary part is zero, and `ℓ = c1/m1 + c2/m2 + c2/m1`. `u_d`, `u_p` and `u_z` lie between `u_1` and `u_2`. Without a damper
+//! `|X1|² = (P/m1)² / M` with `M = (u - u_p)² + u (c1/m1)²`: the same with 1 in the place of `N`, `u - u_2` and `u - u_z`.
 
-use super::roots::{product, sum, times};
+use super::roots::{falls, product, sum, times};
 use crate::{Bare, Coupled};
 
 /// Roundings within which an end of a band lies on a natural frequency.
@@ -49,9 +50,20 @@ pub struct Factors {
     loss: f64,
     /// `ℓ²` over the unit.
     drag: f64,
+    /// The slope of the factors `u - u_2` and `u - u_z`: 1, or 0 where they are the constant 1.
+    slope: f64,
 }
 
 impl Factors {
+    /// Those of a structure without a damper.
+    pub fn of_bare(&Bare { m1, c1, k1, .. }: &Bare, unit: f64) -> Self {
+        let natural = Point { u: k1 / m1 / unit, past_lower: 0.0, past_upper: 0.0 };
+        let (primary, lower, upper, damper, in_phase) = (natural, natural, natural, natural, natural);
+        let drag = (c1 / m1).powi(2) / unit;
+        Self { unit, primary, lower, upper, damper, in_phase, loss: 0.0, drag, slope: 0.0 }
+    }
+
+    /// Those of a structure with a damper.
     pub fn new(system: &Coupled, unit: f64) -> Self {
         let Bare { m1, c1, k1, .. } = *system.bare();
         let (m2, k2, c2) = system.damper();
@@ -81,6 +93,7 @@ impl Factors {
             in_phase: between(-to_lower, to_upper, lower + to_lower),
             loss: rate_2 * rate_2 / unit,
             drag: slope * slope / unit,
+            slope: 1.0,
         }
     }
 
@@ -114,15 +127,18 @@ impl Factors {
     /// The stretch from `start` to `end`, in either direction, with no cut inside.
     pub fn piece(&self, start: &Point, end: &Point) -> Piece {
         let ends = |zero: &Point| [start.past(zero), end.past(zero)];
+        // A constant factor is 1 at both ends.
+        let or_one = |[a, b]: [f64; 2]| if self.slope == 0.0 { ONE } else { [a, b] };
         Piece {
             forward: if end.past(start) < 0.0 { -1.0 } else { 1.0 },
             u: [start.u, end.u],
             damper: ends(&self.damper),
             lower: [start.past_lower, end.past_lower],
-            upper: [start.past_upper, end.past_upper],
-            in_phase: ends(&self.in_phase),
+            upper: or_one([start.past_upper, end.past_upper]),
+            in_phase: or_one(ends(&self.in_phase)),
             loss: self.loss,
             drag: self.drag,
+            slope: self.slope,
         }
     }
 }
@@ -134,19 +150,14 @@ fn about(b: f64, c: f64) -> [f64; 2] {
     if b >= 0.0 { [-near, far] } else { [-far, near] }
 }
 
-/// The numerator `V`.
+/// The numerator `V = u^power (a + b u) N`, or without `N`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Numerator {
-    /// `N`.
-    Damper,
-    /// `u N`.
-    DamperBySquare,
-    /// `u² N`.
-    DamperByFourth,
-    /// `(a + b u) N`, neither weight below zero.
-    DamperByGround([f64; 2]),
-    /// `u²`.
-    Square,
+pub struct Numerator {
+    pub power: i32,
+    /// `[a, b]`, neither below zero.
+    pub weight: [f64; 2],
+    /// Whether it has the factor `N`.
+    pub damper: bool,
 }
 
 /// A stretch on which no factor changes its sign; each has its values at both ends. Polynomials of `s`, from 0 at the start to 1 at
@@ -161,6 +172,7 @@ pub struct Piece {
     in_phase: [f64; 2],
     loss: f64,
     drag: f64,
+    slope: f64,
 }
 
 /// The constant 1, as linear polynomial: what raises a degree.
@@ -173,50 +185,29 @@ impl Piece {
     }
 
     /// `V / M` at `s`.
-    pub fn ratio(&self, numerator: Numerator, s: f64) -> f64 {
+    pub fn ratio(&self, Numerator { power, weight: [a, b], damper }: Numerator, s: f64) -> f64 {
         let [u, x, p, q, z] =
             [&self.u, &self.damper, &self.lower, &self.upper, &self.in_phase].map(|factor| at(factor, s));
         let real = p * q;
-        let damper = x * x + u * self.loss;
-        let v = match numerator {
-            Numerator::Damper => damper,
-            Numerator::DamperBySquare => u * damper,
-            Numerator::DamperByFourth => u * u * damper,
-            Numerator::DamperByGround([a, b]) => (a + b * u) * damper,
-            Numerator::Square => u * u,
-        };
-        v / (real * real + u * self.drag * z * z)
+        let damper = if damper { x * x + u * self.loss } else { 1.0 };
+        u.powi(power) * ((a + b * u) * damper) / (real * real + u * self.drag * z * z)
     }
 
-    /// `V` and its slope; of `u² N` both over `u`, which is positive.
-    fn numerator(&self, numerator: Numerator) -> ([f64; 4], [f64; 3]) {
-        let [a, b] = self.u;
+    /// `V` over `u^power`, and the slope of that.
+    fn numerator(&self, Numerator { weight: [a, b], damper, .. }: Numerator) -> ([f64; 4], [f64; 3]) {
         let u = &self.u;
-        let damper: [f64; 3] =
-            sum(&product(&self.damper, &self.damper), &times(&product(u, &ONE), self.loss));
-        // N' = 2 (u - u_d) + (c2/m2)²
-        let damper_slope = self.damper.map(|x| self.forward * (2.0 * x + self.loss));
-        match numerator {
-            Numerator::Damper => (product(&damper, &ONE), product(&damper_slope, &ONE)),
-            Numerator::DamperBySquare => (
-                product(&damper, u),
-                sum(&product::<2, 2, 3>(&damper_slope, u), &times(&damper, self.forward)),
-            ),
-            // (u² N)' / u = u N' + 2 N
-            Numerator::DamperByFourth => (
-                product(&damper, u),
-                sum(&product::<2, 2, 3>(&damper_slope, u), &times(&damper, 2.0 * self.forward)),
-            ),
-            Numerator::DamperByGround([a, b]) => {
-                let weight = u.map(|u| a + b * u);
-                let slope = product::<2, 2, 3>(&damper_slope, &weight);
-                (product(&damper, &weight), sum(&slope, &times(&damper, b * self.forward)))
-            }
-            Numerator::Square => (
-                product::<3, 2, 4>(&product(u, u), &ONE),
-                product(&[2.0 * self.forward * a, 2.0 * self.forward * b], &ONE),
-            ),
-        }
+        let (damper, slope): ([f64; 3], [f64; 2]) = if damper {
+            // N' = 2 (u - u_d) + (c2/m2)²
+            (
+                sum(&product(&self.damper, &self.damper), &times(&product(u, &ONE), self.loss)),
+                self.damper.map(|x| self.forward * (2.0 * x + self.loss)),
+            )
+        } else {
+            (product(&ONE, &ONE), [0.0; 2])
+        };
+        let weight = u.map(|u| a + b * u);
+        let slope = product::<2, 2, 3>(&slope, &weight);
+        (product(&damper, &weight), sum(&slope, &times(&damper, b * self.forward)))
     }
 
     fn denominator(&self) -> ([f64; 5], [f64; 4]) {
@@ -228,8 +219,8 @@ impl Piece {
             &times(&product::<4, 2, 5>(&product::<3, 2, 4>(&square, u), &ONE), self.drag),
         );
         // M' = 2 (u - u_1)(u - u_2)((u - u_1) + (u - u_2)) + ℓ² (u - u_z)((u - u_z) + 2u)
-        let both = [p[0] + q[0], p[1] + q[1]];
-        let z_and_u = [z[0] + 2.0 * u[0], z[1] + 2.0 * u[1]];
+        let both = [p[0] * self.slope + q[0], p[1] * self.slope + q[1]];
+        let z_and_u = [z[0] + 2.0 * self.slope * u[0], z[1] + 2.0 * self.slope * u[1]];
         let slope = sum(
             &times(&product::<3, 2, 4>(&real, &both), 2.0 * self.forward),
             &times(&product::<3, 2, 4>(&product(z, &z_and_u), &ONE), self.drag * self.forward),
@@ -241,18 +232,36 @@ impl Piece {
     pub fn bounds(&self, numerator: Numerator) -> [f64; 2] {
         let ([v0, v1, v2, v3], _) = self.numerator(numerator);
         let ([m0, m1, m2, m3, m4], _) = self.denominator();
-        let by = if numerator == Numerator::DamperByFourth { self.u[0].max(self.u[1]) } else { 1.0 };
+        let by = self.u[0].max(self.u[1]).powi(numerator.power);
         [by * v0.max(v1 / 3.0).max(v2 / 3.0).max(v3), m0.min(m1 / 4.0).min(m2 / 6.0).min(m3 / 4.0).min(m4)]
     }
 
-    /// `W = V' M - V M'`, the sign of the slope of `V / M` by `s`, as Bernstein coefficients.
-    pub fn slope(&self, numerator: Numerator) -> [f64; 7] {
+    /// Visits every place where the slope of `V / M` falls through zero.
+    pub fn falls(&self, numerator: Numerator, visit: &mut impl FnMut(f64)) {
+        // With V = u^j W the slope has the sign of W' M - W M', for j > 0 of (j W + u W') M - u W M'.
         let (v, v_slope) = self.numerator(numerator);
         let (m, m_slope) = self.denominator();
-        let (rising, falling): ([f64; 7], [f64; 7]) = (product(&v_slope, &m), product(&v, &m_slope));
-        const BINOMIAL: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
-        std::array::from_fn(|i| (rising[i] - falling[i]) / BINOMIAL[i])
+        if numerator.power == 0 {
+            let (rising, falling): ([f64; 7], [f64; 7]) = (product(&v_slope, &m), product(&v, &m_slope));
+            falls(bernstein(&rising, &falling), visit);
+        } else {
+            let j = self.forward * f64::from(numerator.power);
+            let grown: [f64; 4] = sum(&times(&v, j), &product::<3, 2, 4>(&v_slope, &self.u));
+            let (rising, falling): ([f64; 8], [f64; 8]) =
+                (product(&grown, &m), product(&product::<4, 2, 5>(&v, &self.u), &m_slope));
+            falls(bernstein(&rising, &falling), visit);
+        }
     }
+}
+
+/// The Bernstein coefficients of a difference of polynomials that are kept by their coefficients of `(1-s)^(n-i) s^i`.
+fn bernstein<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    let mut choose = 1.0;
+    std::array::from_fn(|i| {
+        let coefficient = (a[i] - b[i]) / choose;
+        choose *= (N - 1 - i) as f64 / (i + 1) as f64;
+        coefficient
+    })
 }
 
 /// A linear polynomial at `s`.

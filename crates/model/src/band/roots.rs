@@ -4,7 +4,7 @@
 
 /// Visits every place in `[0, 1]` where a polynomial, by its Bernstein coefficients, falls through zero: to rounding of its distance
 /// from 0, however small.
-pub fn falls(w: [f64; 7], visit: &mut impl FnMut(f64)) {
+pub fn falls<const N: usize>(w: [f64; N], visit: &mut impl FnMut(f64)) {
     fall(w, [0.0, 1.0], visit);
 }
 
@@ -12,7 +12,7 @@ pub fn falls(w: [f64; 7], visit: &mut impl FnMut(f64)) {
 /// it varies by less than rounding.
 const SHORT: f64 = 4.0 * f64::EPSILON;
 
-fn fall(w: [f64; 7], [a, b]: [f64; 2], visit: &mut impl FnMut(f64)) {
+fn fall<const N: usize>(w: [f64; N], [a, b]: [f64; 2], visit: &mut impl FnMut(f64)) {
     let mut signs = w.into_iter().filter(|c| *c != 0.0).map(|c| c > 0.0);
     let Some(first) = signs.next() else { return };
     let (_, changes) =
@@ -24,13 +24,13 @@ fn fall(w: [f64; 7], [a, b]: [f64; 2], visit: &mut impl FnMut(f64)) {
         visit(middle);
     } else if changes > 1 {
         let (mut left, mut right) = (w, w);
-        for level in 1..7 {
-            for i in (level..7).rev() {
+        for level in 1..N {
+            for i in (level..N).rev() {
                 left[i] = 0.5 * (left[i - 1] + left[i]);
             }
-            right[6 - level] = left[6]; // the last of this level of de Casteljau's triangle
+            right[N - 1 - level] = left[N - 1]; // the last of this level of de Casteljau's triangle
         }
-        if left[6] == 0.0 {
+        if left[N - 1] == 0.0 {
             visit(middle);
         }
         fall(left, [a, middle], visit);
@@ -40,27 +40,28 @@ fn fall(w: [f64; 7], [a, b]: [f64; 2], visit: &mut impl FnMut(f64)) {
 
 /// The only root, on [0, 1], of a polynomial that is positive before it and negative after: Newton steps, bisection where they
 /// leave the bracket.
-fn root(w: &[f64; 7]) -> f64 {
+fn root<const N: usize>(w: &[f64; N]) -> f64 {
+    let degree = (N - 1) as f64;
     let (mut lower, mut upper) = (0.0, 1.0);
     // A peak near 0 is a matter of the first two coefficients.
-    let first = w[0] / (6.0 * (w[0] - w[1]));
+    let first = w[0] / (degree * (w[0] - w[1]));
     let mut t = if first > 0.0 && first < 0.5 { first } else { 0.5 };
     // Newton's steps take a handful; halving to the smallest number would take a thousand.
     for _ in 0..1100 {
         let mut triangle = *w;
-        for level in 1..6 {
-            for i in 0..7 - level {
+        for level in 1..N - 1 {
+            for i in 0..N - level {
                 triangle[i] += t * (triangle[i + 1] - triangle[i]);
             }
         }
-        let slope = triangle[1] - triangle[0]; // a sixth of it
+        let slope = triangle[1] - triangle[0]; // its share of the degree
         let value = triangle[0] + t * slope;
         if value > 0.0 {
             lower = t;
         } else {
             upper = t;
         }
-        let newton = t - value / (6.0 * slope);
+        let newton = t - value / (degree * slope);
         let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
         if (next - t).abs() <= f64::EPSILON * next {
             return next;

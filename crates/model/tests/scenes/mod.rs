@@ -4,7 +4,7 @@
 
 use retune_model::{
     Bare, Contact, Coupled, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary,
-    RegularisedContact, RegularisedState, Scene,
+    RegularisedContact, RegularisedState, Scene, Source,
 };
 
 /// A scene as plain numbers in the paper's symbols and SI units, to be varied by `..`.
@@ -65,7 +65,7 @@ impl Numbers {
     }
 
     pub fn forcing(&self) -> Forcing {
-        Forcing { amplitude: non_negative(self.p), frequency: non_negative(self.omega) }
+        Forcing::force(non_negative(self.p), non_negative(self.omega))
     }
 
     pub fn damper(&self) -> Damper {
@@ -99,6 +99,12 @@ impl Numbers {
 
     pub fn bare_scene(&self) -> Scene {
         Scene { damper: None, ..self.scene() }
+    }
+
+    /// The same with another kind of forcing of the size `p`.
+    pub fn forced_by(&self, source: fn(NonNegative) -> Source) -> Scene {
+        let forcing = Forcing { source: source(non_negative(self.p)), frequency: non_negative(self.omega) };
+        Scene { forcing, ..self.scene() }
     }
 
     pub fn coupled(&self) -> Coupled {

@@ -30,10 +30,10 @@ pub struct ContactFree<'a, S, const N: usize> {
 }
 
 impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
-    /// The scene at rest at t = 0; no step will be longer than `longest` (s).
+    /// The scene at t = 0; no step will be longer than `longest` (s).
     pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
         let linear = system.linear();
-        let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: linear.origin, clock: [1.0, 0.0] };
+        let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: system.start(), clock: [1.0, 0.0] };
         Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
     }
 
@@ -150,7 +150,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
 }
 
 impl ContactFree<'_, Coupled, 4> {
-    /// Whether the damper provably stays off both walls from rest on: `|r - D| <= |X2 - X1| + |row of r| |transient|`.
+    /// Whether the damper provably stays off both walls from its start on: `|r - D| <= |X2 - X1| + |row of r| |transient|`.
     pub fn clears_walls(&self) -> bool {
         let reach = self.system.steady(self.system.bare().frequency()).stroke()
             + self.system.dual_energy_norm(&[-1.0, 0.0, 1.0, 0.0]) * self.transient();
@@ -201,7 +201,7 @@ mod tests {
         let mass = Positive::new(1000.0).expect("above 0");
         // Slow: a step takes 4 s.
         let primary = Primary { mass, damping: number(1.0), stiffness: number(40.0) };
-        let forcing = Forcing { amplitude: number(800.0), frequency: number(0.3) };
+        let forcing = Forcing::force(number(800.0), number(0.3));
         let system = Bare::new(&primary, &forcing);
         let mut seen = Energies { system: &system, steps: 0 };
         ContactFree::new(&system, 1000.0, 100_000).propagate(1000.0, &mut seen).expect("a run");

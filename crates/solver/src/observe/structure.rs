@@ -14,6 +14,10 @@ pub trait Structure<const N: usize>: LinearSystem<N> {
     fn motion_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 5];
     /// `[k1, c1]`: the weights of `x1` and `v1` in the force on the ground.
     fn ground_force_weights(&self) -> [f64; 2];
+    /// ω, where the base moves: the force that the structure feels goes through the ground.
+    fn through_ground(&self) -> Option<f64>;
+    /// The weights of the rates of the state in the sum of the bodies' inertia forces, kg.
+    fn masses(&self) -> [f64; N];
     /// What contact forces add to the sizes of the terms of `a1`, m/s².
     fn contact_size(&self, _y: &[f64; N]) -> f64 {
         0.0
@@ -30,6 +34,12 @@ impl Structure<2> for Bare {
     fn ground_force_weights(&self) -> [f64; 2] {
         Bare::ground_force_weights(self)
     }
+    fn through_ground(&self) -> Option<f64> {
+        self.is_on_moving_base().then(|| self.frequency())
+    }
+    fn masses(&self) -> [f64; 2] {
+        [0.0, self.mass()]
+    }
 }
 
 impl Structure<4> for Coupled {
@@ -44,15 +54,24 @@ impl Structure<4> for Coupled {
     fn ground_force_weights(&self) -> [f64; 2] {
         self.bare().ground_force_weights()
     }
+    fn through_ground(&self) -> Option<f64> {
+        self.bare().through_ground()
+    }
+    fn masses(&self) -> [f64; 4] {
+        let [m1, m2] = Coupled::masses(self);
+        [0.0, m1, 0.0, m2]
+    }
     fn contact_size(&self, y: &[f64; 4]) -> f64 {
         Coupled::contact_size(self, y)
     }
 }
 
-/// A linear combination of `x1`, `v1` and `a1`.
+/// A linear combination of `x1`, `v1`, `a1` and the force on the structure.
 pub struct StructureMotion<'a, S, const N: usize> {
     system: &'a S,
     weights: [f64; 3],
+    /// The weight of the force, and its ω, rad/s.
+    force: [f64; 2],
     form: Form<N>,
 }
 
@@ -64,7 +83,7 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
         let (mut row, mut rated) = ([0.0; N], [0.0; N]);
         [row[0], row[1], rated[1]] = [x1, v1, a1];
         let form = if a1 == 0.0 { Form::linear(system, row) } else { Form::rated(system, row, rated) };
-        Self { system, weights, form }
+        Self { system, weights, force: [0.0; 2], form }
     }
 
     /// `sign x1`, m.
@@ -82,10 +101,26 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
         Self::new(system, [0.0, 0.0, sign])
     }
 
-    /// `sign (k1 x1 + c1 v1)`, the force on the ground, N.
+    /// `sign` times the force on the ground, N: `k1 x1 + c1 v1`, and where the ground moves less the force that it exerts on the
+    /// structure. Then it is also the sum of the inertia forces, `-(m1 a1 + m2 a2)`, and has the bounds of that.
     pub fn ground_force(system: &'a S, sign: f64) -> Self {
         let [k1, c1] = system.ground_force_weights();
-        Self::new(system, [sign * k1, sign * c1, 0.0])
+        let fixed = Self::new(system, [sign * k1, sign * c1, 0.0]);
+        let Some(omega) = system.through_ground() else { return fixed };
+        let form = Form::rated(system, [0.0; N], system.masses().map(|mass| -sign * mass));
+        Self { force: [-sign, omega], form, ..fixed }
+    }
+}
+
+impl<S, const N: usize> StructureMotion<'_, S, N> {
+    /// The part of the force, with its first two time derivatives.
+    #[inline(always)]
+    fn force_rates<T>(&self, [cos, sin]: [T; 2]) -> [T; 3]
+    where
+        T: Copy + std::ops::Mul<f64, Output = T>,
+    {
+        let [weight, omega] = self.force;
+        [cos * weight, sin * (-weight * omega), cos * (-weight * omega * omega)]
     }
 }
 
@@ -94,6 +129,10 @@ impl<S: Structure<N>, const N: usize> Quantity<N> for StructureMotion<'_, S, N> 
     fn rates(&self, excitation: Excitation, y: &[f64; N]) -> [f64; 3] {
         let motion = self.system.motion(excitation, y);
         let [a, b, c] = self.weights;
+        if self.force[0] != 0.0 {
+            let force = self.force_rates(excitation);
+            return [0, 1, 2].map(|i| a * motion[i] + b * motion[i + 1] + force[i]);
+        }
         // An acceleration's rates may be infinite, and 0 ∞ is no number.
         if c == 0.0 {
             return [0, 1, 2].map(|i| a * motion[i] + b * motion[i + 1]);
@@ -104,6 +143,10 @@ impl<S: Structure<N>, const N: usize> Quantity<N> for StructureMotion<'_, S, N> 
     fn rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 3] {
         let motion = self.system.motion_in_flight(excitation, y);
         let [a, b, c] = self.weights;
+        if self.force[0] != 0.0 {
+            let force = self.force_rates(*excitation);
+            return [0, 1, 2].map(|i| motion[i] * a + motion[i + 1] * b + force[i]);
+        }
         [0, 1, 2].map(|i| motion[i] * a + motion[i + 1] * b + motion[i + 2] * c)
     }
     fn form(&self) -> &Form<N> {
@@ -111,7 +154,7 @@ impl<S: Structure<N>, const N: usize> Quantity<N> for StructureMotion<'_, S, N> 
     }
     #[inline(always)]
     fn is_forced(&self) -> bool {
-        self.weights[2] != 0.0
+        self.weights[2] != 0.0 || self.force[0] != 0.0
     }
     fn size(&self, y: &[f64; N]) -> f64 {
         self.form.size(y) + self.weights[2].abs() * self.system.contact_size(y)

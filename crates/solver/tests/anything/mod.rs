@@ -76,10 +76,7 @@ impl Anything {
                 damping: not_negative(SSVI.c1, c1),
                 stiffness: not_negative(SSVI.k1, k1),
             },
-            forcing: Forcing {
-                amplitude: not_negative(SSVI.p, p),
-                frequency: not_negative(SSVI.omega, omega),
-            },
+            forcing: Forcing::force(not_negative(SSVI.p, p), not_negative(SSVI.omega, omega)),
             damper: (bare > 0.05).then_some(damper),
         };
         let to = 10f64.powf(4.0 * t - 2.0);
@@ -167,7 +164,7 @@ impl Anything {
     /// From rest the power of the force is at most P √(2E/m1), so that E <= (P t)²/(2 m1): no method may make energy. Those that
     /// are held to a tolerance only may by some of it, and a fixed step by anything.
     fn check_energy(&self, e1: f64) {
-        let most = (self.scene.forcing.amplitude.get() * self.window.to).powi(2)
+        let most = (self.scene.forcing.amplitude().map_or(0.0, |(_, p)| p.get()) * self.window.to).powi(2)
             / (2.0 * self.scene.primary.mass.get());
         if self.settings.method == Method::Hybrid {
             assert!(e1 <= most * (1.0 + 1e-6), "E1max {e1} J of at most {most} J: {self:?}");

@@ -7,7 +7,7 @@ use crate::Error;
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
-use retune_model::{Damper, Scene};
+use retune_model::{Damper, Scene, Source};
 use retune_optim::{Ensemble, Goal, PerLimit, Place, Response, Statistic};
 use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
 use retune_study::{Setting, Study};
@@ -49,8 +49,10 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
         });
         found.energy
     });
-    let record = follow(&own.worst.scene, None, Stretch::default(), &settings)?;
-    let motion = Motion::new(&classify(&record));
+    let motion = match own.worst.scene.forcing.source {
+        Source::Decay(_) => Motion::decay(),
+        _ => Motion::new(&classify(&follow(&own.worst.scene, None, Stretch::default(), &settings)?)),
+    };
     let limits = Kept::new(&goal.limits, &own.reached, &near);
     let Place { largest, scene, phase, .. } = own.worst;
     let quantity = study.quantity();

@@ -11,7 +11,7 @@ fn structure() -> Bare {
     let not_negative = |value| NonNegative::new(value).expect("not below zero");
     let primary =
         Primary { mass: positive(MASS), damping: not_negative(0.7), stiffness: not_negative(STIFFNESS) };
-    Bare::new(&primary, &Forcing { amplitude: not_negative(8.0), frequency: not_negative(2.0) })
+    Bare::new(&primary, &Forcing::force(not_negative(8.0), not_negative(2.0)))
 }
 
 /// `C(j, 6)`.
@@ -78,7 +78,7 @@ fn exact_bounds_in_flight_of_a_free_oscillation() {
     let (m, k) = (Positive::new(MASS).expect("a mass"), NonNegative::new(STIFFNESS).expect("a stiffness"));
     let free = Bare::new(
         &Primary { mass: m, damping: none, stiffness: k },
-        &Forcing { amplitude: none, frequency: none },
+        &Forcing::force(none, none),
     );
     let natural = (STIFFNESS / MASS).sqrt();
     // √(2E) of an amplitude of 1.

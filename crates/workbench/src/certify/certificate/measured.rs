@@ -91,6 +91,19 @@ impl Run {
 }
 
 impl Motion {
+    /// A free decay, which has no periods to classify it by.
+    pub fn decay() -> Self {
+        Self {
+            regime: "free decay".to_owned(),
+            sentence: "dies out".to_owned(),
+            irregular: false,
+            exponent: f64::NAN,
+            exponent_error: f64::NAN,
+            contacts_per_period: [f64::NAN; 2],
+            confidence: 1.0,
+        }
+    }
+
     pub fn new(regime: &Regime) -> Self {
         let periods = match (regime.kind, regime.period) {
             (Kind::Periodic, Some(n)) => n as f64,
