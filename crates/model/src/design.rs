@@ -1,6 +1,6 @@
-//! A design: the four parameters of the damper that may be tuned, in the order of the paper's tables.
+//! A design: the parameters of the damper that may be tuned, in the order of the paper's tables.
 
-use crate::{Damper, NonNegative, OutOfRange};
+use crate::{Damper, NonNegative, OutOfRange, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,11 +17,22 @@ pub enum Variable {
     D,
     /// C, clearance between the damper at rest and the obstacle, m.
     C,
+    /// m2, mass of the damper, kg.
+    #[serde(rename = "m2")]
+    M2,
 }
 
 impl Variable {
-    /// All of them, in the order of the paper's tables.
-    pub const ALL: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::K2, Self::C2, Self::D, Self::C, Self::M2];
+    /// Those that the paper varies, in the order of its tables.
+    pub const PAPER: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
+
+    /// The columns of a table of designs in which these are varied: the paper's, and what else is varied.
+    pub fn columns(varied: &[Self]) -> Vec<Self> {
+        let others = varied.iter().copied().filter(|variable| !Self::PAPER.contains(variable));
+        Self::PAPER.into_iter().chain(others).collect()
+    }
 
     /// The paper's symbol.
     pub const fn symbol(self) -> &'static str {
@@ -30,6 +41,7 @@ impl Variable {
             Self::C2 => "c2",
             Self::D => "D",
             Self::C => "C",
+            Self::M2 => "m2",
         }
     }
 
@@ -39,6 +51,7 @@ impl Variable {
             Self::K2 => "N/m",
             Self::C2 => "N·s/m",
             Self::D | Self::C => "m",
+            Self::M2 => "kg",
         }
     }
 
@@ -49,6 +62,7 @@ impl Variable {
             Self::C2 => damper.damping.get(),
             Self::D => damper.rest_distance.get(),
             Self::C => damper.clearance.get(),
+            Self::M2 => damper.mass.get(),
         }
     }
 
@@ -57,12 +71,12 @@ impl Variable {
     /// # Errors
     /// A value that no damper can have; `damper` is then unchanged.
     pub fn set(self, damper: &mut Damper, value: f64) -> Result<(), OutOfRange> {
-        let value = NonNegative::new(value)?;
         match self {
-            Self::K2 => damper.stiffness = value,
-            Self::C2 => damper.damping = value,
-            Self::D => damper.rest_distance = value,
-            Self::C => damper.clearance = value,
+            Self::K2 => damper.stiffness = NonNegative::new(value)?,
+            Self::C2 => damper.damping = NonNegative::new(value)?,
+            Self::D => damper.rest_distance = NonNegative::new(value)?,
+            Self::C => damper.clearance = NonNegative::new(value)?,
+            Self::M2 => damper.mass = Positive::new(value)?,
         }
         Ok(())
     }
@@ -88,43 +102,57 @@ pub struct Design {
     /// C, clearance between the damper at rest and the obstacle, m.
     #[serde(rename = "C")]
     pub c: NonNegative,
+    /// m2, mass of the damper, kg; that of the study's damper if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub m2: Option<Positive>,
 }
 
 impl Design {
-    /// The design of a damper.
+    /// The design of a damper, whatever its mass.
     pub const fn of(damper: &Damper) -> Self {
         let Damper { stiffness, damping, rest_distance, clearance, .. } = *damper;
-        Self { k2: stiffness, c2: damping, d: rest_distance, c: clearance }
+        Self { k2: stiffness, c2: damping, d: rest_distance, c: clearance, m2: None }
     }
 
-    /// From a value for each variable, in SI units.
+    /// From a value for each variable, in SI units; a mass that is not a number is none.
     ///
     /// # Errors
     /// The first value that no damper can have, with its variable.
     pub fn new(value: impl Fn(Variable) -> f64) -> Result<Self, (Variable, OutOfRange)> {
         let checked = |variable| NonNegative::new(value(variable)).map_err(|refused| (variable, refused));
-        let [k2, c2, d, c] = Variable::ALL.map(checked);
-        Ok(Self { k2: k2?, c2: c2?, d: d?, c: c? })
+        let [k2, c2, d, c] = Variable::PAPER.map(checked);
+        let mass = Some(value(Variable::M2)).filter(|mass| !mass.is_nan()).map(Positive::new).transpose();
+        let m2 = mass.map_err(|refused| (Variable::M2, refused))?;
+        Ok(Self { k2: k2?, c2: c2?, d: d?, c: c?, m2 })
     }
 
-    /// The value of a variable.
-    pub const fn get(&self, variable: Variable) -> f64 {
+    /// The value of a variable; NaN for a mass that is left out.
+    pub fn get(&self, variable: Variable) -> f64 {
         match variable {
             Variable::K2 => self.k2.get(),
             Variable::C2 => self.c2.get(),
             Variable::D => self.d.get(),
             Variable::C => self.c.get(),
+            Variable::M2 => self.m2.map_or(f64::NAN, Positive::get),
         }
     }
 
-    /// All values, in the order of [`Variable::ALL`].
+    /// All values but the mass, in the order of [`Variable::PAPER`].
     pub fn values(&self) -> [f64; 4] {
-        Variable::ALL.map(|variable| self.get(variable))
+        Variable::PAPER.map(|variable| self.get(variable))
     }
 
     /// A damper with this design, all else as it is in `damper`.
     #[must_use]
-    pub const fn on(&self, damper: Damper) -> Damper {
-        Damper { stiffness: self.k2, damping: self.c2, rest_distance: self.d, clearance: self.c, ..damper }
+    pub fn on(&self, damper: Damper) -> Damper {
+        let mass = self.m2.unwrap_or(damper.mass);
+        Damper {
+            mass,
+            stiffness: self.k2,
+            damping: self.c2,
+            rest_distance: self.d,
+            clearance: self.c,
+            ..damper
+        }
     }
 }

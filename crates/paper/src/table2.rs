@@ -50,7 +50,7 @@ pub fn table2(plan: &Plan, searches: &mut Searches) -> Result<Item, Error> {
     let bar = plan.watch.progress("table 2", 8);
     let stiffer = plan.ssvi.with(&STIFFER.map(|(name, value)| Setting::new(name, value)))?;
     let [ssvi, tmd] = [&plan.ssvi, &plan.tmd];
-    let (all, linear) = (&Variable::ALL[..], &[Variable::K2, Variable::C2][..]);
+    let (all, linear) = (&Variable::PAPER[..], &[Variable::K2, Variable::C2][..]);
     let sampled = || over_band(SAMPLES, Response::Window);
     let steady = || over_band(SAMPLES, Response::Steady);
     let search = |origin, name, base, vary, objective, most_k2, evaluations| Search {

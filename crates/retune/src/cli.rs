@@ -200,7 +200,7 @@ pub struct Fronts {
 pub struct Simulate {
     /// The study file
     pub study: PathBuf,
-    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P omega R T t0 (repeatable)
+    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P imbalance base omega R T t0 (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<Setting>,
     /// Integration method
@@ -227,7 +227,7 @@ pub struct Simulate {
 /// `evaluate`.
 #[derive(Debug, Args)]
 pub struct Evaluate {
-    /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C
+    /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C m2
     pub study: PathBuf,
     /// Answer with JSON objects, which include the violation of limits
     #[arg(long)]

@@ -5,9 +5,7 @@
 mod scenes;
 
 use retune_model::{Bare, Coupled, Finite, Forcing, Measure, NonNegative, Scene, Source, Start};
-use retune_solver::{
-    Ask, Extremes, Method, Rows, Settings, Window, e1_max, extremes, simulate, trajectory,
-};
+use retune_solver::{Ask, Extremes, Method, Rows, Settings, Window, e1_max, extremes, simulate, trajectory};
 use scenes::{Numbers, SSVI, Spread, TMD};
 use std::f64::consts::PI;
 

@@ -26,8 +26,9 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
         if !alone.is_default() {
             return Err(Rule::SumAndMore { path: path.to_owned() });
         }
-        let part =
-            |(i, part): (usize, &Part)| check(&part.objective, &field(&format!("sum[{i}].objective")), forcing);
+        let part = |(i, part): (usize, &Part)| {
+            check(&part.objective, &field(&format!("sum[{i}].objective")), forcing)
+        };
         objective.sum.iter().enumerate().try_for_each(part)?;
         let other = objective.sum.iter().position(|part| part.objective.quantity() != objective.quantity());
         return match other {

@@ -20,11 +20,14 @@ pub struct PerVariable<T> {
     /// C, clearance between the damper at rest and the obstacle, m.
     #[serde(rename = "C", skip_serializing_if = "Option::is_none")]
     pub c: Option<T>,
+    /// m2, mass of the damper, kg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub m2: Option<T>,
 }
 
 impl<T> Default for PerVariable<T> {
     fn default() -> Self {
-        Self { k2: None, c2: None, d: None, c: None }
+        Self { k2: None, c2: None, d: None, c: None, m2: None }
     }
 }
 
@@ -36,6 +39,7 @@ impl<T: Copy> PerVariable<T> {
             Variable::C2 => self.c2,
             Variable::D => self.d,
             Variable::C => self.c,
+            Variable::M2 => self.m2,
         }
     }
 
@@ -46,6 +50,7 @@ impl<T: Copy> PerVariable<T> {
             Variable::C2 => &mut self.c2,
             Variable::D => &mut self.d,
             Variable::C => &mut self.c,
+            Variable::M2 => &mut self.m2,
         }
     }
 
@@ -65,9 +70,10 @@ impl PerVariable<f64> {
         all
     }
 
-    /// Those of a design that are among `variables`.
+    /// Those of a design that are among `variables` and not left out.
     pub fn of_design(design: &Design, variables: &[Variable]) -> Self {
-        let values: Vec<f64> = variables.iter().map(|&variable| design.get(variable)).collect();
-        Self::of(variables, &values)
+        let known = variables.iter().map(|&variable| (variable, design.get(variable)));
+        let (known, values): (Vec<Variable>, Vec<f64>) = known.filter(|(_, value)| !value.is_nan()).unzip();
+        Self::of(&known, &values)
     }
 }

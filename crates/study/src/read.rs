@@ -4,7 +4,7 @@ use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
 use super::rule::Rule;
-use retune_model::{Design, NonNegative};
+use retune_model::{Design, NonNegative, Positive};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -96,7 +96,11 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
             }),
         }
     };
-    Ok(Design { k2: number("k2")?, c2: number("c2")?, d: number("D")?, c: number("C")? })
+    let m2 = match found.get("m2") {
+        None => None,
+        Some(_) => Positive::new(number("m2")?.get()).ok(),
+    };
+    Ok(Design { k2: number("k2")?, c2: number("c2")?, d: number("D")?, c: number("C")?, m2 })
 }
 
 /// Checks the text of a study file as [`read`] does.

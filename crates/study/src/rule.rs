@@ -42,7 +42,7 @@ pub enum Rule {
     #[error("optimize.surf: missing, but only the grid can be made in parts")]
     NoGrid,
     /// No parameter is tuned.
-    #[error("optimize.vary: empty: name at least one of k2, c2, D, C")]
+    #[error("optimize.vary: empty: name at least one of k2, c2, D, C, m2")]
     NothingVaried,
     /// A parameter is named twice.
     #[error("optimize.vary: `{variable}` is named twice")]

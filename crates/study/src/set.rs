@@ -132,9 +132,7 @@ impl Study {
             "m1" => primary.mass.get(),
             "c1" => primary.damping.get(),
             "k1" => primary.stiffness.get(),
-            "P" | "imbalance" | "base" => {
-                forcing.amplitude().filter(|(own, _)| *own == name)?.1.get()
-            }
+            "P" | "imbalance" | "base" => forcing.amplitude().filter(|(own, _)| *own == name)?.1.get(),
             "omega" => forcing.frequency.get(),
             "t0" => self.window.t0.get(),
             "T" => self.window.end.get(),

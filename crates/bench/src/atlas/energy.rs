@@ -46,7 +46,7 @@ pub struct Drift {
 fn lossless() -> Result<Coupled, Box<dyn Error>> {
     let mut scene = scene(SSVI)?;
     scene.primary.damping = NonNegative::new(0.0)?;
-    scene.forcing.amplitude = NonNegative::new(0.0)?;
+    scene.forcing = scene.forcing.with_amplitude(NonNegative::new(0.0)?);
     if let Some(damper) = &mut scene.damper {
         damper.damping = NonNegative::new(0.0)?;
     }

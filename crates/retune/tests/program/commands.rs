@@ -78,8 +78,7 @@ fn contract_figures_and_tables_of_the_paper_are_made_by_number() {
 fn contract_check_describes_a_study_and_calls_it_good() {
     let desk = Desk::with(&tiny());
     let said = desk.good(&["check", "study.json"]);
-    let first =
-        "study study: k1 = 39500 N/m, forced by P = 800 N at omega = 6.28 rad/s; maxima from t0 = 1 s to T = 4 s\n";
+    let first = "study study: k1 = 39500 N/m, forced by P = 800 N at omega = 6.28 rad/s; maxima from t0 = 1 s to T = 4 s\n";
     assert!(said.starts_with(first) && said.ends_with("\nstudy.json: good\n"), "{said}");
     assert!(said.contains("\n  tunes k2, c2, D, C from a grid of 24 points over k2, c2, D, C\n"), "{said}");
 }

@@ -2,11 +2,11 @@
 
 use super::log::worth;
 use super::objective::{kept, objective};
-use super::refine::{Refined, Run};
+use super::refine::{Refined, Run, columns};
 use crate::Error;
 use crate::Observer;
 use crate::amount::{Amount, measured};
-use retune_model::{Design, Measure};
+use retune_model::{Measure, Variable};
 use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
 use retune_store::{Directory, Journal};
 use retune_study::{PerVariable, Search, Study};
@@ -160,16 +160,16 @@ impl Basins {
     /// Writes `basins.csv`.
     pub(super) fn write(&self, objective: &PeakEnergy, results: &Directory) -> Result<(), Error> {
         let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);
-        let mut csv = format!("basin,searches,refinements,k2,c2,D,C,{}\n", quantity.name());
+        let names = joined(&Variable::columns(objective.variables()), ",");
+        let mut csv = format!("basin,searches,refinements,{names},{}\n", quantity.name());
         for (i, basin) in self.basins.iter().enumerate() {
             let BasinNote { design: at, found, searches, refinements } = basin;
             let x: Vec<f64> = objective.variables().iter().filter_map(|&v| at.get(v)).collect();
-            let damper = objective.damper(&x)?;
             let value = if found.value.is_nan() { String::new() } else { found.value.to_string() };
             csv += &format!(
                 "{},{searches},{refinements},{},{value}\n",
                 i + 1,
-                joined(&Design::of(&damper).values(), ",")
+                joined(&columns(objective, &x)?, ",")
             );
         }
         Ok(results.write("basins.csv", &csv)?)

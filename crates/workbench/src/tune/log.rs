@@ -1,40 +1,42 @@
 //! The formats of a refinement's log.
 
 use crate::amount::measured;
-use retune_model::Measure;
+use retune_model::{Measure, Variable};
 use retune_optim::{Row, energy};
 use retune_study::joined;
 
 /// Columns of `fminsearch.csv`.
-pub fn csv_header(quantity: Measure) -> String {
-    format!("iteration,func_count,procedure,k2,c2,D,C,{}", quantity.name())
+pub fn csv_header(varied: &[Variable], quantity: Measure) -> String {
+    format!("iteration,func_count,procedure,{},{}", joined(&Variable::columns(varied), ","), quantity.name())
 }
 
 /// Columns of `fminsearch.txt`: those of the paper's Table 1.
-pub fn table1_header(quantity: Measure) -> String {
-    let value = format!("{} {}", quantity.name(), quantity.unit());
-    format!("k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         {value}")
+pub fn table1_header(varied: &[Variable], quantity: Measure) -> String {
+    let columns = Variable::columns(varied);
+    let columns = columns.iter().map(|column| format!("{:<16}", format!("{column} opt {}", column.unit())));
+    format!("{}{} {}", columns.collect::<String>(), quantity.name(), quantity.unit())
 }
 
 /// Columns of the log on screen.
-pub fn screen_header(quantity: Measure) -> String {
-    format!(" iter evals  {:<79} procedure", table1_header(quantity))
+pub fn screen_header(varied: &[Variable], quantity: Measure) -> String {
+    let width = 16 * Variable::columns(varied).len() + 15;
+    format!(" iter evals  {:<width$} procedure", table1_header(varied, quantity))
 }
 
-/// A row of `fminsearch.csv`, with k2, c2, D and C (SI units); numbers to the last bit.
-pub fn csv(row: &Row, values: &[f64; 4]) -> String {
+/// A row of `fminsearch.csv`, with the values of its columns (SI units); numbers to the last bit.
+pub fn csv(row: &Row, values: &[f64]) -> String {
     let Row { iteration, func_count, procedure, value, .. } = row;
     format!("{iteration},{func_count},{procedure},{},{value}", joined(values, ","))
 }
 
 /// A row of `fminsearch.txt`, in the format of the paper's Table 1.
-pub fn table1(row: &Row, values: &[f64; 4]) -> String {
-    let [k2, c2, d, c] = values.map(scientific);
-    format!("{k2}   {c2}   {d}   {c}   {}", scientific(row.value))
+pub fn table1(row: &Row, values: &[f64]) -> String {
+    let all = values.iter().chain([&row.value]).map(|value| scientific(*value));
+    all.collect::<Vec<_>>().join("   ")
 }
 
 /// A row of the log on screen.
-pub fn screen(row: &Row, values: &[f64; 4]) -> String {
+pub fn screen(row: &Row, values: &[f64]) -> String {
     let Row { iteration, func_count, procedure, .. } = row;
     format!("{iteration:>5} {func_count:>5}  {}   {procedure}", table1(row, values)).trim_end().to_owned()
 }

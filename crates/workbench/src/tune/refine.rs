@@ -5,7 +5,7 @@ use super::objective::{kept, objective};
 use crate::Error;
 use crate::Observer;
 use crate::summary::MadeBy;
-use retune_model::Design;
+use retune_model::Variable;
 use retune_optim::{Minimum, PeakEnergy, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
 use retune_study::{Search, Study};
@@ -50,7 +50,7 @@ pub(super) fn refine(
 ) -> Result<Refined, Error> {
     let objective = objective(study, search, &search.variables);
     let mut all = results.file("fminsearch-starts.csv")?;
-    all.push_line(&format!("start,{}", log::csv_header(study.quantity())))?;
+    all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
@@ -58,7 +58,7 @@ pub(super) fn refine(
             "\nfminsearch, start {} of {}\n{}",
             number + 1,
             starts.len(),
-            log::screen_header(study.quantity())
+            log::screen_header(&search.variables, study.quantity())
         ))?;
         let run = run(&objective, search, start, results.journal(), |row, design| {
             all.push_line(&format!("{},{}", number + 1, log::csv(row, design)))?;
@@ -78,13 +78,19 @@ pub(super) fn refine(
     Ok(refined)
 }
 
+/// A whole design, in the order of the columns of its tables.
+pub(super) fn columns(objective: &PeakEnergy, design: &[f64]) -> Result<Vec<f64>, Error> {
+    let damper = objective.damper(design)?;
+    Ok(Variable::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
+}
+
 /// One run. `tell` receives each row with its whole design; its error ends the run.
 fn run(
     objective: &PeakEnergy,
     search: &Search,
     start: &[f64],
     journal: &Journal,
-    mut tell: impl FnMut(&Row, &[f64; 4]) -> Result<(), Error>,
+    mut tell: impl FnMut(&Row, &[f64]) -> Result<(), Error>,
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
     let mut told = Ok(());
@@ -94,10 +100,7 @@ fn run(
                 return ControlFlow::Break(());
             }
             rows.push(row.clone());
-            told = objective
-                .damper(&row.best)
-                .map_err(Error::from)
-                .and_then(|damper| tell(row, &Design::of(&damper).values()));
+            told = columns(objective, &row.best).and_then(|values| tell(row, &values));
             if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
     told?;
@@ -107,12 +110,13 @@ fn run(
 }
 
 fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
+    let varied = refined.objective.variables();
     let mut csv = results.file("fminsearch.csv")?;
     let mut txt: Pending = results.file("fminsearch.txt")?;
-    csv.push(&format!("{}\n", log::csv_header(study.quantity())))?;
-    txt.push(&format!("{}\n", log::table1_header(study.quantity())))?;
+    csv.push(&format!("{}\n", log::csv_header(varied, study.quantity())))?;
+    txt.push(&format!("{}\n", log::table1_header(varied, study.quantity())))?;
     for row in &refined.best().rows {
-        let design = Design::of(&refined.objective.damper(&row.best)?).values();
+        let design = columns(&refined.objective, &row.best)?;
         csv.push(&format!("{}\n", log::csv(row, &design)))?;
         txt.push(&format!("{}\n", log::table1(row, &design)))?;
     }

@@ -2,9 +2,10 @@
 
 use super::log::worth;
 use super::objective::objective;
+use super::refine::columns;
 use crate::Error;
 use crate::Observer;
-use retune_model::{Design, Measure};
+use retune_model::Measure;
 use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
 use retune_store::Directory;
 use retune_study::{Search, Study};
@@ -75,7 +76,7 @@ pub(super) fn surf(
     Ok(Some(surf))
 }
 
-/// A row for each point, all four parameters and the value.
+/// A row for each point, its whole design and the value.
 fn write(
     objective: &PeakEnergy,
     grid: &Grid,
@@ -84,12 +85,11 @@ fn write(
     results: &Directory,
 ) -> Result<(), Error> {
     let mut file = results.file("surf.csv")?;
-    file.push(&format!("{},{}\n", joined(&Variable::ALL, ","), quantity.name()))?;
+    file.push(&format!("{},{}\n", joined(&Variable::columns(objective.variables()), ","), quantity.name()))?;
     let mut point = vec![0.0; grid.dim()];
     for (i, value) in values.iter().enumerate() {
         grid.point(i, &mut point);
-        let damper = objective.damper(&point)?;
-        file.push(&format!("{},{value}\n", joined(&Design::of(&damper).values(), ",")))?;
+        file.push(&format!("{},{value}\n", joined(&columns(objective, &point)?, ",")))?;
     }
     file.finish()?;
     Ok(())

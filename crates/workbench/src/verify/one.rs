@@ -40,7 +40,7 @@ impl One {
     /// The file cannot be read, as of all checks.
     pub fn searched(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
         let (objective, sample) = (self.objective()?, Sample::read(&self.place.join(name), most)?);
-        let checks: Vec<Check> = sample.rows().map(|row| value(&objective, row)).collect();
+        let checks: Vec<Check> = sample.rows().map(|row| value(&objective, &self.study, row)).collect();
         report.look(name, &sample.of(checks.len()), &checks)
     }
 
@@ -159,7 +159,7 @@ pub fn energy(study: &Study, design: &Design) -> f64 {
 }
 
 /// The check of a row of a search: the minimised value, or the value of a basin, which is empty where the design breaks a limit.
-fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
+fn value<'a>(objective: &'a PeakEnergy, study: &'a Study, row: Row) -> Check<'a> {
     let name = objective.goal().objective.quantity().name();
     let text = row.text(name);
     let basin = !row.text("basin").is_empty();
@@ -168,7 +168,7 @@ fn value<'a>(objective: &'a PeakEnergy, row: Row) -> Check<'a> {
     }
     let design = row.design();
     let again = move || {
-        let scene = design.and_then(|design| objective.scene(&design.values()).ok());
+        let scene = design.and_then(|design| study.scene_at(&design));
         let found = scene.and_then(|scene| objective.evaluate(&scene, f64::INFINITY).ok());
         let value = found.map_or(f64::INFINITY, |found| found.value);
         if basin { retune_optim::energy(value) } else { value }

@@ -76,10 +76,7 @@ fn exact_size_is_the_quantity_with_every_term_by_its_size() {
 fn exact_bounds_in_flight_of_a_free_oscillation() {
     let none = NonNegative::new(0.0).expect("zero");
     let (m, k) = (Positive::new(MASS).expect("a mass"), NonNegative::new(STIFFNESS).expect("a stiffness"));
-    let free = Bare::new(
-        &Primary { mass: m, damping: none, stiffness: k },
-        &Forcing::force(none, none),
-    );
+    let free = Bare::new(&Primary { mass: m, damping: none, stiffness: k }, &Forcing::force(none, none));
     let natural = (STIFFNESS / MASS).sqrt();
     // √(2E) of an amplitude of 1.
     let energy = STIFFNESS.sqrt();
