@@ -58,12 +58,13 @@ pub fn system(scene: &Scene) -> Option<Coupled> {
 /// A value out of range.
 pub fn scene(n: Numbers) -> Result<Scene, OutOfRange> {
     let paper = paper::SSVI.damper();
+    let coefficient = Positive::new(paper::SSVI.q * n.stiffer)?;
     let damper = Damper {
         stiffness: NonNegative::new(n.k2)?,
         damping: NonNegative::new(n.c2)?,
         rest_distance: NonNegative::new(n.d)?,
         clearance: NonNegative::new(n.c)?,
-        contact: Contact { coefficient: Positive::new(paper::SSVI.q * n.stiffer)?, ..paper.contact },
+        contact: paper.contact.map(|contact| Contact { coefficient, ..contact }),
         ..paper
     };
     Ok(Scene { damper: Some(damper), ..paper::SSVI.scene() })

@@ -37,7 +37,8 @@ pub struct Coupled {
     k2: f64,
     c2: f64,
     d: f64,
-    span: f64,
+    /// Where the walls are, relative to the structure, m: infinitely far of a damper without.
+    walls: [f64; 2],
     hertz: [f64; 2],
 }
 
@@ -50,8 +51,11 @@ impl Coupled {
             k2: damper.stiffness.get(),
             c2: damper.damping.get(),
             d: damper.rest_distance.get(),
-            span: damper.rest_distance.get() + damper.clearance.get(),
-            hertz: damper.contact.stiffness(),
+            walls: match damper.contact {
+                Some(_) => [0.0, damper.rest_distance.get() + damper.clearance.get()],
+                None => [f64::NEG_INFINITY, f64::INFINITY],
+            },
+            hertz: damper.contact.map_or([0.0; 2], |contact| contact.stiffness()),
         }
     }
 
@@ -98,12 +102,15 @@ impl Coupled {
         self.d
     }
 
-    /// Position of a wall relative to the structure, m: 0 for the structure itself, `D + C` for the obstacle.
+    /// Whether there are walls to touch.
+    pub fn has_walls(&self) -> bool {
+        self.walls[0].is_finite()
+    }
+
+    /// Position of a wall relative to the structure, m: 0 for the structure itself, `D + C` for the obstacle; infinitely far of a
+    /// damper without walls.
     pub fn wall(&self, side: Side) -> f64 {
-        match side {
-            Side::Primary => 0.0,
-            Side::Obstacle => self.span,
-        }
+        self.walls[side as usize]
     }
 
     /// Hertz stiffness of a wall, N/m^1.5.
@@ -125,7 +132,7 @@ impl Coupled {
     #[inline]
     pub fn indentation(&self, y: &[f64; 4]) -> [f64; 2] {
         let r = y[2] - y[0];
-        [-r, r - self.span]
+        [self.walls[0] - r, r - self.walls[1]]
     }
 
     /// Contact forces `[F_con(z1), F_con(z2)]`, N, none negative.

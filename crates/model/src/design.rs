@@ -55,11 +55,12 @@ impl Variable {
         }
     }
 
-    /// Its value in `damper`.
+    /// Its value in `damper`; NaN for a gap of one without walls.
     pub const fn get(self, damper: &Damper) -> f64 {
         match self {
             Self::K2 => damper.stiffness.get(),
             Self::C2 => damper.damping.get(),
+            Self::D | Self::C if damper.contact.is_none() => f64::NAN,
             Self::D => damper.rest_distance.get(),
             Self::C => damper.clearance.get(),
             Self::M2 => damper.mass.get(),
@@ -96,12 +97,12 @@ pub struct Design {
     pub k2: NonNegative,
     /// c2, damping between damper and primary structure, N·s/m.
     pub c2: NonNegative,
-    /// D, distance between the damper at rest and the primary structure, m.
-    #[serde(rename = "D")]
-    pub d: NonNegative,
-    /// C, clearance between the damper at rest and the obstacle, m.
-    #[serde(rename = "C")]
-    pub c: NonNegative,
+    /// D, distance between the damper at rest and the primary structure, m; of a damper with walls.
+    #[serde(rename = "D", default, skip_serializing_if = "Option::is_none")]
+    pub d: Option<NonNegative>,
+    /// C, clearance between the damper at rest and the obstacle, m; of a damper with walls.
+    #[serde(rename = "C", default, skip_serializing_if = "Option::is_none")]
+    pub c: Option<NonNegative>,
     /// m2, mass of the damper, kg; that of the study's damper if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub m2: Option<Positive>,
@@ -110,34 +111,44 @@ pub struct Design {
 impl Design {
     /// The design of a damper, whatever its mass.
     pub const fn of(damper: &Damper) -> Self {
-        let Damper { stiffness, damping, rest_distance, clearance, .. } = *damper;
-        Self { k2: stiffness, c2: damping, d: rest_distance, c: clearance, m2: None }
+        let Damper { stiffness, damping, rest_distance, clearance, contact, .. } = *damper;
+        let (d, c) = match contact {
+            Some(_) => (Some(rest_distance), Some(clearance)),
+            None => (None, None),
+        };
+        Self { k2: stiffness, c2: damping, d, c, m2: None }
     }
 
-    /// From a value for each variable, in SI units; a mass that is not a number is none.
+    /// From a value for each variable, in SI units; NaN for D, C and m2 where they are left out.
     ///
     /// # Errors
     /// The first value that no damper can have, with its variable.
     pub fn new(value: impl Fn(Variable) -> f64) -> Result<Self, (Variable, OutOfRange)> {
+        let given = |variable| Some(value(variable)).filter(|value| !value.is_nan());
         let checked = |variable| NonNegative::new(value(variable)).map_err(|refused| (variable, refused));
-        let [k2, c2, d, c] = Variable::PAPER.map(checked);
-        let mass = Some(value(Variable::M2)).filter(|mass| !mass.is_nan()).map(Positive::new).transpose();
-        let m2 = mass.map_err(|refused| (Variable::M2, refused))?;
-        Ok(Self { k2: k2?, c2: c2?, d: d?, c: c?, m2 })
+        let perhaps = |variable| given(variable).map(|_| checked(variable)).transpose();
+        let mass = given(Variable::M2).map(Positive::new).transpose();
+        Ok(Self {
+            k2: checked(Variable::K2)?,
+            c2: checked(Variable::C2)?,
+            d: perhaps(Variable::D)?,
+            c: perhaps(Variable::C)?,
+            m2: mass.map_err(|refused| (Variable::M2, refused))?,
+        })
     }
 
-    /// The value of a variable; NaN for a mass that is left out.
+    /// The value of a variable; NaN where it is left out.
     pub fn get(&self, variable: Variable) -> f64 {
         match variable {
             Variable::K2 => self.k2.get(),
             Variable::C2 => self.c2.get(),
-            Variable::D => self.d.get(),
-            Variable::C => self.c.get(),
+            Variable::D => self.d.map_or(f64::NAN, NonNegative::get),
+            Variable::C => self.c.map_or(f64::NAN, NonNegative::get),
             Variable::M2 => self.m2.map_or(f64::NAN, Positive::get),
         }
     }
 
-    /// All values but the mass, in the order of [`Variable::PAPER`].
+    /// All values but the mass, in the order of [`Variable::PAPER`]; NaN where they are left out.
     pub fn values(&self) -> [f64; 4] {
         Variable::PAPER.map(|variable| self.get(variable))
     }
@@ -150,8 +161,8 @@ impl Design {
             mass,
             stiffness: self.k2,
             damping: self.c2,
-            rest_distance: self.d,
-            clearance: self.c,
+            rest_distance: self.d.unwrap_or(damper.rest_distance),
+            clearance: self.c.unwrap_or(damper.clearance),
             ..damper
         }
     }

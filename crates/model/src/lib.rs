@@ -42,6 +42,7 @@
 mod band;
 mod bare;
 mod coupled;
+mod damper;
 mod den_hartog;
 mod design;
 mod excitation;
@@ -56,6 +57,7 @@ mod value;
 pub use band::Worst;
 pub use bare::Bare;
 pub use coupled::{Coupled, Side};
+pub use damper::{Contact, Damper};
 pub use den_hartog::den_hartog;
 pub use design::{Design, Variable};
 pub use excitation::Excitation;
@@ -64,7 +66,7 @@ pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_sl
 pub use measure::Measure;
 pub use regularised::bounds::{Growth, ORDERS};
 pub use regularised::{RegularisedContact, RegularisedState};
-pub use scene::{Contact, Damper, Primary, Scene};
+pub use scene::{Primary, Scene};
 pub use steady::Steady;
 pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive};
 

@@ -137,7 +137,7 @@ impl<'a> Plan<'a> {
 
     /// What made an item, in words.
     pub fn made_by(&self, more: &str) -> String {
-        let contact = self.ssvi.scene.damper.map(|damper| damper.contact);
+        let contact = self.ssvi.scene.damper.and_then(|damper| damper.contact);
         let radius = contact.map_or(String::new(), |contact| {
             format!("R = {} m, q = {}; ", contact.radius.get(), contact.coefficient.get())
         });

@@ -8,7 +8,7 @@ use crate::methods::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s,
 use crate::observe::observer::Observer;
 use crate::response::Work;
 use crate::settings::{Method, Settings, Window};
-use crate::system::System;
+use crate::system::{LinearSystem, System};
 use nalgebra::{Const, DimMin};
 use retune_model::{Bare, Coupled};
 
@@ -29,6 +29,17 @@ pub fn follow_bare(
         method.follow(&mut run, window.to, observer)?;
         return Ok((run.state(), run.work));
     }
+    follow_free(system, window, settings, before, observer)
+}
+
+/// Follows what has no walls to touch.
+fn follow_free<S: LinearSystem<N>, const N: usize>(
+    system: &S,
+    window: Window,
+    settings: &Settings,
+    before: &mut impl Observer<N>,
+    observer: &mut impl Observer<N>,
+) -> Followed<N> {
     let mut free = ContactFree::new(system, window.to, settings.max_steps);
     if window.from > 0.0 {
         free.propagate(window.from, before)?;
@@ -52,6 +63,9 @@ pub fn follow_coupled(
         method.follow(&mut run, window.to, observer)?;
         return Ok((run.state(), run.work));
     }
+    if !system.has_walls() {
+        return follow_free(system, window, settings, before, observer);
+    }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
     let y = system.start();
     let start = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
@@ -69,16 +83,19 @@ pub struct Follower<'a> {
 
 enum Way<'a> {
     Exact(Box<Hybrid<'a>>),
+    /// Without walls, in steps of at most so many seconds.
+    Free(f64),
     Steps(General),
 }
 
 impl<'a> Follower<'a> {
     /// Prepares for stretches of at most `longest` seconds, each of which may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings, longest: f64) -> Self {
-        let way = General::of(settings.method).map_or_else(
-            || Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps))),
-            Way::Steps,
-        );
+        let way = match General::of(settings.method) {
+            Some(method) => Way::Steps(method),
+            None if !system.has_walls() => Way::Free(longest),
+            None => Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps))),
+        };
         Self { system, settings: *settings, way }
     }
 
@@ -96,6 +113,12 @@ impl<'a> Follower<'a> {
             Way::Exact(hybrid) => {
                 hybrid.work = Work::default();
                 hybrid.propagate(from, to, observer)
+            }
+            Way::Free(longest) => {
+                let mut free =
+                    ContactFree::new(self.system, *longest, self.settings.max_steps).from(from.t, from.y);
+                free.propagate(to, observer)?;
+                Ok(Motion { t: to, y: free.state(), phase: Phase::Flight })
             }
             Way::Steps(method) => {
                 let longest = self.settings.longest_step(to - from.t);

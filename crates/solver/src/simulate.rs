@@ -136,7 +136,8 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
     let relative_displacement_max = farthest_from(0.0);
     let spring_deflection_max = farthest_from(system.rest_distance());
-    let mut depths = [-nearest, farthest - system.wall(Side::Obstacle)];
+    let places = [nearest, farthest];
+    let mut depths = Side::BOTH.map(|side| side.sign() * (places[side as usize] - system.wall(side)));
     if settings.method == Method::Hybrid {
         for side in Side::BOTH {
             let i = side as usize;

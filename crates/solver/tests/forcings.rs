@@ -159,3 +159,41 @@ fn reference_a_free_decay_with_contacts_is_the_same_by_another_method() {
         assert!((one / other - 1.0).abs() < 1e-8, "{start:?} {one} {other}");
     }
 }
+
+/// A damper without walls is one whose walls are out of reach, whatever is measured and by whatever method.
+#[test]
+fn exact_a_damper_without_walls_is_one_that_never_touches() {
+    let far = Numbers { d: 64.0, c: 64.0, ..TMD };
+    let window = Window { from: 3.0, to: 40.0 };
+    for omega in [2.0, TMD.omega, 9.0] {
+        let [open, walled] = [Numbers { omega, ..far }.open_scene(), Numbers { omega, ..far }.scene()];
+        for method in [Method::Hybrid, Method::Ode45] {
+            let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
+            let [a, b] = [open, walled].map(|scene| simulate(&scene, window, &settings).expect("a run"));
+            let most = if method == Method::Hybrid { 1e-12 } else { 1e-6 };
+            for (a, b) in [
+                (a.e1_max.value, b.e1_max.value),
+                (a.spring_deflection_max, b.spring_deflection_max),
+                (a.structure.ground_force.value, b.structure.ground_force.value),
+            ] {
+                assert!((a / b - 1.0).abs() < most, "{omega} {method:?} {a} {b}");
+            }
+            assert_eq!((a.force_max, a.impacts, a.scene), (b.force_max, b.impacts, b.scene));
+        }
+        let ask = Ask { walls: Some(0.0), measure: Measure::ContactForce, ..Ask::default() };
+        let found = extremes(&open, window, &Settings::default(), ask).expect("a run");
+        assert_eq!((found.largest.value, found.force), (0.0, 0.0));
+    }
+}
+
+/// An undamped structure at its resonance has no steady motion, and a damper without walls still moves.
+#[test]
+fn exact_no_walls_and_no_damping_at_a_resonance() {
+    let numbers = Numbers { c1: 0.0, c2: 0.0, k2: 60.0, m2: 60.0, omega: 1.0, ..TMD };
+    let scene = numbers.open_scene();
+    let window = Window { from: 0.0, to: 50.0 };
+    let run = simulate(&scene, window, &Settings::default()).expect("a run");
+    let settings = Settings { method: Method::Dop853, rtol: 1e-12, ..Settings::default() };
+    let other = simulate(&scene, window, &settings).expect("a run");
+    assert!((run.e1_max.value / other.e1_max.value - 1.0).abs() < 1e-8, "{run:?} {other:?}");
+}

@@ -51,4 +51,4 @@ pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, read_table2};
-pub use words::{are, counted, frequency, joined, over, rounded, short};
+pub use words::{are, counted, fields, frequency, joined, over, rounded, short};

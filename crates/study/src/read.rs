@@ -100,7 +100,10 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
         None => None,
         Some(_) => Positive::new(number("m2")?.get()).ok(),
     };
-    Ok(Design { k2: number("k2")?, c2: number("c2")?, d: number("D")?, c: number("C")?, m2 })
+    // Both gaps are there, or, of a damper without walls, neither.
+    let walled = found.get("D").is_some() || found.get("C").is_some();
+    let gap = |name| if walled { number(name).map(Some) } else { Ok(None) };
+    Ok(Design { k2: number("k2")?, c2: number("c2")?, d: gap("D")?, c: gap("C")?, m2 })
 }
 
 /// Checks the text of a study file as [`read`] does.

@@ -64,6 +64,13 @@ impl Study {
     pub fn search(&self) -> Result<Search, Rule> {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
+        if let Some(gap) = optimize.vary.iter().find(|variable| variable.get(&damper).is_nan()) {
+            return Err(Rule::NotAllowed {
+                field: "optimize.vary".to_owned(),
+                value: gap.to_string(),
+                allowed: "what the damper has: without D, C and contact it has no walls",
+            });
+        }
         let variables = varied(&optimize.vary)?;
         check(&optimize.objective, "optimize.objective", &self.scene.forcing)?;
         check_limits(&optimize.limits, self.window.end.get())?;

@@ -62,6 +62,12 @@ pub enum SettingError {
         /// The parameter.
         name: &'static str,
     },
+    /// A gap or a contact of a damper without walls.
+    #[error("{name}: the damper has no walls")]
+    NoWalls {
+        /// The parameter.
+        name: &'static str,
+    },
     /// The changed study breaks a rule.
     #[error(transparent)]
     Rule(#[from] Rule),
@@ -139,9 +145,9 @@ impl Study {
             "m2" => damper?.mass.get(),
             "k2" => damper?.stiffness.get(),
             "c2" => damper?.damping.get(),
-            "D" => damper?.rest_distance.get(),
-            "C" => damper?.clearance.get(),
-            "R" => damper?.contact.radius.get(),
+            "D" => damper.filter(walled)?.rest_distance.get(),
+            "C" => damper.filter(walled)?.clearance.get(),
+            "R" => damper?.contact?.radius.get(),
             _ => return None,
         };
         Some(value)
@@ -175,9 +181,13 @@ impl Study {
     }
 }
 
+fn walled(damper: &&Damper) -> bool {
+    damper.contact.is_some()
+}
+
 fn set_damper(
     damper: &mut Damper,
-    name: &str,
+    name: &'static str,
     positive: impl Fn() -> Result<Positive, SettingError>,
     not_negative: impl Fn() -> Result<NonNegative, SettingError>,
 ) -> Result<(), SettingError> {
@@ -185,9 +195,14 @@ fn set_damper(
         "m2" => damper.mass = positive()?,
         "k2" => damper.stiffness = not_negative()?,
         "c2" => damper.damping = not_negative()?,
-        "D" => damper.rest_distance = not_negative()?,
-        "C" => damper.clearance = not_negative()?,
-        _ => damper.contact.radius = positive()?, // R, the last of `NAMES`
+        _ => {
+            let contact = damper.contact.as_mut().ok_or(SettingError::NoWalls { name })?;
+            match name {
+                "D" => damper.rest_distance = not_negative()?,
+                "C" => damper.clearance = not_negative()?,
+                _ => contact.radius = positive()?, // R, the last of `NAMES`
+            }
+        }
     }
     Ok(())
 }

@@ -77,6 +77,12 @@ pub fn frequency(omega: f64) -> String {
     format!("{} rad/s ({} Hz)", rounded(omega, 4), rounded(omega / TAU, 4))
 }
 
+/// Numbers as fields of a table, to the last bit; empty where there is none.
+pub fn fields(values: &[f64]) -> String {
+    let field = |value: &f64| if value.is_nan() { String::new() } else { value.to_string() };
+    values.iter().map(field).collect::<Vec<_>>().join(",")
+}
+
 /// The items with `separator` between them.
 pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(separator)

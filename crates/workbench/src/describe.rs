@@ -32,11 +32,12 @@ pub fn study(study: &Study) -> String {
     )];
     match study.scene.damper {
         None => lines.push("no damper".to_owned()),
-        Some(damper) => lines.push(format!(
-            "damper of {} kg; contact stiffnesses {} N/m^1.5",
-            damper.mass.get(),
-            joined(&damper.contact.stiffness().map(short), " and "),
-        )),
+        Some(damper) => {
+            let walls = damper.contact.map_or("no walls".to_owned(), |contact| {
+                format!("contact stiffnesses {} N/m^1.5", joined(&contact.stiffness().map(short), " and "))
+            });
+            lines.push(format!("damper of {} kg; {walls}", damper.mass.get()));
+        }
     }
     if let Ok(search) = study.search() {
         lines.push(format!("tunes {} from {}", joined(&search.variables, ", "), starts(&search)));

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, table2_header, table2_row};
 use retune_store::Directory;
-use retune_study::{Study, joined, short};
+use retune_study::{Study, fields, short};
 use serde::Serialize;
 
 /// A table of designs: the paper's columns, one column of its own, and what each design is worth.
@@ -80,7 +80,7 @@ impl Designs {
         for Row { label, damper, found, printed, e1_max, none, verdict } in &self.rows {
             let printed = printed.map(|value| value.to_string()).unwrap_or_default();
             let [label, damper] = [label, damper].map(|text| quoted(text));
-            let values = joined(&found.values(), ",");
+            let values = fields(&found.values());
             text += &format!("{label},{damper},{values},{e1_max},{printed},{none},{verdict}\n");
         }
         text

@@ -1,7 +1,7 @@
 //! The difficulties: scenes designed to make methods fail.
 
 use crate::scenes::{Case, Numbers, SSVI, TMD, scene, system};
-use retune_model::{NonNegative, Positive, Scene};
+use retune_model::{Contact, NonNegative, Positive, Scene};
 use retune_solver::observe::{RelativePosition, RunningMaximum};
 use retune_solver::{Hybrid, Motion, Phase};
 use std::error::Error;
@@ -119,7 +119,8 @@ fn two_maxima() -> Any<Scene> {
     scene.forcing.frequency = NonNegative::new(8.576461062918153)?;
     if let Some(damper) = &mut scene.damper {
         damper.mass = Positive::new(1094.99843495297)?;
-        damper.contact.radius = Positive::new(0.6350272881550908)?;
+        let radius = Positive::new(0.6350272881550908)?;
+        damper.contact = damper.contact.map(|contact| Contact { radius, ..contact });
     }
     Ok(scene)
 }

@@ -139,7 +139,7 @@ fn scenes_json(cases: &[Case]) -> Result<String, serde_json::Error> {
             let mut object = serde_json::json!({
                 "scene": case.name, "T": case.to,
                 "m1": p.mass.get(), "c1": p.damping.get(), "k1": p.stiffness.get(),
-                "P": f.amplitude.get(), "omega": f.frequency.get(),
+                "P": f.amplitude().map_or(0.0, |(_, amplitude)| amplitude.get()), "omega": f.frequency.get(),
             });
             let numbers = match &case.scene.damper {
                 None => serde_json::json!({"m2": 1.0, "k2": 0.0, "c2": 0.0, "D": 1e6, "C": 1e6, "K1": 0.0, "K3": 0.0}),

@@ -80,6 +80,6 @@ impl Coupled {
         let size = |hertz: f64, z: f64, wall: f64| {
             if z > 0.0 { hertz_force(hertz, z) * (1.0 + 1.5 * (position + wall) / z) } else { 0.0 }
         };
-        (size(self.hertz[0], z1, 0.0) + size(self.hertz[1], z2, self.span)) / self.bare.m1
+        (size(self.hertz[0], z1, 0.0) + size(self.hertz[1], z2, self.walls[1])) / self.bare.m1
     }
 }

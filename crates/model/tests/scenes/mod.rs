@@ -78,7 +78,7 @@ impl Numbers {
             damping: non_negative(self.c2),
             rest_distance: non_negative(self.d),
             clearance: non_negative(self.c),
-            contact: Contact {
+            contact: Some(Contact {
                 radius: positive(self.r),
                 coefficient: positive(self.q),
                 young_1,
@@ -89,12 +89,19 @@ impl Numbers {
                 poisson_3: metal,
                 young_4,
                 poisson_4: rubber,
-            },
+            }),
         }
     }
 
     pub fn scene(&self) -> Scene {
         Scene { primary: self.primary(), forcing: self.forcing(), damper: Some(self.damper()) }
+    }
+
+    /// With a damper that has no walls.
+    pub fn open_scene(&self) -> Scene {
+        let none = NonNegative::default();
+        let damper = Damper { rest_distance: none, clearance: none, contact: None, ..self.damper() };
+        Scene { damper: Some(damper), ..self.scene() }
     }
 
     pub fn bare_scene(&self) -> Scene {

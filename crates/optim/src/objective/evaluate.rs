@@ -246,7 +246,8 @@ impl Watch<'_> {
             Some(damper) => {
                 let system = Coupled::new(primary, forcing, damper);
                 let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
-                let room = damper.rest_distance.get().min(damper.clearance.get());
+                let gaps = damper.rest_distance.get().min(damper.clearance.get());
+                let room = if damper.contact.is_some() { gaps } else { f64::INFINITY };
                 if stroke >= room {
                     return Err(Unusable::Touches { omega, stroke, room });
                 }

@@ -37,6 +37,12 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
     }
 
+    /// The same in another state at another time, s.
+    #[must_use]
+    pub fn from(self, t: f64, y: [f64; N]) -> Self {
+        Self { now: Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] }, ..self }
+    }
+
     /// The state reached.
     pub fn state(&self) -> [f64; N] {
         self.now.y
@@ -155,7 +161,7 @@ impl ContactFree<'_, Coupled, 4> {
         let reach = self.system.steady(self.system.bare().frequency()).stroke()
             + self.system.dual_energy_norm(&[-1.0, 0.0, 1.0, 0.0]) * self.transient();
         let rest = self.system.rest_distance();
-        reach < rest && reach < self.system.wall(Side::Obstacle) - rest
+        reach < rest - self.system.wall(Side::Primary) && reach < self.system.wall(Side::Obstacle) - rest
     }
 }
 

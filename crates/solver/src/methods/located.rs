@@ -34,7 +34,8 @@ impl<S: System<N>, const N: usize> Start<'_, S, N> {
     pub fn located<M: OneStep<N>>(&self, h: f64, attempt: Attempt<N>, work: &mut Work) -> Located<N> {
         let mut first: Option<(f64, Side)> = None;
         for side in Side::BOTH {
-            if self.contact.is_none_or(|touching| touching == side) {
+            let there = self.system.indentation(&self.now.y)[side as usize] != f64::NEG_INFINITY;
+            if there && self.contact.is_none_or(|touching| touching == side) {
                 let found = first_contact(self.open_polynomial(side, h, &attempt), 1.0);
                 let found = found.map_err(|Lost| SolverError::NonFinite { t: self.now.t })?;
                 first = found.into_iter().map(|s| (s, side)).chain(first).min_by(|a, b| a.0.total_cmp(&b.0));

@@ -57,7 +57,7 @@ impl Anything {
             damping: not_negative(SSVI.c2, c2),
             rest_distance: not_negative(SSVI.d, d),
             clearance: not_negative(SSVI.c, c),
-            contact: Contact {
+            contact: Some(Contact {
                 radius: positive(SSVI.r, r),
                 coefficient: positive(SSVI.q, q),
                 young_1: positive(SSVI.young[0], e1),
@@ -68,7 +68,7 @@ impl Anything {
                 poisson_3: poisson(nu3),
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
-            },
+            }),
         };
         let scene = Scene {
             primary: Primary {

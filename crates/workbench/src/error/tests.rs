@@ -95,6 +95,7 @@ fn settings() -> Vec<SettingError> {
         SettingError::OutOfRange { name, source: out_of_range() },
         SettingError::Forcing { name: "P", has: "base" },
         SettingError::NoDamper { name },
+        SettingError::NoWalls { name: "D" },
         SettingError::Rule(Rule::EmptyWindow { t0: 9.0, end: 4.0 }),
     ]
 }
@@ -224,7 +225,7 @@ fn regress_the_words_of_every_error() {
         each!(errors(), Error: Store Study Setting Rule Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
-        each!(settings(), SettingError: Form Name Number OutOfRange Forcing NoDamper Rule),
+        each!(settings(), SettingError: Form Name Number OutOfRange Forcing NoDamper NoWalls Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),

@@ -137,7 +137,8 @@ fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
     let mut table =
         Table::new("The damper", &["symbol", "name", "value", "unit", "damper of the study", "tuned"]);
-    for (symbol, name, unit, value, variable) in named(&damper) {
+    let known = named(&damper).into_iter().filter(|one| !one.3.is_nan());
+    for (symbol, name, unit, value, variable) in known {
         let before = findings.study.scene.damper.as_ref().map(named);
         let before =
             before.and_then(|all| all.into_iter().find(|one| one.0 == symbol)).map_or(f64::NAN, |one| one.3);

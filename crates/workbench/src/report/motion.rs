@@ -8,6 +8,7 @@ use crate::amount::label;
 use maud::html;
 use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Scale, Sheet, Stroke, Width, drawing};
+use retune_model::{Coupled, Side};
 use retune_solver::{Rows, Sample, Window, trajectory};
 
 /// Periods of the force that are drawn, and points of a period.
@@ -183,12 +184,12 @@ fn relative(findings: &Findings, rows: &[Sample]) -> (String, Axis, Vec<Layer>) 
         .iter()
         .map(place)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    let (rest, obstacle) = findings.worst.damper.map_or((0.0, 0.0), |damper| {
-        let [d, c] = [damper.rest_distance.get(), damper.clearance.get()];
-        (1e3 * d, 1e3 * (d + c))
+    let (rest, [structure, obstacle]) = findings.worst.damper.map_or((0.0, [0.0; 2]), |damper| {
+        let system = Coupled::new(&findings.worst.primary, &findings.worst.forcing, &damper);
+        (1e3 * system.rest_distance(), Side::BOTH.map(|side| 1e3 * system.wall(side)))
     });
     let reach = NEAR * (high - low);
-    let walls: Vec<f64> = [(0.0, low), (obstacle, high)]
+    let walls: Vec<f64> = [(structure, low), (obstacle, high)]
         .into_iter()
         .filter(|(wall, end)| (wall - end).abs() <= reach)
         .map(|(wall, _)| wall)
@@ -197,7 +198,7 @@ fn relative(findings: &Findings, rows: &[Sample]) -> (String, Axis, Vec<Layer>) 
     let (bottom, top) = (f64::NEG_INFINITY, f64::INFINITY);
     let wall = |y: (f64, f64)| Layer::Band { x: (bottom, top), y, colour: GREY, opacity: 0.4 };
     let mut layers = vec![
-        wall((bottom, 0.0)),
+        wall((bottom, structure)),
         wall((obstacle, top)),
         Layer::Level { y: rest, stroke: Stroke::new(GREY, 0.8, Dash::Dots) },
         Layer::Line {
@@ -206,9 +207,9 @@ fn relative(findings: &Findings, rows: &[Sample]) -> (String, Axis, Vec<Layer>) 
         },
     ];
     layers.retain(|layer| !matches!(layer, Layer::Band { y, .. } if !y.0.is_finite() && !y.1.is_finite()));
-    let off: Vec<String> = [("structure", 0.0), ("obstacle", obstacle)]
+    let off: Vec<String> = [("structure", structure), ("obstacle", obstacle)]
         .into_iter()
-        .filter(|(_, wall)| !walls.contains(wall))
+        .filter(|(_, wall)| wall.is_finite() && !walls.contains(wall))
         .map(|(name, wall)| format!("{name} at {} mm", four(wall)))
         .collect();
     let off = if off.is_empty() { String::new() } else { format!(" (off the chart: {})", off.join(", ")) };

@@ -10,7 +10,7 @@ use retune_model::{Measure, Variable};
 use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
 use retune_store::{Directory, Journal};
 use retune_study::{PerVariable, Search, Study};
-use retune_study::{counted, joined, short};
+use retune_study::{counted, fields, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -166,11 +166,8 @@ impl Basins {
             let BasinNote { design: at, found, searches, refinements } = basin;
             let x: Vec<f64> = objective.variables().iter().filter_map(|&v| at.get(v)).collect();
             let value = if found.value.is_nan() { String::new() } else { found.value.to_string() };
-            csv += &format!(
-                "{},{searches},{refinements},{},{value}\n",
-                i + 1,
-                joined(&columns(objective, &x)?, ",")
-            );
+            csv +=
+                &format!("{},{searches},{refinements},{},{value}\n", i + 1, fields(&columns(objective, &x)?));
         }
         Ok(results.write("basins.csv", &csv)?)
     }

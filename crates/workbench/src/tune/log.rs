@@ -3,7 +3,7 @@
 use crate::amount::measured;
 use retune_model::{Measure, Variable};
 use retune_optim::{Row, energy};
-use retune_study::joined;
+use retune_study::{fields, joined};
 
 /// Columns of `fminsearch.csv`.
 pub fn csv_header(varied: &[Variable], quantity: Measure) -> String {
@@ -26,7 +26,7 @@ pub fn screen_header(varied: &[Variable], quantity: Measure) -> String {
 /// A row of `fminsearch.csv`, with the values of its columns (SI units); numbers to the last bit.
 pub fn csv(row: &Row, values: &[f64]) -> String {
     let Row { iteration, func_count, procedure, value, .. } = row;
-    format!("{iteration},{func_count},{procedure},{},{value}", joined(values, ","))
+    format!("{iteration},{func_count},{procedure},{},{value}", fields(values))
 }
 
 /// A row of `fminsearch.txt`, in the format of the paper's Table 1.
@@ -47,8 +47,11 @@ pub fn worth(value: f64, quantity: Measure) -> String {
     if value.is_nan() { "no feasible design".to_owned() } else { measured(value, quantity) }
 }
 
-/// A number as in the paper's Table 1: `2.203750E+002`.
+/// A number as in the paper's Table 1: `2.203750E+002`; a dash for none.
 pub fn scientific(value: f64) -> String {
+    if value.is_nan() {
+        return format!("{:<13}", "-");
+    }
     let text = format!("{value:.6E}");
     match text.split_once('E') {
         Some((digits, exponent)) => {

@@ -202,7 +202,8 @@ pub fn table2_header() -> String {
 
 /// A row of the paper's Table 2.
 pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
-    let [m2, k2, c2, d, c] = damper.values().map(short);
+    let said = |value: f64| if value.is_nan() { "none".to_owned() } else { short(value) };
+    let [m2, k2, c2, d, c] = damper.values().map(said);
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 

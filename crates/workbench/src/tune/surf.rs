@@ -9,7 +9,7 @@ use retune_model::Measure;
 use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
 use retune_store::Directory;
 use retune_study::{Search, Study};
-use retune_study::{counted, joined, short};
+use retune_study::{counted, fields, joined, short};
 use std::time::Instant;
 
 // A journal must hold every grid that a study may have.
@@ -89,7 +89,7 @@ fn write(
     let mut point = vec![0.0; grid.dim()];
     for (i, value) in values.iter().enumerate() {
         grid.point(i, &mut point);
-        file.push(&format!("{},{value}\n", joined(&columns(objective, &point)?, ",")))?;
+        file.push(&format!("{},{value}\n", fields(&columns(objective, &point)?)))?;
     }
     file.finish()?;
     Ok(())

@@ -92,7 +92,9 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         // Twenty periods, so that not even a chaotic motion makes more of a rounding error than the tolerance below.
         let [k2, c2, d, c] = ["k2", "c2", "D", "C"]
             .map(|name| retune_model::NonNegative::new(number(name)).expect("a number"));
-        let mut scene = study.scene_at(&retune_model::Design { k2, c2, d, c, m2: None }).expect("a damper");
+        let mut scene = study
+            .scene_at(&retune_model::Design { k2, c2, d: Some(d), c: Some(c), m2: None })
+            .expect("a damper");
         for omega in [wishes.band[0], found["objective"]["worst_omega"].as_f64().expect("a number")] {
             scene.forcing.frequency = retune_model::NonNegative::new(omega).expect("a frequency");
             let window = Window { from: 0.0, to: 20.0 * TAU / wishes.natural_frequency() };

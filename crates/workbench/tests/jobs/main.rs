@@ -14,6 +14,7 @@ mod pareto;
 mod quantity;
 mod replaced;
 mod report;
+mod scenes;
 mod shards;
 mod simulate;
 mod table2;

@@ -15,9 +15,8 @@ impl std::fmt::Display for Short {
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { made_by, design, value, error_bar, worst_run, motion, neighbourhood, .. } = self;
-        let [m2, k2, c2, d, c] = design.values().map(short);
         writeln!(f, "{made_by}")?;
-        writeln!(f, "design        m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m")?;
+        writeln!(f, "design        {}", design.words(6))?;
         let predictable = if self.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());

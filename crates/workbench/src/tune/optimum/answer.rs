@@ -20,8 +20,7 @@ impl Optimum {
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
         say(self.headline());
         say(format!("  {}", self.compared()));
-        let [m2, k2, c2, d, c] = self.damper.values().map(|value| rounded(value, 4));
-        let values = format!("m2 = {m2} kg,k2 = {k2} N/m,c2 = {c2} N·s/m,D = {d} m,C = {c} m");
+        let values = self.damper.words(4).replace(", ", ",");
         say(format!("  build    {}", values.replace(' ', HELD).replace(',', ", ")));
         say(format!("  needs    {}", self.simulation.needs()));
         say(format!("  there    the structure {}", self.simulation.motion()));
