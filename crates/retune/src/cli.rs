@@ -200,7 +200,7 @@ pub struct Fronts {
 pub struct Simulate {
     /// The study file
     pub study: PathBuf,
-    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P omega R T t0 (repeatable)
+    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P omega R T t0, in SI units; omega=1Hz and omega=60rpm too (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<Setting>,
     /// Integration method

@@ -23,6 +23,7 @@
 //! ```
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod angular_frequency;
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod explain;
@@ -40,6 +41,7 @@ mod set;
 mod table2;
 mod words;
 
+pub use angular_frequency::{angular_frequency, hertz_and_rpm};
 pub use file::{StudyError, kind_of};
 pub use format::{GridAxis, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};

@@ -28,7 +28,7 @@
 //! }"#;
 //! let study = retune_study::read::from_text(text, "ssvi.json")?;
 //! let with_damper = simulate(&study, None)?;
-//! assert_eq!(with_damper.damper_type(), "SSVI NES"); // it strikes its walls
+//! assert_eq!(with_damper.summary.damper_type(), "SSVI NES"); // it strikes its walls
 //!
 //! let mut bare = study.clone();
 //! bare.scene.damper = None;

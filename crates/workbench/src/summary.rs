@@ -1,9 +1,13 @@
 //! The results of a run: one type, from which JSON and text are made.
 
-use retune_model::{Damper, Design, Positive, Scene, energy_ratios};
+mod tuned_damper;
+
+pub use tuned_damper::TunedDamper;
+
+use retune_model::{Scene, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
-use retune_study::{Solver, Span, Study, counted, over, rounded};
+use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, over, rounded};
 use serde::Serialize;
 
 /// The observations in the window of a run. SI units; a ratio 0/0 is null.
@@ -73,30 +77,6 @@ impl Structure {
             ground_force_max: ground_force.value,
             t_ground_force: ground_force.time,
         }
-    }
-}
-
-/// A damper as in the paper's Table 2: m2 (kg) and its design.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct TunedDamper {
-    /// m2, mass, kg.
-    #[serde(rename = "m2")]
-    pub mass: Positive,
-    /// k2, c2, D, C.
-    #[serde(flatten)]
-    pub design: Design,
-}
-
-impl TunedDamper {
-    /// From a damper of a scene.
-    pub const fn of(damper: &Damper) -> Self {
-        Self { mass: damper.mass, design: Design::of(damper) }
-    }
-
-    /// m2, k2, c2, D and C, in SI units.
-    pub fn values(&self) -> [f64; 5] {
-        let [k2, c2, d, c] = self.design.values();
-        [self.mass.get(), k2, c2, d, c]
     }
 }
 
@@ -204,6 +184,12 @@ impl Summary {
         self.made_by.omega
     }
 
+    /// The transmissibility: the largest force on the ground in the window over the amplitude P of the force. None without a force.
+    pub fn transmissibility(&self) -> Option<f64> {
+        let share = self.structure.ground_force_max / self.parameters.forcing.amplitude.get();
+        share.is_finite().then_some(share)
+    }
+
     /// The room and the strength that the damper needs, in words.
     pub fn needs(&self) -> String {
         let Walls { primary, obstacle } = self.force_max.map(|force| rounded(force, 4));
@@ -249,6 +235,9 @@ impl std::fmt::Display for Summary {
             SceneKind::Contact => "with contacts",
         };
         writeln!(f, "{}", self.made_by)?;
+        let omega = self.omega();
+        let [hertz, rpm] = hertz_and_rpm(omega).map(|value| rounded(value, 5));
+        writeln!(f, "frequency   {} rad/s = {hertz} Hz = {rpm} rpm", rounded(omega, 5))?;
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
@@ -278,6 +267,9 @@ impl std::fmt::Display for Summary {
             f,
             "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground |k1 x1 + c1 v1|"
         )?;
+        if let Some(share) = self.transmissibility() {
+            writeln!(f, "transmiss.  {share:<12.5} the transmissibility: that force / P")?;
+        }
         writeln!(f, "model       {model}")?;
         write!(
             f,

@@ -92,6 +92,7 @@ fn settings() -> Vec<SettingError> {
         SettingError::Form { text: "k1".into() },
         SettingError::Name { name: "k3".into() },
         SettingError::Number { name, text: "soft".into() },
+        SettingError::Frequency { name: "omega", problem: "\"1kHz\" is no frequency".into() },
         SettingError::OutOfRange { name, source: out_of_range() },
         SettingError::NoDamper { name },
         SettingError::Rule(Rule::EmptyWindow { t0: 9.0, end: 4.0 }),
@@ -223,7 +224,7 @@ fn regress_the_words_of_every_error() {
         each!(errors(), Error: Store Study Setting Rule Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
-        each!(settings(), SettingError: Form Name Number OutOfRange NoDamper Rule),
+        each!(settings(), SettingError: Form Name Number Frequency OutOfRange NoDamper Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),

@@ -1,0 +1,28 @@
+//! A damper as in the paper's Table 2.
+
+use retune_model::{Damper, Design, Positive};
+use serde::Serialize;
+
+/// A damper as in the paper's Table 2: m2 (kg) and its design.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TunedDamper {
+    /// m2, mass, kg.
+    #[serde(rename = "m2")]
+    pub mass: Positive,
+    /// k2, c2, D, C.
+    #[serde(flatten)]
+    pub design: Design,
+}
+
+impl TunedDamper {
+    /// From a damper of a scene.
+    pub const fn of(damper: &Damper) -> Self {
+        Self { mass: damper.mass, design: Design::of(damper) }
+    }
+
+    /// m2, k2, c2, D and C, in SI units.
+    pub fn values(&self) -> [f64; 5] {
+        let [k2, c2, d, c] = self.design.values();
+        [self.mass.get(), k2, c2, d, c]
+    }
+}
