@@ -2,15 +2,17 @@
 
 mod design;
 mod running;
+mod sweep;
 
 pub use design::Design;
 pub use running::Running;
+pub use sweep::Sweep;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_solver::{Contacts, Method};
 use retune_study::{Setting, SettingError};
-use retune_workbench::tune::shard::Shard;
+use retune_workbench::parts::Shard;
 use std::path::PathBuf;
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
@@ -39,6 +41,9 @@ pub enum Command {
     Certify(Certify),
     /// Run one scene and print a summary of the motion
     Simulate(Simulate),
+    /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values, as a table and a figure
+    #[command(allow_negative_numbers = true)]
+    Sweep(Sweep),
     /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line
     #[command(after_help = retune_workbench::evaluate::PROTOCOL)]
     Evaluate(Evaluate),

@@ -39,6 +39,7 @@ mod rule;
 mod search;
 mod set;
 mod table2;
+mod visible;
 mod words;
 
 pub use angular_frequency::{angular_frequency, hertz_and_rpm};
@@ -53,4 +54,5 @@ pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, read_table2};
+pub use visible::visible;
 pub use words::{are, counted, frequency, joined, over, rounded, short};

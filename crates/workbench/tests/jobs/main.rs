@@ -15,6 +15,7 @@ mod replaced;
 mod report;
 mod shards;
 mod simulate;
+mod sweep;
 mod table2;
 mod track;
 mod tune;
