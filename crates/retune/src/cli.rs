@@ -41,7 +41,7 @@ pub enum Command {
     Certify(Certify),
     /// Run one scene and print a summary of the motion
     Simulate(Simulate),
-    /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values, as a table and a figure
+    /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values; into results/sweep-<study>-<parameter>
     #[command(allow_negative_numbers = true)]
     Sweep(Sweep),
     /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line

@@ -26,6 +26,7 @@
 mod angular_frequency;
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
+mod built_in;
 mod explain;
 mod file;
 mod format;
@@ -43,6 +44,7 @@ mod visible;
 mod words;
 
 pub use angular_frequency::{angular_frequency, hertz_and_rpm};
+pub use built_in::is_built_in;
 pub use file::{StudyError, kind_of};
 pub use format::{GridAxis, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
@@ -51,7 +53,7 @@ pub use kind::Kind;
 pub use per_variable::PerVariable;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
-pub use search::{MOST_GRID_POINTS, Search, check_name};
+pub use search::{MOST_GRID_POINTS, Search, check_name, name_from};
 pub use set::{Setting, SettingError};
 pub use table2::{PaperStudy, Table2, read_table2};
 pub use visible::visible;

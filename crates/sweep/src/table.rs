@@ -16,6 +16,11 @@ impl Column {
     pub fn new(name: &str, unit: &'static str) -> Self {
         Self { name: name.to_owned(), unit }
     }
+
+    /// A value as JSON; counts are whole numbers.
+    fn json(&self, value: f64) -> Value {
+        if self.name.starts_with("impacts") && value.is_finite() { json!(value as u64) } else { json!(value) }
+    }
 }
 
 /// All points of a sweep, a row each; numbers that are not finite are missing.
@@ -53,7 +58,11 @@ impl Table {
         let units: Map<String, Value> =
             self.columns.iter().map(|column| (column.name.clone(), json!(column.unit))).collect();
         let row = |row: &Vec<f64>| -> Map<String, Value> {
-            self.columns.iter().zip(row).map(|(column, value)| (column.name.clone(), json!(value))).collect()
+            self.columns
+                .iter()
+                .zip(row)
+                .map(|(column, value)| (column.name.clone(), column.json(*value)))
+                .collect()
         };
         json!({ "units": units, "rows": self.rows.iter().map(row).collect::<Vec<_>>() })
     }
