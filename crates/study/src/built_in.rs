@@ -4,7 +4,7 @@ use super::file::{StudyError, read_text};
 use std::path::Path;
 
 /// The directory in which plans are looked for first.
-const PLACE: &str = "studies";
+pub(super) const PLACE: &str = "studies";
 
 /// Copies of the files in [`PLACE`] of the repository, of which a package knows nothing. A test compares them.
 const PLANS: [(&str, &str); 10] = [
@@ -36,7 +36,8 @@ pub(super) fn read_plan_text(path: &Path) -> Result<String, StudyError> {
     }
 }
 
-fn text(path: &Path) -> Option<&'static str> {
+/// The text of a plan, or of a study that one names.
+pub(super) fn text(path: &Path) -> Option<&'static str> {
     let name = path.strip_prefix(PLACE).ok()?;
     PLANS.into_iter().find(|(plan, _)| Path::new(plan) == name).map(|(_, text)| text)
 }

@@ -1,12 +1,12 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
-use super::built_in::read_plan_text;
+use super::built_in::{PLACE, read_plan_text, text};
 use super::file::{StudyError, expect, parse};
 use super::format::Study;
 use super::kind::Kind;
-use super::read::named;
+use super::read::{from_text, named};
 use super::rule::Rule;
-use retune_model::{Design, Positive};
+use retune_model::{Damper, Design, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -85,6 +85,17 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok(rows) }
 }
 
+/// Whether a damper is one that the paper publishes as an optimum: a row of its Table 2, with that mass and design.
+pub fn is_of_paper(damper: &Damper) -> bool {
+    let text_of = |name: &Path| text(&Path::new(PLACE).join(name));
+    let table = text_of(Path::new("table2.json")).and_then(|text| parse::<Table2>(text, "table2.json").ok());
+    table.iter().flat_map(|table| &table.rows).any(|row| {
+        let study = text_of(&row.study).and_then(|text| from_text(text, "built in").ok());
+        let own = study.and_then(|study| study.scene.damper);
+        row.paper == Some(Design::of(damper)) && own.is_some_and(|own| own.mass == damper.mass)
+    })
+}
+
 /// The study with another design in its scene, if there is one.
 fn at_design(mut study: Study, design: Option<Design>) -> Result<Study, Rule> {
     if let Some(design) = design {
@@ -92,4 +103,26 @@ fn at_design(mut study: Study, design: Option<Design>) -> Result<Study, Rule> {
     }
     study.search()?;
     Ok(study)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_the_papers_dampers_are_recognised_by_their_numbers() {
+        let damper = |name: &str| {
+            let text = text(&Path::new(PLACE).join(name)).expect(name);
+            from_text(text, name).ok().and_then(|study| study.scene.damper).expect("a damper")
+        };
+        let tmd = damper("tmd.json");
+        assert!(is_of_paper(&tmd) && is_of_paper(&damper("table2-ssvi.json")));
+        let k2 = Design { k2: tmd.damping, ..Design::of(&tmd) };
+        assert!(!is_of_paper(&k2.on(tmd)), "another stiffness");
+        assert!(!is_of_paper(&Damper { mass: damper_mass(70.0), ..tmd }), "another mass");
+    }
+
+    fn damper_mass(mass: f64) -> Positive {
+        Positive::new(mass).expect("a mass")
+    }
 }

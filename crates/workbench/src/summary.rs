@@ -1,8 +1,10 @@
 //! The results of a run: one type, from which JSON and text are made.
 
 mod tuned_damper;
+mod whose;
 
 pub use tuned_damper::TunedDamper;
+pub use whose::{how_many, whose};
 
 use retune_model::{Scene, energy_ratios};
 use retune_optim::Objective;

@@ -65,6 +65,9 @@ pub struct Short {
 impl Short {
     /// The verdict in words, with the error bar.
     pub fn verdict_words(&self) -> String {
+        if !self.error_bar.is_finite() {
+            return format!("{} (numerical error unknown)", self.words);
+        }
         format!("{} (numerical error at most {:.0e} J)", self.words, self.error_bar)
     }
 

@@ -4,6 +4,7 @@ use super::findings::{Compared, Findings};
 use super::flags::Flag;
 use super::html::{Section, Table};
 use super::numbers::{compared, digits, four, frequency, millimetres};
+use crate::summary::whose;
 use maud::{Markup, html};
 use retune_model::{Damper, Variable};
 use retune_optim::{Evaluation, Limit, Response, Unusable};
@@ -102,7 +103,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     html! {
         dl.facts {
             (fact("Energy against no damper", &none.0, &none.1))
-            (fact("Energy against the damper of the study", &study.0, &study.1))
+            (fact(&format!("Energy against {}", whose(&findings.study.scene)), &study.0, &study.1))
             (fact("Certificate", verdict, &format!("{words}; E1max ± {} J", digits(certificate.error_bar, 2))))
             (fact("Stroke", &millimetres(response.spring_deflection_max), &format!("largest spring deflection |x2 − x1 − D| at the worst frequency, {window}")))
             (fact("Contact force", &format!("{} N", four(structure.max(obstacle))), &format!(
@@ -135,7 +136,7 @@ fn named(damper: &Damper) -> [(&'static str, &'static str, &'static str, f64, Op
 fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
     let mut table =
-        Table::new("The damper", &["symbol", "name", "value", "unit", "damper of the study", "tuned"]);
+        Table::new("The damper", &["symbol", "name", "value", "unit", whose(&findings.study.scene), "tuned"]);
     for (symbol, name, unit, value, variable) in named(&damper) {
         let before = findings.study.scene.damper.as_ref().map(named);
         let before =

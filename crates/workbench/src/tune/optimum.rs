@@ -8,7 +8,7 @@ use super::refine::{Refined, Run};
 use super::surf::Surf;
 use crate::Error;
 use crate::certify::Short;
-use crate::summary::{MadeBy, Summary, TunedDamper};
+use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
 use retune_model::Variable;
 use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
@@ -30,6 +30,9 @@ pub struct Optimum {
     /// The same without a damper, J; null if it has no bound.
     #[serde(rename = "E1max_none")]
     e1_max_none: f64,
+    /// The damper of the study's scene in words.
+    #[serde(skip)]
+    whose: &'static str,
     /// The same with the damper of the study's scene, J; null if it cannot be run.
     #[serde(rename = "E1max_study")]
     e1_max_study: f64,
@@ -135,6 +138,7 @@ impl Optimum {
             damper: TunedDamper::of(&damper),
             e1_max: evaluation.energy,
             e1_max_none: study.energy_without_damper(),
+            whose: whose(&study.scene),
             e1_max_study: study.energy(&study.scene).unwrap_or(f64::NAN),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),

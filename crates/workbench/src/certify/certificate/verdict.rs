@@ -100,13 +100,15 @@ fn judge_energy(e1_max: f64, error_bar: f64, predictable: bool, measured: &Measu
 
 /// What is said of a design that cannot be computed.
 const NO_VALUE: &str = "has no value";
+/// What stands in the place of its energy.
+pub(super) const NO_ENERGY: &str = "no value";
 
 /// A range of E1max in words; one that is infinite is of designs that cannot be computed.
-fn between(low: f64, high: f64) -> String {
+pub(super) fn between(low: f64, high: f64) -> String {
     match [low, high].map(f64::is_finite) {
         [true, true] => format!("{} to {} J", short(low), short(high)),
         [true, false] => format!("{} J or more, and some of them no value", short(low)),
-        _ => "no value".to_owned(),
+        _ => NO_ENERGY.to_owned(),
     }
 }
 

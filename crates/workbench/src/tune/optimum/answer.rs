@@ -2,6 +2,7 @@
 
 use super::notes::{self, Goal, LimitNote};
 use super::{FailureNote, Optimum, RunNote, stop_words};
+use crate::summary::how_many;
 use retune_model::Variable;
 use retune_optim::Limit;
 use retune_study::{counted, frequency, rounded, short};
@@ -76,15 +77,15 @@ impl Optimum {
 
     /// The structure without a damper, and with the damper that the study began with.
     fn compared(&self) -> String {
-        let times = |other: f64| match rounded(other / self.e1_max, 3).as_str() {
+        let times = |other: f64| match how_many(other / self.e1_max).as_str() {
             _ if !other.is_finite() => "without bound".to_owned(),
             "1" => format!("{} J (as much)", rounded(other, 4)),
             times => format!("{} J ({times} times as much)", rounded(other, 4)),
         };
         let study = if self.e1_max_study.is_nan() {
-            "no value with the damper of the study".to_owned()
+            format!("no value with {}", self.whose)
         } else {
-            format!("{} with the damper of the study", times(self.e1_max_study))
+            format!("{} with {}", times(self.e1_max_study), self.whose)
         };
         format!("instead  {} without a damper, {study}", times(self.e1_max_none))
     }
