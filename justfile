@@ -64,6 +64,10 @@ verify RESULTS *OPTIONS:
 simulate STUDY="studies/ssvi.json" *OPTIONS:
     {{retune}} simulate "$@"
 
+# Sweep a parameter, a run or (`--objective`) the whole objective at each value, for instance `just sweep studies/ssvi.json --over omega --from 0.8Hz --to 1.3Hz`
+sweep STUDY *OPTIONS:
+    {{retune}} sweep "$@"
+
 # Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-free.json`
 evaluate STUDY *OPTIONS:
     {{retune}} evaluate "$@"

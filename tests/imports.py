@@ -23,10 +23,11 @@ BELOW = {
     "store": "",
     "figures": "",
     "study": "model solver optim dynamics",
-    "workbench": "model solver optim dynamics study store figures",
-    "paper": "model solver optim dynamics study store figures workbench",
-    "retune": "model solver optim dynamics study store figures workbench paper",
-    "bench": "model solver optim dynamics study store figures workbench paper",
+    "sweep": "model solver optim study figures",
+    "workbench": "model solver optim dynamics study sweep store figures",
+    "paper": "model solver optim dynamics study sweep store figures workbench",
+    "retune": "model solver optim dynamics study sweep store figures workbench paper",
+    "bench": "model solver optim dynamics study sweep store figures workbench paper",
 }
 
 MOST_LINES = 300

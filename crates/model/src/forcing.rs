@@ -61,6 +61,18 @@ impl Forcing {
         }
     }
 
+    /// The transmissibility of a motion with these largest values (m, N): the force on the ground over the amplitude of the force on
+    /// the structure; on a moving base the displacement of the structure over that of the base. NaN or infinite where nothing moves it.
+    pub fn transmissibility(&self, displacement: f64, ground_force: f64) -> f64 {
+        let omega = self.frequency.get();
+        match self.source {
+            Source::Force(force) => ground_force / force.get(),
+            Source::Imbalance(imbalance) => ground_force / (imbalance.get() * omega * omega),
+            Source::Base(base) => displacement / base.get(),
+            Source::Decay(_) => f64::NAN,
+        }
+    }
+
     /// The same with another number for [`Self::amplitude`].
     #[must_use]
     pub fn with_amplitude(self, amplitude: NonNegative) -> Self {

@@ -15,7 +15,7 @@ fn objective(variables: Vec<Variable>, to: f64, settings: Settings) -> PeakEnerg
 fn contract_design_sets_the_named_parameters_and_no_other() {
     let objective = objective(Variable::ALL.to_vec(), 1.0, Settings::default());
     let damper = objective.damper(&[1.0, 2.0, 3.0, 4.0]).expect("a damper");
-    assert_eq!(Variable::ALL.map(|variable| variable.get(&damper)), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(Variable::PAPER.map(|variable| variable.get(&damper)), [1.0, 2.0, 3.0, 4.0]);
     let original = TMD.damper();
     assert_eq!((damper.mass, damper.contact), (original.mass, original.contact));
 }

@@ -2,12 +2,14 @@
 
 mod cases;
 mod curves;
+mod describe;
 mod detuning;
 mod diagrams;
 mod energies;
 mod family;
 mod item;
 mod judgement;
+mod kind;
 mod measures;
 mod motions;
 mod page;
@@ -18,16 +20,16 @@ mod surfaces;
 mod table1;
 mod table2;
 
+pub use describe::describe;
+pub use item::{Grid, Item, Picture, Statement, Verdict};
+pub use kind::KIND;
 pub use plan::{PaperPlan, Plan};
 
-pub use item::{Grid, Item, Picture, Statement, Verdict};
-
 use retune_store::Directory;
-use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::job::{Job, Made};
 use retune_workbench::observer::Quiet;
 use retune_workbench::searches::Searches;
-use retune_workbench::{Done, Error, Observer, Request, resolved};
+use retune_workbench::{Done, Error, Observer, Request};
 
 /// The function that makes an item.
 type Maker = fn(&Plan, &mut Searches) -> Result<Item, Error>;
@@ -43,20 +45,6 @@ const ITEMS: [(&str, Maker); 8] = [
     ("figure6", |plan, _| energies::figure6(plan)),
     ("figure7", |plan, _| cases::figure7(plan)),
 ];
-
-/// The files of the reproduction.
-pub static KIND: Kind = Kind {
-    command: "reproduce",
-    answer: "index.html",
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact("study.json", Content::Derived),
-        artefact("table1-*", Content::Derived),
-        artefact("table2-*", Content::Derived),
-        artefact("figure*", Content::Derived),
-        artefact("index.html", Content::Derived),
-    ],
-};
 
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
 ///

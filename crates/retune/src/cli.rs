@@ -2,15 +2,17 @@
 
 mod design;
 mod running;
+mod sweep;
 
 pub use design::Design;
 pub use running::Running;
+pub use sweep::Sweep;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_solver::{Contacts, Method};
 use retune_study::{Setting, SettingError};
-use retune_workbench::tune::shard::Shard;
+use retune_workbench::parts::Shard;
 use std::path::PathBuf;
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
@@ -39,6 +41,9 @@ pub enum Command {
     Certify(Certify),
     /// Run one scene and print a summary of the motion
     Simulate(Simulate),
+    /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values; into results/sweep-<study>-<parameter>
+    #[command(allow_negative_numbers = true)]
+    Sweep(Sweep),
     /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line
     #[command(after_help = retune_workbench::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
@@ -200,7 +205,7 @@ pub struct Fronts {
 pub struct Simulate {
     /// The study file
     pub study: PathBuf,
-    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P imbalance base omega R T t0 (repeatable)
+    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P imbalance base omega R T t0, in SI units; omega=1Hz and omega=60rpm too (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<Setting>,
     /// Integration method

@@ -3,16 +3,17 @@
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
-use retune_paper::Plan;
 use retune_study as study;
+use retune_sweep::Asked;
 use retune_workbench::design::Wishes;
 use retune_workbench::designs::Designs;
 use retune_workbench::evaluate::Streams;
+use retune_workbench::observer::Quiet;
 use retune_workbench::simulate::Trajectory;
+use retune_workbench::sweep::Points;
 use retune_workbench::tune::Optimum;
 use retune_workbench::{
-    Done, Error, Observer, Request, Silent, artefact, certify, describe, evaluate, pareto, table2, track,
-    tune, verify,
+    Done, Error, Observer, Request, certify, evaluate, pareto, table2, track, tune, verify,
 };
 use std::io::BufReader;
 use std::path::Path;
@@ -38,6 +39,7 @@ pub fn run(command: Command) -> Result<(), Error> {
             certify::certify_file(&request, &screen)?.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
+        Command::Sweep(arguments) => sweep(arguments),
         Command::Evaluate(arguments) => evaluate(&arguments),
         Command::Table2(cli::Table2 { study, running }) => {
             let (request, screen) = running.request(&study);
@@ -121,6 +123,17 @@ fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
     screen.line(if arguments.json { json(&summary)? } else { summary.to_string() })
 }
 
+fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
+    let cli::Sweep { study, over, from, to, unit, points, log, quantity, objective, .. } = arguments;
+    let (request, screen) = arguments.running.request(&study);
+    let asked = Asked { over, from, to, unit, points, log, quantities: quantity, objective };
+    let points = Points::asked(arguments.shard, arguments.merge);
+    let quiet = Quiet(&screen);
+    let watch: &dyn Observer = if arguments.json { &quiet } else { &screen };
+    let table = retune_workbench::sweep::sweep(&request, &asked, &points, watch)?;
+    table.filter(|_| arguments.json).map_or(Ok(()), |table| screen.line(table.trim_end()))
+}
+
 fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<(), Error> {
     let request = Request { threads: *threads, ..Request::new(study) };
     let streams = Streams {
@@ -133,21 +146,7 @@ fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<()
 
 /// Checks a study file and prints a description of it.
 fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
-    let (words, jobs): (String, Vec<&artefact::Kind>) = match study::kind_of(path)? {
-        study::Kind::Table2 => {
-            (describe::table2(&study::read_table2(path)?), vec![&table2::KIND, &track::KIND])
-        }
-        study::Kind::Fronts => (describe::fronts(&study::read_fronts(path)?), vec![&pareto::KIND]),
-        study::Kind::Paper => {
-            Plan::read(path, &Silent)?;
-            ("every table and figure of the paper".to_owned(), vec![&retune_paper::KIND])
-        }
-        study::Kind::Study => {
-            let study = study::read(path)?;
-            let jobs = if study.optimize.is_some() { vec![&tune::KIND] } else { Vec::new() };
-            (describe::study(&study), jobs)
-        }
-    };
+    let (words, jobs) = retune_paper::describe(path)?;
     screen.line(words)?;
     jobs.iter().try_for_each(|job| screen.line(job.files()))?;
     screen.result(&format!("{}: good", path.display()))
@@ -155,9 +154,5 @@ fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
 
 /// A result as indented JSON.
 fn json(value: &impl serde::Serialize) -> Result<String, Error> {
-    let refuse = |error: serde_json::Error| retune_store::Error::Output {
-        path: "standard output".into(),
-        source: error.into(),
-    };
-    Ok(serde_json::to_string_pretty(value).map_err(refuse)?)
+    Ok(retune_store::json_text(value, "standard output")?.trim_end().to_owned())
 }

@@ -21,6 +21,7 @@ pub fn code_of(error: &Error) -> u8 {
         | Error::Study(_)
         | Error::Setting(_)
         | Error::Rule { .. }
+        | Error::Sweep(_)
         | Error::Interval { .. }
         | Error::Part { .. }
         | Error::MissingParts { .. } => WRONG,

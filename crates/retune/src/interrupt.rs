@@ -18,7 +18,7 @@ pub fn say_how_to_go_on() {
         let wait = move || {
             if signals.forever().next().is_some() {
                 let words = go_on(std::env::var(RUN_AS).ok(), std::env::args_os());
-                let words = crate::visible::visible(&words).into_owned();
+                let words = retune_study::visible(&words).into_owned();
                 let _ =
                     writeln!(std::io::stderr(), "\nstopped; what was computed is kept. To go on:\n  {words}");
                 std::process::exit(crate::exit::STOPPED.into());

@@ -6,7 +6,6 @@ mod exit;
 mod interrupt;
 mod progress;
 mod screen;
-mod visible;
 
 use clap::Parser;
 use cli::Cli;

@@ -1,7 +1,7 @@
 //! Output: results and the log on standard output, errors and progress on standard error.
 
-use crate::visible::visible;
 use crate::{interrupt, progress};
+use retune_study::visible;
 use retune_workbench::{Error, Observer, Progress};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};

@@ -1,11 +1,12 @@
 //! The study behind `retune fronts`: dampers to tune under successively looser bounds on the spring or on the stroke.
 
-use super::file::{StudyError, expect, parse, read_text};
+use super::built_in::read_plan_text;
+use super::file::{StudyError, expect, parse};
 use super::format::Study;
 use super::kind::Kind;
 use super::objective::check_energy;
 use super::per_variable::PerVariable;
-use super::read::read;
+use super::read::named;
 use super::rule::Rule;
 use retune_model::Positive;
 use retune_optim::Variable;
@@ -155,7 +156,7 @@ pub fn bounded(
 /// [`StudyError`], of the file or of a study that it names.
 pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     let file = path.display().to_string();
-    let text = read_text(path)?;
+    let text = read_plan_text(path)?;
     expect(Kind::Fronts, &text, &file)?;
     let said: Fronts = parse(&text, &file)?;
     let refuse = |field: &str, value: String, allowed| StudyError::Rule {
@@ -176,7 +177,7 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     let mut plan = FrontsPlan { said, dampers: Vec::new() };
     for FrontDamper { damper, study } in plan.said.dampers.clone() {
         let study_file = directory.join(&study);
-        let study = read(&study_file)?;
+        let study = named(&study_file)?;
         check_energy(&study)
             .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
         for sweep in Sweep::ALL {

@@ -33,7 +33,7 @@ impl Kind {
     /// The commands that take it.
     pub const fn commands(self) -> &'static str {
         match self {
-            Self::Study => "`retune optimize`, `certify`, `simulate` and `evaluate`",
+            Self::Study => "`retune optimize`, `certify`, `simulate`, `sweep` and `evaluate`",
             Self::Table2 => "`retune table2` and `retune track`",
             Self::Fronts => "`retune fronts`",
             Self::Paper => "`retune reproduce`, `figure` and `table`",

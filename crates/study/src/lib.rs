@@ -23,8 +23,10 @@
 //! ```
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod angular_frequency;
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
+mod built_in;
 mod explain;
 mod file;
 mod format;
@@ -38,8 +40,11 @@ mod rule;
 mod search;
 mod set;
 mod table2;
+mod visible;
 mod words;
 
+pub use angular_frequency::{angular_frequency, hertz_and_rpm};
+pub use built_in::is_built_in;
 pub use file::{StudyError, kind_of};
 pub use format::{GridAxis, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
@@ -48,7 +53,8 @@ pub use kind::Kind;
 pub use per_variable::PerVariable;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
-pub use search::{MOST_GRID_POINTS, Search, check_name};
+pub use search::{MOST_GRID_POINTS, Search, check_name, name_from};
 pub use set::{Setting, SettingError};
-pub use table2::{PaperStudy, Table2, read_table2};
+pub use table2::{PaperStudy, Table2, is_of_paper, read_table2};
+pub use visible::visible;
 pub use words::{are, counted, fields, frequency, joined, over, rounded, short};

@@ -1,9 +1,11 @@
 //! From a file, or the results of a search, to a checked study.
 
+use super::built_in::{is_built_in, read_plan_text};
 use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::kind::Kind;
 use super::rule::Rule;
+use super::search::name_from;
 use retune_model::{Design, NonNegative, Positive};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -21,7 +23,7 @@ const SEVERAL: &str = "resolved.json";
 /// # Errors
 /// [`StudyError`]: the file, the field, its value and the allowed values.
 pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, StudyError> {
-    let (text, file) = (read_text(path)?, path.display().to_string());
+    let (text, file) = (read_plan_text(path)?, path.display().to_string());
     expect(Kind::Paper, &text, &file)?;
     parse(&text, &file)
 }
@@ -49,6 +51,18 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
     match study.scene_at(&found) {
         Some(scene) => Ok(Study { scene, ..study }),
         None => Err(StudyError::Rule { file: file.display().to_string(), rule: Rule::NoDamper }),
+    }
+}
+
+/// Reads a study that a plan names, which may be built in, as [`read`] does.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
+    if is_built_in(path) {
+        from_text(&read_plan_text(path)?, &path.display().to_string())
+    } else {
+        read(path)
     }
 }
 
@@ -113,7 +127,7 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
     let mut study: Study = parse(text, file)?;
-    let stem = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let stem = Path::new(file).file_stem().map(|stem| name_from(&stem.to_string_lossy()));
     study.name = study.name.or(stem);
     study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     Ok(study)

@@ -217,13 +217,24 @@ fn options(optimize: &Optimize, bounds: Vec<Bounds>) -> Result<Options, Rule> {
     })
 }
 
+/// Whether a name may have this character.
+fn is_plain(c: char) -> bool {
+    c.is_alphanumeric() || matches!(c, '-' | '_' | '.')
+}
+
+/// The name of results from that of a file, which may be any: `My study` gives `My-study`.
+pub fn name_from(stem: &str) -> String {
+    let name: String = stem.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
+    let name = name.trim_start_matches('.');
+    if name.is_empty() { "study".to_owned() } else { name.to_owned() }
+}
+
 /// Whether a directory of results may have this name.
 ///
 /// # Errors
 /// [`Rule::Name`].
 pub fn check_name(name: &str) -> Result<(), Rule> {
-    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    if name.is_empty() || name.starts_with('.') || !name.chars().all(plain) {
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(is_plain) {
         return Err(Rule::Name { name: name.to_owned() });
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! `--set NAME=VALUE`: one number of a study, changed on the command line.
 
+use super::angular_frequency::angular_frequency;
 use super::format::Study;
 use super::rule::Rule;
 use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene, Source};
@@ -39,6 +40,14 @@ pub enum SettingError {
         name: &'static str,
         /// The text as given.
         text: String,
+    },
+    /// Not a frequency.
+    #[error("{name}: {problem}")]
+    Frequency {
+        /// The parameter.
+        name: &'static str,
+        /// What it is, and what to give.
+        problem: String,
     },
     /// A number out of the parameter's range.
     #[error("{name}: {source}")]
@@ -92,10 +101,17 @@ impl FromStr for Setting {
         let (name, value) =
             text.split_once('=').ok_or_else(|| SettingError::Form { text: text.to_owned() })?;
         let name = known(name.trim())?;
-        let number = value.trim().parse();
-        let value = number.map_err(|_| SettingError::Number { name, text: value.trim().to_owned() })?;
+        let value = number(name, value.trim())?;
         Ok(Self { name, value })
     }
+}
+
+/// The value of a parameter as it was typed: in its SI unit; a frequency may have a unit of its own.
+fn number(name: &'static str, text: &str) -> Result<f64, SettingError> {
+    if name == "omega" {
+        return angular_frequency(text).map_err(|problem| SettingError::Frequency { name, problem });
+    }
+    text.parse().map_err(|_| SettingError::Number { name, text: text.to_owned() })
 }
 
 fn known(name: &str) -> Result<&'static str, SettingError> {

@@ -1,12 +1,13 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
-use super::file::{StudyError, expect, parse, read_text};
+use super::built_in::{PLACE, read_plan_text, text};
+use super::file::{StudyError, expect, parse};
 use super::format::Study;
 use super::kind::Kind;
 use super::objective::check_energy;
-use super::read::read;
+use super::read::{from_text, named};
 use super::rule::Rule;
-use retune_model::{Design, Positive};
+use retune_model::{Damper, Design, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -39,8 +40,9 @@ pub struct PaperRow {
     pub damper: String,
     /// The study that tunes it; a path relative to this file.
     pub study: PathBuf,
-    /// The paper's design, from which the refinement starts.
-    pub paper: Design,
+    /// The paper's design, from which the refinement starts. Default: the damper of the study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paper: Option<Design>,
     /// The E1max that the paper prints for it, J, if it does.
     #[serde(rename = "E1max", default, skip_serializing_if = "Option::is_none")]
     pub e1_max: Option<Positive>,
@@ -51,8 +53,10 @@ pub struct PaperRow {
 pub struct PaperStudy {
     /// The damper's name in the table.
     pub damper: String,
-    /// The study; the design in its scene is the paper's.
+    /// The study; the design in its scene is the paper's, if the table has one.
     pub study: Study,
+    /// Whether the table has a design of the paper.
+    pub of_paper: bool,
     /// The E1max that the paper prints, J.
     pub printed: Option<Positive>,
 }
@@ -63,7 +67,7 @@ pub struct PaperStudy {
 /// [`StudyError`], of the table's own file or of a study that it names.
 pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     let file = path.display().to_string();
-    let text = read_text(path)?;
+    let text = read_plan_text(path)?;
     expect(Kind::Table2, &text, &file)?;
     let table: Table2 = parse(&text, &file)?;
     let refuse = |rule| StudyError::Rule { file: file.clone(), rule };
@@ -71,21 +75,56 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     let mut rows: Vec<PaperStudy> = Vec::new();
     for row in table.rows {
         let study_file = directory.join(&row.study);
-        let study = at_design(read(&study_file)?, row.paper)
+        let of_paper = row.paper.is_some();
+        let study = at_design(named(&study_file)?, row.paper)
             .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
         if rows.iter().any(|other| other.study.name() == study.name()) {
             return Err(refuse(Rule::SameName { name: study.name().to_owned() }));
         }
-        rows.push(PaperStudy { damper: row.damper, study, printed: row.e1_max });
+        rows.push(PaperStudy { damper: row.damper, study, of_paper, printed: row.e1_max });
     }
     if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok(rows) }
 }
 
-/// The study with another design in its scene.
-fn at_design(study: Study, design: Design) -> Result<Study, Rule> {
-    let scene = study.scene_at(&design).ok_or(Rule::NoDamper)?;
-    let study = Study { scene, ..study };
+/// Whether a damper is one that the paper publishes as an optimum: a row of its Table 2, with that mass and design.
+pub fn is_of_paper(damper: &Damper) -> bool {
+    let text_of = |name: &Path| text(&Path::new(PLACE).join(name));
+    let table = text_of(Path::new("table2.json")).and_then(|text| parse::<Table2>(text, "table2.json").ok());
+    table.iter().flat_map(|table| &table.rows).any(|row| {
+        let study = text_of(&row.study).and_then(|text| from_text(text, "built in").ok());
+        let own = study.and_then(|study| study.scene.damper);
+        row.paper == Some(Design::of(damper)) && own.is_some_and(|own| own.mass == damper.mass)
+    })
+}
+
+/// The study with another design in its scene, if there is one.
+fn at_design(mut study: Study, design: Option<Design>) -> Result<Study, Rule> {
+    if let Some(design) = design {
+        study.scene = study.scene_at(&design).ok_or(Rule::NoDamper)?;
+    }
     study.search()?;
     check_energy(&study)?;
     Ok(study)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_the_papers_dampers_are_recognised_by_their_numbers() {
+        let damper = |name: &str| {
+            let text = text(&Path::new(PLACE).join(name)).expect(name);
+            from_text(text, name).ok().and_then(|study| study.scene.damper).expect("a damper")
+        };
+        let tmd = damper("tmd.json");
+        assert!(is_of_paper(&tmd) && is_of_paper(&damper("table2-ssvi.json")));
+        let k2 = Design { k2: tmd.damping, ..Design::of(&tmd) };
+        assert!(!is_of_paper(&k2.on(tmd)), "another stiffness");
+        assert!(!is_of_paper(&Damper { mass: damper_mass(70.0), ..tmd }), "another mass");
+    }
+
+    fn damper_mass(mass: f64) -> Positive {
+        Positive::new(mass).expect("a mass")
+    }
 }

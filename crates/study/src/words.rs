@@ -1,7 +1,7 @@
 //! An objective in words, for figures, tables and the screen; numbers and counts in words.
 
+use crate::angular_frequency::hertz_and_rpm;
 use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
-use std::f64::consts::TAU;
 use std::fmt::Display;
 
 /// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
@@ -74,7 +74,7 @@ pub fn rounded(value: f64, digits: usize) -> String {
 
 /// An angular frequency, rad/s, to four digits in both units: `6.28 rad/s (0.9995 Hz)`.
 pub fn frequency(omega: f64) -> String {
-    format!("{} rad/s ({} Hz)", rounded(omega, 4), rounded(omega / TAU, 4))
+    format!("{} rad/s ({} Hz)", rounded(omega, 4), rounded(hertz_and_rpm(omega)[0], 4))
 }
 
 /// Numbers as fields of a table, to the last bit; empty where there is none.

@@ -357,6 +357,15 @@ fn contract_settings_are_checked_like_the_file() {
     for (text, error) in [
         ("k3=1", SettingError::Name { name: "k3".into() }),
         ("k1", SettingError::Form { text: "k1".into() }),
+        (
+            "omega=1kHz",
+            SettingError::Frequency {
+                name: "omega",
+                problem:
+                    "\"1kHz\" is no frequency: give a number in rad/s, or one with its unit: 1.2Hz, 72rpm"
+                        .into(),
+            },
+        ),
         ("k1=soft", SettingError::Number { name: "k1", text: "soft".into() }),
     ] {
         assert_eq!(text.parse::<Setting>(), Err(error));

@@ -18,6 +18,8 @@ pub enum Content {
     Designs,
     /// A row for each stiffness k1: E1max of designs of another table.
     Retention,
+    /// A row for each value of a parameter: what the runs at it gave.
+    Swept,
     /// A certificate of a design of one of several studies.
     CertificateOf,
     /// Numbers of the other files as text or figure, the log of a search, the manifest: checked by their hash alone.

@@ -6,7 +6,7 @@ mod designed;
 mod wishes;
 
 pub use designed::Designed;
-pub use wishes::{Wish, Wishes, frequency};
+pub use wishes::{Wish, Wishes};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::designs::{Designs, Row};

@@ -26,6 +26,9 @@ pub enum Error {
         /// The rule that is broken.
         rule: Rule,
     },
+    /// A sweep that cannot be made.
+    #[error(transparent)]
+    Sweep(#[from] retune_sweep::Error),
     /// The interval of a trajectory is invalid, or gives too many rows.
     #[error(
         "--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows"
@@ -46,9 +49,8 @@ pub enum Error {
     },
     /// Points are missing from the parts.
     #[error(
-        "{}: no part holds points {points} of {len}: make what is missing with `retune optimize {} --shard i/N`{}",
+        "{}: no part holds points {points} of {len}: make what is missing with `{command} --shard i/N`{}",
         place.display(),
-        study.display(),
         shards.as_ref().map(|shards| format!(", i/N = {shards}")).unwrap_or_default()
     )]
     MissingParts {
@@ -58,8 +60,8 @@ pub enum Error {
         len: usize,
         /// The shares that contain them, if these can be determined.
         shards: Option<String>,
-        /// The study.
-        study: PathBuf,
+        /// The command that makes a part.
+        command: String,
         /// The directory of the parts.
         place: PathBuf,
     },

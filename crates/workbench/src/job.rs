@@ -6,7 +6,7 @@ use crate::request::where_results_are;
 use crate::resolved::{self, Resolved};
 use crate::{Error, Observer, Request};
 use retune_store::{Begin, Directory, Extent, Identity, Order, manifest};
-use retune_study::{Solver, Study};
+use retune_study::{Solver, Study, is_built_in};
 use std::path::{Path, PathBuf};
 
 /// A job, ready to be done.
@@ -60,7 +60,7 @@ impl Job {
     /// The job of a kind on several studies: each with the name of its damper, under a plan.
     ///
     /// # Errors
-    /// The name of the study file cannot be that of a directory.
+    /// Serialisation fails, which no known study causes.
     pub fn of_studies<'a>(
         kind: &'static Kind,
         request: &Request,
@@ -69,7 +69,7 @@ impl Job {
     ) -> Result<Self, Error> {
         let solvers = studies.clone().map(|(_, study)| study.solver).collect();
         let input = (resolved::SEVERAL, Resolved::new(plan, studies).text()?);
-        let (out, order) = (request.out_of_file()?, request.order(kind.command));
+        let (out, order) = (request.out_of_file(), request.order(kind.command));
         Ok(Self { kind, out, order, input, answer: kind.answer.to_owned(), solvers, only: None })
     }
 
@@ -114,6 +114,12 @@ impl Job {
         watch: &dyn Observer,
         work: impl FnOnce(&mut Directory) -> Result<Made<T>, Error> + Send,
     ) -> Result<Done<T>, Error> {
+        if is_built_in(&request.study) {
+            let study = request.study.display();
+            watch.result(&format!(
+                "{study} is not here: the plan of this name that is built into Retune is used"
+            ))?;
+        }
         let resumed = self.order.begin == Begin::Resume;
         if resumed && Directory::is_finished(&self.out, &self.identity(), &self.answer) {
             Directory::tidy(&self.out);

@@ -5,7 +5,7 @@
 //!
 //! [`tune()`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
 //! [`table2`], [`track`] and [`pareto`] make several searches and compare them; [`verify`] checks results by computing them
-//! again; [`simulate`] makes one run; [`evaluate`] evaluates designs of other programs.
+//! again; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
 //!
 //! ```
 //! use retune_workbench::simulate::simulate;
@@ -28,7 +28,7 @@
 //! }"#;
 //! let study = retune_study::read::from_text(text, "ssvi.json")?;
 //! let with_damper = simulate(&study, None)?;
-//! assert_eq!(with_damper.damper_type(), "SSVI NES"); // it strikes its walls
+//! assert_eq!(with_damper.summary.damper_type(), "SSVI NES"); // it strikes its walls
 //!
 //! let mut bare = study.clone();
 //! bare.scene.damper = None;
@@ -51,12 +51,14 @@ pub mod evaluate;
 pub mod job;
 pub mod observer;
 pub mod pareto;
+pub mod parts;
 pub mod report;
 pub mod request;
 pub mod resolved;
 pub mod searches;
 pub mod simulate;
 pub mod summary;
+pub mod sweep;
 pub mod table2;
 pub mod track;
 pub mod tune;

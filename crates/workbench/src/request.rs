@@ -2,7 +2,7 @@
 
 use crate::Error;
 use retune_store::{Begin, Order};
-use retune_study::{Study, StudyError, check_name};
+use retune_study::{Study, name_from};
 use std::path::{Path, PathBuf};
 
 /// The options of a job.
@@ -37,17 +37,9 @@ impl Request {
     }
 
     /// The directory of the results of a study of several dampers: by default `results/` and the name of its file.
-    ///
-    /// # Errors
-    /// The file's name cannot be that of a directory.
-    pub fn out_of_file(&self) -> Result<PathBuf, Error> {
-        if let Some(out) = &self.out {
-            return Ok(out.clone());
-        }
-        let name = self.study.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let file = self.study.display().to_string();
-        check_name(&name).map_err(|rule| StudyError::Rule { file, rule })?;
-        Ok(Path::new("results").join(name))
+    pub fn out_of_file(&self) -> PathBuf {
+        let stem = self.study.file_stem().unwrap_or_default();
+        self.out.clone().unwrap_or_else(|| Path::new("results").join(name_from(&stem.to_string_lossy())))
     }
 
     /// Runs `work` on the threads of the request.

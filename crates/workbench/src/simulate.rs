@@ -4,7 +4,8 @@ use crate::Error;
 use crate::summary::Summary;
 use retune_solver::{Rows, Sample, trajectory};
 use retune_store::{Pending, order::may_write};
-use retune_study::Study;
+use retune_study::{Study, hertz_and_rpm};
+use serde::Serialize;
 use std::path::Path;
 
 /// Most rows of a trajectory.
@@ -28,7 +29,7 @@ pub struct Trajectory<'a> {
 ///
 /// # Errors
 /// The run fails, or the trajectory cannot be written.
-pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Summary, Error> {
+pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulation, Error> {
     if let Some(Trajectory { file, inputs, .. }) = trajectory {
         may_write(file, inputs, HEAD)?;
     }
@@ -36,7 +37,35 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Summary
     if let Some(Trajectory { file, interval, .. }) = trajectory {
         write_trajectory(study, file, interval)?;
     }
-    Ok(Summary::new(study, study.scene, &response))
+    Ok(Simulation::of(Summary::new(study, study.scene, &response)))
+}
+
+/// One run as the command line shows it: its summary, and the same in the units and the ratio that engineers ask for.
+#[derive(Clone, Debug, Serialize)]
+pub struct Simulation {
+    /// The observations in the window.
+    #[serde(flatten)]
+    pub summary: Summary,
+    /// Frequency of the force, Hz and revolutions per minute.
+    #[serde(rename = "f_Hz")]
+    hertz: f64,
+    #[serde(rename = "n_rpm")]
+    rpm: f64,
+    /// As [`Summary::transmissibility`].
+    transmissibility: Option<f64>,
+}
+
+impl Simulation {
+    fn of(summary: Summary) -> Self {
+        let [hertz, rpm] = hertz_and_rpm(summary.omega());
+        Self { hertz, rpm, transmissibility: summary.transmissibility(), summary }
+    }
+}
+
+impl std::fmt::Display for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.summary.fmt(f)
+    }
 }
 
 /// Writes the motion in the window: a row every `interval` seconds, and one for each event between them (column `moment`).

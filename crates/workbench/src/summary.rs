@@ -1,9 +1,15 @@
 //! The results of a run: one type, from which JSON and text are made.
 
-use retune_model::{Damper, Design, Positive, Scene, energy_ratios};
+mod tuned_damper;
+mod whose;
+
+pub use tuned_damper::TunedDamper;
+pub use whose::{how_many, whose};
+
+use retune_model::{Scene, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
-use retune_study::{Solver, Span, Study, counted, over, rounded};
+use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, over, rounded};
 use serde::Serialize;
 
 /// The observations in the window of a run. SI units; a ratio 0/0 is null.
@@ -73,40 +79,6 @@ impl Structure {
             ground_force_max: ground_force.value,
             t_ground_force: ground_force.time,
         }
-    }
-}
-
-/// A damper as in the paper's Table 2: m2 (kg) and its design.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct TunedDamper {
-    /// m2, mass, kg.
-    #[serde(rename = "m2")]
-    pub mass: Positive,
-    /// k2, c2, D, C.
-    #[serde(flatten)]
-    pub design: Design,
-}
-
-impl TunedDamper {
-    /// From a damper of a scene.
-    pub const fn of(damper: &Damper) -> Self {
-        Self { mass: damper.mass, design: Design::of(damper) }
-    }
-
-    /// The numbers in words, to some digits: `m2 = 60 kg, k2 = 215 N/m, …`.
-    pub fn words(&self, digits: usize) -> String {
-        let [m2, k2, c2, d, c] = self.values().map(|value| rounded(value, digits));
-        let walls = match self.design.d {
-            Some(_) => format!("D = {d} m, C = {c} m"),
-            None => "no walls".to_owned(),
-        };
-        format!("m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}")
-    }
-
-    /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.
-    pub fn values(&self) -> [f64; 5] {
-        let [k2, c2, d, c] = self.design.values();
-        [self.mass.get(), k2, c2, d, c]
     }
 }
 
@@ -214,6 +186,13 @@ impl Summary {
         self.made_by.omega
     }
 
+    /// The transmissibility of the motion in the window, see [`retune_model::Forcing::transmissibility`]. None without a force.
+    pub fn transmissibility(&self) -> Option<f64> {
+        let forcing = self.parameters.forcing;
+        let share = forcing.transmissibility(self.structure.x1max, self.structure.ground_force_max);
+        share.is_finite().then_some(share)
+    }
+
     /// The room and the strength that the damper needs, in words.
     pub fn needs(&self) -> String {
         let Walls { primary, obstacle } = self.force_max.map(|force| rounded(force, 4));
@@ -259,6 +238,9 @@ impl std::fmt::Display for Summary {
             SceneKind::Contact => "with contacts",
         };
         writeln!(f, "{}", self.made_by)?;
+        let omega = self.omega();
+        let [hertz, rpm] = hertz_and_rpm(omega).map(|value| rounded(value, 5));
+        writeln!(f, "frequency   {} rad/s = {hertz} Hz = {rpm} rpm", rounded(omega, 5))?;
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
@@ -288,6 +270,9 @@ impl std::fmt::Display for Summary {
             f,
             "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground |k1 x1 + c1 v1|"
         )?;
+        if let Some(share) = self.transmissibility() {
+            writeln!(f, "transmiss.  {share:<12.5} the transmissibility: that force / P")?;
+        }
         writeln!(f, "model       {model}")?;
         write!(
             f,

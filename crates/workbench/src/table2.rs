@@ -40,13 +40,18 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
     job.run(request, watch, |directory| {
         let mut searches = Searches::new(directory, &job.order, watch);
         let mut table = Vec::new();
-        for PaperStudy { damper, study, printed } in &rows {
-            watch.log(&format!("\n{damper}: re-optimised from the paper's design"))?;
+        for PaperStudy { damper, study, of_paper, printed } in &rows {
+            let (label, whose) = if *of_paper {
+                ("paper", "the paper's design")
+            } else {
+                ("study", "the damper of its study")
+            };
+            watch.log(&format!("\n{damper}: re-optimised from {whose}"))?;
             let optimum = searches.tune(study, "")?;
             let again = Row::of_optimum("re-optimised", damper, study, &optimum);
             let Found { damper: own, e1_max } = optimum.start();
             let paper = Row {
-                label: "paper".to_owned(),
+                label: label.to_owned(),
                 found: own,
                 printed: printed.map(Positive::get),
                 e1_max,

@@ -16,6 +16,7 @@ pub use optimum::{Found, Optimum, table2_header, table2_row};
 use crate::artefact::{Content, Kind, artefact};
 use crate::certify::{self, certify};
 use crate::job::{Done, Job, Made};
+use crate::parts::Shard;
 use crate::report::{self, Findings};
 use crate::resolved;
 use crate::summary::Summary;
@@ -24,7 +25,6 @@ use global::Basins;
 use optimum::Searched;
 use retune_store::{Directory, Order};
 use retune_study::{Search, Study, are};
-use shard::Shard;
 use std::path::Path;
 
 /// The file with the design that a search found.

@@ -7,13 +7,14 @@ mod input;
 mod one;
 mod report;
 mod several;
+mod swept;
 mod table;
 mod tally;
 mod values;
 
 use crate::artefact::{Content, Kind};
-use crate::tune::shard::PARTS;
-use crate::{Error, Observer, certify, pareto, resolved, table2, track, tune};
+use crate::parts::PARTS;
+use crate::{Error, Observer, certify, pareto, resolved, sweep, table2, track, tune};
 use one::One;
 use report::Report;
 use retune_store::{UNFINISHED, manifest};
@@ -47,7 +48,8 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
 }
 
 /// The kinds of jobs whose results are computed again.
-static KINDS: [&Kind; 5] = [&tune::KIND, &certify::KIND, &table2::KIND, &track::KIND, &pareto::KIND];
+static KINDS: [&Kind; 6] =
+    [&tune::KIND, &certify::KIND, &table2::KIND, &track::KIND, &pareto::KIND, &sweep::KIND];
 
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
 fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
@@ -67,6 +69,7 @@ fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error>
             Content::Certificate => One::read(place).and_then(|one| one.certificate(name, report)),
             Content::Designs => Several::read(place).and_then(|all| all.designs(name, most, report)),
             Content::Retention => Several::read(place).and_then(|all| all.retention(name, most, report)),
+            Content::Swept => swept::swept(place, name, most, report),
             Content::CertificateOf => Several::read(place).and_then(|all| all.certificate(name, report)),
         };
         match done {

@@ -2,7 +2,7 @@
 
 use super::running::Running;
 use clap::Args;
-use retune_workbench::design::frequency;
+use retune_study::angular_frequency;
 
 /// `design`.
 #[derive(Debug, Args)]
@@ -19,8 +19,8 @@ pub struct Design {
     /// Amplitude of the force, N
     #[arg(long = "P", value_name = "N")]
     pub force: f64,
-    /// Lowest and highest frequency of the force: rad/s, or Hz with the unit, for instance `--band 10Hz 14Hz`
-    #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = frequency)]
+    /// Lowest and highest frequency of the force: rad/s, or with its unit, for instance `--band 10Hz 14Hz` or `--band 600rpm 840rpm`
+    #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = angular_frequency)]
     pub band: Vec<f64>,
     /// Mass of the damper, kg
     #[arg(long, value_name = "KG")]

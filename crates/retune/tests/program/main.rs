@@ -1,5 +1,6 @@
 //! The program as a process: arguments, the screen, pipes, exit codes, signals. What its jobs find is tested in `workbench`.
 
+mod anywhere;
 mod commands;
 mod common;
 mod documents;

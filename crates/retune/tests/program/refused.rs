@@ -37,7 +37,7 @@ fn contract_missing_files_and_places_that_cannot_be_written_are_named() {
         (&["optimize", "study.json", "--out", "file/out"], "error: file/out: cannot be written: "),
         (&["simulate", "study.json", "--trajectory", "none/t.csv"], "error: none/t.csv: cannot be written: "),
         (&["verify", "nowhere"], "error: nowhere: cannot be read: "),
-        (&["figure", "6"], "error: studies/paper.json: cannot be read: "),
+        (&["figure", "6", "--study", "none.json"], "error: none.json: cannot be read: "),
     ] {
         let said = desk.refused(arguments);
         assert!(said.starts_with(words), "{said}");

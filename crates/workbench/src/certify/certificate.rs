@@ -68,6 +68,9 @@ pub struct Short {
 impl Short {
     /// The verdict in words, with the error bar.
     pub fn verdict_words(&self) -> String {
+        if !self.error_bar.is_finite() {
+            return format!("{} (numerical error unknown)", self.words);
+        }
         format!("{} (numerical error at most {:.0e} {})", self.words, self.error_bar, self.quantity.unit())
     }
 

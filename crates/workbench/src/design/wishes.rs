@@ -236,31 +236,3 @@ impl Wishes {
         Ok(from_text(&study.to_string(), "design")?)
     }
 }
-
-/// An angular frequency, rad/s, from a number in rad/s or one in Hz with its unit: `75`, `12Hz`.
-///
-/// # Errors
-/// It is neither.
-pub fn frequency(text: &str) -> Result<f64, String> {
-    let (number, unit) = match text.trim().strip_suffix("Hz") {
-        Some(number) => (number, TAU),
-        None => (text, 1.0),
-    };
-    let number: Result<f64, _> = number.trim().parse();
-    number
-        .map(|number| unit * number)
-        .map_err(|_| "give a number in rad/s, or one in Hz with its unit: 12Hz".to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn contract_a_frequency_may_be_given_in_hertz() {
-        assert_eq!(frequency("5.5"), Ok(5.5));
-        assert_eq!(frequency("2Hz"), Ok(2.0 * TAU));
-        assert_eq!(frequency(" 2 Hz "), Ok(2.0 * TAU));
-        assert!(["", "Hz", "2kHz", "two"].iter().all(|text| frequency(text).is_err()));
-    }
-}

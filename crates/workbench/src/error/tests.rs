@@ -92,6 +92,7 @@ fn settings() -> Vec<SettingError> {
         SettingError::Form { text: "k1".into() },
         SettingError::Name { name: "k3".into() },
         SettingError::Number { name, text: "soft".into() },
+        SettingError::Frequency { name: "omega", problem: "\"1kHz\" is no frequency".into() },
         SettingError::OutOfRange { name, source: out_of_range() },
         SettingError::Forcing { name: "P", has: "base" },
         SettingError::NoDamper { name },
@@ -187,13 +188,14 @@ fn errors() -> Vec<Error> {
         Error::Study(StudyError::List { file: "study.json".into(), field: "window".into() }),
         Error::Setting(SettingError::NoDamper { name: "k2" }),
         Error::Rule { name: "ssvi".into(), rule: Rule::NoOptimize },
+        Error::Sweep(retune_sweep::Error::OwnValues { parameter: "omega" }),
         Error::Interval { value: 0.0, most: 100 },
         Error::Part { path: path.clone(), problem: "it is damaged at point 23: make it again".into() },
         Error::MissingParts {
             points: "6 to 11".into(),
             len: 24,
             shards: Some("2/4".into()),
-            study: "study.json".into(),
+            command: "retune optimize study.json".into(),
             place: path.join("parts"),
         },
         Error::NotHeld { path: path.clone(), problem: "does not hold: surf.csv is missing".into() },
@@ -222,10 +224,10 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
-        each!(errors(), Error: Store Study Setting Rule Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
+        each!(errors(), Error: Store Study Setting Rule Sweep Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
-        each!(settings(), SettingError: Form Name Number OutOfRange Forcing NoDamper NoWalls Rule),
+        each!(settings(), SettingError: Form Name Number Frequency OutOfRange Forcing NoDamper NoWalls Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),

@@ -4,6 +4,7 @@ use super::findings::{Compared, Findings};
 use super::flags::Flag;
 use super::html::{Section, Table};
 use super::numbers::{amount, compared, digits, four, frequency, millimetres};
+use crate::summary::whose;
 use maud::{Markup, html};
 use retune_model::{Damper, Variable};
 use retune_optim::{Evaluation, Limit, Response, Unusable};
@@ -103,7 +104,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     html! {
         dl.facts {
             (fact("Against no damper", &none.0, &none.1))
-            (fact("Against the damper of the study", &study.0, &study.1))
+            (fact(&format!("Against {}", whose(&findings.study.scene)), &study.0, &study.1))
             (fact("Certificate", verdict, &format!("{words}; {} ± {} {}", quantity.name(), digits(certificate.error_bar, 2), quantity.unit())))
             (fact("Stroke", &millimetres(response.spring_deflection_max), &format!("largest spring deflection |x2 − x1 − D| at the worst frequency, {window}")))
             (fact("Contact force", &format!("{} N", four(structure.max(obstacle))), &format!(
@@ -136,7 +137,7 @@ fn named(damper: &Damper) -> [(&'static str, &'static str, &'static str, f64, Op
 fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
     let mut table =
-        Table::new("The damper", &["symbol", "name", "value", "unit", "damper of the study", "tuned"]);
+        Table::new("The damper", &["symbol", "name", "value", "unit", whose(&findings.study.scene), "tuned"]);
     let known = named(&damper).into_iter().filter(|one| !one.3.is_nan());
     for (symbol, name, unit, value, variable) in known {
         let before = findings.study.scene.damper.as_ref().map(named);

@@ -1,5 +1,6 @@
 //! How numbers are written on a page.
 
+use crate::summary::how_many;
 use retune_model::Measure;
 pub use retune_study::frequency;
 use retune_study::rounded;
@@ -38,8 +39,13 @@ pub fn compared(value: f64, other: f64) -> Option<String> {
     }
     let percent = 100.0 * (value / other - 1.0);
     let (times, more) = if times >= 1.0 { (times, "less") } else { (1.0 / times, "more") };
+    let how_many = how_many(times);
+    // Of a change by thousands the percentage says nothing.
+    if times >= 1e3 {
+        return Some(format!("{how_many} times {more}"));
+    }
     let sign = if percent > 0.0 { "+" } else { "" };
-    Some(format!("{} times {more} ({sign}{} %)", digits(times, 3), digits(percent, 3)))
+    Some(format!("{how_many} times {more} ({sign}{} %)", digits(percent, 3)))
 }
 
 #[cfg(test)]
@@ -59,5 +65,7 @@ mod tests {
         assert_eq!(compared(25.0, 100.0).as_deref(), Some("4 times less (−75 %)"));
         assert_eq!(compared(100.0, 80.0).as_deref(), Some("1.25 times more (+25 %)"));
         assert_eq!(compared(0.0, 80.0), None);
+        assert_eq!(compared(0.001_28, 1567.0).as_deref(), Some("over a million times less"));
+        assert_eq!(compared(1.0, 1567.0).as_deref(), Some("1570 times less"));
     }
 }

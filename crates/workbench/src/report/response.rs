@@ -5,6 +5,7 @@ use super::findings::{Compared, Findings};
 use super::html::{Section, figure, link};
 use super::numbers::{HERTZ, amount, four, frequency};
 use crate::amount::label;
+use crate::summary::whose;
 use maud::{Markup, html};
 use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};
 use retune_figures::{
@@ -12,11 +13,13 @@ use retune_figures::{
 };
 
 /// The curves and their looks.
-const LINES: [(&str, Stroke); 3] = [
-    ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
-    ("the study's damper", Stroke::new(BLUE, 1.1, Dash::Long)),
-    ("tuned", Stroke::new(VERMILION, 1.4, Dash::Solid)),
-];
+fn lines(findings: &Findings) -> [(&'static str, Stroke); 3] {
+    [
+        ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
+        (whose(&findings.study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
+        ("tuned", Stroke::new(VERMILION, 1.4, Dash::Solid)),
+    ]
+}
 /// Ratio of the largest values of two curves above which the smaller would be squashed on a linear scale.
 const SQUASHED: f64 = 10.0;
 
@@ -56,10 +59,11 @@ impl<'a> Curve<'a> {
 /// The section.
 pub fn section(findings: &Findings, compared: &Compared) -> Section {
     let curves = Curves::new(findings);
+    let names = lines(findings).map(|(name, _)| name);
     let body = html! {
         (words(findings, compared, &curves))
         (figure(&picture(findings, &curves, Curve::objective(findings, &curves)), html! {
-            (findings.quantity().name()) " against the frequency of the force: " (LINES[0].0) ", " (LINES[1].0) ", " (LINES[2].0) ". "
+            (findings.quantity().name()) " against the frequency of the force: " (names[0]) ", " (names[1]) ", " (names[2]) ". "
             @if curves.is_objective { (link("band.csv")) } @else { "Outside of the dotted line nothing was asked of the search." }
         }))
         (figure(&picture(findings, &curves, Curve::displacement(findings, &curves)), html! {
@@ -79,19 +83,20 @@ fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
     if curves.is_objective {
         return html! { p {
             "The objective is the worst over this band: " (worst(&compared.none)) " without a damper, " (worst(&compared.study))
-            " with that of the study, " (amount(findings.evaluation.energy, quantity)) " with the tuned one, at " (frequency(omega)) "."
+            " with " (whose(&findings.study.scene)) ", " (amount(findings.evaluation.energy, quantity)) " with the tuned one, at " (frequency(omega)) "."
         } };
     }
     let top = curves.value.each_ref().map(|curve| Curves::largest(curve));
     html! { p {
         "The search looked at ω = " (frequency(omega)) " alone, and the band here is outside of its objective: ± " (100.0 * ABOUT)
         " % of the natural frequency about it, for the reader to see how sharp the tuning is. In this band the largest " (quantity.name()) " is "
-        (amount(top[0], quantity)) " without a damper, " (amount(top[1], quantity)) " with that of the study, and " (amount(top[2], quantity)) " with the tuned one."
+        (amount(top[0], quantity)) " without a damper, " (amount(top[1], quantity)) " with " (whose(&findings.study.scene)) ", and " (amount(top[2], quantity)) " with the tuned one."
     } }
 }
 
 fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     let Curve { name, label, unit, values, worst } = curve;
+    let lines = lines(findings);
     let omega = findings.worst_omega();
     let top = values.each_ref().map(|curve| Curves::largest(curve));
     let (high, low) = (
@@ -109,14 +114,14 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     if !curves.is_objective {
         layers.push(Layer::Upright { x: omega, stroke: Stroke::new(GREY, 1.0, Dash::Dots) });
     }
-    for (curve, (_, stroke)) in values.iter().zip(LINES) {
+    for (curve, (_, stroke)) in values.iter().zip(lines) {
         let points = curves.omega.iter().copied().zip(curve.iter().copied()).collect();
         layers.push(Layer::Line { points, stroke });
     }
     let mark = Mark { rim: true, ..Mark::new(Shape::Disc, VERMILION, 5.0) };
     layers.push(Layer::Marks { points: vec![(omega, worst)], mark });
     let mut legend: Vec<(Key, String)> =
-        LINES.iter().map(|(name, stroke)| (Key::Line(*stroke), (*name).to_owned())).collect();
+        lines.iter().map(|(name, stroke)| (Key::Line(*stroke), (*name).to_owned())).collect();
     legend.push((
         Key::Mark(mark),
         format!(
@@ -134,7 +139,7 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
         height: 210.0,
     };
     let said: Vec<String> =
-        LINES.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
+        lines.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
     drawing(&Sheet {
         title: format!("{name} against the frequency of the force"),
         description: format!(

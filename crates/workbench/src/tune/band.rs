@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::amount::{self, measured};
-use crate::summary::MadeBy;
+use crate::summary::{MadeBy, whose};
 use rayon::prelude::*;
 use retune_figures::colour::{BLACK, BLUE, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
@@ -90,9 +90,9 @@ pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
 }
 
 fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
-    const LINES: [(&str, Stroke); 3] = [
+    let lines: [(&str, Stroke); 3] = [
         ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
-        ("the study's damper", Stroke::new(BLUE, 1.1, Dash::Long)),
+        (whose(&study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
         ("tuned for the band", Stroke::new(VERMILION, 1.3, Dash::Solid)),
     ];
     let quantity = study.quantity();
@@ -101,8 +101,8 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
         true => format!(": {}", measured(value, quantity)),
         false => String::new(),
     };
-    let words: Vec<String> = (0..3).map(|i| format!("{}{}", LINES[i].0, said(worst[i]))).collect();
-    let layers = LINES.iter().enumerate().map(|(i, &(_, stroke))| {
+    let words: Vec<String> = (0..3).map(|i| format!("{}{}", lines[i].0, said(worst[i]))).collect();
+    let layers = lines.iter().enumerate().map(|(i, &(_, stroke))| {
         let points = rows.iter().map(|(omega, energies)| (*omega, energies[i])).collect();
         Layer::Line { points, stroke }
     });
@@ -127,7 +127,7 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
         charts: vec![chart],
         columns: 1,
         stacked: false,
-        legend: LINES.iter().map(|(_, stroke)| Key::Line(*stroke)).zip(words).collect(),
+        legend: lines.iter().map(|(_, stroke)| Key::Line(*stroke)).zip(words).collect(),
         caption: vec![MadeBy::new(study).to_string()],
     })
 }

@@ -9,7 +9,7 @@ use super::surf::Surf;
 use crate::Error;
 use crate::amount::Amount;
 use crate::certify::Short;
-use crate::summary::{MadeBy, Summary, TunedDamper};
+use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
 use retune_model::{Measure, Variable};
 use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
@@ -31,6 +31,9 @@ pub struct Optimum {
     /// The same without a damper; null if it has no bound.
     #[serde(flatten)]
     none: Amount,
+    /// The damper of the study's scene in words.
+    #[serde(skip)]
+    whose: &'static str,
     /// The same with the damper of the study's scene; null if it cannot be run.
     #[serde(flatten)]
     study: Amount,
@@ -136,6 +139,7 @@ impl Optimum {
             damper: TunedDamper::of(&damper),
             value: Amount::new(quantity, evaluation.energy),
             none: Amount::of(quantity, "_none", study.energy_without_damper()),
+            whose: whose(&study.scene),
             study: Amount::of(quantity, "_study", study.energy(&study.scene).unwrap_or(f64::NAN)),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),

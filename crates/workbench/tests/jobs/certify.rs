@@ -1,8 +1,9 @@
 //! Limits and certificates: whether a design keeps its limits, and whether its E1max can be relied on.
 
-use crate::desk::{Desk, flat, global, number, studies, tiny};
+use crate::desk::{Desk, committed, flat, global, number, studies, tiny};
 use crate::observers::{Record, good, refused};
 use crate::{found, request, resume, search};
+use retune_model::{Coupled, Scene};
 use retune_store::Error as StoreError;
 use retune_study::{Rule, Setting, StudyError};
 use retune_workbench::certify::{certify, certify_file};
@@ -161,4 +162,24 @@ fn contract_only_a_damper_can_be_certified() {
     let error = refused(certify_file(&request(&desk, "nothing.json", "out"), &Silent));
     assert!(matches!(error, Error::Study(StudyError::Unreadable { .. })), "{error}");
     assert!(!desk.path("out").exists(), "nothing may be left behind");
+}
+
+/// A damper that just clears its walls: some of its neighbours strike them, and have no steady value.
+#[test]
+fn contract_a_neighbour_without_a_value_is_told_in_words() {
+    let mut study = committed("tmd.json");
+    let scene: Scene = serde_json::from_value(study["scene"].clone()).expect("a scene");
+    let damper = scene.damper.as_ref().expect("a damper");
+    let stroke = Coupled::new(&scene.primary, &scene.forcing, damper).steady_stroke_max([5.0, 8.0]).value;
+    study["scene"]["damper"]["D"] = json!(1.0005 * stroke);
+    study["optimize"]["bounds"] = json!({});
+    study["optimize"]["surf"] = Value::Null;
+    let desk = Desk::with(&study);
+    let record = Record::default();
+    good(certify_file(&request(&desk, "study.json", "out"), &record));
+    let said = record.results();
+    assert!(said.contains("no value at "), "{said}");
+    assert!(said.contains("J or more, and some of them no value, the median "), "{said}");
+    let word = |word: &str| said.split(|c: char| !c.is_alphanumeric()).any(|other| other == word);
+    assert!(!word("inf") && !word("NaN"), "{said}");
 }

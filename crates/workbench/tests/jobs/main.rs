@@ -17,6 +17,7 @@ mod report;
 mod scenes;
 mod shards;
 mod simulate;
+mod sweep;
 mod table2;
 mod track;
 mod tune;

@@ -101,10 +101,11 @@ fn contract_missing_parts_are_named() {
     let desk = desk();
     make(&desk, "study.json", &["1/4", "3/4"]);
     match refused(merged(&desk)) {
-        Error::MissingParts { points, len: 24, shards, study, place } => {
+        Error::MissingParts { points, len: 24, shards, command, place } => {
             assert_eq!(points, "6 to 11, 18 to 23");
             assert_eq!(shards.as_deref(), Some("2/4, 4/4"));
-            assert_eq!([study, place], [desk.path("study.json"), desk.path("out/parts")]);
+            assert_eq!(command, format!("retune optimize {}", desk.path("study.json").display()));
+            assert_eq!(place, desk.path("out/parts"));
         }
         other => panic!("{other}"),
     }

@@ -10,6 +10,7 @@ use retune_workbench::simulate::{Trajectory, simulate};
 use retune_workbench::table2::table2;
 use retune_workbench::{Error, Silent};
 use serde_json::json;
+use std::f64::consts::PI;
 use std::path::Path;
 
 /// Writes the motion of the tiny study into a file of the desk.
@@ -159,4 +160,32 @@ fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
         said.contains("holds the designs of several searches") && said.ends_with("table/study"),
         "{said}"
     );
+}
+
+/// Without a damper, once the transient has died out: √((1 + (2ζr)²) / ((1 - r²)² + (2ζr)²)) with r = ω/ω1.
+#[test]
+fn exact_transmissibility_and_frequency_are_those_of_a_linear_oscillator() {
+    let mut study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
+    (study.scene.damper, study.optimize) = (None, None);
+    let study = study.with(&["omega=1.2Hz", "t0=200", "T=300"].map(|text| text.parse().expect("a setting")));
+    let study = study.expect("a study");
+    let run = json!(good(simulate(&study, None)));
+    let (omega, natural, zeta) =
+        (2.4 * PI, 39_500_f64.sqrt() / 1000_f64.sqrt(), 452.0 / 2.0 / 3.95e7_f64.sqrt());
+    let (r, damped) = (omega / natural, 2.0 * zeta * omega / natural);
+    let expected = ((1.0 + damped * damped) / ((1.0 - r * r).powi(2) + damped * damped)).sqrt();
+    let number = |name: &str| run[name].as_f64().expect(name);
+    assert!((number("transmissibility") / expected - 1.0).abs() < 1e-9, "{run}");
+    assert!((number("f_Hz") - 1.2).abs() < 1e-12 && (number("n_rpm") - 72.0).abs() < 1e-9, "{run}");
+    assert!((number("omega") / omega - 1.0).abs() < 1e-15);
+}
+
+/// A structure without a force transmits none of it.
+#[test]
+fn contract_without_a_force_there_is_no_transmissibility() {
+    let study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
+    let study = study.with(&[Setting::new("P", 0.0)]).expect("a study");
+    let run = good(simulate(&study, None));
+    assert_eq!((run.summary.transmissibility(), &json!(run)["transmissibility"]), (None, &json!(null)));
+    assert!(!run.to_string().contains("transmiss"));
 }

@@ -1,13 +1,25 @@
 //! A certificate as text.
 
+use super::verdict::{NONE, between};
 use super::{Certificate, FINER, Motion, Neighbourhood, Run, Sensitivity, Short, WorstRun};
-use crate::amount::Amount;
+use crate::amount::{Amount, measured};
+use retune_model::Measure;
 use retune_study::short;
+
+/// A value; one that is not finite is of a design that cannot be computed.
+fn said(value: f64, quantity: Measure) -> String {
+    if value.is_finite() { measured(value, quantity) } else { NONE.to_owned() }
+}
+
+/// An error bar.
+fn bar(error: f64, quantity: Measure) -> String {
+    if error.is_finite() { format!("{error:.1e} {}", quantity.unit()) } else { "an unknown error".to_owned() }
+}
 
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { words, error_bar, quantity, regime, exponent, .. } = self;
-        write!(f, "certificate: {words}\n  {} ± {error_bar:.1e} {}, ", quantity.name(), quantity.unit())?;
+        write!(f, "certificate: {words}\n  {} ± {}, ", quantity.name(), bar(*error_bar, *quantity))?;
         write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
     }
 }
@@ -20,21 +32,19 @@ impl std::fmt::Display for Certificate {
         let predictable = if self.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());
-        writeln!(f, "{name:<14}{} {unit} ± {error_bar:.1e} {unit}, {predictable}", short(value))?;
+        let said = |value: f64| said(value, quantity);
+        writeln!(f, "{name:<14}{} ± {}, {predictable}", said(value), bar(*error_bar, quantity))?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let (omega, k1) = (short(*omega), short(*k1));
-        writeln!(
-            f,
-            "worst run     {} {unit} at omega = {omega} rad/s, k1 = {k1} N/m{phase}",
-            short(value.value)
-        )?;
+        writeln!(f, "worst run     {} at omega = {omega} rad/s, k1 = {k1} N/m{phase}", said(value.value))?;
         for Run { method, rtol, value } in &self.convergence {
-            let method = format!("{} {rtol:e}", method.name());
-            writeln!(f, "  {method:<14}{:.10} {unit}", value.value)?;
+            let (method, value) = (format!("{} {rtol:e}", method.name()), value.value);
+            let digits = if value.is_finite() { format!("{value:.10} {unit}") } else { NONE.to_owned() };
+            writeln!(f, "  {method:<14}{digits}")?;
         }
         if let Some(finer) = self.finer {
-            writeln!(f, "finer band    {} {unit} with {FINER} times the samples", short(finer))?;
+            writeln!(f, "finer band    {} with {FINER} times the samples", said(finer))?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
@@ -45,15 +55,15 @@ impl std::fmt::Display for Certificate {
         )?;
         writeln!(f, "parameter     {:<25}worst within 1 %", format!("slope, {unit} for 1 % more"))?;
         for Sensitivity { parameter, slope_per_percent, worst, worst_at_percent, .. } in &self.sensitivity {
-            let slope = format!("{slope_per_percent:+.4}");
-            writeln!(f, "  {parameter:<12}{slope:<25}{} {unit} at {worst_at_percent:+} %", short(*worst))?;
+            let known = slope_per_percent.is_finite();
+            let slope = if known { format!("{slope_per_percent:+.4}") } else { NONE.to_owned() };
+            writeln!(f, "  {parameter:<12}{slope:<25}{} at {worst_at_percent:+} %", said(*worst))?;
         }
         let Neighbourhood { members, errors, low, median, high } = neighbourhood;
-        let [low, median, high] = [low, median, high].map(|energy| short(*energy));
+        let (errors, median, range) = (100.0 * errors, said(*median), between(*low, *high, quantity));
         writeln!(
             f,
-            "neighbours    {members} within {} %: 90 % of them have {low} to {high} {unit}, the median {median} {unit}",
-            100.0 * errors
+            "neighbours    {members} within {errors} %: 90 % of them have {range}, the median {median}"
         )?;
         if let Some(limits) = &self.limits {
             let near = limits.broken_near().unwrap_or_else(|| "kept by all designs near it".to_owned());

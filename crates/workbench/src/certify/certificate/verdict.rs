@@ -107,13 +107,15 @@ fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -
 
 /// What is said of a design that cannot be computed.
 const NO_VALUE: &str = "has no value";
+/// What stands in the place of its value.
+pub(super) const NONE: &str = "no value";
 
 /// A range of values in words; one that is infinite is of designs that cannot be computed.
-fn between(low: f64, high: f64, quantity: Measure) -> String {
+pub(super) fn between(low: f64, high: f64, quantity: Measure) -> String {
     match [low, high].map(f64::is_finite) {
         [true, true] => format!("{} to {}", short(low), measured(high, quantity)),
         [true, false] => format!("{} or more, and some of them no value", measured(low, quantity)),
-        _ => "no value".to_owned(),
+        _ => NONE.to_owned(),
     }
 }
 

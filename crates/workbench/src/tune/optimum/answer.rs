@@ -3,6 +3,7 @@
 use super::notes::{self, Goal, LimitNote};
 use super::{FailureNote, Optimum, RunNote, stop_words};
 use crate::amount::Amount;
+use crate::summary::how_many;
 use retune_model::Variable;
 use retune_optim::Limit;
 use retune_study::{counted, frequency, rounded, short};
@@ -76,15 +77,15 @@ impl Optimum {
 
     /// The structure without a damper, and with the damper that the study began with.
     fn compared(&self) -> String {
-        let times = |other: Amount| match rounded(other.value / self.value.value, 3).as_str() {
+        let times = |other: Amount| match how_many(other.value / self.value.value).as_str() {
             _ if !other.value.is_finite() => "without bound".to_owned(),
             "1" => format!("{} (as much)", other.words()),
             times => format!("{} ({times} times as much)", other.words()),
         };
         let study = if self.study.value.is_nan() {
-            "no value with the damper of the study".to_owned()
+            format!("no value with {}", self.whose)
         } else {
-            format!("{} with the damper of the study", times(self.study))
+            format!("{} with {}", times(self.study), self.whose)
         };
         format!("instead  {} without a damper, {study}", times(self.none))
     }

@@ -1,0 +1,18 @@
+//! The files of the reproduction.
+
+use retune_workbench::artefact::{Content, Kind, artefact};
+use retune_workbench::resolved;
+
+/// The files of the reproduction.
+pub static KIND: Kind = Kind {
+    command: "reproduce",
+    answer: "index.html",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("study.json", Content::Derived),
+        artefact("table1-*", Content::Derived),
+        artefact("table2-*", Content::Derived),
+        artefact("figure*", Content::Derived),
+        artefact("index.html", Content::Derived),
+    ],
+};

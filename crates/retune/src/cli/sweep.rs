@@ -1,0 +1,52 @@
+//! What may be typed for `sweep`.
+
+use super::running::Running;
+use clap::Args;
+use retune_sweep::{Parameter, Quantity};
+use retune_workbench::parts::Shard;
+use std::path::PathBuf;
+
+/// `sweep`.
+#[derive(Debug, Args)]
+pub struct Sweep {
+    /// A study, the optimum.json of a search, or the directory of its results
+    #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
+    pub study: PathBuf,
+    /// The parameter: omega k1 P c1 m1 m2 k2 c2 D C R
+    #[arg(long, value_name = "NAME")]
+    pub over: Parameter,
+    /// Its first value, in its SI unit; a frequency may have one of its own: 0.8Hz, 50rpm
+    #[arg(long, value_name = "A")]
+    pub from: String,
+    /// Its last value
+    #[arg(long, value_name = "B")]
+    pub to: String,
+    /// The number of values, both ends included
+    #[arg(long, value_name = "N", default_value_t = 61)]
+    pub points: usize,
+    /// Equal ratios between values instead of equal differences
+    #[arg(long)]
+    pub log: bool,
+    /// The unit of ends without one: rad/s, Hz or rpm for omega
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<String>,
+    /// What is shown: E1max x1max v1max a1max ground_force stroke contact_force transmissibility impacts, with commas between
+    /// [default: E1max]; the tables hold all of them
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "objective")]
+    pub quantity: Vec<Quantity>,
+    /// Compute the objective of the study at each value, for instance the worst over its band, instead of one run
+    #[arg(long)]
+    pub objective: bool,
+    /// Print the table as one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Compute only share i of N of the values, into DIR/parts; the same command with --merge combines the shares
+    #[arg(long, value_name = "i/N", conflicts_with_all = ["merge", "json"])]
+    pub shard: Option<Shard>,
+    /// Merge the parts that --shard made
+    #[arg(long)]
+    pub merge: bool,
+    /// How it is run; results go to results/sweep-<study>-<parameter> unless --out says otherwise.
+    #[command(flatten)]
+    pub running: Running,
+}

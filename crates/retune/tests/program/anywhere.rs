@@ -1,0 +1,58 @@
+//! An installed program: any directory, any file name.
+
+use crate::common::desk::tiny;
+use crate::common::{Answer, Desk, begun};
+
+/// Without `studies/` the plans built in are used, and it says so.
+#[test]
+fn contract_plans_are_found_in_an_empty_directory() {
+    let desk = Desk::new();
+    let said = desk.good(&["figure", "6", "--quiet"]);
+    let note = "studies/paper.json is not here: the plan of this name that is built into Retune is used\n";
+    assert!(said.starts_with(note) && said.contains("results in results/paper: "), "{said}");
+    for (arguments, out) in [
+        (vec!["table2", "--quiet"], "results/table2/table2-ssvi"),
+        (vec!["track", "30000", "--quiet"], "results/retune/k1-39500/retune-ssvi"),
+        (vec!["fronts", "--quiet"], "results/fronts"),
+    ] {
+        let mut child = begun(&desk, &arguments, out, 2);
+        child.kill().and_then(|()| child.wait()).expect("the program");
+    }
+    // A study is no plan: what is not there is not made up.
+    assert!(desk.refused(&["simulate", "studies/tmd.json"]).contains("studies/tmd.json: cannot be read"));
+    // And a plan that is there is used.
+    desk.write("studies/table2.json", "{ \"rows\": [] }");
+    assert!(desk.refused(&["table2"]).contains("rows: empty"));
+}
+
+#[test]
+fn contract_a_study_file_may_have_any_name() {
+    let desk = Desk::new();
+    desk.write_json("My Study (2).json", &tiny());
+    let study = "My Study (2).json";
+    assert!(desk.good(&["check", study]).ends_with("My Study (2).json: good\n"));
+    assert!(desk.good(&["simulate", study]).starts_with("study My-Study--2-, omega = "));
+    let said =
+        desk.good(&["sweep", study, "--over", "P", "--from", "1", "--to", "9", "--points", "2", "--quiet"]);
+    assert!(said.contains("results in results/sweep-My-Study--2--P: "), "{said}");
+    let said = desk.good(&["optimize", study, "--quiet"]);
+    assert!(said.contains("results in results/My-Study--2-: "), "{said}");
+    desk.write_json("My Table.json", &serde_json::json!({ "rows": [{ "damper": "NES", "study": study }] }));
+    let said = desk.good(&["table2", "My Table.json", "--quiet"]);
+    assert!(said.contains("\nstudy         ") && said.contains("results in results/My-Table: "), "{said}");
+}
+
+/// The whole of standard output is one object.
+#[test]
+fn contract_a_sweep_is_one_object_on_standard_output() {
+    let desk = Desk::with(&tiny());
+    let range = ["--from", "0.9Hz", "--to", "66", "--points", "3"];
+    let arguments =
+        [&["sweep", "study.json", "--over", "omega", "--json", "--out", "out"], &range[..]].concat();
+    let json: serde_json::Value = serde_json::from_str(&desk.good(&arguments)).expect("an object");
+    assert_eq!(json, desk.read_json("out/sweep.json"));
+    assert!(json["rows"][0]["impacts"].is_u64() && json["units"]["x1max"] == "m", "{json}");
+    let Answer { code, stderr, .. } =
+        desk.run(&["sweep", "study.json", "--over", "omga", "--from", "1", "--to", "2"]);
+    assert!(code == Some(2) && stderr.contains("give one of omega, k1, P"), "{stderr}");
+}

@@ -1,0 +1,97 @@
+//! Whether parts are of one work, disjoint and complete.
+
+use super::part::{Head, list, read};
+use crate::{Error, Observer};
+use retune_store::Identity;
+use retune_study::counted;
+use std::path::PathBuf;
+
+/// Most shares that a message names.
+const NAMED: usize = 5;
+
+/// The work that parts have to make up.
+pub struct Wanted {
+    /// Its identity.
+    pub identity: Identity,
+    /// Its number of points.
+    pub len: usize,
+    /// The numbers that each point has.
+    pub width: usize,
+    /// The directory of its parts.
+    pub place: PathBuf,
+    /// The command that makes a part, without `--shard`.
+    pub command: String,
+}
+
+/// The heads of parts, in the order of their points: the files `parts`, or all in the directory of parts if there are none.
+///
+/// # Errors
+/// A part cannot be read, is of another work, or overlaps another; or points are missing.
+pub fn complete(wanted: &Wanted, parts: &[PathBuf], watch: &dyn Observer) -> Result<Vec<Head>, Error> {
+    let paths = if parts.is_empty() { list(&wanted.place)? } else { parts.to_owned() };
+    let mut heads = Vec::new();
+    for path in &paths {
+        let mut head = read(path, |_, _| {})?;
+        if let Some(difference) = wanted.identity.difference(&head.identity) {
+            return Err(Error::Part { path: path.clone(), problem: format!("it is {difference}") });
+        }
+        head.points = head.points.start / wanted.width..head.points.end / wanted.width;
+        heads.push(head);
+    }
+    check(&mut heads, wanted)?;
+    watch.log(&format!(
+        "{}, {}: complete, disjoint, of this study",
+        counted(heads.len() as u64, "part"),
+        counted(wanted.len as u64, "point")
+    ))?;
+    Ok(heads)
+}
+
+/// Checks that the parts are disjoint and contain every point.
+fn check(heads: &mut [Head], wanted: &Wanted) -> Result<(), Error> {
+    let len = wanted.len;
+    heads.sort_by_key(|head| (head.points.start, head.points.end));
+    let mut missing = Vec::new();
+    let mut next = 0;
+    let mut last: Option<&Head> = None;
+    for head in heads.iter().filter(|head| !head.points.is_empty()) {
+        if let Some(last) = last.filter(|_| head.points.start < next) {
+            let problem =
+                format!("it holds points that {} holds as well: keep one of the two", last.path.display());
+            return Err(Error::Part { path: head.path.clone(), problem });
+        }
+        if head.points.start > next {
+            missing.push(next..head.points.start);
+        }
+        (next, last) = (head.points.end, Some(head));
+    }
+    if next < len {
+        missing.push(next..len);
+    }
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let named = |words: Vec<String>| {
+        let more = if words.len() > NAMED { ", ..." } else { "" };
+        words.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ") + more
+    };
+    let points = missing.iter().map(|points| format!("{} to {}", points.start, points.end - 1)).collect();
+    Err(Error::MissingParts {
+        points: named(points),
+        len,
+        shards: missing_shards(heads).map(named),
+        command: wanted.command.clone(),
+        place: wanted.place.clone(),
+    })
+}
+
+/// The missing shares, if all parts are of the same number of shares.
+fn missing_shards(heads: &[Head]) -> Option<Vec<String>> {
+    let count = heads.first()?.shard.count;
+    let is_there = |index: usize| heads.iter().any(|head| head.shard.index == index);
+    let missing = (1..=count).filter(|&index| !is_there(index));
+    heads
+        .iter()
+        .all(|head| head.shard.count == count)
+        .then(|| missing.map(|i| format!("{i}/{count}")).collect())
+}

@@ -1,0 +1,39 @@
+//! A damper as in the paper's Table 2.
+
+use retune_model::{Damper, Design, Positive};
+use retune_study::rounded;
+use serde::Serialize;
+
+/// A damper as in the paper's Table 2: m2 (kg) and its design.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TunedDamper {
+    /// m2, mass, kg.
+    #[serde(rename = "m2")]
+    pub mass: Positive,
+    /// k2, c2, D, C.
+    #[serde(flatten)]
+    pub design: Design,
+}
+
+impl TunedDamper {
+    /// From a damper of a scene.
+    pub const fn of(damper: &Damper) -> Self {
+        Self { mass: damper.mass, design: Design::of(damper) }
+    }
+
+    /// The numbers in words, to some digits: `m2 = 60 kg, k2 = 215 N/m, …`.
+    pub fn words(&self, digits: usize) -> String {
+        let [m2, k2, c2, d, c] = self.values().map(|value| rounded(value, digits));
+        let walls = match self.design.d {
+            Some(_) => format!("D = {d} m, C = {c} m"),
+            None => "no walls".to_owned(),
+        };
+        format!("m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}")
+    }
+
+    /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.
+    pub fn values(&self) -> [f64; 5] {
+        let [k2, c2, d, c] = self.design.values();
+        [self.mass.get(), k2, c2, d, c]
+    }
+}
