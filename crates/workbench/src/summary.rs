@@ -6,7 +6,7 @@ mod whose;
 pub use tuned_damper::TunedDamper;
 pub use whose::{how_many, whose};
 
-use retune_model::{Scene, energy_ratios};
+use retune_model::{Scene, Source, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
 use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, over, rounded};
@@ -268,10 +268,15 @@ impl std::fmt::Display for Summary {
         writeln!(f, "a1max       {a1max:<12.7} m/s² at t = {t_a1:.4} s")?;
         writeln!(
             f,
-            "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground |k1 x1 + c1 v1|"
+            "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground"
         )?;
         if let Some(share) = self.transmissibility() {
-            writeln!(f, "transmiss.  {share:<12.5} the transmissibility: that force / P")?;
+            let by = match self.parameters.forcing.source {
+                Source::Imbalance(_) => "that force / (imbalance omega²)",
+                Source::Base(_) => "x1max / base",
+                _ => "that force / P",
+            };
+            writeln!(f, "transmiss.  {share:<12.5} the transmissibility: {by}")?;
         }
         writeln!(f, "model       {model}")?;
         write!(
