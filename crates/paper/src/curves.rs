@@ -1,8 +1,9 @@
 //! Figure 3: the curves of the largest energy for several stiffnesses.
 
-use super::detuning::statements;
+use super::detuning::{Detuned, statements};
 use super::family::{Family, Peak};
-use super::item::{Grid, Item, numbers};
+use super::item::{Grid, Item, Verdict, numbers};
+use super::ladder::{self, Ladder};
 use super::plan::{Plan, stiffness};
 use retune_figures::colour::{BLUE, Colour, GREEN, ORANGE, PURPLE, SKY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Sheet, Stroke, Width, drawing};
@@ -55,8 +56,16 @@ pub fn figure3(plan: &Plan) -> Result<Item, Error> {
         })
     });
     item.data.push(("figure3.csv".into(), numbers(header, rows)));
-    item.grids.push(highest(&families));
-    statements(plan, &families, &mut item);
+    let climb = |family| {
+        let band = [plan.file.omega.from, plan.file.omega.to];
+        let ladders = |family: &Family| family.scenes.map(|scene| Ladder::climb(plan, &scene, band));
+        Detuned { family, ladders: ladders(family) }
+    };
+    let climbed: Vec<Detuned> = families.iter().map(climb).collect();
+    item.grids.push(highest(&climbed));
+    item.grids.push(ladders(plan, &climbed));
+    statements(plan, &climbed, &mut item);
+    never_touches(&families, &mut item);
     Ok(item)
 }
 
@@ -99,7 +108,36 @@ fn picture(plan: &Plan, families: &[Family]) -> Drawing {
     })
 }
 
-fn highest(families: &[Family]) -> Grid {
+fn never_touches(families: &[Family], item: &mut Item) {
+    let touched: usize =
+        families.iter().flat_map(|f| &f.points[2]).filter(|point| point.impacts != [0; 2]).count();
+    let all: usize = families.iter().map(|f| f.points[2].len()).sum();
+    item.statement(
+        "Large values of C and D ensure that the TMD touches nothing",
+        "Holds if the TMD touches no wall in the window of any run behind these curves.",
+        Verdict::of(touched == 0),
+        format!("{touched} of {all} runs with an impact"),
+    );
+}
+
+/// What the highest points are worth.
+fn ladders(plan: &Plan, climbed: &[Detuned]) -> Grid {
+    let mut grid = ladder::grid(
+        plan,
+        "The highest points on ever finer frequencies, and of designs near",
+        &["k1, N/m", "damper"],
+    );
+    for f in climbed {
+        for (name, ladder) in ["none", "SSVI NES", "TMD"].into_iter().zip(&f.ladders) {
+            let mut row = vec![stiffness(f.family.k1), name.to_owned()];
+            row.extend(ladder.cells());
+            grid.rows.push(row);
+        }
+    }
+    grid
+}
+
+fn highest(climbed: &[Detuned]) -> Grid {
     let head = [
         "k1, N/m",
         "ω₀, rad/s",
@@ -112,16 +150,18 @@ fn highest(families: &[Family]) -> Grid {
         "at ω",
         "reduced",
     ];
-    let mut grid = Grid::new("Highest points of the curves", &head);
-    for f in families {
+    let mut grid =
+        Grid::new("Highest points of the curves, and the reduction on the finest frequencies", &head);
+    for detuned in climbed {
+        let f = detuned.family;
         let [none, ssvi, tmd] = [0, 1, 2].map(|scene| f.highest(scene));
         let pair = |p: Peak| [format!("{:.1}", p.energy), format!("{:.2}", p.omega)];
         let mut row = vec![stiffness(f.k1), format!("{:.3}", f.natural)];
         row.extend(pair(none));
         row.extend(pair(ssvi));
-        row.push(format!("{:.2} ×", f.reduction(1)));
+        row.push(format!("{:.2} ×", detuned.finest(1)));
         row.extend(pair(tmd));
-        row.push(format!("{:.2} ×", f.reduction(2)));
+        row.push(format!("{:.2} ×", detuned.finest(2)));
         grid.rows.push(row);
     }
     grid

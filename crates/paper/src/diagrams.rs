@@ -4,7 +4,7 @@ use super::family::Family;
 use super::motions::Motions;
 use super::plan::stiffness;
 use retune_dynamics::sweep::zones;
-use retune_dynamics::{Kind, Zone};
+use retune_dynamics::{Kind, Orbit, Zone};
 use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, YELLOW};
 use retune_figures::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stand, Stroke, Width, drawing,
@@ -49,9 +49,9 @@ fn colour(kind: Kind) -> Colour {
     match kind {
         Kind::Periodic => GREY,
         Kind::AmplitudeModulated => YELLOW,
-        Kind::Chaotic => VERMILION,
-        Kind::Intermittent => GREEN,
-        Kind::Settling => BLACK,
+        Kind::Chaotic => BLACK,
+        Kind::Intermittent => BLUE,
+        Kind::Settling => PURPLE,
     }
 }
 
@@ -68,8 +68,8 @@ fn legend() -> Vec<(Key, &'static str)> {
         (Key::Line(DAMPER), "E2max, SSVI"),
         (Key::Heading, "dots:"),
         (Key::Mark(Mark::new(Shape::Disc, BLACK, 4.0)), "from rest"),
-        (Key::Mark(Mark::new(Shape::Disc, BLUE, 4.0)), "sweep up"),
-        (Key::Mark(Mark::new(Shape::Disc, ORANGE, 4.0)), "sweep down"),
+        (Key::Mark(Mark::new(Shape::Disc, VERMILION, 4.0)), "another motion, on the way up"),
+        (Key::Mark(Mark::new(Shape::Disc, SKY, 4.0)), "another motion, on the way down"),
         (Key::Heading, "strip:"),
     ];
     keys.extend(kinds.map(|kind| (Key::Area(colour(kind), 1.0), kind.words())));
@@ -110,13 +110,22 @@ fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {
 }
 
 fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
-    let dots = |start: usize, colour, size| Layer::Dots {
-        points: motions.orbits[start]
+    let points = |orbit: &Orbit| {
+        let value = orbit.value;
+        orbit.samples.iter().map(move |y| (value, y[2])).collect::<Vec<_>>()
+    };
+    let from_rest =
+        Layer::Dots { points: motions.orbits[0].iter().flat_map(points).collect(), colour: BLACK, size: 1.3 };
+    // What a sweep reaches is drawn where it is another motion than that from rest: elsewhere dots would hide dots.
+    let others = |start: usize, colour| Layer::Dots {
+        points: motions
+            .coexisting
             .iter()
-            .flat_map(|o| o.samples.iter().map(|y| (o.value, y[2])))
+            .filter(|here| here.motions.iter().any(|(other, _)| *other == start))
+            .flat_map(|here| points(&motions.orbits[start][here.index]))
             .collect(),
         colour,
-        size,
+        size: 2.6,
     };
     let values = motions.orbits.iter().flatten().flat_map(|o| o.samples.iter().map(|y| y[2]));
     let (low, high) =
@@ -126,8 +135,8 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
     let height = |share: f64| range.0 + share * (range.1 - range.0);
     let mut layers = strip(motions, height(1.0 - STRIP));
     layers.push(Layer::Upright { x: family.natural, stroke: NATURAL });
-    layers.extend([dots(0, BLACK, 1.9), dots(2, ORANGE, 1.4), dots(1, BLUE, 0.9)]);
-    layers.extend(labels(motions, omega, ROWS.map(height)));
+    layers.extend([from_rest, others(1, VERMILION), others(2, SKY)]);
+    layers.extend(labels(motions, family.natural, omega, ROWS.map(height)));
     Chart {
         title: "x2 at the crests of the force; regimes nT, m, k".into(),
         x: Axis::linear("ω, rad/s", omega),
@@ -151,7 +160,7 @@ fn strip(motions: &Motions, from: f64) -> Vec<Layer> {
 }
 
 /// Names of periodic motions at two heights, where there is space for them, the widest windows first.
-fn labels(motions: &Motions, (first, last): (f64, f64), heights: [f64; 2]) -> Vec<Layer> {
+fn labels(motions: &Motions, natural: f64, (first, last): (f64, f64), heights: [f64; 2]) -> Vec<Layer> {
     let mut windows = motions.windows();
     windows
         .retain(|(label, from, to)| label.starts_with(|c: char| c.is_ascii_digit() || c == 'T') && to > from);
@@ -161,6 +170,9 @@ fn labels(motions: &Motions, (first, last): (f64, f64), heights: [f64; 2]) -> Ve
     for (text, from, to) in windows {
         let half = 0.5 * LETTER * (text.chars().count() + 1) as f64 * (last - first);
         let middle = 0.5 * (motions.omega[from] + motions.omega[to]);
+        // Beside the line of the natural frequency, not across it.
+        let middle =
+            if (middle - natural).abs() < half { natural + half.copysign(middle - natural) } else { middle };
         let x = middle.clamp(first + half, last - half);
         // A label is placed above its own window, or omitted.
         if !(motions.omega[from]..=motions.omega[to]).contains(&x) {

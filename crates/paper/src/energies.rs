@@ -5,7 +5,7 @@ use super::plan::Plan;
 use retune_figures::colour::{BLACK, ORANGE, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, drawing};
 use retune_model::Scene;
-use retune_solver::{Rows, Sample, Window, trajectory};
+use retune_solver::{Rows, Sample, Window, simulate, trajectory};
 use retune_workbench::Error;
 
 const INTERVAL: f64 = 0.05;
@@ -69,11 +69,11 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
         .map(|((n, s), t)| vec![(n.t * 1e6).round() / 1e6, n.e1, s.e1, s.e2, t.e1, t.e2]);
     item.data
         .push(("figure6.csv".into(), numbers("t_s,E1_none_J,E1_SSVI_J,E2_SSVI_J,E1_TMD_J,E2_TMD_J", rows)));
-    let late = |samples: &[Sample], energy: fn(&Sample) -> f64| {
-        samples.iter().filter(|s| s.t >= plan.window().from).map(energy).fold(0.0, f64::max)
-    };
-    let e1 = [late(&none, |s| s.e1), late(&ssvi, |s| s.e1), late(&tmd, |s| s.e1)];
-    let e2 = [late(&ssvi, |s| s.e2), late(&tmd, |s| s.e2)];
+    // The exact maxima, not those of the rows that are drawn.
+    let late = |scene: &Scene| simulate(scene, plan.window(), &plan.settings());
+    let [bare, ssvi, tmd] = [late(&scenes[0])?, late(&scenes[1])?, late(&scenes[2])?];
+    let e1 = [bare.e1_max.value, ssvi.e1_max.value, tmd.e1_max.value];
+    let e2 = [ssvi.e2_max.value, tmd.e2_max.value];
     let share = |e1: f64, e2: f64| retune_model::energy_ratios(e1, e2)[1];
     item.statement(
         "Both dampers effectively reduce the maximum energy of the PS at resonance",

@@ -2,6 +2,7 @@
 
 use super::plan::Plan;
 use retune_dynamics::{Parameter, Point, independent};
+use retune_model::Scene;
 use retune_workbench::Error;
 use retune_workbench::Progress;
 
@@ -15,6 +16,8 @@ pub struct Family {
     pub half_width: f64,
     /// Without damper, with SSVI NES, with TMD.
     pub points: [Vec<Point>; 3],
+    /// The scenes of the curves.
+    pub scenes: [Scene; 3],
 }
 
 /// A peak of a curve.
@@ -38,7 +41,7 @@ impl Family {
         }
         let primary = scenes[0].primary;
         let (natural, half_width) = (primary.natural_frequency(), primary.half_power_half_width());
-        Ok(Self { k1, natural, half_width, points })
+        Ok(Self { k1, natural, half_width, points, scenes })
     }
 
     /// All families of the plan.
@@ -55,9 +58,27 @@ impl Family {
         best.map_or(Peak { omega: f64::NAN, energy: f64::NAN }, |p| Peak { omega: p.value, energy: p.e1_max })
     }
 
-    /// The factor by which the damper reduces the largest energy.
-    pub fn reduction(&self, scene: usize) -> f64 {
-        self.highest(0).energy / self.highest(scene).energy
+    /// The share of the frequencies within the width c1/m1 of resonance on which a curve is below another, and that width, rad/s.
+    pub fn share_below(&self, scene: usize, other: usize) -> (f64, f64) {
+        let (mut below, mut all) = (0, 0);
+        for (one, two) in self.points[scene].iter().zip(&self.points[other]) {
+            if (one.value - self.natural).abs() <= 2.0 * self.half_width {
+                below += usize::from(one.e1_max < two.e1_max);
+                all += 1;
+            }
+        }
+        (below as f64 / all.max(1) as f64, 2.0 * self.half_width)
+    }
+
+    /// Where within the width c1/m1 of resonance a damper adds most energy: the frequency, and how many times that without it (`energy`).
+    pub fn most_added(&self, scene: usize) -> Peak {
+        let near = self.points[scene]
+            .iter()
+            .zip(&self.points[0])
+            .filter(|(with, _)| (with.value - self.natural).abs() <= 2.0 * self.half_width)
+            .map(|(with, without)| Peak { omega: with.value, energy: with.e1_max / without.e1_max });
+        near.max_by(|a, b| a.energy.total_cmp(&b.energy))
+            .unwrap_or(Peak { omega: f64::NAN, energy: f64::NAN })
     }
 
     /// Number of maxima of a curve: points above both neighbours.

@@ -14,6 +14,8 @@ pub enum Verdict {
     Partly,
     /// It does not hold under our settings.
     Fails,
+    /// Practically equal designs decide it differently.
+    Undecided,
 }
 
 impl Verdict {
@@ -23,6 +25,7 @@ impl Verdict {
             Self::Holds => "holds",
             Self::Partly => "holds in part",
             Self::Fails => "does not hold",
+            Self::Undecided => "cannot be decided",
         }
     }
 

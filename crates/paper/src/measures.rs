@@ -7,7 +7,7 @@ use retune_optim::{Ensemble, FrequencyBand, Goal, Limits, Objective, Response, S
 use retune_solver::{Settings, Window};
 
 /// The band of the worst case, rad/s, and the samples with which designs are compared.
-const BAND: [f64; 2] = [5.0, 8.0];
+pub const BAND: [f64; 2] = [5.0, 8.0];
 pub const SAMPLES: usize = 301;
 
 /// Least, median and largest of some energies, J.

@@ -13,7 +13,8 @@ pub fn page(items: &[Item]) -> String {
     let count = |verdict: Verdict| {
         items.iter().flat_map(|item| &item.statements).filter(|s| s.verdict == verdict).count()
     };
-    let [holds, partly, fails] = [Verdict::Holds, Verdict::Partly, Verdict::Fails].map(count);
+    let all = [Verdict::Holds, Verdict::Partly, Verdict::Fails, Verdict::Undecided];
+    let [holds, partly, fails, undecided] = all.map(count);
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -30,11 +31,13 @@ pub fn page(items: &[Item]) -> String {
                     h1 { "Retention of tuning for vibro-impact and linear dampers: the whole paper, made again" }
                     p {
                         "Each table and figure of the paper beside what Retune " (env!("CARGO_PKG_VERSION"))
-                        " computes, and a verdict on each statement. Of " (holds + partly + fails) " statements "
-                        (holds) " hold, " (partly) " hold in part, and " (fails) " do not hold under our settings."
+                        " computes, and a verdict on each statement. Of " (holds + partly + fails + undecided) " statements "
+                        (holds) " hold, " (partly) " hold in part, " (fails) " do not hold under our settings, and "
+                        (undecided) " cannot be decided: practically equal designs decide them differently."
                     }
                     p {
-                        "The paper leaves out the radius R and the coefficient q of the contact, the length of a run, the window of its "
+                        "Only the text of the paper was available, not the data of its figures: what a figure shows is taken from the "
+                        "words about it. The paper leaves out the radius R and the coefficient q of the contact, the length of a run, the window of its "
                         "maxima and the tolerances. Ours stand under each item; where a verdict hangs on them, it says so."
                     }
                     nav { ul { @for item in items { li { a href={ "#" (item.name) } { (item.title) } } } } }
@@ -69,6 +72,7 @@ fn statement(statement: &Statement) -> Markup {
         Verdict::Holds => "holds",
         Verdict::Partly => "partly",
         Verdict::Fails => "fails",
+        Verdict::Undecided => "undecided",
     };
     html! {
         li class=(class) {

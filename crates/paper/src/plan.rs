@@ -28,12 +28,20 @@ pub struct PaperPlan {
     pub omega: Range,
     /// Stiffnesses of Figure 5a, N/m.
     pub k1_range: Range,
+    /// Numbers of frequencies on which every worst over a band is looked at again, ascending; designs near are looked at on the middle one.
+    #[serde(default = "ladder")]
+    #[schemars(length(min = 1))]
+    pub ladder: Vec<usize>,
     /// Frequencies on either side of the natural frequency over which motions are named, as ratios to it, and how many.
     pub motions: Range,
 }
 
 fn kind() -> Kind {
     Kind::Paper
+}
+
+fn ladder() -> Vec<usize> {
+    vec![61, 121, 601, 3001, 5001]
 }
 
 /// Evenly spaced values.
@@ -96,6 +104,10 @@ impl<'a> Plan<'a> {
             if !range.is_sound() {
                 return Err(refuse(&format!("{name}: give 0 < from < to and 2 to 100000 points")));
             }
+        }
+        let ladder = &file.ladder;
+        if ladder.is_empty() || !ladder.is_sorted() || !ladder.iter().all(|n| (2..=100_000).contains(n)) {
+            return Err(refuse("ladder: give at least one number from 2 to 100000, ascending"));
         }
         let directory = path.parent().unwrap_or(Path::new(""));
         let rows = read_table2(&directory.join(&file.table2))?;

@@ -3,6 +3,7 @@
 use super::item::{Grid, Item, Verdict};
 use super::measures::{Spread, at_omega, energy, near};
 use super::plan::Plan;
+use super::protocols::{protocols, stiffness};
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Measure, Scene};
@@ -15,7 +16,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 /// The rows of the paper's Table 1: k2, c2, D, C and E1max.
-const PAPER: [([f64; 4], f64); 4] = [
+pub const PAPER: [([f64; 4], f64); 4] = [
     ([150.0, 218.4, 0.06, 0.11], 666.2),
     ([210.0, 218.4, 0.06, 0.11], 661.1376),
     ([220.375, 233.45, 0.060375, 0.36225], 573.108),
@@ -46,6 +47,8 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
     let own = objective(plan.window(), plan.settings());
     worth(plan, &objective, &mut item)?;
     item.grids.push(left_out(plan)?);
+    protocols(plan, &mut item)?;
+    stiffness(plan, &mut item)?;
     for (start, name) in [(0, "row 1"), (3, "the published optimum")] {
         let (rows, found) = search(&own, PAPER[start].0)?;
         log(&rows, &found, name, &mut item);
