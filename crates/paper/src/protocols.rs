@@ -3,7 +3,6 @@
 use super::item::{Grid, Item, Verdict};
 use super::measures::{Spread, energy, near};
 use super::plan::Plan;
-use super::table1::PAPER;
 use rayon::prelude::*;
 use retune_model::Scene;
 use retune_optim::Objective;
@@ -11,9 +10,17 @@ use retune_solver::{Method, Settings, Window, simulate};
 use retune_study::Setting;
 use retune_workbench::Error;
 
-/// Radii, m, frequencies, rad/s, and the share of a run that passes before the window of its maxima.
+/// The rows of the paper's Table 1: k2, c2, D, C and E1max.
+pub const PAPER: [([f64; 4], f64); 4] = [
+    ([150.0, 218.4, 0.06, 0.11], 666.2),
+    ([210.0, 218.4, 0.06, 0.11], 661.1376),
+    ([220.375, 233.45, 0.060375, 0.36225], 573.108),
+    ([215.0, 232.0, 0.06, 0.36], 563.0),
+];
+
+/// Radii, m, distances from the frequency of the study, rad/s, and the share of a run that passes before the window of its maxima.
 const RADII: [f64; 6] = [0.1, 0.5, 1.0, 2.0, 5.0, 10.0];
-const FREQUENCIES: [f64; 5] = [6.26, 6.27, 6.28, 6.29, 6.3];
+const BESIDE: [f64; 5] = [-0.02, -0.01, 0.0, 0.01, 0.02];
 const BEFORE: [f64; 3] = [0.0, 0.25, 0.5];
 /// Designs of each median.
 const FEW: u32 = 51;
@@ -38,9 +45,10 @@ struct Protocol {
 /// A setting that no scene can have.
 pub fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let end = plan.window().to;
+    let middle = plan.ssvi.scene.forcing.frequency.get();
     let mut asked = Vec::new();
     for radius in RADII {
-        for omega in FREQUENCIES {
+        for omega in BESIDE.map(|beside| middle + beside) {
             asked.extend(BEFORE.map(|share| (radius, omega, Window { from: share * end, to: end })));
         }
     }
@@ -77,7 +85,7 @@ pub fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     for (_, of) in all.iter().enumerate().filter(|(i, of)| *i < SHOWN || own(of)) {
         let mut row = vec![
             format!("{}", of.radius),
-            format!("{}", of.omega),
+            format!("{:.2}", of.omega),
             format!("{}–{}", of.window.from, of.window.to),
         ];
         row.extend(of.rows.iter().map(|spread| format!("{:.1}", spread.median)));

@@ -3,7 +3,7 @@
 use super::item::{Grid, Item, Verdict};
 use super::measures::{Spread, at_omega, energy, near};
 use super::plan::Plan;
-use super::protocols::{protocols, stiffness};
+use super::protocols::{PAPER, protocols, stiffness};
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Measure, Scene};
@@ -15,13 +15,6 @@ use retune_workbench::tune::log::{csv, csv_header, scientific};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-/// The rows of the paper's Table 1: k2, c2, D, C and E1max.
-pub const PAPER: [([f64; 4], f64); 4] = [
-    ([150.0, 218.4, 0.06, 0.11], 666.2),
-    ([210.0, 218.4, 0.06, 0.11], 661.1376),
-    ([220.375, 233.45, 0.060375, 0.36225], 573.108),
-    ([215.0, 232.0, 0.06, 0.36], 563.0),
-];
 const PERTURBATIONS: u32 = 201;
 
 /// Radii with which the rows are repeated, m, and windows, s: neither is in the paper.

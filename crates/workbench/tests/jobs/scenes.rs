@@ -64,8 +64,8 @@ fn contract_a_varied_mass_is_a_column_and_is_found_again() {
 #[test]
 fn contract_every_forcing_can_be_tuned_for() {
     for forcing in [
-        json!({ "imbalance": 20, "omega": 6.28 }),
-        json!({ "base": 0.02, "omega": 6.28 }),
+        json!({ "imbalance": 20, "omega": 6.2 }),
+        json!({ "base": 0.02, "omega": 6.2 }),
         json!({ "start": { "v1": 2 } }),
     ] {
         let mut study = tiny();
