@@ -24,9 +24,10 @@ BELOW = {
     "figures": "",
     "study": "model solver optim dynamics",
     "workbench": "model solver optim dynamics study store figures",
+    "tradeoff": "model optim study figures workbench",
     "paper": "model solver optim dynamics study store figures workbench",
-    "retune": "model solver optim dynamics study store figures workbench paper",
-    "bench": "model solver optim dynamics study store figures workbench paper",
+    "retune": "model solver optim dynamics study store figures workbench tradeoff paper",
+    "bench": "model solver optim dynamics study store figures workbench tradeoff paper",
 }
 
 MOST_LINES = 300

@@ -5,7 +5,7 @@ use retune_store::Journal;
 use retune_study::{Search, Study};
 
 /// An objective as searches call it: values in the journal are not computed again; `on_known` is called for each of them.
-pub(super) fn kept<'a>(
+pub fn kept<'a>(
     objective: &'a PeakEnergy,
     journal: &'a Journal,
     stage: &'static str,

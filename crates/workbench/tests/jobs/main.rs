@@ -10,14 +10,13 @@ mod evaluate;
 mod interrupted;
 mod links;
 mod observers;
-mod pareto;
 mod replaced;
 mod report;
 mod shards;
 mod simulate;
 mod table2;
-mod track;
 mod tune;
+mod verified;
 mod verify;
 
 use desk::Desk;

@@ -4,8 +4,8 @@ use crate::desk::{Desk, committed};
 use crate::observers::{good, refused};
 use crate::request;
 use retune_study::{Rule, StudyError};
+use retune_tradeoff::pareto::pareto;
 use retune_workbench::describe;
-use retune_workbench::pareto::pareto;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::json;
 

@@ -3,14 +3,15 @@
 //! Every search finds a design. Afterwards all designs of a damper are evaluated on more samples of the band, and under each bound
 //! stands the best that keeps it, whichever search found it: so a looser bound is never worse.
 
-use super::candidate::{Candidate, SAME, by_excess, finer, look};
-use crate::certify::{Certificate, certify};
-use crate::designs::quoted;
-use crate::searches::Searches;
-use crate::{Error, Observer};
+use super::candidate::{Candidate, SAME, by_excess};
 use retune_model::{Design, Variable};
 use retune_optim::Limit;
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
+use retune_workbench::certify::{Certificate, certify};
+use retune_workbench::designs::quoted;
+use retune_workbench::look::{finer, look};
+use retune_workbench::searches::Searches;
+use retune_workbench::{Error, Observer};
 
 /// A search keeps this much below a limit of stroke, for between its samples a stroke may be a little larger.
 const ROOM: f64 = 0.99;

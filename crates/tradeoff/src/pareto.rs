@@ -1,19 +1,21 @@
 //! `fronts`: the least E1max of a damper under ever looser bounds on the spring and on the stroke, and the trade between them.
 
+mod again;
 mod candidate;
 mod draw;
 mod fronts;
 mod page;
 
-pub use candidate::{Candidate, energy, finer, look};
+pub use again::again;
+pub use candidate::Candidate;
 pub use fronts::{Certified, Fronts, Row};
 
-use crate::artefact::{Content, Kind, artefact};
-use crate::job::{Done, Job, Made};
-use crate::resolved;
-use crate::searches::Searches;
-use crate::{Error, Observer, Request};
 use retune_study::{self as study, Sweep};
+use retune_workbench::artefact::{Content, Kind, artefact};
+use retune_workbench::job::{Done, Job, Made};
+use retune_workbench::resolved;
+use retune_workbench::searches::Searches;
+use retune_workbench::{Error, Observer, Request};
 use serde_json::json;
 
 /// The files of Pareto fronts.
@@ -25,7 +27,7 @@ pub static KIND: Kind = Kind {
         artefact("k2.csv", Content::Designs),
         artefact("stroke.csv", Content::Designs),
         artefact("front.csv", Content::Designs),
-        artefact("certificate-*.json", Content::CertificateOf),
+        artefact("certificate-*.json", Content::Own),
         artefact("k2.svg", Content::Derived),
         artefact("stroke.svg", Content::Derived),
         artefact("front.svg", Content::Derived),

@@ -1,9 +1,9 @@
 //! The figures of `track`: E1max along k1, and the designs against k1.
 
 use super::tuned::{Curves, Tuned};
-use crate::tune::Found;
 use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, ORANGE, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
+use retune_workbench::tune::Found;
 
 /// A colour for each damper, of its tuning that is kept and of its tuning anew.
 const COLOURS: [[Colour; 2]; 2] = [[ORANGE, VERMILION], [GREEN, BLUE]];

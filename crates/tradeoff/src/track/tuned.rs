@@ -1,11 +1,13 @@
 //! Dampers tuned for several stiffnesses of the structure, and their E1max along k1.
 
-use crate::designs::quoted;
-use crate::tune::Found;
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
 use retune_study::Study;
+use retune_workbench::designs::quoted;
+use retune_workbench::tune::Found;
 
+/// The table of the designs.
+pub(super) const DESIGNS: &str = "retune.csv";
 /// Number of equidistant stiffnesses at which the curves are computed, besides those that were tuned for.
 const ALONG: usize = 61;
 

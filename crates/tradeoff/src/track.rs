@@ -3,30 +3,32 @@
 //! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
 //! more refinement starts at the design of the neighbouring k1.
 
+mod again;
 mod draw;
 mod tuned;
 
+pub use again::again;
 pub use tuned::{Curves, Tuned, column, energy};
 
-use crate::artefact::{Content, Kind, artefact};
-use crate::designs::{Designs, Row};
-use crate::job::{Done, Job, Made};
-use crate::resolved;
-use crate::searches::Searches;
-use crate::tune::Found;
-use crate::{Error, Observer, Request};
 use retune_study::{self as study, PaperStudy, PerVariable, Setting, Study, short};
+use retune_workbench::artefact::{Content, Kind, artefact};
+use retune_workbench::designs::{Designs, Row};
+use retune_workbench::job::{Done, Job, Made};
+use retune_workbench::resolved;
+use retune_workbench::searches::Searches;
+use retune_workbench::tune::Found;
+use retune_workbench::{Error, Observer, Request};
 use serde_json::json;
 use tuned::{csv, retention};
 
 /// The files of the retention of tuning.
 pub static KIND: Kind = Kind {
     command: "track",
-    answer: "retune.csv",
+    answer: tuned::DESIGNS,
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
-        artefact("retune.csv", Content::Designs),
-        artefact("retention.csv", Content::Retention),
+        artefact(tuned::DESIGNS, Content::Designs),
+        artefact("retention.csv", Content::Own),
         artefact("retune.txt", Content::Derived),
         artefact("retention.svg", Content::Derived),
         artefact("path.svg", Content::Derived),

@@ -2,10 +2,10 @@
 
 use crate::desk::{Desk, global};
 use crate::observers::{Record, cut_off, good, refused};
-use crate::{request, restart, resume, table2};
+use crate::{request, restart, resume};
 use retune_store::Error as StoreError;
 use retune_study::Setting;
-use retune_workbench::track::track;
+use retune_tradeoff::track::track;
 use retune_workbench::{Error, Silent};
 use serde_json::json;
 
@@ -13,9 +13,20 @@ fn stiffnesses(k1: &[f64]) -> Vec<Setting> {
     k1.iter().map(|k1| Setting::new("k1", *k1)).collect()
 }
 
+/// The studies of Table 2 with short runs and coarse grids.
+fn table2_desk(table: &str) -> Desk {
+    Desk::with_table2(table, |study| {
+        study["window"] = json!({ "t0": 1, "T": 4 });
+        for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
+            axis["points"] = json!(2);
+        }
+        study["optimize"]["refine"] = json!({ "MaxFunEvals": 20 });
+    })
+}
+
 #[test]
 fn contract_retune_tunes_both_dampers_for_each_stiffness() {
-    let desk = table2::desk("table2.json");
+    let desk = table2_desk("table2.json");
     good(track(&request(&desk, "table2.json", "out"), &stiffnesses(&[3e4, 5e4]), &Silent));
     let rows: Vec<String> = desk.rows("out/retune.csv")[1..].iter().map(|row| row[..3].join(",")).collect();
     let expected =
@@ -63,7 +74,7 @@ fn contract_retention_begins_at_the_tuned_design() {
 
 #[test]
 fn contract_results_of_a_run_are_exactly_its_own() {
-    let desk = table2::desk("mine.json");
+    let desk = table2_desk("mine.json");
     good(track(&request(&desk, "mine.json", "out"), &stiffnesses(&[3e4, 5e4]), &Silent));
     let parts = || {
         let mut names = desk.names("out");
@@ -84,7 +95,7 @@ fn contract_results_of_a_run_are_exactly_its_own() {
 /// Interrupted work on other stiffnesses is unfinished work, in any directory below.
 #[test]
 fn contract_unfinished_searches_below_are_found() {
-    let desk = table2::desk("mine.json");
+    let desk = table2_desk("mine.json");
     cut_off(40, |watch| track(&request(&desk, "mine.json", "out"), &stiffnesses(&[3e4]), watch));
     assert!(desk.path("out/k1-30000/ssvi/unfinished/journal").exists(), "{:?}", desk.names("out"));
     let other = stiffnesses(&[2e4]);
