@@ -24,7 +24,7 @@ BELOW = {
     "figures": "",
     "study": "model solver optim dynamics",
     "workbench": "model solver optim dynamics study store figures",
-    "tradeoff": "model optim study figures workbench",
+    "tradeoff": "model optim study store figures workbench",
     "paper": "model solver optim dynamics study store figures workbench",
     "retune": "model solver optim dynamics study store figures workbench tradeoff paper",
     "bench": "model solver optim dynamics study store figures workbench tradeoff paper",

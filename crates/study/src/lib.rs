@@ -50,5 +50,5 @@ pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name};
 pub use set::{Setting, SettingError};
-pub use table2::{PaperStudy, Table2, read_table2};
+pub use table2::{PaperStudy, SpringBounds, Table2, read_rows, read_table2};
 pub use words::{are, counted, frequency, joined, over, rounded, short};

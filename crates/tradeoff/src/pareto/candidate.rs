@@ -16,6 +16,8 @@ pub struct Candidate {
     pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
+    /// The same on the samples of the second evaluation, J, if there was one.
+    pub checked: Option<f64>,
     /// The largest stroke (spring deflection |x2 - x1 - D|) in any run, m.
     pub stroke: f64,
     /// The largest contact force in any run, N.
@@ -27,8 +29,21 @@ pub struct Candidate {
 impl Candidate {
     /// By how much it is beyond a bound, as a share of it.
     pub fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
-        let reached = if sweep == Sweep::K2 { self.at.k2.get() } else { self.stroke };
-        (reached / bound - 1.0).max(0.0)
+        (self.reached(sweep) / bound - 1.0).max(0.0)
+    }
+
+    /// The value of a bounded quantity, in its unit.
+    pub fn reached(&self, sweep: Sweep) -> f64 {
+        match sweep {
+            Sweep::K2 => self.at.k2.get(),
+            Sweep::Stroke => self.stroke,
+            Sweep::Force => self.force,
+        }
+    }
+
+    /// Whether E1max rises on more samples by more than what is the same.
+    pub fn rises(&self) -> bool {
+        self.checked.is_some_and(|checked| checked > (1.0 + SAME) * self.e1_max)
     }
 
     /// Whether it is of the same damper and has nearly the same E1max.
@@ -45,8 +60,9 @@ impl Candidate {
 
     /// Its fields in a table.
     pub fn fields(&self) -> String {
-        let Self { at, e1_max, stroke, force, verdict, .. } = self;
-        format!("{e1_max},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
+        let Self { at, e1_max, checked, stroke, force, verdict, .. } = self;
+        let checked = checked.map(|value| value.to_string()).unwrap_or_default();
+        format!("{e1_max},{checked},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
     }
 }
 

@@ -1,77 +1,97 @@
-//! The figures of `track`: E1max along k1, and the designs against k1.
+//! The figures of `track`: E1max along k1, the re-tuned designs, and the least E1max against the retention range.
 
-use super::tuned::{Curves, Tuned};
-use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, ORANGE, VERMILION};
-use retune_figures::{Axis, Chart, Dash, Key, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
-use retune_workbench::tune::Found;
+use super::curves::Curve;
+use super::range::Threshold;
+use super::trade::{Point, front};
+use super::tuned::{Tuned, Tuning};
+use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILION};
+use retune_figures::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
+};
 
-/// A colour for each damper, of its tuning that is kept and of its tuning anew.
-const COLOURS: [[Colour; 2]; 2] = [[ORANGE, VERMILION], [GREEN, BLUE]];
-/// Marks of the designs of each damper.
-const SHAPES: [Shape; 2] = [Shape::Disc, Shape::Square];
+/// Colours and marks of the dampers.
+const DAMPERS: [(Colour, Shape); 4] =
+    [(BLUE, Shape::Square), (VERMILION, Shape::Disc), (GREEN, Shape::Frame), (ORANGE, Shape::Ring)];
+const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Short);
+const HALF: Stroke = Stroke::new(GREY, 0.9, Dash::Dots);
+const ANEW: Mark = Mark::new(Shape::Disc, BLUE, 4.0);
 
-/// Lines of a damper: as it was tuned, and tuned anew, with the marks of its designs.
-fn looks(damper: usize) -> (Stroke, Stroke, Mark) {
-    let [kept, anew] = COLOURS[damper % COLOURS.len()];
-    let mark = Mark::new(SHAPES[damper % SHAPES.len()], anew, 4.0);
-    (Stroke::new(kept, 1.1, Dash::Long), Stroke::solid(anew), mark)
+/// The line of a design that is kept.
+const fn line(tuning: Tuning) -> Stroke {
+    match tuning {
+        Tuning::Paper => Stroke::new(PURPLE, 1.1, Dash::DashDot),
+        Tuning::Nominal => Stroke::new(VERMILION, 1.1, Dash::Long),
+        Tuning::Robust => Stroke::solid(GREEN),
+    }
 }
 
-/// E1max against k1: none, as tuned for the study's own k1, and tuned anew.
-pub(super) fn retention(tuned: &[Tuned], curves: &Curves) -> String {
-    let none = Stroke::new(BLACK, 1.1, Dash::Short);
-    let line = |energies: &[f64]| curves.k1.iter().copied().zip(energies.iter().copied()).collect();
-    let mut layers = vec![Layer::Line { points: line(&curves.none), stroke: none }];
-    let mut legend = vec![(Key::Line(none), "no damper".to_owned())];
-    for (i, damper) in tuned.iter().enumerate() {
-        let (kept, anew, mark) = looks(i);
-        layers.push(Layer::Line { points: line(&curves.kept[i]), stroke: kept });
-        let points: Vec<(f64, f64)> =
-            damper.designs.iter().map(|(k1, Found { e1_max, .. })| (*k1, *e1_max)).collect();
-        layers.push(Layer::Line { points: points.clone(), stroke: anew });
-        layers.push(Layer::Marks { points, mark });
-        let Tuned { name, nominal, .. } = damper;
-        legend.push((Key::Line(kept), format!("{name} tuned for k1 = {nominal} N/m")));
-        legend.push((Key::Marked(anew, mark), format!("{name} re-tuned")));
-    }
-    let energies = curves.none.iter().chain(curves.kept.iter().flatten());
-    let top = energies.copied().filter(|e| e.is_finite()).fold(0.0, f64::max);
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::linear("k1, N/m", ends(curves.k1.iter().copied())),
-        y: Axis::linear("E1max, J", (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
-        layers,
-        height: 170.0,
+/// E1max against k1: a chart for each damper.
+pub(super) fn retention(dampers: &[Tuned], curves: &[Curve], thresholds: &[Threshold]) -> Drawing {
+    let values = curves.iter().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
+    let energies = Axis::around("worst E1max, J", Scale::Log, values);
+    let none: Vec<(f64, f64)> =
+        curves.iter().filter(|curve| curve.damper.is_none()).flat_map(|curve| curve.points.clone()).collect();
+    let k1 = || none.iter().map(|(k1, _)| *k1);
+    let chart = |(number, damper): (usize, &Tuned)| {
+        let mut layers = vec![Layer::Line { points: none.clone(), stroke: NONE }];
+        if let Some(threshold) = thresholds.get(number) {
+            layers
+                .push(Layer::Line { points: k1().map(|k1| (k1, threshold.at(k1))).collect(), stroke: HALF });
+        }
+        for curve in curves.iter().filter(|curve| curve.damper == Some(number)) {
+            let points = curve.points.clone();
+            layers.push(match curve.tuning {
+                Some(tuning) => Layer::Line { points, stroke: line(tuning) },
+                None => Layer::Marks { points, mark: ANEW },
+            });
+        }
+        Chart {
+            title: damper.name.clone(),
+            x: Axis::linear("k1, N/m", ends(k1())),
+            y: energies.clone(),
+            layers,
+            height: 170.0,
+        }
     };
-    svg(&Sheet {
+    let mut legend = vec![
+        (Key::Line(NONE), "no damper".to_owned()),
+        (Key::Line(HALF), "half of the reduction, in dB, of the best TMD for each k1".to_owned()),
+    ];
+    for tuning in Tuning::ALL {
+        if curves.iter().any(|curve| curve.tuning == Some(tuning)) {
+            legend.push((Key::Line(line(tuning)), tuning.name().to_owned()));
+        }
+    }
+    legend.push((Key::Mark(ANEW), "re-tuned for each k1".to_owned()));
+    drawing(&Sheet {
         title: "How long a tuning lasts".to_owned(),
         description: format!(
-            "E1max against the stiffness k1 of the structure: {}.",
-            legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
+            "E1max, worst over each structure's own band, against its stiffness k1, a chart for each damper: {}.",
+            words(&legend)
         ),
-        width: Width::Column,
-        charts: vec![chart],
-        columns: 1,
+        width: Width::Page,
+        charts: dampers.iter().enumerate().map(chart).collect(),
+        columns: 2,
         stacked: false,
         legend,
-        caption: vec![made_by(tuned)],
+        caption: vec![made_by(dampers)],
     })
 }
 
-/// k2, c2, D and C against k1.
-pub(super) fn path(tuned: &[Tuned]) -> String {
+/// k2, c2, D and C of the re-tuned designs against k1.
+pub(super) fn path(dampers: &[Tuned]) -> Drawing {
     const LABELS: [&str; 4] = ["k2, N/m", "c2, N·s/m", "D, m", "C, m"];
     let chart = |which: usize| {
-        let value = |found: &Found| found.damper.design.values()[which];
-        let all = tuned.iter().flat_map(|damper| damper.designs.iter().map(|(_, found)| value(found)));
-        let top = all.fold(0.0, f64::max);
-        let layers = tuned.iter().enumerate().flat_map(|(i, damper)| {
-            let points: Vec<(f64, f64)> =
-                damper.designs.iter().map(|(k1, found)| (*k1, value(found))).collect();
-            let (_, stroke, mark) = looks(i);
+        let value = |damper: &Tuned| -> Vec<(f64, f64)> {
+            damper.anew.iter().map(|(k1, at)| (*k1, at.values()[which])).collect()
+        };
+        let top = dampers.iter().flat_map(value).map(|(_, value)| value).fold(0.0, f64::max);
+        let layers = dampers.iter().enumerate().flat_map(|(i, damper)| {
+            let (stroke, mark) = looks(i);
+            let points = value(damper);
             [Layer::Line { points: points.clone(), stroke }, Layer::Marks { points, mark }]
         });
-        let k1 = tuned.iter().flat_map(|damper| damper.designs.iter().map(|(k1, _)| *k1));
+        let k1 = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1));
         Chart {
             title: String::new(),
             x: Axis::linear("k1, N/m", ends(k1)),
@@ -81,10 +101,10 @@ pub(super) fn path(tuned: &[Tuned]) -> String {
         }
     };
     let key = |(i, damper): (usize, &Tuned)| {
-        let (_, stroke, mark) = looks(i);
+        let (stroke, mark) = looks(i);
         (Key::Marked(stroke, mark), damper.name.clone())
     };
-    svg(&Sheet {
+    drawing(&Sheet {
         title: "The re-tuned designs".to_owned(),
         description: "k2, c2, D and C of each damper, tuned anew for each stiffness k1 of the structure."
             .to_owned(),
@@ -92,17 +112,96 @@ pub(super) fn path(tuned: &[Tuned]) -> String {
         charts: (0..4).map(chart).collect(),
         columns: 2,
         stacked: false,
-        legend: tuned.iter().enumerate().map(key).collect(),
-        caption: vec![made_by(tuned)],
+        legend: dampers.iter().enumerate().map(key).collect(),
+        caption: vec![made_by(dampers)],
     })
 }
 
+/// The least E1max at the nominal stiffness against the width of the retention range: the front of each damper as a line.
+pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) -> Drawing {
+    const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
+    let at = |point: &Point| (point.width(), point.e1_max);
+    let mut layers = Vec::new();
+    let mut legend = Vec::new();
+    let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(points, damper)).collect();
+    let dominated =
+        points.iter().filter(|point| !fronts[point.damper].iter().any(|other| other.at == point.at));
+    layers.push(Layer::Marks { points: dominated.map(at).collect(), mark: DOMINATED });
+    for (i, (damper, front)) in dampers.iter().zip(&fronts).enumerate() {
+        if front.is_empty() {
+            continue;
+        }
+        let (stroke, mark) = looks(i);
+        let mark = Mark { size: 3.0, ..mark };
+        let points: Vec<(f64, f64)> = front.iter().map(|point| at(point)).collect();
+        layers.push(Layer::Line { points: points.clone(), stroke });
+        layers.push(Layer::Marks { points, mark });
+        legend.push((Key::Marked(stroke, mark), damper.name.clone()));
+    }
+    for tuning in Tuning::ALL {
+        let shape = match tuning {
+            Tuning::Paper => Shape::Cross,
+            Tuning::Nominal => Shape::Triangle,
+            Tuning::Robust => Shape::Frame,
+        };
+        let mark = Mark { rim: true, ..Mark::new(shape, PURPLE, 7.0) };
+        let own: Vec<(f64, f64)> = kept
+            .iter()
+            .filter(|(name, point)| *name == tuning.name() && point.range.is_some())
+            .map(|(_, point)| at(point))
+            .collect();
+        if !own.is_empty() {
+            legend.push((Key::Mark(mark), tuning.name().to_owned()));
+            layers.push(Layer::Marks { points: own, mark });
+        }
+    }
+    legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
+    let all =
+        || points.iter().chain(kept.iter().map(|(_, point)| point)).filter(|point| point.range.is_some());
+    let right = all().map(Point::width).fold(0.0, f64::max);
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::linear(
+            "retention range, largest k1 / smallest k1",
+            (1.0, if right > 1.0 { 1.0 + 1.05 * (right - 1.0) } else { 2.0 }),
+        ),
+        y: Axis::around("E1max at the nominal k1, J", Scale::Linear, all().map(|point| point.e1_max)),
+        layers,
+        height: 190.0,
+    };
+    drawing(&Sheet {
+        title: "The least E1max against the retention range".to_owned(),
+        description: format!(
+            "E1max at the nominal stiffness against the width of the range of k1 in which a design keeps half of the reduction, in \
+             decibels, that tuning anew would give: {}.",
+            words(&legend)
+        ),
+        width: Width::Column,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend,
+        caption: vec![made_by(dampers)],
+    })
+}
+
+/// The line and the mark of a damper.
+fn looks(damper: usize) -> (Stroke, Mark) {
+    let (colour, shape) = DAMPERS[damper % DAMPERS.len()];
+    (Stroke::solid(colour), Mark::new(shape, colour, 4.0))
+}
+
 /// What the designs are tuned for, and by what.
-fn made_by(tuned: &[Tuned]) -> String {
+fn made_by(dampers: &[Tuned]) -> String {
     let over = |first: &Tuned| {
         retune_study::over(&first.study.objective(), first.study.scene.forcing.frequency.get())
     };
-    format!("{}; Retune {}", tuned.first().map(over).unwrap_or_default(), env!("CARGO_PKG_VERSION"))
+    format!("{}; Retune {}", dampers.first().map(over).unwrap_or_default(), env!("CARGO_PKG_VERSION"))
+}
+
+/// The words of a legend.
+fn words(legend: &[(Key, String)]) -> String {
+    legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
 }
 
 /// The range of some stiffnesses, a little wider, so that marks at its ends are whole.

@@ -1,95 +1,117 @@
-//! Dampers tuned for several stiffnesses of the structure, and their E1max along k1.
+//! Dampers tuned for several stiffnesses of the structure.
 
-use rayon::prelude::*;
-use retune_model::{NonNegative, Scene};
+use retune_model::{Design, NonNegative, Positive, Scene};
+use retune_optim::Stiffnesses;
 use retune_study::Study;
-use retune_workbench::designs::quoted;
-use retune_workbench::tune::Found;
+use retune_workbench::look::finer;
 
 /// The table of the designs.
 pub(super) const DESIGNS: &str = "retune.csv";
-/// Number of equidistant stiffnesses at which the curves are computed, besides those that were tuned for.
-const ALONG: usize = 61;
+/// The table of the curves.
+pub(super) const CURVES: &str = "retention.csv";
 
-/// A damper tuned for several stiffnesses.
+/// How a damper came to its design. It keeps this design, whatever k1 becomes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tuning {
+    /// That of the paper.
+    Paper,
+    /// Tuned for the k1 of its study.
+    Nominal,
+    /// Tuned for the worst over all k1.
+    Robust,
+}
+
+impl Tuning {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Paper, Self::Nominal, Self::Robust];
+
+    /// Its name in tables and figures.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Nominal => "nominal",
+            Self::Robust => "k1-robust",
+        }
+    }
+}
+
+/// A design that is kept while k1 changes.
+#[derive(Clone, Copy, Debug)]
+pub struct Kept {
+    /// How it was found.
+    pub tuning: Tuning,
+    /// The design.
+    pub at: Design,
+}
+
+/// A damper with its designs.
 #[derive(Debug)]
 pub struct Tuned {
     /// Its name.
     pub name: String,
-    /// Its study.
+    /// Its study; the damper in the scene is the paper's.
     pub study: Study,
-    /// The stiffness of its study, N/m.
-    pub nominal: f64,
-    /// The design for it.
-    pub nominal_design: Found,
-    /// A design for each stiffness, N/m, in their order.
-    pub designs: Vec<(f64, Found)>,
-}
-
-/// E1max along k1.
-#[derive(Debug)]
-pub struct Curves {
-    /// The stiffnesses, N/m.
-    pub k1: Vec<f64>,
-    /// Without a damper, J, by the objective of the first study.
-    pub none: Vec<f64>,
-    /// Of each damper as tuned for its study's own k1, J.
-    pub kept: Vec<Vec<f64>>,
-}
-
-/// E1max of the dampers along k1, and without one.
-pub fn retention(tuned: &[Tuned]) -> Curves {
-    let at = |damper: &Tuned| damper.designs.iter().map(|(k1, _)| *k1).collect::<Vec<f64>>();
-    let stops: Vec<f64> = tuned.iter().flat_map(at).collect();
-    let [low, high] = [f64::min, f64::max].map(|pick| stops.iter().copied().reduce(pick).unwrap_or_default());
-    let along = (0..ALONG).map(|i| low + (high - low) * (i as f64 / (ALONG - 1) as f64));
-    let mut k1: Vec<f64> = stops.iter().copied().chain(along).collect();
-    k1.sort_by(f64::total_cmp);
-    k1.dedup();
-    let curve = |study: &Study, scene: Scene| -> Vec<f64> {
-        k1.par_iter().map(|&k1| energy(study, scene, k1).unwrap_or(f64::NAN)).collect()
-    };
-    let none = tuned.first().map(|first| curve(&first.study, Scene { damper: None, ..first.study.scene }));
-    let kept = |damper: &Tuned| {
-        let scene = damper.study.scene_at(&damper.nominal_design.damper.design);
-        scene.map_or(vec![f64::NAN; k1.len()], |scene| curve(&damper.study, scene))
-    };
-    let (none, kept) = (none.unwrap_or_default(), tuned.iter().map(kept).collect());
-    Curves { k1, none, kept }
-}
-
-/// E1max by the objective of a study for a scene at another stiffness, N/m, in J; none where it cannot be run.
-pub fn energy(study: &Study, mut scene: Scene, k1: f64) -> Option<f64> {
-    scene.primary.stiffness = NonNegative::new(k1).ok()?;
-    study.energy(&scene)
+    /// The samples of the band on which all designs are compared.
+    pub samples: Option<usize>,
+    /// The designs that are kept.
+    pub kept: Vec<Kept>,
+    /// The design for each stiffness k1, N/m, in their order.
+    pub anew: Vec<(f64, Design)>,
 }
 
 impl Tuned {
-    /// E1max of the design for a stiffness at it, J, if it is one of those tuned for.
-    fn retuned(&self, k1: f64) -> Option<f64> {
-        self.designs.iter().find(|(other, _)| *other == k1).map(|(_, found)| found.e1_max)
+    /// The stiffness of its study, N/m.
+    pub fn nominal(&self) -> f64 {
+        self.study.scene.primary.stiffness.get()
+    }
+
+    /// Its study for the worst over some stiffnesses, N/m.
+    pub fn over(&self, k1: &[f64]) -> Study {
+        over(&self.study, k1)
+    }
+
+    /// The kept design of a tuning, if it has one.
+    pub fn of(&self, tuning: Tuning) -> Option<Design> {
+        self.kept.iter().find(|kept| kept.tuning == tuning).map(|kept| kept.at)
+    }
+
+    /// E1max of a design at a stiffness (N/m), J, on the common samples; NaN where it cannot be run.
+    pub fn energy(&self, at: &Design, k1: f64) -> f64 {
+        energy(&self.study, self.samples, at, k1).unwrap_or(f64::NAN)
     }
 }
 
-/// The name of the column of a damper as it was tuned for the stiffness of its study, N/m.
-pub fn column(name: &str, nominal: f64) -> String {
-    format!("{name} tuned for {nominal}")
+/// E1max by the objective of a study for a design at a stiffness (N/m), J, on so many samples; none where it cannot be run.
+pub fn energy(study: &Study, samples: Option<usize>, at: &Design, k1: f64) -> Option<f64> {
+    let study = on_samples(study, samples, at)?;
+    study.energy(&scene_at(&study, k1)?)
 }
 
-/// A row for each stiffness; what has no value is an empty field.
-pub fn csv(tuned: &[Tuned], curves: &Curves) -> String {
-    let columns = tuned.iter().map(|Tuned { name, nominal, .. }| {
-        let columns = [column(name, *nominal), format!("{name} re-tuned")];
-        columns.map(|column| quoted(&column)).join(",")
-    });
-    let mut text = format!("k1,none,{}\n", columns.collect::<Vec<_>>().join(","));
-    let field = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
-    for (i, &k1) in curves.k1.iter().enumerate() {
-        let mut fields = vec![k1.to_string(), field(curves.none[i])];
-        for (damper, kept) in tuned.iter().zip(&curves.kept) {
-            fields.extend([field(kept[i]), field(damper.retuned(k1).unwrap_or(f64::NAN))]);
-        }
-        text += &(fields.join(",") + "\n");
+/// A study for the worst over some stiffnesses, N/m.
+pub fn over(study: &Study, k1: &[f64]) -> Study {
+    let mut study = study.clone();
+    let all: Vec<Positive> = k1.iter().filter_map(|k1| Positive::new(*k1).ok()).collect();
+    if let Some(optimize) = &mut study.optimize {
+        optimize.objective.for_each_term(&mut |term| term.k1 = Some(Stiffnesses::Set(all.clone())));
     }
-    text
+    study
+}
+
+/// E1max without a damper by the objective of a study at a stiffness (N/m), J.
+pub fn bare(study: &Study, k1: f64) -> Option<f64> {
+    study.energy(&Scene { damper: None, ..scene_at(study, k1)? })
+}
+
+/// A study with a design in its scene, its band on so many samples, or on its own.
+pub fn on_samples(study: &Study, samples: Option<usize>, at: &Design) -> Option<Study> {
+    match samples {
+        Some(samples) => finer(study, samples, at),
+        None => Some(Study { scene: study.scene_at(at)?, ..study.clone() }),
+    }
+}
+
+fn scene_at(study: &Study, k1: f64) -> Option<Scene> {
+    let mut scene = study.scene;
+    scene.primary.stiffness = NonNegative::new(k1).ok()?;
+    Some(scene)
 }

@@ -8,7 +8,7 @@ use retune_study::{Search, Study};
 pub fn kept<'a>(
     objective: &'a PeakEnergy,
     journal: &'a Journal,
-    stage: &'static str,
+    stage: &'a str,
     on_known: impl Fn() + Sync + 'a,
 ) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
     move |design, cutoff| {
