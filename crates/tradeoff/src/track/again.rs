@@ -10,6 +10,7 @@ use retune_workbench::Error;
 use retune_workbench::resolved::Resolved;
 use retune_workbench::verify::table::{Row, Sample};
 use retune_workbench::verify::{Check, Report};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The results in a directory.
@@ -18,6 +19,8 @@ struct Results {
     samples: Option<usize>,
     k1: Vec<f64>,
     designs: Sample,
+    /// By the name of a damper, what counts as half of its work.
+    thresholds: BTreeMap<String, Threshold>,
 }
 
 /// Checks at most `most` rows of a table.
@@ -27,8 +30,14 @@ struct Results {
 pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
+    let studies = resolved.studies()?;
+    let is_needed = |(damper, study): &(String, Study)| match name {
+        DESIGNS | CURVES => None,
+        _ => Some((damper.clone(), Threshold::of(study)?)),
+    };
     let results = Results {
-        studies: resolved.studies()?,
+        thresholds: studies.iter().filter_map(is_needed).collect(),
+        studies,
         samples: resolved.plan["samples"].as_u64().map(|samples| samples as usize),
         k1: k1.unwrap_or_default(),
         designs: Sample::read(&place.join(DESIGNS), usize::MAX)?,
@@ -100,9 +109,9 @@ impl Results {
             let own = study.scene.primary.stiffness.get();
             let e1_max = move || energy(study, self.samples, &at, own).unwrap_or(f64::INFINITY);
             let mut checks = vec![Check { said: row.number("E1max"), again: Box::new(e1_max) }];
-            let threshold = Threshold::of(study)?;
+            let threshold = self.thresholds.get(row.text("damper"))?;
             on_samples(study, self.samples, &at)?;
-            let found = range(study, self.samples, &at, &threshold);
+            let found = range(study, self.samples, &at, threshold);
             for (name, end) in [("from", found.map(|found| found.from)), ("to", found.map(|found| found.to))]
             {
                 if !row.text(name).is_empty() || end.is_some() {

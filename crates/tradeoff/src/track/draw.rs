@@ -69,9 +69,9 @@ pub(super) fn retention(dampers: &[Tuned], curves: &[Curve], thresholds: &[Thres
             "E1max, worst over each structure's own band, against its stiffness k1, a chart for each damper: {}.",
             words(&legend)
         ),
-        width: Width::Page,
+        width: if dampers.len() > 1 { Width::Page } else { Width::Column },
         charts: dampers.iter().enumerate().map(chart).collect(),
-        columns: 2,
+        columns: dampers.len().min(2),
         stacked: false,
         legend,
         caption: vec![made_by(dampers)],
@@ -120,13 +120,15 @@ pub(super) fn path(dampers: &[Tuned]) -> Drawing {
 /// The least E1max at the nominal stiffness against the width of the retention range: the front of each damper as a line.
 pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) -> Drawing {
     const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
-    let at = |point: &Point| (point.width(), point.e1_max);
+    let at = |point: &Point| (point.factor(), point.e1_max);
     let mut layers = Vec::new();
     let mut legend = Vec::new();
     let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(points, damper)).collect();
     let dominated =
         points.iter().filter(|point| !fronts[point.damper].iter().any(|other| other.at == point.at));
-    layers.push(Layer::Marks { points: dominated.map(at).collect(), mark: DOMINATED });
+    let dominated: Vec<(f64, f64)> = dominated.map(at).collect();
+    let any_dominated = !dominated.is_empty();
+    layers.push(Layer::Marks { points: dominated, mark: DOMINATED });
     for (i, (damper, front)) in dampers.iter().zip(&fronts).enumerate() {
         if front.is_empty() {
             continue;
@@ -144,25 +146,30 @@ pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &
             Tuning::Nominal => Shape::Triangle,
             Tuning::Robust => Shape::Frame,
         };
-        let mark = Mark { rim: true, ..Mark::new(shape, PURPLE, 7.0) };
-        let own: Vec<(f64, f64)> = kept
+        let mark = |colour| Mark { rim: true, ..Mark::new(shape, colour, 7.0) };
+        let own: Vec<&Point> = kept
             .iter()
             .filter(|(name, point)| *name == tuning.name() && point.range.is_some())
-            .map(|(_, point)| at(point))
+            .map(|(_, point)| point)
             .collect();
         if !own.is_empty() {
-            legend.push((Key::Mark(mark), tuning.name().to_owned()));
-            layers.push(Layer::Marks { points: own, mark });
+            legend.push((Key::Mark(mark(BLACK)), tuning.name().to_owned()));
+        }
+        for point in own {
+            let (colour, _) = DAMPERS[point.damper % DAMPERS.len()];
+            layers.push(Layer::Marks { points: vec![at(point)], mark: mark(colour) });
         }
     }
-    legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
+    if any_dominated {
+        legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
+    }
     let all =
         || points.iter().chain(kept.iter().map(|(_, point)| point)).filter(|point| point.range.is_some());
-    let right = all().map(Point::width).fold(0.0, f64::max);
+    let right = all().map(Point::factor).fold(0.0, f64::max);
     let chart = Chart {
         title: String::new(),
         x: Axis::linear(
-            "retention range, largest k1 / smallest k1",
+            "factor by which k1 may rise and fall",
             (1.0, if right > 1.0 { 1.0 + 1.05 * (right - 1.0) } else { 2.0 }),
         ),
         y: Axis::around("E1max at the nominal k1, J", Scale::Linear, all().map(|point| point.e1_max)),
@@ -172,8 +179,8 @@ pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &
     drawing(&Sheet {
         title: "The least E1max against the retention range".to_owned(),
         description: format!(
-            "E1max at the nominal stiffness against the width of the range of k1 in which a design keeps half of the reduction, in \
-             decibels, that tuning anew would give: {}.",
+            "E1max at the nominal stiffness against the factor by which k1 may rise and fall while a design keeps half of the reduction, \
+             in decibels, that tuning anew would give: {}.",
             words(&legend)
         ),
         width: Width::Column,

@@ -73,8 +73,8 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
 
 const RULE: &str = "A design does its work at a stiffness k1 if its reduction, 10 lg(E1max without damper / E1max), is at least half of that of the \
     best TMD of the same mass for that k1, with k2 and c2 free. The retention range is the interval about the nominal k1 in which it does. It is \
-    looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. Its width is counted as a ratio, \
-    since half and double the stiffness detune a damper by as much.";
+    looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. It is counted by the factor by which k1 may \
+    rise and fall, the smaller of its two sides.";
 
 /// What was compared.
 fn asked(Tracked { dampers, .. }: &Tracked) -> String {
@@ -170,7 +170,7 @@ fn cliffs(Tracked { dampers, curves, .. }: &Tracked) -> Block {
             ));
         }
     }
-    Block::List(lines)
+    if lines.is_empty() { Block::Words("No cliffs.".to_owned()) } else { Block::List(lines) }
 }
 
 /// The range of each design that is kept.
@@ -183,14 +183,13 @@ fn ranges(Tracked { dampers, kept, .. }: &Tracked) -> Block {
                 [
                     format!("{low}{}", rounded(range.from, 4)),
                     format!("{high}{}", rounded(range.to, 4)),
-                    rounded(range.width(), 3),
+                    rounded(range.factor(), 3),
                 ]
             }
         };
         vec![dampers[point.damper].name.clone(), (*tuning).to_owned(), joule(point.e1_max), from, to, width]
     };
-    let head =
-        ["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "largest / smallest"];
+    let head = ["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "factor"];
     Block::Table(
         "The retention range of the designs that are kept.".to_owned(),
         head.map(str::to_owned).to_vec(),
@@ -213,8 +212,8 @@ fn traded(Tracked { points, .. }: &Tracked, number: usize, damper: &Tuned) -> St
         });
         let [k2, c2, d, c] = point.at.values().map(|value| rounded(value, 4));
         format!(
-            "{ends} ({} to 1) with {} J (k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m)",
-            rounded(point.width(), 3),
+            "{ends} (a factor of {}) with {} J (k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m)",
+            rounded(point.factor(), 3),
             joule(point.e1_max)
         )
     };

@@ -34,6 +34,8 @@ impl Care {
 /// A retention range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
+    /// The nominal stiffness, N/m.
+    pub nominal: f64,
     /// Its lower end, N/m.
     pub from: f64,
     /// Its upper end, N/m.
@@ -43,9 +45,10 @@ pub struct Range {
 }
 
 impl Range {
-    /// Its width: the ratio of its ends, since half and double the stiffness detune a damper by as much.
-    pub fn width(&self) -> f64 {
-        self.to / self.from
+    /// The factor by which the stiffness may rise and fall: half and double the stiffness detune a damper by as much, and a range that
+    /// reaches far to one side alone is of no use.
+    pub fn factor(&self) -> f64 {
+        (self.to / self.nominal).min(self.nominal / self.from)
     }
 }
 
@@ -105,7 +108,7 @@ impl Threshold {
             (good, true)
         };
         let [(from, low), (to, high)] = [1.0 / STEP, STEP].map(end);
-        Some(Range { from, to, open: [low, high] })
+        Some(Range { nominal: self.nominal, from, to, open: [low, high] })
     }
 }
 
@@ -171,6 +174,7 @@ mod tests {
         let range = threshold(200.0).range(Care::RESULT, energy).expect("a range");
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 3e-5;
         assert!(near(range.from, 3.2e4) && near(range.to, 4.8e4) && range.open == [false; 2], "{range:?}");
+        assert!(near(range.factor(), 1.2), "{range:?}");
         assert_eq!(
             threshold(99.0).range(Care::RESULT, energy),
             None,

@@ -55,18 +55,18 @@ impl Point {
         Self { damper, at, e1_max, range: range(&tuned.study, tuned.samples, &at, threshold) }
     }
 
-    /// The width of its range; 1 without one.
-    pub fn width(&self) -> f64 {
-        self.range.map_or(1.0, |range| range.width())
+    /// The factor by which k1 may rise and fall; 1 without a range.
+    pub fn factor(&self) -> f64 {
+        self.range.map_or(1.0, |range| range.factor())
     }
 
     /// Whether it is of the same damper, as good as `other` in both measures and better in one of them.
     pub fn dominates(&self, other: &Self) -> bool {
-        let (e1_max, width) = (self.e1_max, self.width());
+        let (e1_max, factor) = (self.e1_max, self.factor());
         self.damper == other.damper
             && e1_max <= other.e1_max
-            && width >= other.width()
-            && (e1_max < other.e1_max || width > other.width())
+            && factor >= other.factor()
+            && (e1_max < other.e1_max || factor > other.factor())
     }
 }
 
@@ -143,7 +143,7 @@ pub fn trade(
     Ok(designs.into_iter().map(|at| Point::new(number, tuned, at, threshold)).collect())
 }
 
-/// What was seen of a damper's designs: E1max at the nominal stiffness, J, and the width of the range less 1.
+/// What was seen of a damper's designs: E1max at the nominal stiffness, J, and the factor of its range less 1.
 struct Seen<'a> {
     study: &'a Study,
     of: &'a PeakEnergy,
@@ -177,7 +177,7 @@ impl Seen<'_> {
             let found = scene.and_then(|scene| self.of.evaluate(&scene, cutoff).ok());
             found.map_or(f64::INFINITY, |found| found.energy)
         };
-        self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.width() - 1.0)
+        self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)
     }
 
     /// All designs with what was seen of them; the order does not depend on which thread was first.

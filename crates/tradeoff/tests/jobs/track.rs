@@ -139,7 +139,7 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
         .filter(|point| !tracked.points.iter().any(|other| other.dominates(point)))
         .collect();
     let [least, widest] = [front.first(), front.last()].map(|point| point.expect("a front"));
-    assert!(least.e1_max < widest.e1_max && least.width() < widest.width(), "{least:?} {widest:?}");
+    assert!(least.e1_max < widest.e1_max && least.factor() < widest.factor(), "{least:?} {widest:?}");
 }
 
 #[test]
