@@ -46,7 +46,7 @@ certify DESIGN *OPTIONS:
 table2 *OPTIONS:
     {{retune}} table2 "$@"
 
-# Re-tune both dampers for other stiffnesses k1 in N/m, and draw how long a tuning lasts, for instance `just retune 30000 50000`
+# How long a tuning lasts: the paper's, the nominal, the k1-robust and the re-tuned dampers along k1 in N/m, into results/retune, for instance `just retune 20000 30000 50000 60000`
 track +K1:
     {{retune}} track "$@"
 
@@ -55,6 +55,14 @@ alias retune := track
 # What the SSVI NES is good for: the best of each damper under bounds on k2 and on the stroke, into results/fronts
 fronts *OPTIONS:
     {{retune}} fronts "$@"
+
+# The same for bounds on the stroke and on the contact force, with k2 at most 600 N/m, into results/fronts-soft
+fronts-soft *OPTIONS:
+    {{retune}} fronts studies/fronts-soft.json "$@"
+
+# The best k1-robust dampers: the worst over five stiffnesses k1, under bounds on k2, into results/fronts-k1
+fronts-k1 *OPTIONS:
+    {{retune}} fronts studies/fronts-k1.json "$@"
 
 # Whether results hold: runs a sample of their rows again, for instance `just verify results/ssvi --sample 100`
 verify RESULTS *OPTIONS:
@@ -112,7 +120,7 @@ test-kills KILLS="240":
 
 # Open the pages of results in a browser, narrow and wide, light and dark (needs python3 and chromium); for instance `just test-pages --shots target/pages`
 test-pages *OPTIONS:
-    python3 tests/pages.py "$@" results/ssvi/report.html results/tmd/report.html results/paper/index.html
+    python3 tests/pages.py "$@" results/ssvi/report.html results/tmd/report.html results/paper/index.html results/retune/report.html results/fronts/report.html
 
 # Try the HyperQueue script for real, with two workers on this machine (needs python3; with `hq` on the path, too, one worker is killed): results/robustness/hyperqueue.txt
 test-hyperqueue:
@@ -151,6 +159,10 @@ test-settled SCENES="4000":
 # Compare the worst over a band with a search in twice the precision, on DAMPERS dampers with damping down to 1e-9 N s/m and none
 test-bands DAMPERS="1000000":
     RETUNE_BANDS={{DAMPERS}} cargo test --package retune-model --test band_hunt reference_no_damper -- --nocapture
+
+# Find values of results/retune and results/fronts again with SciPy (needs numpy and scipy for python3; some minutes)
+test-retention *OPTIONS:
+    python3 tests/reference/retention.py "$@"
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":

@@ -25,9 +25,10 @@ BELOW = {
     "study": "model solver optim dynamics",
     "sweep": "model solver optim study figures",
     "workbench": "model solver optim dynamics study sweep store figures",
-    "paper": "model solver optim dynamics study sweep store figures workbench",
-    "retune": "model solver optim dynamics study sweep store figures workbench paper",
-    "bench": "model solver optim dynamics study sweep store figures workbench paper",
+    "tradeoff": "model optim study store figures workbench",
+    "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
+    "retune": "model solver optim dynamics study sweep store figures workbench tradeoff paper",
+    "bench": "model solver optim dynamics study sweep store figures workbench tradeoff paper",
 }
 
 MOST_LINES = 300

@@ -3,7 +3,8 @@
 use crate::kind::KIND;
 use crate::plan::Plan;
 use retune_study::{self as study, Kind};
-use retune_workbench::{Error, Silent, artefact, describe, pareto, table2, track, tune};
+use retune_tradeoff::{pareto, track};
+use retune_workbench::{Error, Silent, artefact, describe, table2, tune};
 use std::path::Path;
 
 /// Checks a study file of any kind: what it asks for in words, and the jobs whose files it makes.

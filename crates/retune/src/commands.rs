@@ -5,6 +5,7 @@ use crate::screen::{self, Screen};
 use clap::CommandFactory;
 use retune_study as study;
 use retune_sweep::Asked;
+use retune_tradeoff::{pareto, track};
 use retune_workbench::design::Wishes;
 use retune_workbench::designs::Designs;
 use retune_workbench::evaluate::Streams;
@@ -12,9 +13,7 @@ use retune_workbench::observer::Quiet;
 use retune_workbench::simulate::Trajectory;
 use retune_workbench::sweep::Points;
 use retune_workbench::tune::Optimum;
-use retune_workbench::{
-    Done, Error, Observer, Request, certify, evaluate, pareto, table2, track, tune, verify,
-};
+use retune_workbench::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
 use std::io::BufReader;
 use std::path::Path;
 
@@ -32,7 +31,7 @@ pub fn run(command: Command) -> Result<(), Error> {
             found(tune::merge::merge(&request, &parts, &screen)?)
         }
         Command::Verify(cli::Verify { results, sample, within }) => {
-            verify::verify(&results, sample as usize, within, &all)
+            verify::verify(&results, sample as usize, within, retune_tradeoff::OTHERS, &all)
         }
         Command::Certify(cli::Certify { design, running }) => {
             let (request, screen) = running.request(&design);

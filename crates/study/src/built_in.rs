@@ -7,13 +7,15 @@ use std::path::Path;
 pub(super) const PLACE: &str = "studies";
 
 /// Copies of the files in [`PLACE`] of the repository, of which a package knows nothing. A test compares them.
-const PLANS: [(&str, &str); 10] = [
+const PLANS: [(&str, &str); 12] = [
     ("table2.json", include_str!("plans/table2.json")),
     ("table2-ssvi.json", include_str!("plans/table2-ssvi.json")),
     ("tmd.json", include_str!("plans/tmd.json")),
     ("retune.json", include_str!("plans/retune.json")),
     ("retune-ssvi.json", include_str!("plans/retune-ssvi.json")),
     ("retune-tmd.json", include_str!("plans/retune-tmd.json")),
+    ("retune-ssvi-free.json", include_str!("plans/retune-ssvi-free.json")),
+    ("retune-tmd-free.json", include_str!("plans/retune-tmd-free.json")),
     ("fronts.json", include_str!("plans/fronts.json")),
     ("fronts-ssvi.json", include_str!("plans/fronts-ssvi.json")),
     ("fronts-tmd.json", include_str!("plans/fronts-tmd.json")),

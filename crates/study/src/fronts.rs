@@ -1,4 +1,4 @@
-//! The study behind `retune fronts`: dampers to tune under successively looser bounds on the spring or on the stroke.
+//! The study behind `retune fronts`: dampers to tune under successively looser bounds on the spring, the stroke or the contact force.
 
 use super::built_in::read_plan_text;
 use super::file::{StudyError, expect, parse};
@@ -9,15 +9,15 @@ use super::per_variable::PerVariable;
 use super::read::named;
 use super::rule::Rule;
 use retune_model::Positive;
-use retune_optim::Variable;
+use retune_optim::{Limit, Variable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Largest number of band samples on which the optimised designs are re-evaluated.
-const MOST_SAMPLES: usize = 10_000;
+pub(super) const MOST_SAMPLES: usize = 10_000;
 
-/// Pareto fronts of dampers: the least E1max under bounds on the spring stiffness, and on the stroke.
+/// Pareto fronts of dampers: the least E1max under bounds on the spring stiffness, on the stroke and on the contact force, at least one of which must be given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fronts {
@@ -32,15 +32,22 @@ pub struct Fronts {
     #[schemars(length(min = 1))]
     pub dampers: Vec<FrontDamper>,
     /// Upper bounds on k2, N/m. Every damper is tuned under each of them.
-    #[schemars(length(min = 1))]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub k2: Vec<Positive>,
     /// Limits on the stroke (spring deflection |x2 - x1 - D|), m, as `limits.stroke` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
-    #[schemars(length(min = 1))]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stroke: Vec<Positive>,
-    /// Number of band samples on which the optimised designs are re-evaluated, so that they are compared on the same frequencies.
+    /// Limits on the contact force on either wall, N, as `limits.force` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub force: Vec<Positive>,
+    /// Number of band samples on which the optimised designs are refined and re-evaluated, so that they are compared on the same frequencies.
     #[serde(default = "samples")]
     #[schemars(range(min = 2, max = 10000))]
     pub samples: usize,
+    /// Number of band samples on which they are evaluated once more. Designs whose E1max rises by more than 1 % are marked. Default: as `samples`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 10000))]
+    pub check: Option<usize>,
     /// Number of designs to certify: those whose E1max is furthest below that of the first damper under the same bound.
     #[serde(default = "certificates")]
     pub certificates: usize,
@@ -64,6 +71,8 @@ pub enum Sweep {
     K2,
     /// The stroke.
     Stroke,
+    /// The contact force.
+    Force,
 }
 
 /// The studies of a file, with all that it says about them.
@@ -88,14 +97,15 @@ fn certificates() -> usize {
 }
 
 impl Sweep {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::K2, Self::Stroke];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::K2, Self::Stroke, Self::Force];
 
     /// Its name in studies and of its table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::K2 => "k2",
             Self::Stroke => "stroke",
+            Self::Force => "force",
         }
     }
 
@@ -104,6 +114,16 @@ impl Sweep {
         match self {
             Self::K2 => "N/m",
             Self::Stroke => "m",
+            Self::Force => "N",
+        }
+    }
+
+    /// The limit that it bounds; none of k2, which is bounded in the search itself.
+    pub const fn limit(self) -> Option<Limit> {
+        match self {
+            Self::K2 => None,
+            Self::Stroke => Some(Limit::Stroke),
+            Self::Force => Some(Limit::Force),
         }
     }
 }
@@ -114,11 +134,22 @@ impl FrontsPlan {
         let given = match sweep {
             Sweep::K2 => &self.said.k2,
             Sweep::Stroke => &self.said.stroke,
+            Sweep::Force => &self.said.force,
         };
         let mut values: Vec<f64> = given.iter().map(|value| value.get()).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
         values
+    }
+
+    /// The quantities that are bounded.
+    pub fn sweeps(&self) -> Vec<Sweep> {
+        Sweep::ALL.into_iter().filter(|sweep| !self.values(*sweep).is_empty()).collect()
+    }
+
+    /// Number of samples of the second evaluation.
+    pub fn check(&self) -> usize {
+        self.said.check.unwrap_or(self.said.samples)
     }
 }
 
@@ -135,15 +166,15 @@ pub fn bounded(
     let mut study = study.clone();
     let optimize = study.optimize.as_mut().ok_or(Rule::NoOptimize)?;
     optimize.surf = None;
-    match sweep {
-        Sweep::K2 => {
+    match sweep.limit().zip(Positive::new(value).ok()) {
+        Some((limit, most)) => optimize.limits = optimize.limits.with(limit, most),
+        None => {
             let lower = optimize.bounds.get(Variable::K2).map_or(0.0, |(lower, _)| lower);
             *optimize.bounds.get_mut(Variable::K2) = Some((lower, Some(value)));
             if let Some(global) = &mut optimize.global {
                 *global.sides.get_mut(Variable::K2) = None;
             }
         }
-        Sweep::Stroke => optimize.limits.stroke = Positive::new(value).ok(),
     }
     optimize.starts.extend(starts);
     study.check()?;
@@ -163,15 +194,16 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
         file: file.clone(),
         rule: Rule::NotAllowed { field: field.to_owned(), value, allowed },
     };
-    for (field, count) in
-        [("dampers", said.dampers.len()), ("k2", said.k2.len()), ("stroke", said.stroke.len())]
-    {
-        if count == 0 {
-            return Err(refuse(field, "an empty list".to_owned(), "at least one"));
-        }
+    if said.dampers.is_empty() {
+        return Err(refuse("dampers", "an empty list".to_owned(), "at least one"));
     }
-    if !(2..=MOST_SAMPLES).contains(&said.samples) {
-        return Err(refuse("samples", said.samples.to_string(), "a whole number from 2 to 10000"));
+    if said.k2.is_empty() && said.stroke.is_empty() && said.force.is_empty() {
+        return Err(refuse("k2", "an empty list".to_owned(), "at least one bound on k2, stroke or force"));
+    }
+    for (field, samples) in [("samples", Some(said.samples)), ("check", said.check)] {
+        if let Some(samples) = samples.filter(|samples| !(2..=MOST_SAMPLES).contains(samples)) {
+            return Err(refuse(field, samples.to_string(), "a whole number from 2 to 10000"));
+        }
     }
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut plan = FrontsPlan { said, dampers: Vec::new() };

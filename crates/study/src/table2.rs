@@ -3,6 +3,7 @@
 use super::built_in::{PLACE, read_plan_text, text};
 use super::file::{StudyError, expect, parse};
 use super::format::Study;
+use super::fronts::MOST_SAMPLES;
 use super::kind::Kind;
 use super::objective::check_energy;
 use super::read::{from_text, named};
@@ -26,6 +27,32 @@ pub struct Table2 {
     /// The rows of the table.
     #[schemars(length(min = 1))]
     pub rows: Vec<PaperRow>,
+    /// For `retune track`: the bounds on k2 where a damper is tuned anew for another k1.
+    #[serde(default, skip_serializing_if = "SpringBounds::is_default")]
+    pub k2_bounds: SpringBounds,
+    /// For `retune track`: number of band samples on which the designs are re-evaluated, so that they are compared on the same
+    /// frequencies. Default: those of each study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 10000))]
+    pub samples: Option<usize>,
+}
+
+/// What becomes of the bounds on k2 of a study when its damper is tuned anew for another k1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SpringBounds {
+    /// They are in proportion to k1: every structure may have a spring of the same ratio k2/k1.
+    #[default]
+    Scaled,
+    /// They stay as they are.
+    Fixed,
+}
+
+impl SpringBounds {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 fn kind() -> Kind {
@@ -66,6 +93,14 @@ pub struct PaperStudy {
 /// # Errors
 /// [`StudyError`], of the table's own file or of a study that it names.
 pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
+    read_rows(path).map(|(_, rows)| rows)
+}
+
+/// Reads a table with its studies, each with the paper's design in its scene.
+///
+/// # Errors
+/// As [`read_table2`].
+pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     let file = path.display().to_string();
     let text = read_plan_text(path)?;
     expect(Kind::Table2, &text, &file)?;
@@ -73,7 +108,11 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     let refuse = |rule| StudyError::Rule { file: file.clone(), rule };
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut rows: Vec<PaperStudy> = Vec::new();
-    for row in table.rows {
+    if let Some(samples) = table.samples.filter(|samples| !(2..=MOST_SAMPLES).contains(samples)) {
+        let (field, value) = ("samples".to_owned(), samples.to_string());
+        return Err(refuse(Rule::NotAllowed { field, value, allowed: "a whole number from 2 to 10000" }));
+    }
+    for row in &table.rows {
         let study_file = directory.join(&row.study);
         let of_paper = row.paper.is_some();
         let study = at_design(named(&study_file)?, row.paper)
@@ -81,9 +120,9 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
         if rows.iter().any(|other| other.study.name() == study.name()) {
             return Err(refuse(Rule::SameName { name: study.name().to_owned() }));
         }
-        rows.push(PaperStudy { damper: row.damper, study, of_paper, printed: row.e1_max });
+        rows.push(PaperStudy { damper: row.damper.clone(), study, of_paper, printed: row.e1_max });
     }
-    if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok(rows) }
+    if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok((table, rows)) }
 }
 
 /// Whether a damper is one that the paper publishes as an optimum: a row of its Table 2, with that mass and design.

@@ -16,12 +16,10 @@ pub enum Content {
     Certificate,
     /// A row for each design of several studies: its damper, its parameters, its E1max.
     Designs,
-    /// A row for each stiffness k1: E1max of designs of another table.
-    Retention,
     /// A row for each value of a parameter: what the runs at it gave.
     Swept,
-    /// A certificate of a design of one of several studies.
-    CertificateOf,
+    /// Contents that only the job itself knows: the crate of the job computes them again.
+    Own,
     /// Numbers of the other files as text or figure, the log of a search, the manifest: checked by their hash alone.
     Derived,
 }

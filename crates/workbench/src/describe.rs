@@ -2,7 +2,7 @@
 
 use retune_model::{Forcing, Measure, Source};
 use retune_optim::{Limit, Part, Response};
-use retune_study::{FrontsPlan, PaperStudy, Search, Study, Sweep, counted, joined, over, short};
+use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
 
 /// Describes a table of studies.
 pub fn table2(rows: &[PaperStudy]) -> String {
@@ -12,7 +12,7 @@ pub fn table2(rows: &[PaperStudy]) -> String {
 /// Describes a study of Pareto fronts.
 pub fn fronts(plan: &FrontsPlan) -> String {
     let dampers = plan.dampers.iter().map(|(damper, of)| format!("{damper}: {}", study(of)));
-    let sweeps = Sweep::ALL.into_iter().map(|sweep| {
+    let sweeps = plan.sweeps().into_iter().map(|sweep| {
         let values = joined(&plan.values(sweep), ", ");
         format!("each for {} at most {values} {}", sweep.name(), sweep.unit())
     });

@@ -11,7 +11,7 @@ pub use wishes::{Wish, Wishes};
 use crate::artefact::{Content, Kind, artefact};
 use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
-use crate::pareto::look;
+use crate::look::look;
 use crate::searches::Searches;
 use crate::{Error, Observer, Request, resolved};
 use retune_optim::Limit;

@@ -4,7 +4,7 @@
 //! results (`retune_store`), reports its progress to an [`Observer`], and returns its result. Nothing here prints.
 //!
 //! [`tune()`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
-//! [`table2`], [`track`] and [`pareto`] make several searches and compare them; [`verify`] checks results by computing them
+//! [`table2`] makes several searches and compares them, as the jobs of `retune_tradeoff` do; [`verify`] checks results by computing them
 //! again; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
 //!
 //! ```
@@ -49,8 +49,8 @@ pub mod designs;
 pub mod error;
 pub mod evaluate;
 pub mod job;
+pub mod look;
 pub mod observer;
-pub mod pareto;
 pub mod parts;
 pub mod report;
 pub mod request;
@@ -60,7 +60,6 @@ pub mod simulate;
 pub mod summary;
 pub mod sweep;
 pub mod table2;
-pub mod track;
 pub mod tune;
 pub mod verify;
 

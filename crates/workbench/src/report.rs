@@ -9,7 +9,7 @@ mod course;
 mod curves;
 mod findings;
 mod flags;
-mod html;
+pub mod html;
 mod motion;
 mod numbers;
 mod origin;

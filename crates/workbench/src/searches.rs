@@ -2,7 +2,7 @@
 
 use crate::tune::{Optimum, optimize};
 use crate::{Error, Observer};
-use retune_store::{Directory, Order};
+use retune_store::{Directory, Journal, Order};
 use retune_study::Study;
 
 /// The searches of a job. Each has its own directory, log and certificate, and can be resumed until the whole job is finished.
@@ -20,6 +20,11 @@ impl<'a> Searches<'a> {
     /// No search yet; they will be below `directory`.
     pub fn new(directory: &'a Directory, order: &'a Order, watch: &'a dyn Observer) -> Self {
         Self { directory, order, watch, results: Vec::new(), infeasible: None }
+    }
+
+    /// The journal of the whole job: a search of the job itself, which has no directory of its own, keeps its values there.
+    pub fn journal(&self) -> &Journal {
+        self.directory.journal()
     }
 
     /// Makes the search of a study, its results in `place/` and the name of the study.

@@ -3,30 +3,43 @@
 //! reported.
 
 mod files;
-mod input;
-mod one;
-mod report;
+pub mod input;
+pub mod one;
+pub mod report;
 mod several;
 mod swept;
-mod table;
+pub mod table;
 mod tally;
 mod values;
 
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
-use crate::{Error, Observer, certify, pareto, resolved, sweep, table2, track, tune};
+use crate::{Error, Observer, certify, resolved, sweep, table2, tune};
 use one::One;
-use report::Report;
+pub use report::{Check, Report};
 use retune_store::{UNFINISHED, manifest};
 use several::Several;
 use std::path::{Path, PathBuf};
 
+/// Computes a file of a job's own contents again and compares it with what it says: in a directory of results, the name of the file,
+/// the most rows to run again, and the report.
+pub type Again = fn(&Path, &str, usize, &mut Report<'_>) -> Result<(), Error>;
+
+/// The kind of a job, and how a file of its own contents is computed again.
+pub type Others = [(&'static Kind, Again)];
+
 /// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
-/// again; numbers that differ by at most `within` of their size hold.
+/// again; numbers that differ by at most `within` of their size hold. `others` are the jobs of crates above this one.
 ///
 /// # Errors
 /// There are no results, they do not hold, or something cannot be checked.
-pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> Result<(), Error> {
+pub fn verify(
+    path: &Path,
+    sample: usize,
+    within: f64,
+    others: &Others,
+    watch: &dyn Observer,
+) -> Result<(), Error> {
     let refuse = |source| retune_store::Error::Input { path: path.to_owned(), source };
     let mut places = Vec::new();
     collect(path, &mut places).map_err(refuse)?;
@@ -42,25 +55,24 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
             report.place =
                 if below.as_os_str().is_empty() { String::new() } else { format!("{}/", below.display()) };
         }
-        look(place, sample, &mut report)?;
+        look(place, sample, others, &mut report)?;
     }
     report.end(path)
 }
 
-/// The kinds of jobs whose results are computed again.
-static KINDS: [&Kind; 6] =
-    [&tune::KIND, &certify::KIND, &table2::KIND, &track::KIND, &pareto::KIND, &sweep::KIND];
+/// The kinds of jobs whose results are computed again here.
+static KINDS: [&Kind; 4] = [&tune::KIND, &certify::KIND, &table2::KIND, &sweep::KIND];
 
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
-fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+fn look(place: &Path, most: usize, others: &Others, report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
-    let known = known(&there);
+    let known = known(&there, others);
     let of_searches = |content| matches!(content, Content::Searched | Content::Band);
     let plain = |content| matches!(content, Content::Input | Content::Derived);
-    if !has(&known, Content::Input) || known.iter().all(|(_, content)| plain(*content)) {
+    if !has(&known, Content::Input) || known.iter().all(|(_, content, _)| plain(*content)) {
         return report.unchecked("no row of these results can be run again by itself");
     }
-    for &(name, content) in &known {
+    for &(name, content, again) in &known {
         let done = match content {
             Content::Input | Content::Derived => Ok(()),
             Content::Searched => One::read(place).and_then(|one| one.searched(name, most, report)),
@@ -68,9 +80,8 @@ fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error>
             Content::Optimum => One::read(place).and_then(|one| one.optimum(name, report)),
             Content::Certificate => One::read(place).and_then(|one| one.certificate(name, report)),
             Content::Designs => Several::read(place).and_then(|all| all.designs(name, most, report)),
-            Content::Retention => Several::read(place).and_then(|all| all.retention(name, most, report)),
             Content::Swept => swept::swept(place, name, most, report),
-            Content::CertificateOf => Several::read(place).and_then(|all| all.certificate(name, report)),
+            Content::Own => again.map_or(Ok(()), |again| again(place, name, most, report)),
         };
         match done {
             // Damaged files do not hold either.
@@ -83,27 +94,33 @@ fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error>
             other => other?,
         }
     }
-    if known.iter().any(|(_, content)| of_searches(*content)) && !has(&known, Content::Optimum) {
+    if known.iter().any(|(_, content, _)| of_searches(*content)) && !has(&known, Content::Optimum) {
         return report.unchecked("there is no optimum.json: the design that was found");
     }
     Ok(())
 }
 
-/// The files of a directory that a job makes, in the order of its list, with their contents.
-fn known(there: &[String]) -> Vec<(&str, Content)> {
-    let mut known: Vec<(&str, Content)> = Vec::new();
-    for artefact in KINDS.iter().flat_map(|kind| kind.artefacts) {
-        for name in there.iter().filter(|name| artefact.is(name)) {
-            if known.iter().all(|(other, _)| other != name) {
-                known.push((name, artefact.content));
+/// A file of results: its name, its contents, and how its own are computed again.
+type Known<'a> = (&'a str, Content, Option<Again>);
+
+/// The files of a directory that a job makes, in the order of its list.
+fn known<'a>(there: &'a [String], others: &Others) -> Vec<Known<'a>> {
+    let mut known: Vec<Known> = Vec::new();
+    let ours = KINDS.iter().map(|kind| (*kind, None));
+    for (kind, again) in ours.chain(others.iter().map(|(kind, again)| (*kind, Some(*again)))) {
+        for artefact in kind.artefacts {
+            for name in there.iter().filter(|name| artefact.is(name)) {
+                if known.iter().all(|(other, ..)| other != name) {
+                    known.push((name, artefact.content, again));
+                }
             }
         }
     }
     known
 }
 
-fn has(known: &[(&str, Content)], content: Content) -> bool {
-    known.iter().any(|(_, other)| *other == content)
+fn has(known: &[Known], content: Content) -> bool {
+    known.iter().any(|(_, other, _)| *other == content)
 }
 
 fn is_result(place: &Path) -> bool {

@@ -7,7 +7,9 @@ use retune_figures::Drawing;
 pub struct Section {
     /// The target of links to it.
     pub id: &'static str,
+    /// Its heading.
     pub title: &'static str,
+    /// What stands below it.
     pub body: Markup,
 }
 
@@ -26,8 +28,11 @@ impl Section {
 
 /// A table. The first cell of each row is the row's heading.
 pub struct Table {
+    /// What it shows.
     pub caption: String,
+    /// The headings of its columns.
     pub head: Vec<String>,
+    /// Its rows.
     pub rows: Vec<Vec<Markup>>,
     /// Whether its cells break into lines.
     pub wraps: bool,

@@ -5,10 +5,10 @@ use retune_store::Journal;
 use retune_study::{Search, Study};
 
 /// An objective as searches call it: values in the journal are not computed again; `on_known` is called for each of them.
-pub(super) fn kept<'a>(
+pub fn kept<'a>(
     objective: &'a PeakEnergy,
     journal: &'a Journal,
-    stage: &'static str,
+    stage: &'a str,
     on_known: impl Fn() + Sync + 'a,
 ) -> impl Fn(&[f64], f64) -> f64 + Sync + 'a {
     move |design, cutoff| {

@@ -123,7 +123,7 @@ fn contract_results_of_a_search_are_certified_in_place() {
         assert_eq!(desk.read("out/certificate.json"), first, "{path}");
     }
     good(certify_file(&request(&desk, "out", "out"), &Silent));
-    good(verify(&desk.path("out"), 20, 0.0, &Silent));
+    good(verify(&desk.path("out"), 20, 0.0, &[], &Silent));
     let error = refused(certify_file(&request(&desk, "study.json", "out"), &Silent));
     assert!(error.to_string().contains("the results of a search stand there"), "{error}");
     assert!(
@@ -144,7 +144,7 @@ fn contract_a_certificate_of_a_study_has_a_directory_of_its_own() {
     assert_eq!(desk.names("out"), ["certificate.json", "manifest.json", "study.json"]);
     let words = desk.read_json("out/certificate.json")["words"].as_str().expect("words").to_owned();
     assert!(record.results().contains(&words), "{}", record.results());
-    good(verify(&desk.path("out"), 20, 0.0, &Silent));
+    good(verify(&desk.path("out"), 20, 0.0, &[], &Silent));
 }
 
 #[test]

@@ -10,7 +10,6 @@ mod evaluate;
 mod interrupted;
 mod links;
 mod observers;
-mod pareto;
 mod quantity;
 mod replaced;
 mod report;
@@ -19,8 +18,8 @@ mod shards;
 mod simulate;
 mod sweep;
 mod table2;
-mod track;
 mod tune;
+mod verified;
 mod verify;
 
 use desk::Desk;

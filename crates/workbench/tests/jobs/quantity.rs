@@ -74,5 +74,5 @@ fn contract_a_quantity_has_its_name_and_unit_everywhere() {
     scene.forcing.frequency = serde_json::from_value(json!(omega)).expect("a frequency");
     let run = simulate(&scene, Window { from: 1.0, to: 4.0 }, &Settings::default()).expect("a run");
     assert!((run.structure.acceleration.value / largest - 1.0).abs() < 1e-9, "{largest} {run:?}");
-    good(verify::verify(&desk.path("out"), 100, 1e-9, &Silent));
+    good(verify::verify(&desk.path("out"), 100, 1e-9, &[], &Silent));
 }

@@ -4,10 +4,8 @@ use crate::desk::{Desk, edited, tiny};
 use crate::observers::{good, refused};
 use crate::{replace, request, restart, resume, search};
 use retune_store::Error as StoreError;
-use retune_study::Setting;
 use retune_workbench::certify::certify_file;
 use retune_workbench::table2::table2;
-use retune_workbench::track::track;
 use retune_workbench::tune::tune;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::json;
@@ -54,12 +52,11 @@ fn contract_results_of_another_study_are_not_replaced_unasked() {
     type Of = fn(&Desk, &str, &str) -> Request;
     type Job<'a> = &'a dyn Fn(&Request) -> Result<(), Error>;
     let optimize: Job = &|request| tune(request, &Silent).map(drop);
-    let jobs: [(Of, &str, Job); 5] = [
+    let jobs: [(Of, &str, Job); 4] = [
         (request, "other/small.json", optimize),
         (resume, "other/small.json", optimize),
         (restart, "other/small.json", optimize),
         (request, "table2.json", &|request| table2(request, &Silent).map(drop)),
-        (request, "table2.json", &|request| track(request, &[Setting::new("k1", 3e4)], &Silent).map(drop)),
     ];
     for (of, study, job) in jobs {
         let said = stands(&desk, RESULTS, job(&of(&desk, study, RESULTS)));

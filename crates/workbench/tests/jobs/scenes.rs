@@ -30,7 +30,7 @@ fn exact_a_tmd_without_walls_is_the_one_that_never_touches() {
     assert!(open.get("D").is_none() && open.get("C").is_none(), "{open}");
     assert!(flat(&optimum.report()).contains(" N·s/m, no walls"), "{}", optimum.report());
     assert_eq!(desk.rows("open/fminsearch.csv")[1][5..7], ["", ""]);
-    good(verify::verify(&desk.path("open"), 100, 1e-9, &Silent));
+    good(verify::verify(&desk.path("open"), 100, 1e-9, &[], &Silent));
     // Its results stand for the study with the design found.
     let found = retune_study::read(&desk.path("open")).expect("a study");
     let damper = found.scene.damper.expect("a damper");
@@ -55,7 +55,7 @@ fn contract_a_varied_mass_is_a_column_and_is_found_again() {
     assert!(desk.read("out/fminsearch.txt").starts_with(
         "k2 opt N/m      c2 opt N·s/m    D opt m         C opt m         m2 opt kg       E1max J\n"
     ));
-    good(verify::verify(&desk.path("out"), 100, 1e-9, &Silent));
+    good(verify::verify(&desk.path("out"), 100, 1e-9, &[], &Silent));
     let read = retune_study::read(&desk.path("out")).expect("a study");
     assert_eq!(read.scene.damper.expect("a damper").mass.get(), number(&found, "/m2"));
 }
@@ -81,7 +81,7 @@ fn contract_every_forcing_can_be_tuned_for() {
             resolved["scene"]["forcing"].as_object().map(|all| all.len()),
             forcing.as_object().map(|all| all.len())
         );
-        good(verify::verify(&desk.path("out"), 100, 1e-9, &Silent));
+        good(verify::verify(&desk.path("out"), 100, 1e-9, &[], &Silent));
     }
     let mut decay = tiny();
     decay["scene"]["forcing"] = json!({ "start": { "v1": 2 } });

@@ -124,7 +124,7 @@ fn contract_results_stand_for_the_design_that_was_found() {
 fn contract_verify_runs_points_again_and_sees_a_changed_number() {
     let desk = desk();
     let record = Record::default();
-    good(verify(&desk.path("whole"), 3, 0.0, &record));
+    good(verify(&desk.path("whole"), 3, 0.0, &[], &record));
     let said = record.results();
     assert!(
         said.contains("sweep.csv              3 of 7 rows run again: the same to the last bit"),
@@ -134,7 +134,7 @@ fn contract_verify_runs_points_again_and_sees_a_changed_number() {
     let last = text.trim_end().rfind(',').expect("a field");
     desk.write("whole/sweep.csv", format!("{}1{}", &text[..=last], &text[last + 1..]));
     let record = Record::default();
-    assert!(matches!(refused(verify(&desk.path("whole"), 3, 0.0, &record)), Error::NotHeld { .. }));
+    assert!(matches!(refused(verify(&desk.path("whole"), 3, 0.0, &[], &record)), Error::NotHeld { .. }));
     let said = record.results();
     assert!(said.contains("3 of 7 rows run again: 1 differs"), "{said}");
 }

@@ -9,7 +9,7 @@ use retune_workbench::{Error, Silent};
 use serde_json::json;
 
 /// The studies of Table 2 with short runs and coarse grids.
-pub fn desk(table: &str) -> Desk {
+fn desk(table: &str) -> Desk {
     Desk::with_table2(table, |study| {
         study["window"] = json!({ "t0": 1, "T": 4 });
         for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {

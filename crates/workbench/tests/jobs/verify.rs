@@ -1,16 +1,14 @@
 //! `verify`: results are computed again, and differences are reported.
 
 use crate::band::ssvi_band;
-use crate::desk::{Desk, altered, tiny};
-use crate::observers::{Record, good, refused};
+use crate::desk::{Desk, tiny};
+use crate::observers::{good, refused};
+use crate::verified::{self, End};
 use crate::{request, search};
 use retune_store::Error as StoreError;
-use retune_study::Setting;
 use retune_workbench::Done;
 use retune_workbench::certify::certify_file;
-use retune_workbench::pareto::pareto;
 use retune_workbench::table2::table2;
-use retune_workbench::track::track;
 use retune_workbench::{Error, Request, Silent, verify};
 use serde_json::json;
 
@@ -21,37 +19,16 @@ fn desk() -> Desk {
     desk
 }
 
-/// How a verification ended.
-#[derive(Debug, PartialEq)]
-enum End {
-    Holds,
-    /// What does not hold.
-    Not(String),
-    /// What cannot be checked, where all else holds.
-    Unchecked(String),
-}
-
-/// Verifies the results in a directory of the desk; returns what was said and the end.
+/// Verifies results; returns what was said and the end.
 #[track_caller]
 fn look(desk: &Desk, out: &str, sample: usize, within: f64) -> (String, End) {
-    let record = Record::default();
-    let end = match verify::verify(&desk.path(out), sample, within, &record) {
-        Ok(()) => End::Holds,
-        Err(Error::NotHeld { path, problem }) if path == desk.path(out) => End::Not(problem),
-        Err(Error::NotChecked { path, problem }) if path == desk.path(out) => End::Unchecked(problem),
-        Err(other) => panic!("{other}"),
-    };
-    let said = record.results();
-    assert_eq!(end == End::Holds, said.contains("holds: "), "{said}");
-    (said, end)
+    verified::look(desk, out, sample, within, &[])
 }
 
 /// Verifies results that hold; returns what was said.
 #[track_caller]
 fn holds(desk: &Desk, out: &str, sample: usize) -> String {
-    let (said, end) = look(desk, out, sample, 0.0);
-    assert_eq!(end, End::Holds);
-    said
+    verified::holds(desk, out, sample, &[])
 }
 
 #[test]
@@ -119,7 +96,7 @@ fn contract_directories_without_results_are_refused() {
         ("none", "cannot be read: there is no manifest.json and no study.json in it: these are no results"),
         ("nowhere", "cannot be read: No such file"),
     ] {
-        let error = refused(verify::verify(&desk.path(name), 20, 0.0, &Silent));
+        let error = refused(verify::verify(&desk.path(name), 20, 0.0, &[], &Silent));
         assert!(error.to_string().contains(words), "{error}");
         assert!(matches!(&error, Error::Store(StoreError::Input { path, .. }) if *path == desk.path(name)));
     }
@@ -208,48 +185,16 @@ fn contract_results_that_break_their_limits_are_verified() {
     assert!(said.contains(line), "{said}");
 }
 
-/// The results of `certify`, `fronts` and `track` name their studies as well, and their rows are computed again.
+/// The results of `certify` and `table2` name their studies as well, and their rows are computed again.
 #[test]
 fn contract_results_of_several_studies_and_certificates_are_verified_and_a_changed_digit_is_found() {
-    let mut study = tiny();
-    study["optimize"]["surf"] = json!(null);
-    study["optimize"]["vary"] = json!(["k2", "c2"]);
-    study["optimize"]["refine"] = json!({ "MaxFunEvals": 8 });
-    study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 2 } });
-    let desk = Desk::with(&study);
-    let damper = json!({ "damper": "NES, \"single-sided\"", "study": "study.json" });
-    let mut row = damper.clone();
-    row["paper"] = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
-    desk.write_json("table2.json", &json!({ "rows": [row] }));
-    let fronts = json!({ "dampers": [damper], "k2": [300], "stroke": [0.9], "samples": 5 });
-    desk.write_json("fronts.json", &fronts);
-    type Job = fn(&Request) -> Result<(), Error>;
-    let jobs: [(&str, Job, &[&str]); 4] = [
-        ("study.json", |request| certify_file(request, &Silent).map(drop), &["certificate.json"]),
-        ("table2.json", |request| table2(request, &Silent).map(drop), &["table2.csv"]),
-        (
-            "table2.json",
-            |request| track(request, &[Setting::new("k1", 3e4)], &Silent).map(drop),
-            &["retune.csv", "retention.csv"],
-        ),
-        ("fronts.json", |request| pareto(request, &Silent).map(drop), &["k2.csv", "stroke.csv", "front.csv"]),
-    ];
-    for (study, job, tables) in jobs {
-        let out = tables[0].split('.').next().expect("a name");
-        good(job(&request(&desk, study, out)));
-        let said = holds(&desk, out, 20);
-        assert!(said.contains("files as they were made\n"), "{said}");
-        for table in tables {
-            let line = said.lines().find(|line| line.starts_with(&format!("  {table} "))).expect(table);
-            assert!(line.ends_with("again: the same to the last bit"), "{line}");
-            assert!(!line.contains(" 0 of "), "{line}");
-            let file = format!("{out}/{table}");
-            let whole = desk.read(&file);
-            desk.write(&file, altered(&whole));
-            let End::Not(problem) = look(&desk, out, 1000, 0.0).1 else { panic!("{table}: it holds") };
-            assert!(problem.contains(&format!("{table} is not as it was made; ")), "{problem}");
-            assert!(problem.contains(&format!("{table}, 1 differs, by at most ")), "{problem}");
-            desk.write(&file, whole);
+    let desk = verified::desk();
+    for (study, table) in [("study.json", "certificate.json"), ("table2.json", "table2.csv")] {
+        let request = request(&desk, study, "out");
+        match table {
+            "table2.csv" => drop(good(table2(&Request { replace: true, ..request }, &Silent))),
+            _ => drop(good(certify_file(&request, &Silent))),
         }
+        verified::a_changed_digit_is_found(&desk, "out", &[], &[table]);
     }
 }

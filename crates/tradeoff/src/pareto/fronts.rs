@@ -3,19 +3,15 @@
 //! Every search finds a design. Afterwards all designs of a damper are evaluated on more samples of the band, and under each bound
 //! stands the best that keeps it, whichever search found it: so a looser bound is never worse.
 
-use super::candidate::{Candidate, SAME, by_excess, finer, look};
-use crate::certify::{Certificate, certify};
-use crate::designs::quoted;
-use crate::searches::Searches;
-use crate::{Error, Observer};
-use retune_model::{Design, Variable};
-use retune_optim::Limit;
-use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
+use super::candidate::{Candidate, SAME};
+use retune_study::{FrontsPlan, Sweep};
+use retune_workbench::Error;
+use retune_workbench::certify::{Certificate, certify};
+use retune_workbench::designs::quoted;
+use retune_workbench::look::finer;
 
-/// A search keeps this much below a limit of stroke, for between its samples a stroke may be a little larger.
-const ROOM: f64 = 0.99;
 /// The verdict of a damper that no search found.
-const GIVEN: &str = "of the study";
+pub(super) const GIVEN: &str = "of the study";
 
 /// The best design of a damper under a bound; none where no design that was found keeps it.
 #[derive(Debug)]
@@ -61,71 +57,17 @@ pub struct Certified {
 }
 
 impl Fronts {
-    /// Makes all searches, the tighter bounds first.
-    pub(super) fn search(
-        plan: FrontsPlan,
-        searches: &mut Searches,
-        watch: &dyn Observer,
-    ) -> Result<Self, Error> {
-        let mut fronts = Self { plan, designs: Vec::new(), given: Vec::new(), certified: Vec::new() };
-        for damper in 0..fronts.plan.dampers.len() {
-            let (name, study) = fronts.plan.dampers[damper].clone();
-            if let Some(place) = study.scene.damper {
-                let at = Design::of(&place);
-                fronts.given.extend(fronts.look(damper, at, GIVEN));
-            }
-            for sweep in Sweep::ALL {
-                for bound in fronts.plan.values(sweep) {
-                    let room = if sweep == Sweep::Stroke { ROOM } else { 1.0 };
-                    let starts = fronts.starts(damper, sweep, bound);
-                    let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
-                    let study = study::bounded(&study, sweep, room * bound, starts).map_err(refuse)?;
-                    let (what, unit) = (sweep.name(), sweep.unit());
-                    watch.log(&format!("\n{name}, {what} at most {bound} {unit}"))?;
-                    let optimum = searches.tune(&study, &format!("{what}-{bound}"))?;
-                    watch.log(&optimum.report())?;
-                    let at = optimum.found().damper.design;
-                    fronts.designs.extend(fronts.look(damper, at, optimum.verdict()));
-                }
-            }
-        }
-        fronts.certified = fronts.certify()?;
-        Ok(fronts)
+    /// No design yet.
+    pub(super) fn new(plan: FrontsPlan) -> Self {
+        Self { plan, designs: Vec::new(), given: Vec::new(), certified: Vec::new() }
     }
 
-    /// The designs at which a search starts: the best so far of the damper itself, and of those before it, under the bound.
-    fn starts(&self, damper: usize, sweep: Sweep, bound: f64) -> Vec<PerVariable<f64>> {
-        let best = (0..=damper).filter_map(|other| {
-            let own = self.designs.iter().filter(|design| design.damper == other);
-            own.min_by(|a, b| by_excess(a, b, sweep, bound))
-        });
-        let Some(optimize) = &self.plan.dampers[damper].1.optimize else { return Vec::new() };
-        let clipped = |design: &Candidate| {
-            let mut start = PerVariable::default();
-            for (variable, value) in Variable::ALL.into_iter().zip(design.at.values()) {
-                if optimize.vary.contains(&variable) {
-                    let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
-                    let bound =
-                        if (sweep, variable) == (Sweep::K2, Variable::K2) { Some(bound) } else { high };
-                    *start.get_mut(variable) = Some(value.min(bound.unwrap_or(value)).max(low));
-                }
-            }
-            start
-        };
-        best.map(clipped).collect()
-    }
-
-    /// A design on the samples of the study of fronts; none where it cannot be run.
-    fn look(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
-        let found = look(&self.finer(damper, &at)?)?;
-        let [stroke, force] = [Limit::Stroke, Limit::Force].map(|limit| found.reached.get(limit));
-        Some(Candidate { damper, at, e1_max: found.energy, stroke, force, verdict })
-    }
-
-    /// The study of a damper with a design in its scene, its bands on the samples of the study of fronts.
-    fn finer(&self, damper: usize, at: &Design) -> Option<Study> {
-        let (_, study) = self.plan.dampers.get(damper)?;
-        finer(study, self.plan.said.samples, at)
+    /// The number of the design found that is the best of a damper under a bound; none where none keeps it.
+    pub(super) fn row_index(&self, damper: usize, sweep: Sweep, bound: f64) -> Option<usize> {
+        let kept =
+            |(_, design): &(usize, &Candidate)| design.damper == damper && design.excess(sweep, bound) == 0.0;
+        let all = self.designs.iter().enumerate().filter(kept);
+        all.min_by(|a, b| a.1.e1_max.total_cmp(&b.1.e1_max)).map(|(number, _)| number)
     }
 
     /// The best designs under each bound, the dampers in their order under each.
@@ -162,9 +104,11 @@ impl Fronts {
     }
 
     /// Certifies the designs that are furthest below the first damper under the same bound, each value once.
-    fn certify(&self) -> Result<Vec<Certified>, Error> {
+    pub(super) fn certify(&self) -> Result<Vec<Certified>, Error> {
         let mut gains: Vec<(f64, Sweep, f64, &Candidate, Option<f64>)> = Vec::new();
-        for row in Sweep::ALL.into_iter().flat_map(|sweep| self.rows(sweep)).filter(|row| row.damper > 0) {
+        for row in
+            self.plan.sweeps().into_iter().flat_map(|sweep| self.rows(sweep)).filter(|row| row.damper > 0)
+        {
             let reference = self.reference(&row);
             let Some(design) = row.design.filter(|design| design.force > 0.0 && design.verdict != GIVEN)
             else {
@@ -179,7 +123,8 @@ impl Fronts {
         gains.truncate(self.plan.said.certificates);
         let mut certified = Vec::new();
         for (_, sweep, bound, design, reference) in gains {
-            let Some(study) = self.finer(design.damper, &design.at) else { continue };
+            let (_, study) = &self.plan.dampers[design.damper];
+            let Some(study) = finer(study, self.plan.said.samples, &design.at) else { continue };
             let file = format!("certificate-{}-{bound}.json", sweep.name());
             let (design, certificate) = (design.clone(), certify(&study)?);
             certified.push(Certified { sweep, bound, design, reference, file, certificate });
@@ -196,9 +141,10 @@ impl Fronts {
 
     /// The table along a bound: a row for each bound and damper; what no design keeps has empty fields.
     pub fn csv(&self, sweep: Sweep) -> String {
-        let mut text = format!("{}_most,damper,E1max,k2,c2,D,C,stroke,force,verdict\n", sweep.name());
+        let mut text =
+            format!("{}_most,damper,E1max,E1max_check,k2,c2,D,C,stroke,force,verdict\n", sweep.name());
         for Row { bound, damper, design, .. } in self.rows(sweep) {
-            let fields = design.map_or(",,,,,,,none keeps it".to_owned(), Candidate::fields);
+            let fields = design.map_or(",,,,,,,,none keeps it".to_owned(), Candidate::fields);
             text += &format!("{bound},{},{fields}\n", quoted(self.name(damper)));
         }
         text
@@ -210,6 +156,6 @@ impl Fronts {
             .front()
             .into_iter()
             .map(|design| format!("{},{}\n", quoted(self.name(design.damper)), design.fields()));
-        format!("damper,E1max,k2,c2,D,C,stroke,force,verdict\n{}", rows.collect::<String>())
+        format!("damper,E1max,E1max_check,k2,c2,D,C,stroke,force,verdict\n{}", rows.collect::<String>())
     }
 }

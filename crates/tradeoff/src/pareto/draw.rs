@@ -2,14 +2,16 @@
 
 use super::candidate::Candidate;
 use super::fronts::{Fronts, Row};
-use retune_figures::colour::{BLUE, Colour, GREY, ORANGE, PURPLE, VERMILION};
-use retune_figures::{Axis, Chart, Key, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
+use retune_figures::colour::{BLACK, BLUE, Colour, ORANGE, PURPLE, VERMILION};
+use retune_figures::{Axis, Chart, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing};
 use retune_study::Sweep;
 
 /// A colour for each damper, of what was found and of the damper in its study.
 const COLOURS: [[Colour; 2]; 2] = [[BLUE, PURPLE], [VERMILION, ORANGE]];
 const LABELS: [&str; 3] = ["largest stroke, m", "contact force, N", "k2, N/m"];
 const ENERGY: &str = "worst E1max, J";
+/// A design whose E1max rises on more samples.
+const RISES: Mark = Mark::new(Shape::Ring, BLACK, 8.0);
 
 /// The mark of a damper's designs. Later dampers are drawn over earlier ones, and smaller, so that equal designs are both seen.
 fn found(damper: usize) -> Mark {
@@ -26,7 +28,7 @@ fn of_study(damper: usize) -> Mark {
 }
 
 /// The least E1max against a bound.
-pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
+pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
     let rows = fronts.rows(sweep);
     let line = |damper: usize| {
         let own = rows.iter().filter(|row| row.damper == damper);
@@ -36,16 +38,23 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
     let mut layers = Vec::new();
     for damper in 0..fronts.plan.dampers.len() {
         let mark = found(damper);
-        layers.push(Layer::Line { points: line(damper), stroke: Stroke::solid(mark.colour) });
+        // A design stays allowed until the next bound: between bounds nothing was searched for.
+        layers.push(Layer::Steps { points: line(damper), stroke: Stroke::solid(mark.colour) });
         layers.push(Layer::Marks { points: line(damper), mark });
     }
-    let reached = |design: &Candidate| if sweep == Sweep::K2 { design.at.k2.get() } else { design.stroke };
+    let rising = |row: &&Row| row.design.is_some_and(Candidate::rises);
+    let risen: Vec<(f64, f64)> =
+        rows.iter().filter(rising).filter_map(|row| Some((row.bound, row.design?.e1_max))).collect();
+    let any_rises = !risen.is_empty();
+    layers.push(Layer::Marks { points: risen, mark: RISES });
+    let reached = |design: &Candidate| design.reached(sweep);
     layers.extend(given(fronts, reached));
     let right = 1.03 * rows.last().map_or(1.0, |row| row.bound);
     let energies = rows.iter().filter_map(|row| row.design).chain(&fronts.given).map(|design| design.e1_max);
     let label = match sweep {
         Sweep::K2 => "k2 at most, N/m",
         Sweep::Stroke => "stroke at most, m",
+        Sweep::Force => "contact force at most, N",
     };
     let chart = Chart {
         title: String::new(),
@@ -54,8 +63,14 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
         layers,
         height: 165.0,
     };
-    let legend = legend(fronts, true, |design| reached(design) <= right);
-    svg(&Sheet {
+    let mut legend = legend(fronts, true, |design| reached(design) <= right);
+    if any_rises {
+        legend.push((
+            Key::Mark(RISES),
+            format!("rises by more than 1 % on {} frequencies", fronts.plan.check()),
+        ));
+    }
+    drawing(&Sheet {
         title: format!("The least E1max against a bound: {label}"),
         description: format!(
             "The worst E1max of the best design of each damper under each bound: {}.",
@@ -70,23 +85,24 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> String {
     })
 }
 
-/// E1max against stroke, contact force and k2: the designs that no other dominates, and pale those that are dominated.
-pub(super) fn front(fronts: &Fronts) -> String {
-    const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
-    let front = fronts.front();
+/// E1max against stroke, contact force and k2: all designs, and the front of each damper in each chart.
+pub(super) fn front(fronts: &Fronts) -> Drawing {
     let all = || fronts.designs.iter().chain(&fronts.given);
     let top = 1.06 * all().map(|design| design.e1_max).fold(0.0, f64::max);
     let chart = |which: usize| {
         let value = |design: &Candidate| [design.stroke, design.force, design.at.k2.get()][which];
         let point = |design: &Candidate| (value(design), design.e1_max);
-        let dominated = fronts.designs.iter().filter(|design| !front.contains(design));
-        let mut layers = vec![Layer::Marks { points: dominated.map(point).collect(), mark: DOMINATED }];
+        let most = all().map(value).fold(0.0, f64::max);
+        let mut layers = Vec::new();
         for damper in 0..fronts.plan.dampers.len() {
-            let points = front.iter().filter(|design| design.damper == damper).map(|design| point(design));
-            layers.push(Layer::Marks { points: points.collect(), mark: found(damper) });
+            let own = || fronts.designs.iter().filter(|design| design.damper == damper).map(point);
+            let line = front_of(own().collect());
+            let mark = found(damper);
+            let pale = Mark { size: 0.5 * mark.size, ..mark };
+            layers.push(Layer::Marks { points: own().collect(), mark: pale });
+            layers.push(Layer::Steps { points: line, stroke: Stroke::solid(mark.colour) });
         }
         layers.extend(given(fronts, value));
-        let most = all().map(value).fold(0.0, f64::max);
         Chart {
             title: String::new(),
             x: Axis::linear(LABELS[which], (-0.03 * most, 1.05 * most)),
@@ -95,14 +111,12 @@ pub(super) fn front(fronts: &Fronts) -> String {
             height: 150.0,
         }
     };
-    let mut legend = legend(fronts, false, |_| true);
-    legend.push((Key::Mark(DOMINATED), "found, but dominated in all".to_owned()));
-    svg(&Sheet {
+    let legend = legend(fronts, true, |_| true);
+    drawing(&Sheet {
         title: "E1max against stroke, contact force and k2".to_owned(),
         description: format!(
-            "Three charts of the same {} designs, of which {} are not dominated by any other: {}.",
+            "Three charts of the same {} designs. A line is the front of a damper in the two quantities of its chart: {}.",
             fronts.designs.len(),
-            front.len(),
             words(&legend)
         ),
         width: Width::Page,
@@ -112,6 +126,18 @@ pub(super) fn front(fronts: &Fronts) -> String {
         legend,
         caption: vec![made_by(fronts)],
     })
+}
+
+/// Of some points those that no other is left of and below, from left to right.
+fn front_of(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut least = f64::INFINITY;
+    points.retain(|(_, energy)| {
+        let better = *energy < least;
+        least = least.min(*energy);
+        better
+    });
+    points
 }
 
 /// The dampers in the studies, each marked.
@@ -149,4 +175,15 @@ fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Candidate) -> bool) -> V
 /// The words of a legend.
 fn words(legend: &[(Key, String)]) -> String {
     legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_the_front_of_points() {
+        let points = vec![(2.0, 3.0), (1.0, 5.0), (3.0, 3.0), (2.5, 4.0), (4.0, 1.0), (1.0, 6.0)];
+        assert_eq!(front_of(points), [(1.0, 5.0), (2.0, 3.0), (4.0, 1.0)]);
+    }
 }

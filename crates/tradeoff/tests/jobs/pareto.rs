@@ -4,8 +4,8 @@ use crate::desk::{Desk, committed};
 use crate::observers::{good, refused};
 use crate::request;
 use retune_study::{Rule, StudyError};
+use retune_tradeoff::pareto::pareto;
 use retune_workbench::describe;
-use retune_workbench::pareto::pareto;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::json;
 
@@ -19,7 +19,9 @@ fn desk() -> Desk {
         ],
         "k2": [400, 100],
         "stroke": [0.1, 0.4],
+        "force": [20000],
         "samples": 5,
+        "check": 9,
         "certificates": 1
     });
     desk.write_json("fronts.json", &fronts);
@@ -38,7 +40,7 @@ fn desk() -> Desk {
 fn rows(desk: &Desk, name: &str) -> Vec<(f64, String, f64, f64, f64)> {
     let number = |text: &str| text.parse().unwrap_or(f64::NAN);
     let row = |fields: &Vec<String>| {
-        (number(&fields[0]), fields[1].clone(), number(&fields[2]), number(&fields[3]), number(&fields[7]))
+        (number(&fields[0]), fields[1].clone(), number(&fields[2]), number(&fields[4]), number(&fields[8]))
     };
     desk.rows(name)[1..].iter().map(row).collect()
 }
@@ -49,7 +51,9 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
     // With one thread here, with two below.
     good(pareto(&Request { threads: Some(1), ..request(&desk, "fronts.json", "out") }, &Silent));
     let names = desk.names("out");
-    for name in ["README.md", "front.csv", "front.svg", "k2.csv", "k2.svg", "stroke.csv", "stroke.svg"] {
+    for name in
+        ["README.md", "report.html", "front.csv", "front.svg", "k2.csv", "k2.svg", "stroke.csv", "force.svg"]
+    {
         assert!(names.iter().any(|other| other == name), "{name} is not among {names:?}");
     }
     assert!(!names.iter().any(|name| name == "unfinished"));
@@ -66,7 +70,18 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
         }
     }
     let page = desk.read("out/README.md");
-    assert!(page.starts_with("# What the SSVI NES is good for\n") && page.contains("on 5 samples"), "{page}");
+    assert!(
+        page.starts_with("# What the SSVI NES is good for\n")
+            && page.contains("on 5 frequencies")
+            && page.contains("on 9 frequencies"),
+        "{page}"
+    );
+
+    let force = desk.rows("out/force.csv");
+    assert!(force[0][..4] == ["force_most", "damper", "E1max", "E1max_check"], "{force:?}");
+    for row in force[1..].iter().filter(|row| !row[2].is_empty()) {
+        assert!(row[9].parse::<f64>().expect("a force") <= 2e4, "{row:?}");
+    }
 
     good(pareto(&Request { threads: Some(2), ..request(&desk, "fronts.json", "two") }, &Silent));
     desk.assert_same("out", "two");
@@ -86,7 +101,6 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     };
     for (field, bad, words) in [
         ("dampers", json!([]), "dampers: an empty list is not allowed here: give at least one"),
-        ("k2", json!([]), "k2: an empty list is not allowed here: give at least one"),
         ("k2", json!([5]), "optimize.bounds.k2: [10, 5] is not allowed here"),
         ("samples", json!(1), "samples: 1 is not allowed here: give a whole number from 2 to 10000"),
     ] {
@@ -99,6 +113,12 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
             other => panic!("{field} = {bad}: {other}"),
         }
     }
+    let mut fronts = good.clone();
+    for sweep in ["k2", "stroke", "force"] {
+        fronts[sweep] = json!([]);
+    }
+    let words = "k2: an empty list is not allowed here: give at least one bound on k2, stroke or force";
+    assert!(rule(&fronts).to_string().ends_with(words));
     let mut fronts = good.clone();
     fronts["stroke"] = json!([-1]);
     match rule(&fronts) {

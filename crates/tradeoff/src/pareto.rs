@@ -1,19 +1,23 @@
 //! `fronts`: the least E1max of a damper under ever looser bounds on the spring and on the stroke, and the trade between them.
 
+mod again;
 mod candidate;
 mod draw;
 mod fronts;
 mod page;
+mod refinement;
+mod search;
 
-pub use candidate::{Candidate, energy, finer, look};
+pub use again::again;
+pub use candidate::Candidate;
 pub use fronts::{Certified, Fronts, Row};
 
-use crate::artefact::{Content, Kind, artefact};
-use crate::job::{Done, Job, Made};
-use crate::resolved;
-use crate::searches::Searches;
-use crate::{Error, Observer, Request};
-use retune_study::{self as study, Sweep};
+use retune_study as study;
+use retune_workbench::artefact::{Content, Kind, artefact};
+use retune_workbench::job::{Done, Job, Made};
+use retune_workbench::resolved;
+use retune_workbench::searches::Searches;
+use retune_workbench::{Error, Observer, Request};
 use serde_json::json;
 
 /// The files of Pareto fronts.
@@ -24,12 +28,15 @@ pub static KIND: Kind = Kind {
         artefact(resolved::SEVERAL, Content::Input),
         artefact("k2.csv", Content::Designs),
         artefact("stroke.csv", Content::Designs),
+        artefact("force.csv", Content::Designs),
         artefact("front.csv", Content::Designs),
-        artefact("certificate-*.json", Content::CertificateOf),
+        artefact("certificate-*.json", Content::Own),
         artefact("k2.svg", Content::Derived),
         artefact("stroke.svg", Content::Derived),
+        artefact("force.svg", Content::Derived),
         artefact("front.svg", Content::Derived),
         artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
     ],
 };
 
@@ -43,17 +50,19 @@ pub fn pareto(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, E
     let job = Job::of_studies(&KIND, request, json!(plan.said), dampers)?;
     job.run(request, watch, |directory| {
         let mut searches = Searches::new(directory, &job.order, watch);
-        let fronts = Fronts::search(plan, &mut searches, watch)?;
-        for sweep in Sweep::ALL {
+        let fronts = search::search(plan, &mut searches, watch)?;
+        for sweep in fronts.plan.sweeps() {
             directory.write(&format!("{}.csv", sweep.name()), &fronts.csv(sweep))?;
-            directory.write(&format!("{}.svg", sweep.name()), &draw::sweep(&fronts, sweep))?;
         }
         directory.write("front.csv", &fronts.front_csv())?;
-        directory.write("front.svg", &draw::front(&fronts))?;
         for Certified { file, certificate, .. } in &fronts.certified {
             directory.write_json(file, certificate)?;
         }
-        directory.write("README.md", &page::page(&fronts))?;
-        Ok(Made { report: format!("\n{}", page::answer(&fronts)), answer: fronts, parts: searches.results })
+        page::write(&fronts, directory)?;
+        Ok(Made {
+            report: format!("\n{}", page::answer(&fronts).join("\n")),
+            answer: fronts,
+            parts: searches.results,
+        })
     })
 }

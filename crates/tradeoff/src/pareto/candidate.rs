@@ -1,8 +1,7 @@
 //! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
-use retune_model::{Design, Positive};
-use retune_optim::{Evaluation, Limits};
-use retune_study::{Study, Sweep, joined};
+use retune_model::Design;
+use retune_study::{Sweep, joined};
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -17,6 +16,8 @@ pub struct Candidate {
     pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
+    /// The same on the samples of the second evaluation, J, if there was one.
+    pub checked: Option<f64>,
     /// The largest stroke (spring deflection |x2 - x1 - D|) in any run, m.
     pub stroke: f64,
     /// The largest contact force in any run, N.
@@ -28,8 +29,21 @@ pub struct Candidate {
 impl Candidate {
     /// By how much it is beyond a bound, as a share of it.
     pub fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
-        let reached = if sweep == Sweep::K2 { self.at.k2.get() } else { self.stroke };
-        (reached / bound - 1.0).max(0.0)
+        (self.reached(sweep) / bound - 1.0).max(0.0)
+    }
+
+    /// The value of a bounded quantity, in its unit.
+    pub fn reached(&self, sweep: Sweep) -> f64 {
+        match sweep {
+            Sweep::K2 => self.at.k2.get(),
+            Sweep::Stroke => self.stroke,
+            Sweep::Force => self.force,
+        }
+    }
+
+    /// Whether E1max rises on more samples by more than what is the same.
+    pub fn rises(&self) -> bool {
+        self.checked.is_some_and(|checked| checked > (1.0 + SAME) * self.e1_max)
     }
 
     /// Whether it is of the same damper and has nearly the same E1max.
@@ -46,33 +60,10 @@ impl Candidate {
 
     /// Its fields in a table.
     pub fn fields(&self) -> String {
-        let Self { at, e1_max, stroke, force, verdict, .. } = self;
-        format!("{e1_max},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
+        let Self { at, e1_max, checked, stroke, force, verdict, .. } = self;
+        let checked = checked.map(|value| value.to_string()).unwrap_or_default();
+        format!("{e1_max},{checked},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
     }
-}
-
-/// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
-pub fn energy(study: &Study, samples: usize, at: &Design) -> Option<f64> {
-    Some(look(&finer(study, samples, at)?)?.energy)
-}
-
-/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
-pub fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
-    let mut study = study.clone();
-    study.scene = study.scene_at(at)?;
-    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
-        band.samples = samples;
-    }
-    Some(study)
-}
-
-/// The worst of the scene of a study over its band; none where it cannot be run.
-pub fn look(study: &Study) -> Option<Evaluation> {
-    // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
-    let mut goal = study.goal();
-    let least = Positive::new(f64::MIN_POSITIVE).ok();
-    goal.limits = Limits { stroke: least, force: least, cavity: None, from: goal.limits.from };
-    goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }
 
 /// The design that keeps a bound first, then that which is beyond it by less.

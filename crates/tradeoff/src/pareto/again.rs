@@ -1,0 +1,29 @@
+//! `fronts`, computed again: its certificates.
+
+use retune_study::Study;
+use retune_workbench::Error;
+use retune_workbench::look::finer;
+use retune_workbench::resolved::Resolved;
+use retune_workbench::verify::{Report, input, one};
+use serde_json::Value;
+use std::path::Path;
+
+/// Checks the certificate of a design by making it again.
+///
+/// # Errors
+/// The file cannot be read, as of all checks.
+pub fn again(place: &Path, name: &str, _most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+    let said = input::json(place, name)?;
+    let resolved = Resolved::read(place)?;
+    let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
+    match certified(&resolved.studies()?, samples, &said) {
+        Some(study) => one::certificate(&study, &said, name, report),
+        None => report.fail(name, "is of none of the studies"),
+    }
+}
+
+/// The study with the design that a certificate is of.
+fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
+    let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
+    finer(study, samples?, &one::design(&said["design"])?)
+}

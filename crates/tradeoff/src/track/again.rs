@@ -1,0 +1,126 @@
+//! `track`, computed again: the designs, E1max along k1, the retention ranges.
+
+use super::anew::label;
+use super::curves::ANEW;
+use super::range::{Threshold, range};
+use super::tuned::{CURVES, DESIGNS, Tuning, bare, energy, on_samples, over};
+use retune_model::Design;
+use retune_study::Study;
+use retune_workbench::Error;
+use retune_workbench::resolved::Resolved;
+use retune_workbench::verify::table::{Row, Sample};
+use retune_workbench::verify::{Check, Report};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The results in a directory.
+struct Results {
+    studies: Vec<(String, Study)>,
+    samples: Option<usize>,
+    k1: Vec<f64>,
+    designs: Sample,
+    /// By the name of a damper, what counts as half of its work.
+    thresholds: BTreeMap<String, Threshold>,
+}
+
+/// Checks at most `most` rows of a table.
+///
+/// # Errors
+/// A file cannot be read, as of all checks.
+pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+    let resolved = Resolved::read(place)?;
+    let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
+    let studies = resolved.studies()?;
+    let is_needed = |(damper, study): &(String, Study)| match name {
+        DESIGNS | CURVES => None,
+        _ => Some((damper.clone(), Threshold::of(study)?)),
+    };
+    let results = Results {
+        thresholds: studies.iter().filter_map(is_needed).collect(),
+        studies,
+        samples: resolved.plan["samples"].as_u64().map(|samples| samples as usize),
+        k1: k1.unwrap_or_default(),
+        designs: Sample::read(&place.join(DESIGNS), usize::MAX)?,
+    };
+    let sample = Sample::read(&place.join(name), most)?;
+    let check = |row: Row| match name {
+        DESIGNS => vec![results.design(row)],
+        CURVES => vec![results.point(row)],
+        _ => results.range(row),
+    };
+    let checks: Vec<Vec<Option<Check>>> = sample.rows().map(check).collect();
+    let rows = checks.len();
+    let checks: Vec<Check> =
+        checks.into_iter().flatten().map(|check| check.unwrap_or_else(Check::never)).collect();
+    report.look(name, &sample.of(rows), &checks)
+}
+
+impl Results {
+    fn study(&self, row: Row) -> Option<&Study> {
+        self.studies.iter().find(|(name, _)| name == row.text("damper")).map(|(_, study)| study)
+    }
+
+    /// E1max of a design for what it was tuned for.
+    fn design(&self, row: Row) -> Option<Check<'_>> {
+        let (study, at) = (self.study(row)?, row.design()?);
+        let tuning = row.text("tuning");
+        let again: Box<dyn Fn() -> f64 + Sync> = if tuning == Tuning::Robust.name() {
+            let study = over(study, &self.k1);
+            let own = study.scene.primary.stiffness.get();
+            Box::new(move || energy(&study, self.samples, &at, own).unwrap_or(f64::INFINITY))
+        } else {
+            // The paper's design is taken at the study's own k1.
+            let own = study.scene.primary.stiffness.get();
+            let k1 = self.k1.iter().copied().find(|k1| label(*k1) == tuning).unwrap_or(own);
+            Box::new(move || energy(study, self.samples, &at, k1).unwrap_or(f64::INFINITY))
+        };
+        Some(Check { said: row.number("E1max"), again })
+    }
+
+    /// E1max of a point of a curve.
+    fn point(&self, row: Row) -> Option<Check<'_>> {
+        let k1 = row.number("k1");
+        let again: Box<dyn Fn() -> f64 + Sync> = if row.text("tuning") == "none" {
+            let (_, first) = self.studies.first()?;
+            Box::new(move || bare(first, k1).unwrap_or(f64::INFINITY))
+        } else {
+            let (study, at) = (self.study(row)?, self.at(row.text("damper"), row.text("tuning"), k1)?);
+            Box::new(move || energy(study, self.samples, &at, k1).unwrap_or(f64::INFINITY))
+        };
+        Some(Check { said: row.number("E1max"), again })
+    }
+
+    /// The design of a curve at a stiffness, N/m.
+    fn at(&self, damper: &str, tuning: &str, k1: f64) -> Option<Design> {
+        let nominal = self.studies.iter().find(|(name, _)| name == damper)?.1.scene.primary.stiffness.get();
+        let wanted = match tuning {
+            ANEW => label(k1),
+            other if other == Tuning::Nominal.name() => label(nominal),
+            other => other.to_owned(),
+        };
+        let is_it = |row: &Row| row.text("damper") == damper && row.text("tuning") == wanted;
+        self.designs.rows().find(is_it)?.design()
+    }
+
+    /// E1max and both ends of the range of a design, where it has one.
+    fn range(&self, row: Row) -> Vec<Option<Check<'_>>> {
+        let check = || {
+            let (study, at) = (self.study(row)?, row.design()?);
+            let own = study.scene.primary.stiffness.get();
+            let e1_max = move || energy(study, self.samples, &at, own).unwrap_or(f64::INFINITY);
+            let mut checks = vec![Check { said: row.number("E1max"), again: Box::new(e1_max) }];
+            let threshold = self.thresholds.get(row.text("damper"))?;
+            on_samples(study, self.samples, &at)?;
+            let found = range(study, self.samples, &at, threshold);
+            for (name, end) in [("from", found.map(|found| found.from)), ("to", found.map(|found| found.to))]
+            {
+                if !row.text(name).is_empty() || end.is_some() {
+                    let end = end.unwrap_or(f64::INFINITY);
+                    checks.push(Check { said: row.number(name), again: Box::new(move || end) });
+                }
+            }
+            Some(checks)
+        };
+        check().map_or_else(|| vec![None], |checks| checks.into_iter().map(Some).collect())
+    }
+}

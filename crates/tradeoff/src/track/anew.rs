@@ -1,0 +1,120 @@
+//! The searches of `track`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
+
+use super::tuned::{Kept, Tuned, Tuning, over};
+use retune_model::{Design, Variable};
+use retune_study::{self as study, PaperStudy, PerVariable, Setting, SpringBounds, Study, Table2, short};
+use retune_workbench::designs::Row;
+use retune_workbench::searches::Searches;
+use retune_workbench::{Error, Observer};
+
+/// The label of a design that is tuned for a stiffness, N/m.
+pub fn label(k1: f64) -> String {
+    format!("k1 = {k1}")
+}
+
+/// Tunes one damper for the stiffness of its study, then for each of `others`, upwards from there, then downwards, and last for the worst
+/// over all of them. The rows say what each search found.
+///
+/// # Errors
+/// A search fails.
+pub(super) fn tune(
+    PaperStudy { damper: name, study, .. }: &PaperStudy,
+    said: &Table2,
+    others: &[f64],
+    searches: &mut Searches,
+    watch: &dyn Observer,
+) -> Result<(Tuned, Vec<Row>), Error> {
+    let nominal = study.scene.primary.stiffness.get();
+    let mut rows = Vec::new();
+    let mut at = |k1: f64, neighbour: Option<(f64, Design)>| -> Result<Design, Error> {
+        let study = anew(study, k1, neighbour, said.k2_bounds)?;
+        let warm = if neighbour.is_some() { ", and from the design of the k1 beside it" } else { "" };
+        let natural = short(study.scene.primary.natural_frequency());
+        watch.log(&format!(
+            "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
+            study::over(&study.objective(), study.scene.forcing.frequency.get())
+        ))?;
+        let optimum = searches.tune(&study, &format!("k1-{k1}"))?;
+        watch.log(&optimum.report())?;
+        rows.push((k1, Row::of_optimum(&label(k1), name, &study, &optimum)));
+        Ok(optimum.found().damper.design)
+    };
+    let first = at(nominal, None)?;
+    let mut designs = vec![(nominal, first)];
+    let (mut below, above): (Vec<f64>, Vec<f64>) = others.iter().partition(|k1| **k1 < nominal);
+    below.reverse();
+    for outwards in [above, below] {
+        let mut neighbour = (nominal, first);
+        for k1 in outwards.into_iter().filter(|k1| *k1 != nominal) {
+            neighbour = (k1, at(k1, Some(neighbour))?);
+            designs.push(neighbour);
+        }
+    }
+    designs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
+    let mut kept = Vec::new();
+    kept.extend(study.scene.damper.map(|damper| Kept { tuning: Tuning::Paper, at: Design::of(&damper) }));
+    kept.push(Kept { tuning: Tuning::Nominal, at: first });
+    if designs.len() > 1 {
+        let study = robust(study, &designs)?;
+        watch.log(&format!(
+            "\n{name} for all k1, {}",
+            study::over(&study.objective(), study.scene.forcing.frequency.get())
+        ))?;
+        let optimum = searches.tune(&study, Tuning::Robust.name())?;
+        watch.log(&optimum.report())?;
+        rows.push(Row::of_optimum(Tuning::Robust.name(), name, &study, &optimum));
+        kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design });
+    }
+    let tuned =
+        Tuned { name: name.clone(), study: study.clone(), samples: said.samples, kept, anew: designs };
+    Ok((tuned, rows))
+}
+
+/// The study at another stiffness, its bounds on k2 as asked for. One more search starts at the design of the neighbouring stiffness.
+fn anew(study: &Study, k1: f64, from: Option<(f64, Design)>, bounds: SpringBounds) -> Result<Study, Error> {
+    let ratio = match bounds {
+        SpringBounds::Scaled => k1 / study.scene.primary.stiffness.get(),
+        SpringBounds::Fixed => 1.0,
+    };
+    let mut scaled = study.clone();
+    if let Some(optimize) = &mut scaled.optimize {
+        if let Some((low, high)) = optimize.bounds.get_mut(Variable::K2) {
+            (*low, *high) = (ratio * *low, high.map(|high| ratio * high));
+        }
+        let side = optimize.global.as_mut().and_then(|global| global.sides.get_mut(Variable::K2).as_mut());
+        if let Some(side) = side {
+            (side.from, side.to) = (ratio * side.from, ratio * side.to);
+        }
+        if let Some(axis) = optimize.surf.as_mut().and_then(|axes| axes.get_mut(Variable::K2).as_mut()) {
+            (axis.from, axis.to) = (ratio * axis.from, ratio * axis.to);
+        }
+        for start in &mut optimize.starts {
+            start.k2 = start.k2.map(|k2| ratio * k2);
+        }
+        if let Some((own, design)) = from {
+            // A spring in proportion to k1 is in tune as before, as far as the bounds allow it.
+            let bounds = optimize.bounds.get(Variable::K2).unwrap_or((0.0, None));
+            let k2 = design.k2.get() * k1 / own;
+            let mut start = PerVariable::of_design(&design, &optimize.vary);
+            start.k2 = start.k2.map(|_| k2.min(bounds.1.unwrap_or(k2)).max(bounds.0));
+            optimize.starts.push(start);
+        }
+    }
+    Ok(scaled.with(&[Setting::new("k1", k1)])?)
+}
+
+/// The study for the worst over all stiffnesses. One more search starts at the design of its own.
+fn robust(study: &Study, designs: &[(f64, Design)]) -> Result<Study, Error> {
+    let all: Vec<f64> = designs.iter().map(|(k1, _)| *k1).collect();
+    let nominal = study.scene.primary.stiffness.get();
+    let mut study = over(study, &all);
+    if let Some(optimize) = &mut study.optimize {
+        let own = designs.iter().find(|(k1, _)| *k1 == nominal);
+        optimize.starts.extend(own.map(|(_, design)| PerVariable::of_design(design, &optimize.vary)));
+    }
+    let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
+    study.check().map_err(refuse)?;
+    Ok(study)
+}

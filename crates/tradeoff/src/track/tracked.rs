@@ -1,0 +1,24 @@
+//! The results of `track`.
+
+use super::curves::Curve;
+use super::range::Threshold;
+use super::trade::Point;
+use super::tuned::Tuned;
+use retune_workbench::designs::Designs;
+
+/// Dampers tuned for several stiffnesses of the structure, and how long each tuning lasts.
+#[derive(Debug)]
+pub struct Tracked {
+    /// Each damper with its designs.
+    pub dampers: Vec<Tuned>,
+    /// E1max along k1.
+    pub curves: Vec<Curve>,
+    /// For each damper, what counts as half of the work.
+    pub thresholds: Vec<Threshold>,
+    /// The designs that are kept, by the name of their tuning, with their ranges.
+    pub kept: Vec<(&'static str, Point)>,
+    /// The designs between the nominal ones and those with the widest ranges.
+    pub points: Vec<Point>,
+    /// All designs as a table.
+    pub table: Designs,
+}

@@ -1,0 +1,29 @@
+//! A design on other samples of the band than those that its search looked at.
+
+use retune_model::{Design, Positive};
+use retune_optim::{Evaluation, Limits};
+use retune_study::Study;
+
+/// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
+pub fn energy(study: &Study, samples: usize, at: &Design) -> Option<f64> {
+    Some(look(&finer(study, samples, at)?)?.energy)
+}
+
+/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
+pub fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
+    let mut study = study.clone();
+    study.scene = study.scene_at(at)?;
+    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
+        band.samples = samples;
+    }
+    Some(study)
+}
+
+/// The worst of the scene of a study over its band; none where it cannot be run.
+pub fn look(study: &Study) -> Option<Evaluation> {
+    // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
+    let mut goal = study.goal();
+    let least = Positive::new(f64::MIN_POSITIVE).ok();
+    goal.limits = Limits { stroke: least, force: least, cavity: None, from: goal.limits.from };
+    goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
+}
