@@ -56,7 +56,7 @@ fn contract_tables_and_fronts_show_what_they_found_and_where_it_is() {
     );
     let screen = desk.good(&["track", "30000", "5e4", "--study", "mine.json", "--quiet", "--replace"]);
     assert!(
-        screen.contains("\n50000         NES ") && screen.contains("\nresults in results/mine: "),
+        screen.contains("\nk1 = 50000    NES ") && screen.contains("\nresults in results/mine: "),
         "{screen}"
     );
     let screen = desk.good(&["fronts", "fronts.json", "--quiet"]);
