@@ -9,7 +9,7 @@ mod refinement;
 mod search;
 
 pub use again::again;
-pub use candidate::Candidate;
+pub use candidate::{Candidate, SAME};
 pub use fronts::{Certified, Fronts, Row};
 
 use retune_study as study;

@@ -98,7 +98,8 @@ pub fn track(
         directory.write(CURVES, &curves::csv(&dampers, &curves))?;
         directory.write("range.csv", &trade::csv(&dampers, &kept, &points))?;
         table.write("retune", directory)?;
-        let tracked = Tracked { dampers, curves, thresholds, kept, points, table };
+        let bounds = said.k2_bounds;
+        let tracked = Tracked { dampers, bounds, curves, thresholds, kept, points, table };
         page::write(&tracked, directory)?;
         let report = format!("\n{}\n\n{}", tracked.table.text(), page::answer(&tracked).join("\n"));
         Ok(Made { report, answer: tracked, parts: searches.results })

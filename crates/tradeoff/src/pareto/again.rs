@@ -1,5 +1,6 @@
 //! `fronts`, computed again: its certificates.
 
+use retune_model::Design;
 use retune_study::Study;
 use retune_workbench::Error;
 use retune_workbench::look::finer;
@@ -7,6 +8,9 @@ use retune_workbench::resolved::Resolved;
 use retune_workbench::verify::{Report, input, one};
 use serde_json::Value;
 use std::path::Path;
+
+/// Most samples of a band that a certificate begins with.
+const MOST: usize = 121;
 
 /// Checks the certificate of a design by making it again.
 ///
@@ -25,5 +29,11 @@ pub fn again(place: &Path, name: &str, _most: usize, report: &mut Report<'_>) ->
 /// The study with the design that a certificate is of.
 fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
     let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
-    finer(study, samples?, &one::design(&said["design"])?)
+    certifiable(study, samples?, &one::design(&said["design"])?)
+}
+
+/// The study that a design is certified by: on the samples of the study of fronts, or fewer, since a certificate looks at a hundred designs
+/// and at four times the samples.
+pub(super) fn certifiable(study: &Study, samples: usize, at: &Design) -> Option<Study> {
+    finer(study, samples.min(MOST), at)
 }

@@ -3,12 +3,12 @@
 //! Every search finds a design. Afterwards all designs of a damper are evaluated on more samples of the band, and under each bound
 //! stands the best that keeps it, whichever search found it: so a looser bound is never worse.
 
+use super::again::certifiable;
 use super::candidate::{Candidate, SAME};
 use retune_study::{FrontsPlan, Sweep};
 use retune_workbench::Error;
 use retune_workbench::certify::{Certificate, certify};
 use retune_workbench::designs::quoted;
-use retune_workbench::look::finer;
 
 /// The verdict of a damper that no search found.
 pub(super) const GIVEN: &str = "of the study";
@@ -124,7 +124,7 @@ impl Fronts {
         let mut certified = Vec::new();
         for (_, sweep, bound, design, reference) in gains {
             let (_, study) = &self.plan.dampers[design.damper];
-            let Some(study) = finer(study, self.plan.said.samples, &design.at) else { continue };
+            let Some(study) = certifiable(study, self.plan.said.samples, &design.at) else { continue };
             let file = format!("certificate-{}-{bound}.json", sweep.name());
             let (design, certificate) = (design.clone(), certify(&study)?);
             certified.push(Certified { sweep, bound, design, reference, file, certificate });

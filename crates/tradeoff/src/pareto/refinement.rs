@@ -9,7 +9,7 @@ use retune_workbench::tune::objective::{kept, objective};
 use std::ops::ControlFlow;
 
 /// `fminsearch` starts again where it ended, with a whole simplex, at most so often,
-const RESTARTS: usize = 3;
+const RESTARTS: usize = 2;
 /// and as long as it gains this share: where motions are irregular, it often ends early.
 const GAIN: f64 = 3e-3;
 

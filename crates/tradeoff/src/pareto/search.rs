@@ -18,10 +18,14 @@ use retune_workbench::{Error, Observer};
 
 /// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
 const ROOM: f64 = 0.99;
-/// By how many times the samples of a search are refined.
+/// By how many times the samples of a search are refined, where it is made again and for the refinement of its design.
 const FINER: usize = 4;
 /// A parameter this near to its lower bound, as a share of the side, is also tried at it.
 const NEAR: f64 = 0.05;
+/// A design touches a bound if it reaches this share of it.
+const TOUCHES: f64 = 0.97;
+/// Evaluations of a refinement on the samples of the study of fronts.
+const FINEST: u64 = 100;
 
 /// Makes all searches.
 ///
@@ -48,6 +52,7 @@ pub(super) fn search(
             }
         }
     }
+    fronts.polish(searches)?;
     fronts.judge()?;
     fronts.certified = fronts.certify()?;
     Ok(fronts)
@@ -61,13 +66,7 @@ impl Fronts {
         for more in [1, FINER] {
             let starts = self.starts(under);
             let mut study = self.under(under, starts)?;
-            if more > 1 {
-                scale_samples(&mut study, more);
-                // Few frequencies show a smoother objective than there is: on more of them the same search finds less.
-                if let Some(global) = study.optimize.as_mut().and_then(|optimize| optimize.global.as_mut()) {
-                    global.searches *= 2;
-                }
-            }
+            scale_samples(&mut study, more);
             let words = if more == 1 { "" } else { ", with four times the samples" };
             watch.log(&format!("\n{name}, {what} at most {bound} {unit}{words}"))?;
             let place = if more == 1 { format!("{what}-{bound}") } else { format!("{what}-{bound}-finer") };
@@ -79,6 +78,10 @@ impl Fronts {
             self.designs.extend(seen);
             if !rises {
                 break;
+            }
+            if more > 1 {
+                // What is good between the samples of the search may be good on finer ones nearby.
+                self.refine(found.damper.design, under, searches)?;
             }
         }
         Ok(())
@@ -100,9 +103,8 @@ impl Fronts {
                 let Some(start) = self.best(Under { damper, sweep, bound: from }) else { continue };
                 let under = Under { damper, sweep, bound };
                 let before = self.best(under).map_or(f64::NAN, |best| best.e1_max);
-                for start in [Some(start.at), self.pressed(&start, under, from)].into_iter().flatten() {
-                    self.refine(start, under, searches)?;
-                }
+                let Some(start) = self.start(&start, under, from) else { continue };
+                self.refine(start, under, searches)?;
                 let after = self.best(under).map_or(f64::NAN, |best| best.e1_max);
                 watch.log(&format!(
                     "{}, {} at most {bound} {}, from the {words} bound {from}: {before:.2} J, then {after:.2} J",
@@ -121,15 +123,19 @@ impl Fronts {
         own.min_by(|a, b| by_excess(a, b, sweep, bound)).cloned()
     }
 
-    /// A design whose spring touched the last bound, with a spring that touches this one.
-    fn pressed(&self, start: &Candidate, under: Under, from: f64) -> Option<Design> {
-        let touched = under.sweep == Sweep::K2 && start.at.k2.get() > 0.98 * from && under.bound > from;
-        let ratio = under.bound / from;
+    /// Where the best design under the bound beside it is worth refining under this one: a tighter bound that it breaks, or a looser one
+    /// if it touches its own, a spring then with the same share of the bound. Otherwise it is as good under both.
+    fn start(&self, start: &Candidate, under: Under, from: f64) -> Option<Design> {
+        let reached = start.reached(under.sweep);
+        if under.bound < from {
+            return (reached > under.bound).then_some(start.at);
+        }
+        let share = if under.sweep == Sweep::K2 { under.bound / from } else { 1.0 };
         let scaled = |variable: Variable| match variable {
-            Variable::K2 => start.at.get(variable) * ratio,
+            Variable::K2 => start.at.get(variable) * share,
             _ => start.at.get(variable),
         };
-        touched.then(|| Design::new(scaled).ok()).flatten()
+        (reached > TOUCHES * from).then(|| Design::new(scaled).ok()).flatten()
     }
 
     /// Refines a design under a bound on finer samples than those of its study, then its copies with a small wall distance at its bound;
@@ -162,6 +168,9 @@ impl Fronts {
             if rises && worth {
                 let mut study = study.clone();
                 set_samples(&mut study, self.plan.said.samples);
+                if let Some(optimize) = &mut study.optimize {
+                    optimize.refine.max_fun_evals = Some(FINEST);
+                }
                 let again = minimum(&study, &clipped(&at, &optimize), None, under, searches)?;
                 let seen = again.and_then(|(at, _)| self.look(under.damper, at, CONTINUED));
                 self.designs.extend(seen);
@@ -193,6 +202,18 @@ impl Fronts {
         let found = look(&finer(study, self.plan.said.samples, &at)?)?;
         let [stroke, force] = [Limit::Stroke, Limit::Force].map(|limit| found.reached.get(limit));
         Some(Candidate { damper, at, e1_max: found.energy, checked: None, stroke, force, verdict })
+    }
+
+    /// Refines the best designs under each bound a last time, each design once.
+    fn polish(&mut self, searches: &Searches) -> Result<(), Error> {
+        let mut done: Vec<Design> = Vec::new();
+        for under in self.all().into_iter().filter(|under| !self.is_steady(under.damper)).collect::<Vec<_>>()
+        {
+            let Some(best) = self.best(under).filter(|best| !done.contains(&best.at)) else { continue };
+            done.push(best.at);
+            self.refine(best.at, under, searches)?;
+        }
+        Ok(())
     }
 
     /// Looks at the best designs under each bound once more, on more samples, and gives those that continuation found a verdict.

@@ -1,10 +1,12 @@
 //! The searches of `track`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
-use super::tuned::{Kept, Tuned, Tuning, over};
+use super::tuned::{Kept, Tuned, Tuning, energy, over};
+use crate::pareto::SAME;
 use retune_model::{Design, Variable};
 use retune_study::{self as study, PaperStudy, PerVariable, Setting, SpringBounds, Study, Table2, short};
 use retune_workbench::designs::Row;
 use retune_workbench::searches::Searches;
+use retune_workbench::tune::{Found, Optimum};
 use retune_workbench::{Error, Observer};
 
 /// The label of a design that is tuned for a stiffness, N/m.
@@ -34,8 +36,7 @@ pub(super) fn tune(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
             study::over(&study.objective(), study.scene.forcing.frequency.get())
         ))?;
-        let optimum = searches.tune(&study, &format!("k1-{k1}"))?;
-        watch.log(&optimum.report())?;
+        let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches, watch)?;
         rows.push((k1, Row::of_optimum(&label(k1), name, &study, &optimum)));
         Ok(optimum.found().damper.design)
     };
@@ -62,14 +63,43 @@ pub(super) fn tune(
             "\n{name} for all k1, {}",
             study::over(&study.objective(), study.scene.forcing.frequency.get())
         ))?;
-        let optimum = searches.tune(&study, Tuning::Robust.name())?;
-        watch.log(&optimum.report())?;
+        let optimum = searched(study.clone(), said.samples, Tuning::Robust.name(), searches, watch)?;
         rows.push(Row::of_optimum(Tuning::Robust.name(), name, &study, &optimum));
         kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design });
     }
     let tuned =
         Tuned { name: name.clone(), study: study.clone(), samples: said.samples, kept, anew: designs };
     Ok((tuned, rows))
+}
+
+/// Makes the search of a study. Where its design rises on the samples on which all are compared, the design is refined on these: the search
+/// has found a gap between its own.
+fn searched(
+    mut study: Study,
+    samples: Option<usize>,
+    place: &str,
+    searches: &mut Searches,
+    watch: &dyn Observer,
+) -> Result<Optimum, Error> {
+    let optimum = searches.tune(&study, place)?;
+    watch.log(&optimum.report())?;
+    let Found { damper, e1_max } = optimum.found();
+    let own = study.scene.primary.stiffness.get();
+    let rises = |again: f64| again > (1.0 + SAME) * e1_max;
+    if !energy(&study, samples, &damper.design, own).is_some_and(rises) {
+        return Ok(optimum);
+    }
+    if let Some(optimize) = &mut study.optimize {
+        (optimize.global, optimize.surf) = (None, None);
+        optimize.starts = vec![PerVariable::of_design(&damper.design, &optimize.vary)];
+        if let Some(band) = &mut optimize.objective.omega {
+            band.samples = samples.unwrap_or(band.samples);
+        }
+    }
+    watch.log(&format!("refined on {} frequencies, on which it rises", samples.unwrap_or_default()))?;
+    let optimum = searches.tune(&study, &format!("{place}-finer"))?;
+    watch.log(&optimum.report())?;
+    Ok(optimum)
 }
 
 /// The study at another stiffness, its bounds on k2 as asked for. One more search starts at the design of the neighbouring stiffness.

@@ -7,7 +7,7 @@ use super::trade::{Point, front};
 use super::tuned::{CURVES, DESIGNS, Tuned, Tuning};
 use crate::document::{Block, Document};
 use retune_store::Directory;
-use retune_study::{rounded, short};
+use retune_study::{SpringBounds, rounded, short};
 use retune_workbench::Error;
 
 /// Writes the page in both forms, and its figures.
@@ -77,15 +77,19 @@ const RULE: &str = "A design does its work at a stiffness k1 if its reduction, 1
     rise and fall, the smaller of its two sides.";
 
 /// What was compared.
-fn asked(Tracked { dampers, .. }: &Tracked) -> String {
+fn asked(Tracked { dampers, bounds, .. }: &Tracked) -> String {
     let Some(first) = dampers.first() else { return String::new() };
     let samples = first.samples.map(|samples| format!(" on {samples} frequencies")).unwrap_or_default();
     format!(
         "Each design is compared by its E1max, {}{samples}, at each stiffness k1 of the structure. The nominal k1 is {} N/m; a k1-robust design is \
-         tuned for the worst over {} N/m, a re-tuned one for each of them.",
+         tuned for the worst over {} N/m, a re-tuned one for each of them, with bounds on k2 {}.",
         retune_study::over(&first.study.objective(), first.study.scene.forcing.frequency.get()),
         short(first.nominal()),
         retune_study::joined(&first.anew.iter().map(|(k1, _)| short(*k1)).collect::<Vec<_>>(), ", "),
+        match bounds {
+            SpringBounds::Scaled => "in proportion to k1",
+            SpringBounds::Fixed => "that stay as they are",
+        }
     )
 }
 

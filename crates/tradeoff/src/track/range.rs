@@ -5,6 +5,7 @@
 //! free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
 
 use super::tuned::on_samples;
+use rayon::prelude::*;
 use retune_model::{Bare, Coupled, Damper, Design, NonNegative, Scene, Variable, den_hartog};
 use retune_optim::{Bounds, Options, Scaling, minimize};
 use retune_study::{Setting, Study};
@@ -64,7 +65,7 @@ impl Threshold {
     /// For the structure, the mass of the damper and the band of a study; none without a damper.
     pub fn of(study: &Study) -> Option<Self> {
         let nominal = study.scene.primary.stiffness.get();
-        let steps = -(STEPS as i32)..=STEPS as i32;
+        let steps = (-(STEPS as i32)..=STEPS as i32).into_par_iter();
         let at = |step: i32| Some(limit(study, nominal * STEP.powi(step))?.ln());
         Some(Self { nominal, most: steps.map(at).collect::<Option<Vec<f64>>>()? })
     }

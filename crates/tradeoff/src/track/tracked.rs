@@ -4,6 +4,7 @@ use super::curves::Curve;
 use super::range::Threshold;
 use super::trade::Point;
 use super::tuned::Tuned;
+use retune_study::SpringBounds;
 use retune_workbench::designs::Designs;
 
 /// Dampers tuned for several stiffnesses of the structure, and how long each tuning lasts.
@@ -11,6 +12,8 @@ use retune_workbench::designs::Designs;
 pub struct Tracked {
     /// Each damper with its designs.
     pub dampers: Vec<Tuned>,
+    /// What became of the bounds on k2 where a damper was tuned anew.
+    pub bounds: SpringBounds,
     /// E1max along k1.
     pub curves: Vec<Curve>,
     /// For each damper, what counts as half of the work.
