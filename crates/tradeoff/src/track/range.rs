@@ -142,7 +142,7 @@ fn best_tmd(scene: &Scene, band: [f64; 2]) -> Option<f64> {
         let design = Design::new(|variable| match variable {
             Variable::K2 => x[0],
             Variable::C2 => x[1],
-            _ => 0.0,
+            _ => f64::NAN, // as it is
         });
         let worst =
             |damper: Damper| Coupled::new(&scene.primary, &scene.forcing, &damper).steady_e1_max(band);
