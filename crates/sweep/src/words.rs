@@ -39,9 +39,10 @@ pub(crate) fn title(sweep: &Sweep) -> String {
 fn damper(sweep: &Sweep) -> String {
     let Some(damper) = sweep.study().scene.damper else { return "no damper".to_owned() };
     let mass = [("m2", damper.mass.get(), "kg")].into_iter();
-    let all =
-        mass.chain(Variable::ALL.map(|variable| (variable.symbol(), variable.get(&damper), variable.unit())));
-    let others = all.filter(|(symbol, ..)| *symbol != sweep.plan().over.symbol());
+    let all = mass
+        .chain(Variable::PAPER.map(|variable| (variable.symbol(), variable.get(&damper), variable.unit())));
+    // A damper without walls has no gaps.
+    let others = all.filter(|(symbol, value, _)| *symbol != sweep.plan().over.symbol() && !value.is_nan());
     let words: Vec<String> =
         others.map(|(symbol, value, unit)| format!("{symbol} {} {unit}", rounded(value, 4))).collect();
     format!("damper: {}", words.join(", "))
