@@ -168,6 +168,15 @@ mod tests {
         Threshold { nominal: 4e4, most: vec![f64::ln(level); 2 * STEPS + 1] }
     }
 
+    /// Half of the decibels between no damper and the free TMD of `results/tmd-free`, 1568.3 and 160.6 J. A best TMD that could not be
+    /// found once left every range empty.
+    #[test]
+    fn regress_the_threshold_of_the_study_is_half_of_the_best_tmd() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/retune-tmd.json");
+        let threshold = Threshold::of(&retune_study::read(&path).expect("a study")).expect("a threshold");
+        assert!((threshold.at(39_500.0) - (1568.3_f64 * 160.6).sqrt()).abs() < 0.5, "{threshold:?}");
+    }
+
     /// E1max grows as the square of the detuning: 100 J (1 + 25 (k1/4e4 - 1)²) is at most 200 J from 0.8 to 1.2 times 4e4 N/m.
     #[test]
     fn exact_the_range_of_a_parabola() {
