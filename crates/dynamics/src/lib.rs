@@ -21,8 +21,9 @@ mod sentence;
 pub mod sweep;
 
 pub use lyapunov::Exponent;
-pub use parameter::{Error, Parameter};
+pub use parameter::Error;
 pub use poincare::{Orbit, continuation, independent_orbits, resumed};
 pub use record::{Record, Stretch, follow};
 pub use regime::{Kind, Regime, classify};
+pub use retune_model::Parameter;
 pub use sweep::{Point, Zone, independent};

@@ -1,31 +1,7 @@
-//! The parameter of a sweep.
+//! The values of a sweep, and why a motion could not be computed.
 
-use retune_model::{NonNegative, OutOfRange, Scene};
+use retune_model::OutOfRange;
 use retune_solver::SolverError;
-
-/// A parameter of a scene that is swept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// ω, angular frequency of the force, rad/s.
-    Omega,
-    /// k1, stiffness of the primary structure, N/m.
-    K1,
-}
-
-impl Parameter {
-    /// The scene with this parameter at `value`.
-    ///
-    /// # Errors
-    /// The value is out of the parameter's range.
-    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, Error> {
-        let value = NonNegative::new(value)?;
-        match self {
-            Self::Omega => scene.forcing.frequency = value,
-            Self::K1 => scene.primary.stiffness = value,
-        }
-        Ok(scene)
-    }
-}
 
 /// Why a motion could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

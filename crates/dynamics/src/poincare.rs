@@ -1,8 +1,8 @@
 //! The stroboscopic map, which samples the motion once per period of the force, and orbit diagrams.
 
-use crate::parameter::{Error, Parameter};
+use crate::parameter::Error;
 use rayon::prelude::*;
-use retune_model::{Coupled, Scene, Side};
+use retune_model::{Coupled, Parameter, Scene, Side};
 use retune_solver::observe::{Observer, Path, PrimaryEnergy, RunningMaximum, Segment, Unobserved};
 use retune_solver::steps::Steps;
 use retune_solver::{Follower, Motion, Phase, Settings, SolverError};

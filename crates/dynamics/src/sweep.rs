@@ -1,8 +1,8 @@
 //! The response at each value of a parameter, every run from rest.
 
-use crate::parameter::{Error, Parameter};
+use crate::parameter::Error;
 use rayon::prelude::*;
-use retune_model::{Scene, energy_ratios};
+use retune_model::{Parameter, Scene, energy_ratios};
 use retune_solver::{Settings, Window, simulate};
 use serde::Serialize;
 

@@ -40,6 +40,8 @@ pub struct Coupled {
     /// Where the walls are, relative to the structure, m: infinitely far of a damper without.
     walls: [f64; 2],
     hertz: [f64; 2],
+    /// R, m; 0 of a damper without walls.
+    pub(crate) radius: f64,
 }
 
 impl Coupled {
@@ -56,6 +58,7 @@ impl Coupled {
                 None => [f64::NEG_INFINITY, f64::INFINITY],
             },
             hertz: damper.contact.map_or([0.0; 2], |contact| contact.stiffness()),
+            radius: damper.contact.map_or(0.0, |contact| contact.radius.get()),
         }
     }
 

@@ -51,6 +51,7 @@ mod hertz;
 mod measure;
 mod regularised;
 mod scene;
+mod sensitivity;
 mod steady;
 mod value;
 
@@ -67,6 +68,7 @@ pub use measure::Measure;
 pub use regularised::bounds::{Growth, ORDERS};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene};
+pub use sensitivity::Parameter;
 pub use steady::Steady;
 pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive};
 

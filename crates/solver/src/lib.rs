@@ -53,6 +53,7 @@ mod settings;
 mod settle;
 mod simulate;
 mod system;
+mod tangent;
 mod trajectory;
 
 pub use budget::{Budget, Pace};
@@ -66,4 +67,5 @@ pub use settings::{Contacts, Method, Settings, Window};
 pub use settle::{Settle, settled};
 pub use simulate::{e1_max, simulate, touch_downs};
 pub use system::{Linear, LinearSystem, System};
+pub use tangent::{Tangent, Transition};
 pub use trajectory::{Moment, Rows, Sample, trajectory};

@@ -149,3 +149,8 @@ fn example(failures: &Failures) -> String {
 
 #[cfg(test)]
 mod tests;
+impl From<retune_model::OutOfRange> for Error {
+    fn from(error: retune_model::OutOfRange) -> Self {
+        Self::Motion(error.into())
+    }
+}

@@ -5,4 +5,5 @@
 //! `regularised` for the others.
 
 pub mod collocation;
+pub mod linearised;
 pub mod regularised;

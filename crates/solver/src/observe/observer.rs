@@ -1,5 +1,6 @@
 //! Observers: a method hands over its motion segment by segment, and each observer keeps its own result.
 
+use crate::contact::linearised::LinearContact;
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
 use crate::motion::segment::Segment;
@@ -17,11 +18,12 @@ pub trait Path<const N: usize> {
     fn first_derivative(&self, form: &Form<N>) -> f64;
     /// Hands the segment that follows a knot to an observer.
     fn show(&self, piece: usize, observer: &mut impl Observer<N>);
+    /// The contact that it is, as linear equations for small changes.
+    fn linearised(&self) -> LinearContact;
 }
 
 /// Most knots of a [`Path`].
 pub const MOST_KNOTS: usize = 18;
-
 /// Follows a run. A pair of observers, nested as deep as need be, is an observer; so are an array and an `Option` of one.
 pub trait Observer<const N: usize> {
     /// Whether it looks at the motion. An observer of events alone sets this to `false`, and no segment is computed for it.
@@ -87,6 +89,25 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
     }
     fn satisfied(&self) -> bool {
         self.0.satisfied() || self.1.satisfied()
+    }
+}
+
+impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
+    const WATCHES_MOTION: bool = O::WATCHES_MOTION;
+    fn segment(&mut self, segment: &impl Segment<N>) {
+        (**self).segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<N>) {
+        (**self).path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, N>) {
+        (**self).steps(steps);
+    }
+    fn touch_down(&mut self, t: f64, side: Side) {
+        (**self).touch_down(t, side);
+    }
+    fn satisfied(&self) -> bool {
+        (**self).satisfied()
     }
 }
 

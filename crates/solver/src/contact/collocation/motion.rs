@@ -3,6 +3,7 @@
 use super::nodes::{MOMENTS, Nodes, at_nodes, dot, node};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
+use crate::contact::linearised::LinearContact;
 use crate::contact::regularised::piece::Piece;
 use crate::linear::flow::{Expansion, Flow};
 use crate::motion::form::Form;
@@ -178,5 +179,30 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
             ends,
         });
+    }
+
+    fn linearised(&self) -> LinearContact {
+        let rule = self.rule;
+        let powers: [f64; MOMENTS] = std::array::from_fn(|k| self.duration.powi(k as i32 + 1));
+        let force = self.depth * self.depth.sqrt();
+        // Of node `i`, or of lift-off: a moment of the force, and the share of the force at node `j` in it.
+        let moment = |k: usize, i: usize| if i < N { node(&self.moments[k], i) } else { self.last[k] };
+        let share = |k: usize, i: usize, j: usize| match i < N {
+            true => node(&rule.moments[k][j], i),
+            false => node(&rule.last[k], j),
+        };
+        LinearContact {
+            side: self.of.side,
+            touch: *self.touch,
+            end: self.end,
+            duration: self.duration,
+            times: (0..=N).map(|i| if i < N { node(&rule.times, i) } else { 1.0 }).collect(),
+            roots: (0..N).map(|j| node(&self.roots, j)).collect(),
+            terms: self.terms + 1,
+            impulses: (0..=N).map(|i| std::array::from_fn(|k| powers[k] * force * moment(k, i))).collect(),
+            shares: (0..=N)
+                .map(|i| (0..N).map(|j| std::array::from_fn(|k| powers[k] * share(k, i, j))).collect())
+                .collect(),
+        }
     }
 }

@@ -1,0 +1,195 @@
+//! The derivatives of equation (1) by its parameters, at a fixed state and a fixed time.
+
+use crate::{Bare, Coupled, Excitation, NonNegative, OutOfRange, Positive, Scene, Side, Source};
+
+/// A parameter by which derivatives are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// ω, angular frequency of the force, rad/s.
+    Omega,
+    /// P, amplitude of the force, N; the size of an imbalance (kg·m) or of the motion of a base (m) where that is what forces.
+    P,
+    /// k1, stiffness of the structure, N/m.
+    K1,
+    /// c1, damping of the structure, N·s/m.
+    C1,
+    /// m2, mass of the damper, kg.
+    M2,
+    /// k2, stiffness of the damper's spring, N/m.
+    K2,
+    /// c2, damping of the damper, N·s/m.
+    C2,
+    /// D, distance of the damper from the structure where its spring is at rest, m. The obstacle moves with it.
+    D,
+    /// C, clearance between the damper at rest and the obstacle, m.
+    C,
+    /// R, radius of the surfaces in contact, m.
+    R,
+}
+
+impl Parameter {
+    /// All of them.
+    pub const ALL: [Self; 10] =
+        [Self::Omega, Self::P, Self::K1, Self::C1, Self::M2, Self::K2, Self::C2, Self::D, Self::C, Self::R];
+
+    /// Its symbol in the paper.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Omega => "omega",
+            Self::P => "P",
+            Self::K1 => "k1",
+            Self::C1 => "c1",
+            Self::M2 => "m2",
+            Self::K2 => "k2",
+            Self::C2 => "c2",
+            Self::D => "D",
+            Self::C => "C",
+            Self::R => "R",
+        }
+    }
+
+    /// Its SI unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Omega => "rad/s",
+            Self::P => "N",
+            Self::K1 | Self::K2 => "N/m",
+            Self::C1 | Self::C2 => "N·s/m",
+            Self::M2 => "kg",
+            Self::D | Self::C | Self::R => "m",
+        }
+    }
+}
+
+impl Parameter {
+    /// Its value in a scene; none where the scene has no such parameter.
+    pub fn of(self, scene: &Scene) -> Option<f64> {
+        let damper = scene.damper.as_ref();
+        match self {
+            Self::Omega => Some(scene.forcing.frequency.get()),
+            Self::P => scene.forcing.amplitude().map(|(_, amplitude)| amplitude.get()),
+            Self::K1 => Some(scene.primary.stiffness.get()),
+            Self::C1 => Some(scene.primary.damping.get()),
+            Self::M2 => damper.map(|damper| damper.mass.get()),
+            Self::K2 => damper.map(|damper| damper.stiffness.get()),
+            Self::C2 => damper.map(|damper| damper.damping.get()),
+            Self::D => damper.map(|damper| damper.rest_distance.get()),
+            Self::C => damper.map(|damper| damper.clearance.get()),
+            Self::R => damper.and_then(|damper| damper.contact).map(|contact| contact.radius.get()),
+        }
+    }
+
+    /// The scene with this parameter at `value`; as it is where it has no such parameter.
+    ///
+    /// # Errors
+    /// The value is out of the parameter's range.
+    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, OutOfRange> {
+        match self {
+            Self::Omega => scene.forcing.frequency = NonNegative::new(value)?,
+            Self::P => scene.forcing = scene.forcing.with_amplitude(NonNegative::new(value)?),
+            Self::K1 => scene.primary.stiffness = NonNegative::new(value)?,
+            Self::C1 => scene.primary.damping = NonNegative::new(value)?,
+            _ => {}
+        }
+        let Some(damper) = &mut scene.damper else { return Ok(scene) };
+        match self {
+            Self::M2 => damper.mass = Positive::new(value)?,
+            Self::K2 => damper.stiffness = NonNegative::new(value)?,
+            Self::C2 => damper.damping = NonNegative::new(value)?,
+            Self::D => damper.rest_distance = NonNegative::new(value)?,
+            Self::C => damper.clearance = NonNegative::new(value)?,
+            Self::R => {
+                if let Some(contact) = &mut damper.contact {
+                    contact.radius = Positive::new(value)?;
+                }
+            }
+            _ => {}
+        }
+        Ok(scene)
+    }
+}
+
+impl Bare {
+    /// `∂[P cos(ωt + φ), P sin(ωt + φ)]/∂parameter` at time `t` (s), N per unit of the parameter.
+    pub fn excitation_by(&self, parameter: Parameter, t: f64) -> Excitation {
+        let [cos, sin] = self.excitation(t);
+        let [growth, turn] = self.forcing_by(parameter);
+        let turn = turn + if parameter == Parameter::Omega { t } else { 0.0 };
+        [growth * cos - turn * sin, growth * sin + turn * cos]
+    }
+
+    /// The derivative of the logarithm of the force's amplitude, and that of the angle by which it leads at t = 0.
+    fn forcing_by(&self, parameter: Parameter) -> [f64; 2] {
+        let size = |value: f64| {
+            if parameter == Parameter::P && value != 0.0 { [1.0 / value, 0.0] } else { [0.0; 2] }
+        };
+        match self.source() {
+            Source::Force(force) => size(force.get()),
+            Source::Imbalance(_) if parameter == Parameter::Omega => [2.0 / self.omega, 0.0],
+            Source::Imbalance(imbalance) => size(imbalance.get()),
+            // It pushes by k1 y + c1 dy/dt: a complex stiffness k1 + iωc1.
+            Source::Base(base) => {
+                let (k1, loss) = (self.k1, self.omega * self.c1);
+                let square = k1 * k1 + loss * loss;
+                let by_loss = [loss / square, k1 / square];
+                match parameter {
+                    Parameter::K1 => [k1 / square, -loss / square],
+                    Parameter::C1 => by_loss.map(|by| by * self.omega),
+                    Parameter::Omega => by_loss.map(|by| by * self.c1),
+                    _ => size(base.get()),
+                }
+            }
+            Source::Decay(_) => [0.0; 2],
+        }
+    }
+}
+
+impl Coupled {
+    /// The derivative of the position of a wall relative to the structure: the far wall is at D + C.
+    pub fn wall_by(&self, parameter: Parameter, side: Side) -> f64 {
+        let moves = side == Side::Obstacle && matches!(parameter, Parameter::D | Parameter::C);
+        if moves { 1.0 } else { 0.0 }
+    }
+
+    /// The derivative by a parameter of `ln(K)`, of the Hertz stiffness of both walls: it grows as the root of R.
+    pub fn hertz_by(&self, parameter: Parameter) -> f64 {
+        if parameter == Parameter::R && self.radius > 0.0 { 0.5 / self.radius } else { 0.0 }
+    }
+
+    /// The net force of a contact on the damper, N, and its derivative by a parameter, the state held; of the contact with a wall at the
+    /// indentation `q²` (m).
+    pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64) -> [f64; 2] {
+        let stiffness = self.hertz(side);
+        let force = -side.sign() * stiffness * q * q * q;
+        [force, 1.5 * stiffness * q * self.wall_by(parameter, side) + force * self.hertz_by(parameter)]
+    }
+
+    /// `∂[x1'', x2'']/∂parameter` by equation (1), m/s² per unit of the parameter, at a state, with the net contact force on the damper
+    /// (N) and its derivative by the parameter; the force on the structure is held.
+    pub fn acceleration_by(
+        &self,
+        parameter: Parameter,
+        y: &[f64; 4],
+        [contact, contact_by]: [f64; 2],
+    ) -> [f64; 2] {
+        let &[x1, v1, x2, v2] = y;
+        let (m1, (m2, k2, _)) = (self.bare().mass(), self.damper());
+        match parameter {
+            Parameter::K1 => return [-x1 / m1, 0.0],
+            Parameter::C1 => return [-v1 / m1, 0.0],
+            Parameter::M2 => {
+                let [_, _, _, acceleration] = self.derivative_under([0.0; 2], y, contact);
+                return [0.0, -acceleration / m2];
+            }
+            _ => {}
+        }
+        let on_damper = contact_by
+            + match parameter {
+                Parameter::K2 => self.rest_distance() - (x2 - x1),
+                Parameter::C2 => v1 - v2,
+                Parameter::D => k2,
+                _ => 0.0,
+            };
+        [-on_damper / m1, on_damper / m2]
+    }
+}

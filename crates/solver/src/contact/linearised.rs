@@ -1,0 +1,28 @@
+//! A contact that was computed at once, as linear equations for small changes.
+
+use crate::contact::collocation::nodes::MOMENTS;
+use crate::motion::knot::Knot;
+use retune_model::Side;
+
+/// A contact at the nodes of its rule. A force `K f(t)` on the damper moves the state by `Σ_k A^k b ∫ (t - s)^k / k! f(s) ds`, with `b` what
+/// `K` alone does to its rate; these integrals are sums over the nodes.
+pub struct LinearContact {
+    /// The wall.
+    pub side: Side,
+    /// Touch-down.
+    pub touch: Knot<4>,
+    /// The state at lift-off.
+    pub end: [f64; 4],
+    /// Duration, s.
+    pub duration: f64,
+    /// The times of the nodes and of lift-off as shares of the duration.
+    pub times: Vec<f64>,
+    /// `√z` at the nodes, √m.
+    pub roots: Vec<f64>,
+    /// How many of the integrals count.
+    pub terms: usize,
+    /// The integrals at the nodes and at lift-off: `z^1.5` and powers of time.
+    pub impulses: Vec<[f64; MOMENTS]>,
+    /// The share in them, for the nodes and lift-off in turn, of `z^1.5` at each node.
+    pub shares: Vec<Vec<[f64; MOMENTS]>>,
+}

@@ -1,0 +1,252 @@
+//! Derivatives in flight: Taylor series over whole steps, kept as matrices, and over the rest of the flight.
+
+use super::series::{BRIEF, Moment, Series, dot, sum};
+use retune_model::{Coupled, Excitation, Parameter};
+
+/// Length of a whole step times the rate of the flow, and the terms after which the series has converged (`1.25²⁰/20! = 4e-17`).
+const STEP: f64 = 1.25;
+const TERMS: u32 = 20;
+
+/// What a flight starts from: the state, the force, and 1 for the constant terms.
+const WIDTH: usize = 7;
+
+/// The linear equations of a flight and their derivatives by some parameters.
+pub(super) struct Flight {
+    /// `[x1'', x2'']` by the state, by the force, and constant.
+    rows: [[f64; 6]; 2],
+    /// Their derivatives by each parameter, by the state and constant.
+    rows_by: Vec<[[f64; 5]; 2]>,
+    /// Which parameter is ω.
+    turning: Vec<bool>,
+    omega: f64,
+    rate: f64,
+    step: f64,
+    /// A state after a whole step by what it starts from, and its derivatives by each parameter: column by column.
+    whole: [[f64; 4]; WIDTH],
+    whole_by: Vec<[[f64; 4]; WIDTH]>,
+}
+
+impl Flight {
+    pub(super) fn new(system: &Coupled, parameters: &[Parameter]) -> Self {
+        let unit = |j: usize| -> [f64; 4] { std::array::from_fn(|i| f64::from(u8::from(i == j))) };
+        let accelerations = |force: f64, y: &[f64; 4]| {
+            let [_, a1, _, a2] = system.derivative_under([force, 0.0], y, 0.0);
+            [a1, a2]
+        };
+        let constant = accelerations(0.0, &[0.0; 4]);
+        let by_state: [[f64; 2]; 4] = std::array::from_fn(|j| accelerations(0.0, &unit(j)));
+        let by_force = accelerations(1.0, &[0.0; 4]);
+        let rows = [0, 1].map(|row| {
+            let [a, b, c, d] = by_state.map(|column| column[row] - constant[row]);
+            [a, b, c, d, by_force[row] - constant[row], constant[row]]
+        });
+        let rows_by = |&parameter: &Parameter| {
+            let by = |y: &[f64; 4]| system.acceleration_by(parameter, y, [0.0; 2]);
+            let constant = by(&[0.0; 4]);
+            let columns: [[f64; 2]; 4] = std::array::from_fn(|j| by(&unit(j)));
+            [0, 1].map(|row| {
+                let [a, b, c, d] = columns.map(|column| column[row] - constant[row]);
+                [a, b, c, d, constant[row]]
+            })
+        };
+        let rate = system.rate();
+        let mut flight = Self {
+            rows,
+            rows_by: parameters.iter().map(rows_by).collect(),
+            turning: parameters.iter().map(|parameter| *parameter == Parameter::Omega).collect(),
+            omega: system.bare().frequency(),
+            rate,
+            step: STEP / rate,
+            whole: [[0.0; 4]; WIDTH],
+            whole_by: vec![[[0.0; 4]; WIDTH]; parameters.len()],
+        };
+        let none = Moment { y: [0.0; 4], force: [0.0; 2] };
+        for j in 0..WIDTH {
+            let mut from = none;
+            match j {
+                0..4 => from.y = unit(j),
+                4 => from.force = [1.0, 0.0],
+                5 => from.force = [0.0, 1.0],
+                _ => {}
+            }
+            let mut by = vec![none; parameters.len()];
+            flight.series(flight.step, f64::from(u8::from(j == 6)), &mut from, &mut [], &mut by);
+            flight.whole[j] = from.y;
+            for (matrix, by) in flight.whole_by.iter_mut().zip(by) {
+                matrix[j] = by.y;
+            }
+        }
+        flight
+    }
+
+    /// Carries the motion, its derivatives by the first state and those by the parameters over `seconds` of flight. The forces of the
+    /// derivatives are given at the beginning of each stretch by `forces(t)`, `t` seconds after the beginning of the flight.
+    pub(super) fn fly(
+        &self,
+        seconds: f64,
+        mut now: [f64; 4],
+        force: impl Fn(f64) -> Excitation,
+        by_state: &mut [[f64; 4]; 4],
+        by: &mut [[f64; 4]],
+        force_by: impl Fn(usize, f64) -> Excitation,
+    ) {
+        let count = (seconds / self.step) as usize;
+        for k in 0..count {
+            let elapsed = k as f64 * self.step;
+            let [c, s] = force(elapsed);
+            let from = [now[0], now[1], now[2], now[3], c, s, 1.0];
+            for (number, column) in by.iter_mut().enumerate() {
+                let [c, s] = force_by(number, elapsed);
+                let own = [column[0], column[1], column[2], column[3], c, s, 0.0];
+                *column = sum(product(&self.whole, &own), product(&self.whole_by[number], &from));
+            }
+            for column in &mut *by_state {
+                *column = product(&self.whole, column);
+            }
+            now = product(&self.whole, &from);
+        }
+        let elapsed = count as f64 * self.step;
+        let mut from = Moment { y: now, force: force(elapsed) };
+        let moment = |(number, y): (usize, &[f64; 4])| Moment { y: *y, force: force_by(number, elapsed) };
+        let mut moments: Vec<Moment> = by.iter().enumerate().map(moment).collect();
+        self.series(seconds - elapsed, 1.0, &mut from, by_state, &mut moments);
+        for (column, moment) in by.iter_mut().zip(moments) {
+            *column = moment.y;
+        }
+    }
+
+    /// The Taylor series over `h` seconds, `|h| <=` a whole step; `constant` is 1, or 0 without the constant terms of the equations.
+    fn series(&self, h: f64, constant: f64, from: &mut Moment, by_state: &mut [[f64; 4]], by: &mut [Moment]) {
+        let (mut term, mut terms, mut terms_by) = (*from, by_state.to_vec(), by.to_vec());
+        let mut constant = constant;
+        let mut size = 1.0;
+        for k in 1..=TERMS {
+            let share = h / f64::from(k);
+            size *= self.rate * share.abs();
+            for ((number, term_by), by) in terms_by.iter_mut().enumerate().zip(&mut *by) {
+                let (own, more) = (self.derivative(term_by, 0.0), self.more(number, &term, constant));
+                term_by.y = sum(own.y, more.y).map(|v| v * share);
+                term_by.force = [0, 1].map(|i| (own.force[i] + more.force[i]) * share);
+                by.y = sum(by.y, term_by.y);
+                by.force = [0, 1].map(|i| by.force[i] + term_by.force[i]);
+            }
+            for (term, column) in terms.iter_mut().zip(&mut *by_state) {
+                *term = self.derivative(&Moment { y: *term, force: [0.0; 2] }, 0.0).y.map(|v| v * share);
+                *column = sum(*column, *term);
+            }
+            let next = self.derivative(&term, constant);
+            term = Moment { y: next.y.map(|v| v * share), force: next.force.map(|v| v * share) };
+            from.y = sum(from.y, term.y);
+            from.force = [0, 1].map(|i| from.force[i] + term.force[i]);
+            constant = 0.0;
+            if size < 1e-18 {
+                break;
+            }
+        }
+    }
+
+    /// The series of the motion from a moment on.
+    pub(super) fn free(&self, from: Moment) -> Series {
+        let mut series = Series([from; BRIEF]);
+        for k in 1..BRIEF {
+            let rate = self.derivative(&series.0[k - 1], f64::from(u8::from(k == 1)));
+            series.0[k] = rate.over(k as f64);
+        }
+        series
+    }
+
+    /// The series of a change of the motion `base`, by the parameter of this number or of where it starts alone.
+    pub(super) fn changed(&self, base: &Series, parameter: Option<usize>, from: Moment) -> Series {
+        let mut series = Series([from; BRIEF]);
+        for k in 1..BRIEF {
+            let mut rate = self.derivative(&series.0[k - 1], 0.0);
+            if let Some(number) = parameter {
+                let more = self.more(number, &base.0[k - 1], f64::from(u8::from(k == 1)));
+                rate =
+                    Moment { y: sum(rate.y, more.y), force: [0, 1].map(|i| rate.force[i] + more.force[i]) };
+            }
+            series.0[k] = rate.over(k as f64);
+        }
+        series
+    }
+
+    /// `A y`.
+    pub(super) fn linear(&self, y: [f64; 4]) -> [f64; 4] {
+        self.derivative(&Moment { y, force: [0.0; 2] }, 0.0).y
+    }
+
+    /// The derivative of `A` by the parameter of this number, times `y`.
+    pub(super) fn linear_by(&self, number: usize, y: [f64; 4]) -> [f64; 4] {
+        self.more(number, &Moment { y, force: [0.0; 2] }, 0.0).y
+    }
+
+    /// The rate of the force.
+    pub(super) fn turn(&self, [c, s]: Excitation) -> Excitation {
+        [-self.omega * s, self.omega * c]
+    }
+
+    /// The derivatives of the equations of a flight by the parameter of this number.
+    fn more(&self, number: usize, Moment { y, force: [c, s] }: &Moment, constant: f64) -> Moment {
+        let rows = &self.rows_by[number];
+        let [a1, a2] = [0, 1].map(|row| dot(&rows[row][..4], y) + rows[row][4] * constant);
+        let force = if self.turning[number] { [-s, *c] } else { [0.0; 2] };
+        Moment { y: [0.0, a1, 0.0, a2], force }
+    }
+
+    /// The equations of a flight.
+    fn derivative(&self, Moment { y, force: [c, s] }: &Moment, constant: f64) -> Moment {
+        let [a1, a2] = [0, 1].map(|row| {
+            let row = &self.rows[row];
+            dot(&row[..4], y) + row[4] * c + row[5] * constant
+        });
+        Moment { y: [y[1], a1, y[3], a2], force: self.turn([*c, *s]) }
+    }
+
+    /// `e^(A h) y` without force, for `h` seconds of at most a few whole steps, forward or backward.
+    pub(super) fn decay(&self, h: f64, y: [f64; 4]) -> [f64; 4] {
+        let (mut sum, mut term, mut size) = (y, y, 1.0);
+        for k in 1..=3 * TERMS {
+            let share = h / f64::from(k);
+            size *= self.rate * share.abs();
+            term = self.derivative(&Moment { y: term, force: [0.0; 2] }, 0.0).y.map(|v| v * share);
+            for (sum, term) in sum.iter_mut().zip(term) {
+                *sum += term;
+            }
+            if size < 1e-18 {
+                break;
+            }
+        }
+        sum
+    }
+
+    /// `row e^(A h)`.
+    pub(super) fn row_decay(&self, h: f64, row: [f64; 4]) -> [f64; 4] {
+        let (mut sum, mut term, mut size) = (row, row, 1.0);
+        let [first, second] = &self.rows;
+        for k in 1..=3 * TERMS {
+            let share = h / f64::from(k);
+            size *= self.rate * share.abs();
+            let [x1, v1, x2, v2] = term;
+            let own = |j: usize| v1 * first[j] + v2 * second[j];
+            term = [own(0), x1 + own(1), own(2), x2 + own(3)].map(|v| v * share);
+            for (sum, term) in sum.iter_mut().zip(term) {
+                *sum += term;
+            }
+            if size < 1e-18 {
+                break;
+            }
+        }
+        sum
+    }
+}
+
+/// The first columns of a matrix times a vector.
+fn product(columns: &[[f64; 4]; WIDTH], vector: &[f64]) -> [f64; 4] {
+    let mut sum = [0.0; 4];
+    for (column, weight) in columns.iter().zip(vector) {
+        for i in 0..4 {
+            sum[i] += column[i] * weight;
+        }
+    }
+    sum
+}

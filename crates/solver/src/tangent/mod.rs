@@ -1,0 +1,15 @@
+//! How a motion changes with its first state and with parameters, exactly: the variational equations of equation (1).
+//!
+//! The force of a contact and its slope vanish at touch-down and lift-off, so the right-hand side is continuously differentiable and
+//! nothing jumps there: the equations hold through flight and contact alike, at fixed times (`docs/theory.md`, "Derivatives"). In flight
+//! they are linear with constant coefficients (`flight`); over a contact that was computed at once they are the collocated equations,
+//! differentiated (`collision`), and along one that is followed step by step an integral equation (`contact`). [`Tangent`] follows a run
+//! as an observer and does this piece by piece.
+
+mod collision;
+mod contact;
+mod flight;
+mod observer;
+mod series;
+
+pub use observer::{Tangent, Transition};

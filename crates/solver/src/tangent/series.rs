@@ -1,0 +1,54 @@
+//! Taylor series of a motion and of its changes.
+
+use retune_model::Excitation;
+
+/// A state and the force, or their derivative.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    pub y: [f64; 4],
+    pub force: Excitation,
+}
+
+impl Moment {
+    pub(super) fn over(self, k: f64) -> Self {
+        Self { y: self.y.map(|v| v / k), force: self.force.map(|v| v / k) }
+    }
+}
+
+/// Terms of a series over the brief contact that is computed at once: `0.3¹³/13! = 3e-17`.
+pub(super) const BRIEF: usize = 13;
+
+/// A Taylor series of a motion or of its change.
+#[derive(Clone, Copy)]
+pub(super) struct Series(pub [Moment; BRIEF]);
+
+impl Series {
+    /// The state after `t` seconds.
+    pub(super) fn state(&self, t: f64) -> [f64; 4] {
+        self.0.iter().rev().fold([0.0; 4], |sum, term| std::array::from_fn(|i| sum[i] * t + term.y[i]))
+    }
+
+    /// Its rate.
+    pub(super) fn rate(&self, t: f64) -> [f64; 4] {
+        let terms = self.0.iter().enumerate().skip(1).rev();
+        terms.fold([0.0; 4], |sum, (k, term)| std::array::from_fn(|i| sum[i] * t + k as f64 * term.y[i]))
+    }
+
+    /// `x2 - x1`.
+    pub(super) fn separation(&self, t: f64) -> f64 {
+        self.0.iter().rev().fold(0.0, |sum, term| sum * t + (term.y[2] - term.y[0]))
+    }
+
+    /// The force.
+    pub(super) fn force(&self, t: f64) -> Excitation {
+        self.0.iter().rev().fold([0.0; 2], |sum, term| [0, 1].map(|i| sum[i] * t + term.force[i]))
+    }
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub(super) fn sum(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
