@@ -6,6 +6,7 @@
 //! - [`lyapunov`]: the rate at which neighbouring motions diverge, from two trajectories with renormalisation.
 //! - [`record`]: a motion recorded over many periods together with a neighbouring one.
 //! - [`attractor`]: whether two stretches of motion belong to one motion or to two.
+//! - [`periodic`]: periodic motions, stable or not, along a parameter: branches, bifurcations, what coexists.
 //! - [`regime`]: periodic (`nT, m, k`), amplitude-modulated, chaotic or intermittent, with or without transient chaos before.
 //!
 //! Every result depends on its input alone, not on the number of threads. Nothing is printed, and no file is read or written.
@@ -14,6 +15,7 @@
 pub mod attractor;
 pub mod lyapunov;
 pub mod parameter;
+pub mod periodic;
 pub mod poincare;
 pub mod record;
 pub mod regime;

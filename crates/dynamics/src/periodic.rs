@@ -1,0 +1,22 @@
+//! Periodic motions: Newton's iteration on the stroboscopic map, Floquet multipliers, branches along a parameter, bifurcations.
+//!
+//! A motion of `n` periods of the force is a fixed point of the map over them. It is cut into equal segments, and Newton's iteration
+//! closes the gaps between them all at once (multiple shooting), with exact derivatives of each (`retune_solver::Tangent`). A branch is
+//! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
+//!
+//! Read `shooting` (the equations and their solution), `orbit` (what a motion is like), `trace` (a branch), `events` (its bifurcations),
+//! `switch` (to the branch of twice the period), `settle` (what runs settle on), then `branches`, which asks for all of them.
+
+pub mod branches;
+pub mod events;
+pub mod orbit;
+pub mod settle;
+pub mod shooting;
+pub mod switch;
+pub mod trace;
+
+pub use branches::{Branches, Ranged, Sample, branches};
+pub use events::{Event, EventKind};
+pub use orbit::Orbit;
+pub use shooting::Shooting;
+pub use trace::{Branch, End};

@@ -1,0 +1,276 @@
+//! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
+
+use super::orbit::Orbit;
+use super::settle::{self, MOST_PERIODS, Settled, is_same, settle};
+use super::shooting::{Shooting, Solution};
+use super::switch::doubled;
+use super::trace::{Branch, trace};
+use crate::parameter::{Error, evenly};
+use rayon::prelude::*;
+use retune_model::{Bare, Parameter, Scene};
+use retune_solver::Settings;
+
+/// Most branches.
+const MOST_BRANCHES: usize = 200;
+/// A branch as far as this from a motion is not tried, in units of the motion's size.
+const FAR: f64 = 0.3;
+/// Local maxima as near as this share to the largest are located exactly.
+const CLOSE: f64 = 0.02;
+/// Evaluations to locate a maximum.
+const EVALUATIONS: usize = 40;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its range.
+    pub range: [f64; 2],
+    /// Number of its samples at which runs are started.
+    pub samples: usize,
+    /// Starts at each, beside that from rest.
+    pub starts: usize,
+}
+
+/// A motion on which runs settle, at one sample.
+#[derive(Clone, Debug)]
+pub struct Attractor {
+    /// The number of its branch; none if it could not be followed.
+    pub branch: Option<usize>,
+    /// The motion.
+    pub orbit: Orbit,
+    /// How many starts end on it.
+    pub starts: usize,
+    /// Whether the run from rest does.
+    pub from_rest: bool,
+}
+
+/// What runs settle on at one value of the parameter.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The value.
+    pub value: f64,
+    /// The periodic motions, the most frequent first.
+    pub attractors: Vec<Attractor>,
+    /// Largest energies of the structure in the runs that settled on none, J; the first one that from rest, if it did not.
+    pub irregular: Vec<f64>,
+    /// Whether the run from rest settled on none.
+    pub rest_is_irregular: bool,
+    /// Number of starts, that from rest among them.
+    pub starts: usize,
+}
+
+/// Branches and samples.
+#[derive(Clone, Debug)]
+pub struct Branches {
+    /// What was asked for.
+    pub plan: Plan,
+    /// The branches, in the order in which they were found.
+    pub branches: Vec<Branch>,
+    /// The samples, in the order of their values.
+    pub samples: Vec<Sample>,
+}
+
+/// A quantity of a motion.
+pub type Quantity = fn(&Orbit) -> f64;
+
+/// A range of the parameter.
+pub type Ranged = [f64; 2];
+
+/// Finds the branches of a scene along a parameter. `done` is called after each sample.
+///
+/// # Errors
+/// A scene in the range cannot be run.
+pub fn branches(
+    scene: &Scene,
+    plan: Plan,
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Branches, Error> {
+    let middle = plan.parameter.at(*scene, 0.5 * (plan.range[0] + plan.range[1]))?;
+    let bare = Bare::new(&middle.primary, &middle.forcing);
+    let size = (2.0 * bare.steady(middle.forcing.frequency.get()).e1_max).sqrt().max(f64::MIN_POSITIVE);
+    let shooting =
+        Shooting::new(middle, plan.parameter, 1, (plan.range[1] - plan.range[0], size), settings);
+    let values = evenly(plan.range[0], plan.range[1], plan.samples);
+    let seen: Vec<Result<Seen, Error>> = values
+        .par_iter()
+        .map(|&value| {
+            let seen = look(&shooting, value, plan.starts);
+            done();
+            seen
+        })
+        .collect();
+    let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new() };
+    for seen in seen {
+        let seen = seen?;
+        let mut attractors = Vec::new();
+        for (periods, solution, starts, from_rest) in seen.attractors {
+            let own = shooting.of_periods(periods);
+            let branch = found.holds(&own, &solution).or_else(|| found.follow(&own, &solution));
+            attractors.push(Attractor { branch, orbit: Orbit::of(&own, &solution)?, starts, from_rest });
+        }
+        attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
+        let Seen { value, irregular, rest_is_irregular, .. } = seen;
+        let starts = plan.starts + 1;
+        found.samples.push(Sample { value, attractors, irregular, rest_is_irregular, starts });
+    }
+    Ok(found)
+}
+
+/// What runs settle on at a value of the parameter.
+struct Seen {
+    value: f64,
+    /// Periods, the motion, how many starts, whether from rest.
+    attractors: Vec<(usize, Solution, usize, bool)>,
+    irregular: Vec<f64>,
+    rest_is_irregular: bool,
+}
+
+fn look(shooting: &Shooting, value: f64, starts: usize) -> Result<Seen, Error> {
+    let system = shooting.system(value)?;
+    let scene = shooting.scene_at(value)?;
+    let mut seen = Seen { value, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false };
+    let all = [system.rest()].into_iter().chain(settle::starts(&system, &scene, starts));
+    for (number, y) in all.enumerate() {
+        let from_rest = number == 0;
+        match settle(shooting, value, y)? {
+            Settled::Irregular(e1_max) => {
+                seen.irregular.push(e1_max);
+                seen.rest_is_irregular |= from_rest;
+            }
+            Settled::On(periods, solution) => {
+                let own = shooting.of_periods(periods);
+                let known = seen.attractors.iter_mut().find(|(_, known, ..)| is_same(&own, known, &solution));
+                match known {
+                    Some((_, _, starts, _)) => *starts += 1,
+                    None => seen.attractors.push((periods, solution, 1, from_rest)),
+                }
+            }
+        }
+    }
+    Ok(seen)
+}
+
+impl Branches {
+    /// The number of the branch that a motion lies on.
+    fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
+        let value = shooting.value(&motion.x);
+        self.branches.iter().position(|branch| {
+            branch.shooting.periods == shooting.periods
+                && branch.points.windows(2).any(|pair| {
+                    let [a, b] = [pair[0].value, pair[1].value];
+                    if (a - value) * (b - value) > 0.0 {
+                        return false;
+                    }
+                    let share = if a == b { 0.0 } else { (value - a) / (b - a) };
+                    let [x, y] = [&pair[0], &pair[1]].map(|orbit| shooting.unknowns(&orbit.states, value));
+                    let guess = &x + (y - &x) * share;
+                    shooting.nearest(&guess, &motion.x).1 < FAR
+                        && shooting.correct_at_value(&guess).is_some_and(|own| is_same(shooting, &own, motion))
+                })
+        })
+    }
+
+    /// Follows the branch through a motion and those that branch off where it gains or loses stability; gives its number.
+    fn follow(&mut self, shooting: &Shooting, seed: &Solution) -> Option<usize> {
+        if self.branches.len() >= MOST_BRANCHES {
+            return None;
+        }
+        let number = self.branches.len();
+        self.branches.push(trace(shooting, seed, self.plan.range)?);
+        let mut next = number;
+        while next < self.branches.len() && self.branches.len() < MOST_BRANCHES {
+            let branch = self.branches[next].clone();
+            next += 1;
+            if 2 * branch.shooting.periods > MOST_PERIODS {
+                continue;
+            }
+            for event in &branch.events {
+                let stable = |place: Option<usize>| {
+                    place.and_then(|place| branch.points.get(place)).is_some_and(Orbit::is_stable)
+                };
+                if stable(event.place.checked_sub(1)) == stable(Some(event.place + 1)) {
+                    continue;
+                }
+                let Some(off) = doubled(&branch.shooting, event, self.plan.range) else { continue };
+                let own = off.shooting.clone();
+                let known = off.points.get(off.points.len() / 2).and_then(|orbit| {
+                    let start = own.unknowns(&orbit.states, orbit.value);
+                    self.holds(&own, &own.correct_at_value(&start)?)
+                });
+                if known.is_none() {
+                    self.branches.push(off);
+                }
+            }
+        }
+        Some(number)
+    }
+
+    /// The motion with the largest value of a quantity among the stable ones of a branch, located between the points of the branch.
+    pub fn largest(branch: &Branch, quantity: Quantity) -> Option<Orbit> {
+        let stable = |i: usize| branch.points.get(i).filter(|orbit| orbit.is_stable());
+        let value = |i: usize| stable(i).map_or(f64::NEG_INFINITY, quantity);
+        let all = 0..branch.points.len();
+        let most = all.clone().map(value).fold(f64::NEG_INFINITY, f64::max);
+        let near = |&i: &usize| value(i) >= (1.0 - CLOSE) * most && stable(i).is_some();
+        let peaks = all.filter(near).filter(|&i| {
+            (i == 0 || value(i - 1) <= value(i)) && value(i + 1) <= value(i)
+        });
+        let located = peaks.filter_map(|i| {
+            let own = stable(i)?.clone();
+            let inner = i > 0 && stable(i - 1).is_some() && stable(i + 1).is_some();
+            let better = if inner { located(branch, i, quantity) } else { None };
+            Some(better.filter(|better| quantity(better) > quantity(&own)).unwrap_or(own))
+        });
+        located.max_by(|a, b| quantity(a).total_cmp(&quantity(b)))
+    }
+
+    /// The parts of the range over which a branch has a stable motion, and those over which none has.
+    pub fn stable_and_irregular(&self) -> [Vec<Ranged>; 2] {
+        let mut parts: Vec<Ranged> = Vec::new();
+        for branch in &self.branches {
+            for pair in branch.points.windows(2).filter(|pair| pair.iter().all(Orbit::is_stable)) {
+                let [a, b] = [pair[0].value, pair[1].value];
+                parts.push([a.min(b), a.max(b)]);
+            }
+        }
+        parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut stable: Vec<Ranged> = Vec::new();
+        for part in parts {
+            match stable.last_mut() {
+                Some(last) if part[0] <= last[1] => last[1] = last[1].max(part[1]),
+                _ => stable.push(part),
+            }
+        }
+        let [from, to] = self.plan.range;
+        let begins = [from].into_iter().chain(stable.iter().map(|part| part[1]));
+        let ends = stable.iter().map(|part| part[0]).chain([to]);
+        let narrow = 1e-9 * (to - from);
+        let irregular = begins.zip(ends).filter(|(a, b)| b - a > narrow).map(|(a, b)| [a, b]).collect();
+        [stable, irregular]
+    }
+}
+
+/// The largest value between the neighbours of a point, by golden sections.
+fn located(branch: &Branch, i: usize, quantity: Quantity) -> Option<Orbit> {
+    let shooting = &branch.shooting;
+    let x = |i: usize| shooting.unknowns(&branch.points[i].states, branch.points[i].value);
+    let (from, way) = (x(i - 1), x(i + 1) - x(i - 1));
+    let at = |share: f64| Orbit::of(shooting, &shooting.correct(&(&from + &way * share), &way)?).ok();
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = (0.0, 1.0);
+    let (mut a, mut b) = (at(1.0 - golden)?, at(golden)?);
+    for _ in 0..EVALUATIONS {
+        if quantity(&a) > quantity(&b) {
+            high = low + golden * (high - low);
+            b = a;
+            a = at(high - golden * (high - low))?;
+        } else {
+            low = high - golden * (high - low);
+            a = b;
+            b = at(low + golden * (high - low))?;
+        }
+    }
+    Some(if quantity(&a) > quantity(&b) { a } else { b })
+}

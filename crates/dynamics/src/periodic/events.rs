@@ -1,0 +1,152 @@
+//! What happens along a branch: folds, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
+
+use super::orbit::Orbit;
+use super::shooting::{Linearised, Shooting};
+use super::trace::Node;
+use nalgebra::{Complex, DVector};
+
+/// Most evaluations for the place of one event.
+const EVALUATIONS: usize = 80;
+/// An event is located to this share of the parameter's value, and of the step in which it lies.
+const PLACED: f64 = 1e-10;
+/// Most grazings in one step.
+const GRAZINGS: usize = 6;
+
+/// A kind of event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    /// The branch turns back: a multiplier is 1.
+    Fold,
+    /// A motion of twice the period branches off: a multiplier is -1.
+    PeriodDoubling,
+    /// A pair of complex multipliers is on the unit circle: amplitude-modulated motions branch off.
+    NeimarkSacker,
+    /// An impact begins or ends: the damper touches a wall at no speed.
+    Grazing,
+}
+
+impl EventKind {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::PeriodDoubling => "period doubling",
+            Self::NeimarkSacker => "Neimark-Sacker",
+            Self::Grazing => "grazing",
+        }
+    }
+}
+
+/// An event.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// Its kind.
+    pub kind: EventKind,
+    /// The motion there.
+    pub orbit: Orbit,
+    /// The equations there.
+    pub at: Linearised,
+    /// The place of that motion on its branch.
+    pub place: usize,
+}
+
+/// What changes sign at a fold, a period doubling and a Neimark–Sacker bifurcation.
+pub(super) fn tests(orbit: &Orbit, direction: &DVector<f64>) -> [f64; 3] {
+    let one = Complex::new(1.0, 0.0);
+    let all = &orbit.multipliers;
+    let doubling: Complex<f64> = all.iter().map(|multiplier| multiplier + one).product();
+    let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let circle: Complex<f64> = pairs.map(|(i, j)| all[i] * all[j] - one).product();
+    [direction[direction.len() - 1], doubling.re, circle.re]
+}
+
+/// The events between two motions, in their order.
+pub(super) fn located(shooting: &Shooting, now: &Node, next: &Node) -> Vec<Event> {
+    let mut found: Vec<(f64, Event)> = Vec::new();
+    let kinds = [EventKind::Fold, EventKind::PeriodDoubling, EventKind::NeimarkSacker];
+    for (number, kind) in kinds.into_iter().enumerate() {
+        let ends = [now.tests[number], next.tests[number]];
+        if ends[0] * ends[1] < 0.0
+            && let Some((share, node)) = root(shooting, [now, next], |node| node.tests[number], ends)
+            && (kind != EventKind::NeimarkSacker || is_complex(&node.orbit))
+        {
+            found.push((share, event(kind, node)));
+        }
+    }
+    let (mut from, mut label) = (0.0, now.orbit.impacts.clone());
+    for _ in 0..GRAZINGS {
+        if label == next.orbit.impacts {
+            break;
+        }
+        let Some((share, node, after)) = change(shooting, [now, next], from, &label) else { break };
+        found.push((share, event(EventKind::Grazing, node)));
+        (from, label) = (share, after);
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, event)| event).collect()
+}
+
+fn event(kind: EventKind, node: Node) -> Event {
+    Event { kind, orbit: node.orbit, at: node.solution.at, place: 0 }
+}
+
+/// Whether the pair of multipliers nearest to the unit circle is complex; two real ones with the product 1 are no bifurcation.
+fn is_complex(orbit: &Orbit) -> bool {
+    let nearest = |a: &&Complex<f64>, b: &&Complex<f64>| (a.norm() - 1.0).abs().total_cmp(&(b.norm() - 1.0).abs());
+    orbit.multipliers.iter().min_by(nearest).is_some_and(|multiplier| multiplier.im.abs() > 1e-6)
+}
+
+/// The motion at a share of the way between two.
+fn between(shooting: &Shooting, [now, next]: [&Node; 2], share: f64) -> Option<Node> {
+    let way = &next.solution.x - &now.solution.x;
+    let solution = shooting.correct(&(&now.solution.x + &way * share), &way)?;
+    Node::new(shooting, solution, &now.direction)
+}
+
+/// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that stays).
+fn root(
+    shooting: &Shooting,
+    ends: [&Node; 2],
+    test: impl Fn(&Node) -> f64,
+    mut values: [f64; 2],
+) -> Option<(f64, Node)> {
+    let (mut shares, mut best, mut stayed) = ([0.0, 1.0], None, 2);
+    for _ in 0..EVALUATIONS {
+        let share = (shares[0] * values[1] - shares[1] * values[0]) / (values[1] - values[0]);
+        let node = between(shooting, ends, share)?;
+        let value = test(&node);
+        let end = usize::from(value * values[0] < 0.0);
+        if stayed == end {
+            values[1 - end] *= 0.5;
+        }
+        stayed = end;
+        let moved = (shares[end] - share).abs();
+        (shares[end], values[end]) = (share, value);
+        best = Some((share, node));
+        if value == 0.0 || moved < PLACED || shares[1] - shares[0] < PLACED {
+            break;
+        }
+    }
+    best
+}
+
+/// The first place after `from` at which the impacts are others than `label`, the motion there, and the impacts beyond.
+fn change(shooting: &Shooting, ends: [&Node; 2], from: f64, label: &str) -> Option<(f64, Node, String)> {
+    let (mut low, mut high) = (from, 1.0);
+    let (mut best, mut after) = (None, ends[1].orbit.impacts.clone());
+    for _ in 0..EVALUATIONS {
+        let share = 0.5 * (low + high);
+        let node = between(shooting, ends, share)?;
+        let placed = (high - low) < PLACED;
+        if node.orbit.impacts == label {
+            low = share;
+        } else {
+            (high, after) = (share, node.orbit.impacts.clone());
+        }
+        best = Some(node);
+        if placed {
+            break;
+        }
+    }
+    best.map(|node| (high, node, after))
+}

@@ -1,0 +1,89 @@
+//! What a periodic motion is like: its largest values, its impacts, its stability.
+
+use super::shooting::{Shooting, Solution};
+use crate::parameter::Error;
+use nalgebra::{Complex, Matrix4};
+use retune_model::Side;
+use retune_solver::observe::{
+    DisplacementRange, Magnitude, PrimaryEnergy, RunningMaximum, StructureMotion, TouchDownTimes,
+};
+use retune_solver::{Follower, Motion, Phase};
+use std::f64::consts::TAU;
+
+/// A periodic motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orbit {
+    /// The parameter's value.
+    pub value: f64,
+    /// Periods of the force.
+    pub periods: usize,
+    /// `[x1, v1, x2, v2]` at the beginnings of its segments, the first at a crest of the force.
+    pub states: Vec<[f64; 4]>,
+    /// Floquet multipliers, the largest first: a small change grows by them each time the motion repeats.
+    pub multipliers: [Complex<f64>; 4],
+    /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
+    /// empty if none.
+    pub impacts: String,
+    /// Largest energy of the structure, J.
+    pub e1_max: f64,
+    /// Largest displacement of the structure, m.
+    pub displacement: f64,
+    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
+    pub stroke: f64,
+    /// Largest contact force, N.
+    pub force: f64,
+}
+
+impl Orbit {
+    /// What a solution is like.
+    ///
+    /// # Errors
+    /// The scene cannot be run there.
+    pub fn of(shooting: &Shooting, solution: &Solution) -> Result<Self, Error> {
+        let (value, states) = (shooting.value(&solution.x), shooting.states(&solution.x));
+        let system = shooting.system(value)?;
+        let share = shooting.periods as f64 * TAU / system.bare().frequency() / states.len() as f64;
+        let mut follower = Follower::new(&system, shooting.settings(), share);
+        let energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
+        let size = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
+        let range = DisplacementRange::new(&system, 0.0, f64::INFINITY);
+        let mut seen = ((energy, size), (range, TouchDownTimes::default()));
+        for (k, &y) in states.iter().enumerate() {
+            // Each segment starts at its own state, so that an unstable motion is not left.
+            let start = Motion { t: k as f64 * share, y, phase: Phase::of(&system, &y) };
+            follower.propagate(start, (k + 1) as f64 * share, &mut seen)?;
+        }
+        let ((energy, size), (range, touches)) = seen;
+        Ok(Self {
+            value,
+            periods: shooting.periods,
+            states,
+            multipliers: multipliers(&solution.at.monodromy()),
+            impacts: turned(touches.0.iter().map(|(_, side)| *side)),
+            e1_max: energy.record().value,
+            displacement: size.record().value,
+            stroke: range.stroke().value.max(0.0),
+            force: range.force().value.max(0.0),
+        })
+    }
+
+    /// Whether small changes die out.
+    pub fn is_stable(&self) -> bool {
+        self.multipliers[0].norm() < 1.0
+    }
+}
+
+/// The eigenvalues of a monodromy matrix, the largest first.
+pub fn multipliers(monodromy: &Matrix4<f64>) -> [Complex<f64>; 4] {
+    let mut all: [Complex<f64>; 4] = monodromy.complex_eigenvalues().into();
+    all.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
+    all
+}
+
+/// The impacts in turn, from where they read first in the alphabet.
+fn turned(sides: impl Iterator<Item = Side>) -> String {
+    let letter = |side: Side| if side == Side::Primary { 'S' } else { 'O' };
+    let word: Vec<char> = sides.map(letter).collect();
+    let turns = (0..word.len()).map(|from| [&word[from..], &word[..from]].concat());
+    turns.min().unwrap_or_default().into_iter().collect()
+}

@@ -1,0 +1,125 @@
+//! What runs settle on: periodic motions from many starts, and how many of the starts end there.
+
+use super::shooting::{Shooting, Solution};
+use crate::parameter::Error;
+use crate::poincare::PoincareMap;
+use crate::record::{coordinates, distance};
+use retune_model::{Bare, Coupled, Scene};
+use retune_solver::observe::{PrimaryEnergy, RunningMaximum, Unobserved};
+use retune_solver::{Motion, Phase, Settings};
+
+/// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
+const LOOKS: [usize; 4] = [60, 120, 240, 480];
+/// Most periods after which a motion may repeat.
+pub const MOST_PERIODS: usize = 12;
+/// A run that repeats to this share of its size is near enough for Newton's iteration.
+const NEAR: f64 = 1e-4;
+/// Two motions nearer than this share of their size are one.
+pub const SAME: f64 = 1e-6;
+/// Periods over which an irregular motion's largest energy is taken.
+const WATCHED: usize = 100;
+
+/// What a run ends on.
+#[derive(Clone, Debug)]
+pub enum Settled {
+    /// A stable periodic motion.
+    On(usize, Solution),
+    /// None was found: the largest energy of the structure over its last periods, J.
+    Irregular(f64),
+}
+
+/// Follows a run from a state at a crest of the force.
+///
+/// # Errors
+/// The run cannot be finished.
+pub fn settle(shooting: &Shooting, value: f64, y: [f64; 4]) -> Result<Settled, Error> {
+    let scene = shooting.scene_at(value)?;
+    let system = shooting.system(value)?;
+    let mut map = PoincareMap::new(&system, &Settings { rtol: 1e-10, ..*shooting.settings() });
+    let mut motion = Motion { t: 0.0, y, phase: Phase::of(&system, &y) };
+    let mut taken = 0;
+    for look in LOOKS {
+        let mut last = Vec::new();
+        while taken < look {
+            motion = map.next(motion, &mut Unobserved)?;
+            taken += 1;
+            if taken + MOST_PERIODS >= look {
+                last.push(motion.y);
+            }
+        }
+        if let Some((periods, solution)) = repeated(shooting, &scene, value, &last) {
+            return Ok(Settled::On(periods, solution));
+        }
+    }
+    let mut energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
+    for _ in 0..WATCHED {
+        motion = map.next(motion, &mut energy)?;
+    }
+    Ok(Settled::Irregular(energy.record().value))
+}
+
+/// The stable motion that the latest states of a run repeat, by the least number of periods.
+fn repeated(shooting: &Shooting, scene: &Scene, value: f64, last: &[[f64; 4]]) -> Option<(usize, Solution)> {
+    let end = last.len().checked_sub(1)?;
+    let at = |i: usize| coordinates(scene, &last[i]);
+    let size = distance(&at(end), &[0.0; 4]).max(f64::MIN_POSITIVE);
+    for periods in 1..=MOST_PERIODS.min(end) {
+        if distance(&at(end), &at(end - periods)) > NEAR * size {
+            continue;
+        }
+        let own = shooting.of_periods(periods);
+        let start = own.unknowns(&last[end - periods + 1..], value);
+        let Some(solution) = own.correct_at_value(&start) else { continue };
+        let multipliers = super::orbit::multipliers(&solution.at.monodromy());
+        let moved = own.norm(&(&solution.x - &start));
+        if multipliers[0].norm() < 1.0 && moved < 100.0 * NEAR {
+            return shortest(&own, solution);
+        }
+    }
+    None
+}
+
+/// Whether two motions are one, at whatever crest of the force each begins.
+pub fn is_same(shooting: &Shooting, a: &Solution, b: &Solution) -> bool {
+    a.x.len() == b.x.len() && shooting.nearest(&a.x, &b.x).1 < SAME
+}
+
+/// A motion by the least number of periods after which it repeats.
+fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)> {
+    let states = shooting.states(&solution.x);
+    let n = shooting.periods;
+    let repeats = |periods: &usize| {
+        let moved = shooting.moved_on(&solution.x, *periods);
+        (&moved - &solution.x).amax() < SAME
+    };
+    match (1..n).filter(|periods| n % periods == 0).find(repeats) {
+        None => Some((n, solution)),
+        Some(periods) => {
+            let own = shooting.of_periods(periods);
+            let start = own.unknowns(&states[..periods], shooting.value(&solution.x));
+            Some((periods, own.correct_at_value(&start)?))
+        }
+    }
+}
+
+/// A start for each of `count` numbers of a Sobol sequence, over the states that the force can reach: the structure within what it does
+/// without damper at this frequency or what the force would hold, the damper between its walls.
+pub fn starts(system: &Coupled, scene: &Scene, count: usize) -> Vec<[f64; 4]> {
+    let omega = scene.forcing.frequency.get();
+    let bare = Bare::new(&scene.primary, &scene.forcing);
+    let reach = (2.0 * bare.steady(omega).e1_max / scene.primary.mass.get()).sqrt(); // a speed, m/s
+    let [near, far] = [system.wall(retune_model::Side::Primary), system.wall(retune_model::Side::Obstacle)];
+    let (near, far) = if system.has_walls() {
+        (near, far.min(near + 10.0 * reach / omega))
+    } else {
+        (system.rest_distance() - 3.0 * reach / omega, system.rest_distance() + 3.0 * reach / omega)
+    };
+    let sobol = |i: usize, dimension: u32| f64::from(sobol_burley::sample(i as u32, dimension, 1));
+    (0..count)
+        .map(|i| {
+            let signed = |dimension: u32| 2.0 * sobol(i, dimension) - 1.0;
+            let x1 = reach / omega * signed(0);
+            [x1, reach * signed(1), x1 + near + (far - near) * sobol(i, 2), 2.0 * reach * signed(3)]
+        })
+        .collect()
+}

@@ -1,0 +1,242 @@
+//! The equations of a periodic motion, by multiple shooting, and their solution by Newton's iteration.
+
+use crate::parameter::Error;
+use crate::poincare::coupled;
+use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
+use retune_model::{Coupled, Parameter, Scene};
+use retune_solver::observe::Unobserved;
+use retune_solver::{Motion, Phase, Settings, Tangent};
+use std::f64::consts::TAU;
+
+/// Largest gap between segments of a solution, relative to the size of the motion.
+const CLOSED: f64 = 2e-11;
+/// Most of Newton's iterations. They gain digits fast or not at all.
+const ITERATIONS: usize = 9;
+/// A change larger than this share of the motion leaves the neighbourhood in which the iteration can be trusted.
+const FAR: f64 = 0.5;
+/// Largest tolerance of the contacts.
+const TOLERANCE: f64 = 1e-12;
+
+/// The equations of motions with a number of periods of the force, along a parameter.
+///
+/// Their unknowns are the states at the beginnings of the segments, in units of the motion's size, and the parameter in units of `span`.
+#[derive(Clone, Debug)]
+pub struct Shooting {
+    /// The scene, but for the parameter.
+    pub scene: Scene,
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Periods of the force.
+    pub periods: usize,
+    /// Number of segments.
+    pub segments: usize,
+    /// The unit of the parameter.
+    pub span: f64,
+    settings: Settings,
+    /// Units of the state.
+    scale: Vector4<f64>,
+}
+
+/// The equations at some unknowns.
+#[derive(Clone, Debug)]
+pub struct Linearised {
+    /// The gaps between the segments.
+    pub gaps: DVector<f64>,
+    /// Their derivatives by the unknowns.
+    pub jacobian: DMatrix<f64>,
+    /// The derivative of the state at the end of each segment by that at its beginning, in units.
+    pub transitions: Vec<Matrix4<f64>>,
+}
+
+/// A solution.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The unknowns.
+    pub x: DVector<f64>,
+    /// The equations there.
+    pub at: Linearised,
+    /// Iterations that it took.
+    pub iterations: usize,
+}
+
+impl Shooting {
+    /// The equations of motions of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period.
+    pub fn new(
+        scene: Scene,
+        parameter: Parameter,
+        periods: usize,
+        (span, size): (f64, f64),
+        settings: &Settings,
+    ) -> Self {
+        let omega = scene.forcing.frequency.get();
+        let m1 = scene.primary.mass.get().sqrt();
+        let m2 = scene.damper.map_or(0.0, |damper| damper.mass.get().sqrt());
+        let settings = Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings };
+        let scale = Vector4::new(omega * m1, m1, omega * m2, m2) / size;
+        Self { scene, parameter, periods, segments: periods, span, settings, scale }
+    }
+
+    /// The same for another number of periods, with as many segments.
+    #[must_use]
+    pub fn of_periods(&self, periods: usize) -> Self {
+        Self { periods, segments: periods, ..self.clone() }
+    }
+
+    /// The unknowns for the states at the beginnings of the segments and a value of the parameter.
+    pub fn unknowns(&self, states: &[[f64; 4]], value: f64) -> DVector<f64> {
+        let scaled = states.iter().flat_map(|y| (0..4).map(|i| y[i] * self.scale[i]));
+        DVector::from_iterator(4 * states.len() + 1, scaled.chain([value / self.span]))
+    }
+
+    /// The parameter's value in unknowns.
+    pub fn value(&self, x: &DVector<f64>) -> f64 {
+        x[4 * self.segments] * self.span
+    }
+
+    /// The states in unknowns.
+    pub fn states(&self, x: &DVector<f64>) -> Vec<[f64; 4]> {
+        (0..self.segments).map(|k| std::array::from_fn(|i| x[4 * k + i] / self.scale[i])).collect()
+    }
+
+    /// The scene at a value of the parameter.
+    ///
+    /// # Errors
+    /// See [`Error`].
+    pub fn scene_at(&self, value: f64) -> Result<Scene, Error> {
+        Ok(self.parameter.at(self.scene, value)?)
+    }
+
+    /// The settings of the runs.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The distance of two vectors of unknowns: a root mean square over the segments.
+    pub fn norm(&self, x: &DVector<f64>) -> f64 {
+        self.inner(x, x).sqrt()
+    }
+
+    /// Its inner product.
+    pub fn inner(&self, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+        let last = 4 * self.segments;
+        let states: f64 = (0..last).map(|i| a[i] * b[i]).sum();
+        states / self.segments as f64 + a[last] * b[last]
+    }
+
+    /// The number of segments by which `b` is to be moved on to come nearest to `a`, and their largest difference in the states then: a
+    /// motion of several periods may begin at any crest of the force.
+    pub fn nearest(&self, a: &DVector<f64>, b: &DVector<f64>) -> (usize, f64) {
+        let (n, step) = (4 * self.segments, 4 * self.segments / self.periods.min(self.segments));
+        let gap = |shift: usize| (0..n).map(|i| (a[i] - b[(i + shift) % n]).abs()).fold(0.0, f64::max);
+        let all = (0..n).step_by(step).map(|shift| (shift / 4, gap(shift)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
+    }
+
+    /// Unknowns or a direction, moved on by so many segments.
+    pub fn moved_on(&self, x: &DVector<f64>, shift: usize) -> DVector<f64> {
+        let n = 4 * self.segments;
+        DVector::from_fn(n + 1, |i, _| if i < n { x[(i + 4 * shift) % n] } else { x[n] })
+    }
+
+    /// The equations and their derivatives.
+    ///
+    /// # Errors
+    /// The scene cannot be run there.
+    pub fn linearised(&self, x: &DVector<f64>) -> Result<Linearised, Error> {
+        let (m, value) = (self.segments, self.value(x));
+        let system = coupled(&self.scene_at(value)?)?;
+        let omega = system.bare().frequency();
+        let share = self.periods as f64 * TAU / omega / m as f64;
+        let mut tangent = Tangent::new(&system, &self.settings, share, &[self.parameter]);
+        let states = self.states(x);
+        let mut gaps = DVector::zeros(4 * m);
+        let mut jacobian = DMatrix::zeros(4 * m, 4 * m + 1);
+        let mut transitions = Vec::with_capacity(m);
+        for k in 0..m {
+            let [from, to] = [k as f64 * share, (k + 1) as f64 * share];
+            let start = Motion { t: from, y: states[k], phase: Phase::of(&system, &states[k]) };
+            let found = tangent.propagate(start, to, &mut Unobserved)?;
+            let by_state = Matrix4::from_fn(|i, j| found.by_state[j][i]);
+            let mut by = Vector4::from(found.by[0]);
+            if self.parameter == Parameter::Omega {
+                // The ends of the segments move with the period.
+                let rate = |t: f64, y: &[f64; 4]| Vector4::from(system.derivative(system.excitation(t), y));
+                by += (by_state * rate(from, &states[k]) * from - rate(to, &found.end.y) * to) / omega;
+            }
+            let next = (k + 1) % m;
+            let transition =
+                Matrix4::from_fn(|i, j| by_state[(i, j)] * self.scale[i] / self.scale[j]);
+            for i in 0..4 {
+                gaps[4 * k + i] = (found.end.y[i] - states[next][i]) * self.scale[i];
+                jacobian[(4 * k + i, 4 * m)] = by[i] * self.scale[i] * self.span;
+                jacobian[(4 * k + i, 4 * next + i)] -= 1.0;
+                for j in 0..4 {
+                    jacobian[(4 * k + i, 4 * k + j)] += transition[(i, j)];
+                }
+            }
+            transitions.push(transition);
+        }
+        Ok(Linearised { gaps, jacobian, transitions })
+    }
+
+    /// The solution nearest to `start` in the plane through it whose normal is `normal`; none if Newton's iteration does not find one.
+    pub fn correct(&self, start: &DVector<f64>, normal: &DVector<f64>) -> Option<Solution> {
+        let mut x = start.clone();
+        let mut before = f64::INFINITY;
+        for iterations in 0..=ITERATIONS {
+            let at = self.linearised(&x).ok()?;
+            let gap = at.gaps.amax();
+            if gap <= CLOSED {
+                return Some(Solution { x, at, iterations });
+            }
+            let out = self.inner(normal, &(&x - start));
+            let mut right = at.gaps.clone().insert_row(4 * self.segments, out);
+            right.neg_mut();
+            let change = self.bordered(&at.jacobian, normal).lu().solve(&right)?;
+            let size = self.norm(&change);
+            if !size.is_finite() || size > FAR || (iterations > 3 && size > before) {
+                return None;
+            }
+            before = size;
+            x += change;
+        }
+        None
+    }
+
+    /// The solution at the value of the parameter in `start`.
+    pub fn correct_at_value(&self, start: &DVector<f64>) -> Option<Solution> {
+        let last = 4 * self.segments;
+        self.correct(start, &DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last))))
+    }
+
+    /// The direction of the branch through a solution, of length 1, on the side of `before`.
+    pub fn tangent(&self, at: &Linearised, before: &DVector<f64>) -> Option<DVector<f64>> {
+        let last = 4 * self.segments;
+        let right = DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)));
+        let direction = self.bordered(&at.jacobian, before).lu().solve(&right)?;
+        let length = self.norm(&direction);
+        length.is_finite().then(|| direction / length)
+    }
+
+    /// The Jacobian with one more row: the plane whose normal is `normal`.
+    fn bordered(&self, jacobian: &DMatrix<f64>, normal: &DVector<f64>) -> DMatrix<f64> {
+        let last = 4 * self.segments;
+        let row = |j: usize| if j < last { normal[j] / self.segments as f64 } else { normal[j] };
+        DMatrix::from_fn(last + 1, last + 1, |i, j| if i < last { jacobian[(i, j)] } else { row(j) })
+    }
+
+    /// The system at a value of the parameter.
+    ///
+    /// # Errors
+    /// See [`Error`].
+    pub fn system(&self, value: f64) -> Result<Coupled, Error> {
+        coupled(&self.scene_at(value)?)
+    }
+}
+
+impl Linearised {
+    /// The derivative of the state after all periods by the first one, in units.
+    pub fn monodromy(&self) -> Matrix4<f64> {
+        self.transitions.iter().fold(Matrix4::identity(), |product, transition| transition * product)
+    }
+}

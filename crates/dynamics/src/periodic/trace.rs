@@ -1,0 +1,201 @@
+//! A branch of periodic motions along a parameter, by pseudo-arclength continuation.
+//!
+//! From a motion, a step along the branch's direction, then Newton's iteration in the plane across it. A step is taken again, half as
+//! long, where the iteration needs many rounds, ends far from the prediction, or the direction turns by more than [`TURN`]: so it
+//! neither jumps to another branch nor cuts a fold short.
+
+use super::events::{Event, located, tests};
+use super::orbit::Orbit;
+use super::shooting::{Shooting, Solution};
+use nalgebra::DVector;
+
+/// The step at the start, the longest and the shortest, in units of the motion's size and of the parameter's span.
+const FIRST: f64 = 2e-3;
+const LONGEST: f64 = 0.02;
+const SHORTEST: f64 = 1e-8;
+/// Most steps to one side.
+const MOST: usize = 3000;
+/// Least cosine of the angle by which the direction may turn in a step.
+const TURN: f64 = 0.95;
+/// Least cosine after which steps may grow.
+const STRAIGHT: f64 = 0.995;
+/// How far from the prediction a solution may be, as a share of the step.
+const ASTRAY: f64 = 0.3;
+
+/// Why a branch was followed no farther.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The parameter left its range.
+    Range,
+    /// It is closed: it came back to where it began.
+    Closed,
+    /// It has joined the branch of half its period, at a period doubling.
+    Halved,
+    /// After the most steps.
+    Steps,
+    /// No solution was found a shortest step ahead.
+    Lost,
+}
+
+impl End {
+    /// In words, after "the branch".
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Range => "ends where the range ends",
+            Self::Closed => "is closed",
+            Self::Halved => "ends at a period doubling",
+            Self::Steps => "was followed no farther after the most steps",
+            Self::Lost => "was lost: no motion was found a shortest step ahead",
+        }
+    }
+}
+
+/// A branch: its motions in their order, with what happens between them.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    /// The equations of its motions.
+    pub shooting: Shooting,
+    /// Its motions. Those at events are among them.
+    pub points: Vec<Orbit>,
+    /// What happens along it, in this order.
+    pub events: Vec<Event>,
+    /// How it ends on either side.
+    pub ends: [End; 2],
+}
+
+/// A motion on a branch, with the direction of the branch.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub solution: Solution,
+    pub direction: DVector<f64>,
+    pub orbit: Orbit,
+    pub tests: [f64; 3],
+}
+
+impl Node {
+    pub(super) fn new(shooting: &Shooting, solution: Solution, before: &DVector<f64>) -> Option<Self> {
+        let direction = shooting.tangent(&solution.at, before)?;
+        let orbit = Orbit::of(shooting, &solution).ok()?;
+        let tests = tests(&orbit, &direction);
+        Some(Self { solution, direction, orbit, tests })
+    }
+}
+
+/// The branch through a solution, to both sides.
+pub fn trace(shooting: &Shooting, seed: &Solution, [from, to]: [f64; 2]) -> Option<Branch> {
+    let last = seed.x.len() - 1;
+    let along = DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)));
+    let start = Node::new(shooting, seed.clone(), &along)?;
+    let (after, end) = side(shooting, &start, [from, to]);
+    if end == End::Closed {
+        return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));
+    }
+    let back = Node { direction: -&start.direction, ..start.clone() };
+    let back = Node { tests: tests(&back.orbit, &back.direction), ..back };
+    let (before, begin) = side(shooting, &back, [from, to]);
+    Some(joined(shooting, before, &start, after, [begin, end]))
+}
+
+/// The branch from a solution to one side alone.
+pub(super) fn trace_from(shooting: &Shooting, start: &Node, range: [f64; 2]) -> Branch {
+    let (after, end) = side(shooting, start, range);
+    joined(shooting, Vec::new(), start, after, [End::Halved, end])
+}
+
+/// A motion, or an event, found on the way.
+type Found = (Orbit, Option<Event>);
+
+/// The motions to one side of a start.
+fn side(shooting: &Shooting, start: &Node, [from, to]: [f64; 2]) -> (Vec<Found>, End) {
+    let mut found: Vec<Found> = Vec::new();
+    let (mut now, mut step) = (start.clone(), FIRST);
+    let mut apart = 0.0;
+    for _ in 0..MOST {
+        let next = loop {
+            let guess = &now.solution.x + &now.direction * step;
+            let corrected = shooting.correct(&guess, &now.direction);
+            let next = corrected.and_then(|solution| {
+                let astray = shooting.norm(&(&solution.x - &guess)) > ASTRAY * step;
+                let node = if astray { None } else { Node::new(shooting, solution, &now.direction) };
+                node.filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)
+            });
+            match next {
+                Some(next) => break next,
+                None if step < 2.0 * SHORTEST => return (found, End::Lost),
+                None => step *= 0.5,
+            }
+        };
+        let straight = shooting.inner(&next.direction, &now.direction) > STRAIGHT;
+        if straight && next.solution.iterations <= 4 {
+            step = (1.6 * step).min(LONGEST);
+        }
+        for event in located(shooting, &now, &next) {
+            found.push((event.orbit.clone(), Some(event)));
+        }
+        let value = next.orbit.value;
+        if value < from || value > to {
+            let end = at_end(shooting, &now, &next, if value < from { from } else { to });
+            // Events beyond the range do not count.
+            found.retain(|(orbit, _)| orbit.value >= from && orbit.value <= to);
+            found.extend(end.map(|orbit| (orbit, None)));
+            return (found, End::Range);
+        }
+        if joins_half(shooting, &now, &next) {
+            return (found, End::Halved);
+        }
+        found.push((next.orbit.clone(), None));
+        // Back at the start: near it, past it, and in the same direction.
+        let (shift, _) = shooting.nearest(&start.solution.x, &next.solution.x);
+        let moved = |x: &DVector<f64>| shooting.moved_on(x, shift);
+        let away = shooting.norm(&(moved(&next.solution.x) - &start.solution.x));
+        let came = shooting.norm(&(&next.solution.x - &now.solution.x));
+        let alike = shooting.inner(&moved(&next.direction), &start.direction) > TURN;
+        if apart > 4.0 * came && away < came && alike {
+            return (found, End::Closed);
+        }
+        apart = f64::max(apart, away);
+        now = next;
+    }
+    (found, End::Steps)
+}
+
+/// The motion at the end of the range.
+fn at_end(shooting: &Shooting, now: &Node, next: &Node, value: f64) -> Option<Orbit> {
+    let [a, b] = [now.orbit.value, next.orbit.value];
+    let share = (value - a) / (b - a);
+    let mut guess = &now.solution.x + (&next.solution.x - &now.solution.x) * share;
+    let last = guess.len() - 1;
+    guess[last] = value / shooting.span;
+    let mut orbit = Orbit::of(shooting, &shooting.correct_at_value(&guess)?).ok()?;
+    orbit.value = value;
+    Some(orbit)
+}
+
+/// Whether a branch of an even number of periods has passed a motion of half of them: the difference of its halves changes sign there.
+fn joins_half(shooting: &Shooting, now: &Node, next: &Node) -> bool {
+    if shooting.segments % 2 == 1 {
+        return false;
+    }
+    let half = 2 * shooting.segments;
+    let halves = |x: &DVector<f64>| (0..half).map(|i| x[i] - x[half + i]).collect::<Vec<f64>>();
+    let (a, b) = (halves(&now.solution.x), halves(&next.solution.x));
+    a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>() < 0.0
+}
+
+/// Both sides as one branch.
+fn joined(
+    shooting: &Shooting,
+    before: Vec<Found>,
+    start: &Node,
+    after: Vec<Found>,
+    ends: [End; 2],
+) -> Branch {
+    let middle = (start.orbit.clone(), None);
+    let all = before.into_iter().rev().chain([middle]).chain(after);
+    let (mut points, mut events) = (Vec::new(), Vec::new());
+    for (orbit, event) in all {
+        events.extend(event.map(|event| Event { place: points.len(), ..event }));
+        points.push(orbit);
+    }
+    Branch { shooting: shooting.clone(), points, events, ends }
+}
