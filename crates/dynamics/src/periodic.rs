@@ -9,6 +9,7 @@
 
 pub mod branches;
 pub mod events;
+mod node;
 pub mod orbit;
 pub mod settle;
 pub mod shooting;

@@ -90,8 +90,7 @@ pub fn branches(
     let middle = plan.parameter.at(*scene, 0.5 * (plan.range[0] + plan.range[1]))?;
     let bare = Bare::new(&middle.primary, &middle.forcing);
     let size = (2.0 * bare.steady(middle.forcing.frequency.get()).e1_max).sqrt().max(f64::MIN_POSITIVE);
-    let shooting =
-        Shooting::new(middle, plan.parameter, 1, (plan.range[1] - plan.range[0], size), settings);
+    let shooting = Shooting::new(middle, plan.parameter, 1, (plan.range[1] - plan.range[0], size), settings);
     let values = evenly(plan.range[0], plan.range[1], plan.samples);
     let seen: Vec<Result<Seen, Error>> = values
         .par_iter()
@@ -167,7 +166,9 @@ impl Branches {
                     let [x, y] = [&pair[0], &pair[1]].map(|orbit| shooting.unknowns(&orbit.states, value));
                     let guess = &x + (y - &x) * share;
                     shooting.nearest(&guess, &motion.x).1 < FAR
-                        && shooting.correct_at_value(&guess).is_some_and(|own| is_same(shooting, &own, motion))
+                        && shooting
+                            .correct_at_value(&guess)
+                            .is_some_and(|own| is_same(shooting, &own, motion))
                 })
         })
     }
@@ -214,9 +215,8 @@ impl Branches {
         let all = 0..branch.points.len();
         let most = all.clone().map(value).fold(f64::NEG_INFINITY, f64::max);
         let near = |&i: &usize| value(i) >= (1.0 - CLOSE) * most && stable(i).is_some();
-        let peaks = all.filter(near).filter(|&i| {
-            (i == 0 || value(i - 1) <= value(i)) && value(i + 1) <= value(i)
-        });
+        let peaks =
+            all.filter(near).filter(|&i| (i == 0 || value(i - 1) <= value(i)) && value(i + 1) <= value(i));
         let located = peaks.filter_map(|i| {
             let own = stable(i)?.clone();
             let inner = i > 0 && stable(i - 1).is_some() && stable(i + 1).is_some();

@@ -1,9 +1,9 @@
 //! What happens along a branch: folds, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
 
+use super::node::{Node, between};
 use super::orbit::Orbit;
 use super::shooting::{Linearised, Shooting};
-use super::trace::Node;
-use nalgebra::{Complex, DVector};
+use nalgebra::Complex;
 
 /// Most evaluations for the place of one event.
 const EVALUATIONS: usize = 80;
@@ -50,16 +50,6 @@ pub struct Event {
     pub place: usize,
 }
 
-/// What changes sign at a fold, a period doubling and a Neimark–Sacker bifurcation.
-pub(super) fn tests(orbit: &Orbit, direction: &DVector<f64>) -> [f64; 3] {
-    let one = Complex::new(1.0, 0.0);
-    let all = &orbit.multipliers;
-    let doubling: Complex<f64> = all.iter().map(|multiplier| multiplier + one).product();
-    let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
-    let circle: Complex<f64> = pairs.map(|(i, j)| all[i] * all[j] - one).product();
-    [direction[direction.len() - 1], doubling.re, circle.re]
-}
-
 /// The events between two motions, in their order.
 pub(super) fn located(shooting: &Shooting, now: &Node, next: &Node) -> Vec<Event> {
     let mut found: Vec<(f64, Event)> = Vec::new();
@@ -92,15 +82,9 @@ fn event(kind: EventKind, node: Node) -> Event {
 
 /// Whether the pair of multipliers nearest to the unit circle is complex; two real ones with the product 1 are no bifurcation.
 fn is_complex(orbit: &Orbit) -> bool {
-    let nearest = |a: &&Complex<f64>, b: &&Complex<f64>| (a.norm() - 1.0).abs().total_cmp(&(b.norm() - 1.0).abs());
+    let nearest =
+        |a: &&Complex<f64>, b: &&Complex<f64>| (a.norm() - 1.0).abs().total_cmp(&(b.norm() - 1.0).abs());
     orbit.multipliers.iter().min_by(nearest).is_some_and(|multiplier| multiplier.im.abs() > 1e-6)
-}
-
-/// The motion at a share of the way between two.
-fn between(shooting: &Shooting, [now, next]: [&Node; 2], share: f64) -> Option<Node> {
-    let way = &next.solution.x - &now.solution.x;
-    let solution = shooting.correct(&(&now.solution.x + &way * share), &way)?;
-    Node::new(shooting, solution, &now.direction)
 }
 
 /// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that stays).

@@ -92,7 +92,7 @@ fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)
         let moved = shooting.moved_on(&solution.x, *periods);
         (&moved - &solution.x).amax() < SAME
     };
-    match (1..n).filter(|periods| n % periods == 0).find(repeats) {
+    match (1..n).filter(|periods| n.is_multiple_of(*periods)).find(repeats) {
         None => Some((n, solution)),
         Some(periods) => {
             let own = shooting.of_periods(periods);

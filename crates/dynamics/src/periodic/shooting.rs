@@ -32,6 +32,7 @@ pub struct Shooting {
     pub segments: usize,
     /// The unit of the parameter.
     pub span: f64,
+    /// How the segments are run.
     settings: Settings,
     /// Units of the state.
     scale: Vector4<f64>,
@@ -82,6 +83,12 @@ impl Shooting {
         Self { periods, segments: periods, ..self.clone() }
     }
 
+    /// The same in so many segments.
+    #[must_use]
+    pub fn in_segments(&self, segments: usize) -> Self {
+        Self { segments, ..self.clone() }
+    }
+
     /// The unknowns for the states at the beginnings of the segments and a value of the parameter.
     pub fn unknowns(&self, states: &[[f64; 4]], value: f64) -> DVector<f64> {
         let scaled = states.iter().flat_map(|y| (0..4).map(|i| y[i] * self.scale[i]));
@@ -126,7 +133,9 @@ impl Shooting {
     /// The number of segments by which `b` is to be moved on to come nearest to `a`, and their largest difference in the states then: a
     /// motion of several periods may begin at any crest of the force.
     pub fn nearest(&self, a: &DVector<f64>, b: &DVector<f64>) -> (usize, f64) {
-        let (n, step) = (4 * self.segments, 4 * self.segments / self.periods.min(self.segments));
+        let n = 4 * self.segments;
+        // A crest at which no segment begins cannot be compared.
+        let step = if self.segments.is_multiple_of(self.periods) { n / self.periods } else { n };
         let gap = |shift: usize| (0..n).map(|i| (a[i] - b[(i + shift) % n]).abs()).fold(0.0, f64::max);
         let all = (0..n).step_by(step).map(|shift| (shift / 4, gap(shift)));
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
@@ -164,8 +173,7 @@ impl Shooting {
                 by += (by_state * rate(from, &states[k]) * from - rate(to, &found.end.y) * to) / omega;
             }
             let next = (k + 1) % m;
-            let transition =
-                Matrix4::from_fn(|i, j| by_state[(i, j)] * self.scale[i] / self.scale[j]);
+            let transition = Matrix4::from_fn(|i, j| by_state[(i, j)] * self.scale[i] / self.scale[j]);
             for i in 0..4 {
                 gaps[4 * k + i] = (found.end.y[i] - states[next][i]) * self.scale[i];
                 jacobian[(4 * k + i, 4 * m)] = by[i] * self.scale[i] * self.span;
@@ -185,15 +193,16 @@ impl Shooting {
         let mut before = f64::INFINITY;
         for iterations in 0..=ITERATIONS {
             let at = self.linearised(&x).ok()?;
-            let gap = at.gaps.amax();
-            if gap <= CLOSED {
-                return Some(Solution { x, at, iterations });
-            }
             let out = self.inner(normal, &(&x - start));
             let mut right = at.gaps.clone().insert_row(4 * self.segments, out);
             right.neg_mut();
             let change = self.bordered(&at.jacobian, normal).lu().solve(&right)?;
             let size = self.norm(&change);
+            if at.gaps.amax() <= CLOSED {
+                // One change more costs nothing: its derivatives are known.
+                x += change;
+                return Some(Solution { x, at, iterations });
+            }
             if !size.is_finite() || size > FAR || (iterations > 3 && size > before) {
                 return None;
             }

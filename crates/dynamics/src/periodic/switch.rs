@@ -1,8 +1,9 @@
 //! From a period doubling to the branch of twice the period.
 
 use super::events::{Event, EventKind};
+use super::node::Node;
 use super::shooting::Shooting;
-use super::trace::{Branch, Node, trace_from};
+use super::trace::{Branch, trace_from};
 use nalgebra::{DVector, Matrix4, Vector4};
 
 /// The first steps onto the new branch that are tried, in units of the motion's size.

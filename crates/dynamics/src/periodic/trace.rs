@@ -4,7 +4,8 @@
 //! long, where the iteration needs many rounds, ends far from the prediction, or the direction turns by more than [`TURN`]: so it
 //! neither jumps to another branch nor cuts a fold short.
 
-use super::events::{Event, located, tests};
+use super::events::{Event, located};
+use super::node::{Node, tests};
 use super::orbit::Orbit;
 use super::shooting::{Shooting, Solution};
 use nalgebra::DVector;
@@ -61,24 +62,6 @@ pub struct Branch {
     pub events: Vec<Event>,
     /// How it ends on either side.
     pub ends: [End; 2],
-}
-
-/// A motion on a branch, with the direction of the branch.
-#[derive(Clone, Debug)]
-pub(super) struct Node {
-    pub solution: Solution,
-    pub direction: DVector<f64>,
-    pub orbit: Orbit,
-    pub tests: [f64; 3],
-}
-
-impl Node {
-    pub(super) fn new(shooting: &Shooting, solution: Solution, before: &DVector<f64>) -> Option<Self> {
-        let direction = shooting.tangent(&solution.at, before)?;
-        let orbit = Orbit::of(shooting, &solution).ok()?;
-        let tests = tests(&orbit, &direction);
-        Some(Self { solution, direction, orbit, tests })
-    }
 }
 
 /// The branch through a solution, to both sides.
@@ -173,7 +156,7 @@ fn at_end(shooting: &Shooting, now: &Node, next: &Node, value: f64) -> Option<Or
 
 /// Whether a branch of an even number of periods has passed a motion of half of them: the difference of its halves changes sign there.
 fn joins_half(shooting: &Shooting, now: &Node, next: &Node) -> bool {
-    if shooting.segments % 2 == 1 {
+    if shooting.periods % 2 == 1 || shooting.segments % 2 == 1 {
         return false;
     }
     let half = 2 * shooting.segments;
