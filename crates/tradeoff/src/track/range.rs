@@ -6,7 +6,7 @@
 
 use super::tuned::on_samples;
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Design, NonNegative, Scene, Variable, den_hartog};
+use retune_model::{Bare, Coupled, Design, NonNegative, Scene, Variable, den_hartog};
 use retune_optim::{Bounds, Options, Scaling, minimize};
 use retune_study::{Setting, Study};
 use std::ops::ControlFlow;
@@ -139,14 +139,10 @@ fn limit(study: &Study, k1: f64) -> Option<f64> {
 fn best_tmd(scene: &Scene, band: [f64; 2]) -> Option<f64> {
     let damper = scene.damper?;
     let steady = |x: &[f64], _cutoff: f64| {
-        let design = Design::new(|variable| match variable {
-            Variable::K2 => x[0],
-            Variable::C2 => x[1],
-            _ => f64::NAN, // as it is
-        });
-        let worst =
-            |damper: Damper| Coupled::new(&scene.primary, &scene.forcing, &damper).steady_e1_max(band);
-        design.map_or(f64::INFINITY, |design| worst(design.on(damper)).value)
+        let mut tmd = damper;
+        let set = Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1]));
+        let worst = || Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
+        set.map_or(f64::INFINITY, |()| worst())
     };
     let start = den_hartog(&scene.primary, damper.mass.get());
     let not_negative = Bounds { lower: Some(0.0), upper: None };
