@@ -90,7 +90,9 @@ pub(super) fn path(dampers: &[Tuned]) -> Drawing {
         let layers = dampers.iter().enumerate().flat_map(|(i, damper)| {
             let (stroke, mark) = looks(i);
             let points = value(damper);
-            [Layer::Line { points: points.clone(), stroke }, Layer::Marks { points, mark }]
+            // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
+            let line = (which < 2).then(|| Layer::Line { points: points.clone(), stroke });
+            line.into_iter().chain([Layer::Marks { points, mark }])
         });
         let k1 = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1));
         Chart {
