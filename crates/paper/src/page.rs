@@ -3,7 +3,7 @@
 use super::item::{Grid, Item, Picture, Statement, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use retune_figures::Drawing;
-use retune_workbench::report::STYLE;
+use retune_workbench::report::html::head;
 
 /// What this page has beside the style of all pages.
 const OWN: &str = include_str!("page.css");
@@ -18,14 +18,7 @@ pub fn page(items: &[Item]) -> String {
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                link rel="icon" href="data:,";
-                title { "Retune: the paper on one page" }
-                style { (PreEscaped(STYLE)) (PreEscaped(OWN)) }
-            }
+            (head("Retune: the paper on one page", OWN))
             body {
                 header {
                     h1 { "Retention of tuning for vibro-impact and linear dampers: the whole paper, made again" }

@@ -80,19 +80,19 @@ pub fn extremes(
 }
 
 fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Result<Extremes, SolverError> {
-    let largest = match motion(ask.measure) {
-        Some(quantity) => {
+    let largest = match observed(ask.measure) {
+        Observed::Motion(quantity) => {
             let mut size = Magnitude::new(|sign| quantity(system, sign), ask.cutoff);
             follow_bare(system, window, settings, &mut Unobserved, &mut size)?;
             size.record()
         }
-        None if ask.measure == Measure::Energy => {
+        Observed::Energy => {
             let mut e1 = RunningMaximum::new(BareEnergy::new(system), ask.cutoff);
             follow_bare(system, window, settings, &mut Unobserved, &mut e1)?;
             e1.record()
         }
         // There is no damper that could move or touch.
-        None => Extreme { value: 0.0, time: window.from },
+        Observed::Stroke | Observed::Force => Extreme { value: 0.0, time: window.from },
     };
     Ok(Extremes { largest, stroke: 0.0, force: 0.0, settled: true })
 }
@@ -138,13 +138,11 @@ pub(crate) enum Peak<'a> {
 
 impl<'a> Peak<'a> {
     fn new(system: &'a Coupled, measure: Measure, cutoff: f64) -> Self {
-        if let Some(quantity) = motion(measure) {
-            return Self::Motion(Magnitude::new(|sign| quantity(system, sign), cutoff));
-        }
-        match measure {
-            Measure::Stroke => Self::Stroke(DisplacementRange::new(system, 0.0, cutoff)),
-            Measure::ContactForce => Self::Force(DisplacementRange::new(system, 0.0, cutoff)),
-            _ => Self::Energy(RunningMaximum::new(PrimaryEnergy::new(system), cutoff)),
+        match observed(measure) {
+            Observed::Energy => Self::Energy(RunningMaximum::new(PrimaryEnergy::new(system), cutoff)),
+            Observed::Motion(quantity) => Self::Motion(Magnitude::new(|sign| quantity(system, sign), cutoff)),
+            Observed::Stroke => Self::Stroke(DisplacementRange::new(system, 0.0, cutoff)),
+            Observed::Force => Self::Force(DisplacementRange::new(system, 0.0, cutoff)),
         }
     }
 
@@ -158,16 +156,25 @@ impl<'a> Peak<'a> {
     }
 }
 
-/// The quantity of the structure's motion that a measure is the largest size of; `None` for the energy and for the damper's.
-fn motion<'a, S: Structure<N>, const N: usize>(
+/// What is observed for a measure: of the structure's motion, the quantity whose largest size it is.
+enum Observed<Q> {
+    Energy,
+    Motion(Q),
+    Stroke,
+    Force,
+}
+
+fn observed<'a, S: Structure<N>, const N: usize>(
     measure: Measure,
-) -> Option<fn(&'a S, f64) -> StructureMotion<'a, S, N>> {
+) -> Observed<fn(&'a S, f64) -> StructureMotion<'a, S, N>> {
     match measure {
-        Measure::Displacement => Some(StructureMotion::displacement),
-        Measure::Velocity => Some(StructureMotion::velocity),
-        Measure::Acceleration => Some(StructureMotion::acceleration),
-        Measure::GroundForce => Some(StructureMotion::ground_force),
-        Measure::Energy | Measure::Stroke | Measure::ContactForce => None,
+        Measure::Energy => Observed::Energy,
+        Measure::Displacement => Observed::Motion(StructureMotion::displacement),
+        Measure::Velocity => Observed::Motion(StructureMotion::velocity),
+        Measure::Acceleration => Observed::Motion(StructureMotion::acceleration),
+        Measure::GroundForce => Observed::Motion(StructureMotion::ground_force),
+        Measure::Stroke => Observed::Stroke,
+        Measure::ContactForce => Observed::Force,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The answer to a run: largest values, counts, the final state and the work.
 
+use retune_model::Measure;
 use serde::{Deserialize, Serialize};
 
 /// A largest value and when it was reached.
@@ -78,4 +79,19 @@ pub struct Response {
     pub scene: SceneKind,
     /// The work of the run.
     pub work: Work,
+}
+
+impl Response {
+    /// The largest value of a measure, in its unit; of the contact force, that on either wall.
+    pub fn largest(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Energy => self.e1_max.value,
+            Measure::Displacement => self.structure.displacement.value,
+            Measure::Velocity => self.structure.velocity.value,
+            Measure::Acceleration => self.structure.acceleration.value,
+            Measure::GroundForce => self.structure.ground_force.value,
+            Measure::Stroke => self.spring_deflection_max,
+            Measure::ContactForce => self.force_max[0].max(self.force_max[1]),
+        }
+    }
 }

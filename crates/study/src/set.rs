@@ -7,9 +7,24 @@ use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene, Sou
 use std::str::FromStr;
 use thiserror::Error;
 
-/// The names that may be set.
-const NAMES: [&str; 15] =
-    ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "P", "imbalance", "base", "omega", "R", "T", "t0"];
+/// The numbers of a study that may be set, by their symbols, each with its SI unit: those of the scene, then the window's.
+pub const PARAMETERS: [(&str, &str); 15] = [
+    ("m1", "kg"),
+    ("c1", "N·s/m"),
+    ("k1", "N/m"),
+    ("m2", "kg"),
+    ("k2", "N/m"),
+    ("c2", "N·s/m"),
+    ("D", "m"),
+    ("C", "m"),
+    ("P", "N"),
+    ("imbalance", "kg·m"),
+    ("base", "m"),
+    ("omega", "rad/s"),
+    ("R", "m"),
+    ("T", "s"),
+    ("t0", "s"),
+];
 
 /// A parsed `NAME=VALUE`.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +43,7 @@ pub enum SettingError {
         text: String,
     },
     /// No such parameter.
-    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &NAMES))]
+    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &PARAMETERS.map(|(name, _)| name)))]
     Name {
         /// The name as given.
         name: String,
@@ -116,7 +131,7 @@ fn number(name: &'static str, text: &str) -> Result<f64, SettingError> {
 
 fn known(name: &str) -> Result<&'static str, SettingError> {
     let unknown = || SettingError::Name { name: name.to_owned() };
-    NAMES.into_iter().find(|known| *known == name).ok_or_else(unknown)
+    PARAMETERS.into_iter().map(|(known, _)| known).find(|known| *known == name).ok_or_else(unknown)
 }
 
 impl Study {
@@ -216,7 +231,7 @@ fn set_damper(
             match name {
                 "D" => damper.rest_distance = not_negative()?,
                 "C" => damper.clearance = not_negative()?,
-                _ => contact.radius = positive()?, // R, the last of `NAMES`
+                _ => contact.radius = positive()?, // R, the last of `PARAMETERS` of a damper
             }
         }
     }

@@ -1,6 +1,7 @@
 //! An objective in words, for figures, tables and the screen; numbers and counts in words.
 
 use crate::angular_frequency::hertz_and_rpm;
+use retune_model::Design;
 use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
 use std::fmt::Display;
 
@@ -77,6 +78,21 @@ pub fn frequency(omega: f64) -> String {
     format!("{} rad/s ({} Hz)", rounded(omega, 4), rounded(hertz_and_rpm(omega)[0], 4))
 }
 
+/// k2 (N/m), c2 (N·s/m), D (m) and C (m) of a design as cells of a table, to some significant digits; `none` where it has no walls.
+pub fn design_cells(design: &Design, digits: usize) -> [String; 4] {
+    design.values().map(|value| if value.is_nan() { "none".to_owned() } else { rounded(value, digits) })
+}
+
+/// A design in words, to some significant digits: `k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m`, or `…, no walls`.
+pub fn design_words(design: &Design, digits: usize) -> String {
+    let [k2, c2, d, c] = design_cells(design, digits);
+    let walls = match design.d {
+        Some(_) => format!("D = {d} m, C = {c} m"),
+        None => "no walls".to_owned(),
+    };
+    format!("k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}")
+}
+
 /// Numbers as fields of a table, to the last bit; empty where there is none.
 pub fn fields(values: &[f64]) -> String {
     let field = |value: &f64| if value.is_nan() { String::new() } else { value.to_string() };
@@ -91,6 +107,19 @@ pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use retune_model::NonNegative;
+
+    #[test]
+    fn contract_a_design_without_walls_says_so() {
+        let number = |value| NonNegative::new(value).expect("not negative");
+        let (k2, c2, gap) = (number(215.04), number(35.0), Some(number(0.06)));
+        let walled = Design { k2, c2, d: gap, c: gap, m2: None };
+        assert_eq!(design_words(&walled, 4), "k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m");
+        assert_eq!(design_cells(&walled, 4), ["215", "35", "0.06", "0.06"]);
+        let open = Design { d: None, c: None, ..walled };
+        assert_eq!(design_words(&open, 4), "k2 = 215 N/m, c2 = 35 N·s/m, no walls");
+        assert_eq!(design_cells(&open, 4), ["215", "35", "none", "none"]);
+    }
 
     #[test]
     fn contract_singular_and_plural() {

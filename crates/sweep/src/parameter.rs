@@ -1,6 +1,6 @@
 //! The parameter of a sweep.
 
-use retune_study::{Setting, angular_frequency};
+use retune_study::{PARAMETERS, Setting, angular_frequency};
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
@@ -9,43 +9,20 @@ use std::str::FromStr;
 #[serde(try_from = "String", into = "String")]
 pub struct Parameter(usize);
 
-/// All parameters, with their units.
-const ALL: [(&str, &str); 13] = [
-    ("omega", "rad/s"),
-    ("k1", "N/m"),
-    ("P", "N"),
-    ("imbalance", "kg·m"),
-    ("base", "m"),
-    ("c1", "N·s/m"),
-    ("m1", "kg"),
-    ("m2", "kg"),
-    ("k2", "N/m"),
-    ("c2", "N·s/m"),
-    ("D", "m"),
-    ("C", "m"),
-    ("R", "m"),
-];
-
 impl Parameter {
-    /// The symbols of all of them.
-    pub const SYMBOLS: [&'static str; ALL.len()] = {
-        let mut symbols = [""; ALL.len()];
-        let mut i = 0;
-        while i < ALL.len() {
-            symbols[i] = ALL[i].0;
-            i += 1;
-        }
-        symbols
-    };
+    /// All of them: the numbers of a study but those of its window.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..PARAMETERS.len()).map(Self).filter(|parameter| !matches!(parameter.symbol(), "T" | "t0"))
+    }
 
     /// Its symbol.
     pub const fn symbol(self) -> &'static str {
-        ALL[self.0].0
+        PARAMETERS[self.0].0
     }
 
     /// Its SI unit.
     pub const fn unit(self) -> &'static str {
-        ALL[self.0].1
+        PARAMETERS[self.0].1
     }
 
     /// Whether it is ω, the angular frequency of the force.
@@ -81,10 +58,10 @@ impl FromStr for Parameter {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = ALL.iter().position(|(symbol, _)| *symbol == text);
-        found
-            .map(Self)
-            .ok_or_else(|| format!("\"{text}\" cannot be swept: give one of {}", Self::SYMBOLS.join(", ")))
+        Self::all().find(|parameter| parameter.symbol() == text).ok_or_else(|| {
+            let symbols: Vec<&str> = Self::all().map(Self::symbol).collect();
+            format!("\"{text}\" cannot be swept: give one of {}", symbols.join(", "))
+        })
     }
 }
 

@@ -1,7 +1,6 @@
 //! What is looked at in each run.
 
 use retune_model::Measure;
-use retune_solver::Response;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
@@ -47,19 +46,6 @@ pub(crate) const OF_STRUCTURE: [Measure; 5] =
 
 /// The largest values that only a damper has.
 pub(crate) const OF_DAMPER: [Measure; 2] = [Measure::Stroke, Measure::ContactForce];
-
-/// The largest value of a run.
-pub(crate) fn largest(measure: Measure, run: &Response) -> f64 {
-    match measure {
-        Measure::Energy => run.e1_max.value,
-        Measure::Displacement => run.structure.displacement.value,
-        Measure::Velocity => run.structure.velocity.value,
-        Measure::Acceleration => run.structure.acceleration.value,
-        Measure::GroundForce => run.structure.ground_force.value,
-        Measure::Stroke => run.spring_deflection_max,
-        Measure::ContactForce => run.force_max[0].max(run.force_max[1]),
-    }
-}
 
 impl FromStr for Quantity {
     type Err = String;

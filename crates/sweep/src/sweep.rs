@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::plan::Plan;
-use crate::quantity::{OF_DAMPER, OF_STRUCTURE, largest};
+use crate::quantity::{OF_DAMPER, OF_STRUCTURE};
 use crate::table::{Column, Table};
 use retune_model::{Measure, Scene};
 use retune_optim::{Axis, Goal, Limits, Objective};
@@ -108,7 +108,7 @@ impl Sweep {
             match simulate(scene, window, &settings) {
                 Ok(run) => {
                     numbers
-                        .extend(OF_STRUCTURE.iter().chain(&OF_DAMPER).map(|measure| largest(*measure, &run)));
+                        .extend(OF_STRUCTURE.iter().chain(&OF_DAMPER).map(|measure| run.largest(*measure)));
                     numbers.extend(run.impacts.map(|count| count as f64));
                 }
                 Err(error) => {
@@ -118,7 +118,7 @@ impl Sweep {
             }
         }
         match simulate(&Scene { damper: None, ..*scene }, window, &settings) {
-            Ok(run) => numbers.extend(OF_STRUCTURE.map(|measure| largest(measure, &run))),
+            Ok(run) => numbers.extend(OF_STRUCTURE.map(|measure| run.largest(measure))),
             Err(error) => {
                 numbers.resize(self.width(), f64::INFINITY);
                 reason = reason.or_else(|| Some(error.to_string()));

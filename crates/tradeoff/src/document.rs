@@ -1,9 +1,8 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use retune_figures::Drawing;
-use retune_workbench::report::STYLE;
-use retune_workbench::report::html::{Section, Table, figure, link};
+use retune_workbench::report::html::{Section, Table, figure, head, link};
 
 /// A piece of a page.
 #[derive(Debug)]
@@ -49,14 +48,7 @@ impl Document {
         let page: Markup = html! {
             (DOCTYPE)
             html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="color-scheme" content="light dark";
-                    link rel="icon" href="data:,";
-                    title { (self.title) }
-                    style { (PreEscaped(STYLE)) }
-                }
+                (head(&self.title, ""))
                 body {
                     header {
                         h1 { (self.title) }

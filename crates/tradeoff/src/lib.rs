@@ -5,6 +5,7 @@
 //! `retune_workbench`, and return what they found.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod caption;
 pub mod document;
 pub mod pareto;
 pub mod track;

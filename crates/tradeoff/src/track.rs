@@ -87,7 +87,7 @@ pub fn track(
         let table = Designs { column: "tuning", rows: designs, infeasible: searches.infeasible.take() };
         let curves = curves::curves(&dampers);
         let thresholds: Vec<Threshold> =
-            dampers.iter().filter_map(|damper| Threshold::of(&damper.study)).collect();
+            dampers.iter().map(|damper| Threshold::of(&damper.study)).collect::<Result<_, _>>()?;
         let (mut kept, mut points) = (Vec::new(), Vec::new());
         for (number, (damper, threshold)) in dampers.iter().zip(&thresholds).enumerate() {
             for one in &damper.kept {

@@ -21,14 +21,11 @@ pub(crate) use findings::Findings;
 
 use crate::Error;
 use crate::resolved::study_text;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use retune_store::Directory;
 
 /// The file.
 pub const FILE: &str = "report.html";
-
-/// What all pages of Retune look like: light and dark, wide, narrow and in print.
-pub const STYLE: &str = include_str!("report/page.css");
 
 /// What this page has beside it.
 const OWN: &str = include_str!("report/report.css");
@@ -62,14 +59,7 @@ fn page(title: &str, sections: &[html::Section]) -> String {
     let markup: Markup = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                link rel="icon" href="data:,";
-                title { (title) }
-                style { (PreEscaped(STYLE)) (PreEscaped(OWN)) }
-            }
+            (html::head(title, OWN))
             body {
                 header {
                     h1 { (title) }

@@ -12,7 +12,7 @@ pub struct Sweep {
     /// A study, the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
-    /// The parameter: omega k1 P c1 m1 m2 k2 c2 D C R
+    /// The parameter: omega k1 c1 m1 m2 k2 c2 D C R, or what the forcing is given by: P imbalance base
     #[arg(long, value_name = "NAME")]
     pub over: Parameter,
     /// Its first value, in its SI unit; a frequency may have one of its own: 0.8Hz, 50rpm

@@ -54,5 +54,5 @@ fn contract_a_sweep_is_one_object_on_standard_output() {
     assert!(json["rows"][0]["impacts"].is_u64() && json["units"]["x1max"] == "m", "{json}");
     let Answer { code, stderr, .. } =
         desk.run(&["sweep", "study.json", "--over", "omga", "--from", "1", "--to", "2"]);
-    assert!(code == Some(2) && stderr.contains("give one of omega, k1, P"), "{stderr}");
+    assert!(code == Some(2) && stderr.contains("give one of m1, c1, k1, m2"), "{stderr}");
 }

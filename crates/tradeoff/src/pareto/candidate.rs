@@ -1,7 +1,7 @@
 //! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
 use retune_model::Design;
-use retune_study::{Sweep, joined};
+use retune_study::{Sweep, fields};
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -58,11 +58,11 @@ impl Candidate {
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
     }
 
-    /// Its fields in a table.
+    /// Its fields in a table; those of gaps are empty without walls.
     pub fn fields(&self) -> String {
         let Self { at, e1_max, checked, stroke, force, verdict, .. } = self;
         let checked = checked.map(|value| value.to_string()).unwrap_or_default();
-        format!("{e1_max},{checked},{},{stroke},{force},{verdict}", joined(&at.values(), ","))
+        format!("{e1_max},{checked},{},{stroke},{force},{verdict}", fields(&at.values()))
     }
 }
 
@@ -70,4 +70,26 @@ impl Candidate {
 pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Ordering {
     let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
     own.total_cmp(&other).then(a.e1_max.total_cmp(&b.e1_max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::NonNegative;
+
+    #[test]
+    fn regress_gaps_of_a_damper_without_walls_are_empty_fields() {
+        let number = |value| NonNegative::new(value).expect("not negative");
+        let at = Design { k2: number(215.0), c2: number(35.0), d: None, c: None, m2: None };
+        let design = Candidate {
+            damper: 0,
+            at,
+            e1_max: 600.0,
+            checked: None,
+            stroke: 0.5,
+            force: 0.0,
+            verdict: "steady",
+        };
+        assert_eq!(design.fields(), "600,,215,35,,,0.5,0,steady");
+    }
 }

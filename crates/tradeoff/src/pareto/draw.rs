@@ -2,6 +2,7 @@
 
 use super::candidate::Candidate;
 use super::fronts::{Fronts, Row};
+use crate::caption::{made_by, words};
 use retune_figures::colour::{BLACK, BLUE, Colour, ORANGE, PURPLE, VERMILION};
 use retune_figures::{Axis, Chart, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing};
 use retune_study::Sweep;
@@ -81,7 +82,7 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
         columns: 1,
         stacked: false,
         legend,
-        caption: vec![made_by(fronts)],
+        caption: vec![made_by(fronts.plan.dampers.last().map(|(_, study)| study))],
     })
 }
 
@@ -124,7 +125,7 @@ pub(super) fn front(fronts: &Fronts) -> Drawing {
         columns: 3,
         stacked: false,
         legend,
-        caption: vec![made_by(fronts)],
+        caption: vec![made_by(fronts.plan.dampers.last().map(|(_, study)| study))],
     })
 }
 
@@ -149,15 +150,6 @@ fn given(fronts: &Fronts, value: impl Fn(&Candidate) -> f64) -> impl Iterator<It
     fronts.given.iter().map(mark)
 }
 
-/// What the designs are tuned for, and by what.
-fn made_by(fronts: &Fronts) -> String {
-    let over = fronts.plan.dampers.last().map(|(_, study)| {
-        let over = retune_study::over(&study.objective(), study.scene.forcing.frequency.get());
-        format!("{over}; ")
-    });
-    format!("{}Retune {}", over.unwrap_or_default(), env!("CARGO_PKG_VERSION"))
-}
-
 /// The entries of the legend; of the dampers in the studies, those that are `shown`.
 fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Candidate) -> bool) -> Vec<(Key, String)> {
     let dampers = fronts.plan.dampers.iter().enumerate();
@@ -170,11 +162,6 @@ fn legend(fronts: &Fronts, lines: bool, shown: impl Fn(&Candidate) -> bool) -> V
         (Key::Mark(of_study(design.damper)), format!("{} of the study", fronts.name(design.damper)))
     });
     tuned.chain(given).collect()
-}
-
-/// The words of a legend.
-fn words(legend: &[(Key, String)]) -> String {
-    legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]

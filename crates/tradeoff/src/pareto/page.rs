@@ -5,8 +5,7 @@ use super::draw;
 use super::fronts::{Certified, Fronts, Row};
 use crate::document::{Block, Document};
 use retune_store::Directory;
-use retune_study::Sweep;
-use retune_study::{rounded, short};
+use retune_study::{Sweep, design_cells, design_words, short};
 use retune_workbench::Error;
 
 /// Writes the page in both forms, and its figures.
@@ -104,13 +103,13 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
                 cells.resize(head.len(), String::new());
             }
             Some(design) => {
-                let [k2, c2, d, c] = design.at.values().map(|value| rounded(value, 4));
                 cells.push(joule(design.e1_max));
                 if is_checked {
                     let mark = if design.rises() { " ↑" } else { "" };
                     cells.push(design.checked.map(|value| joule(value) + mark).unwrap_or_default());
                 }
-                cells.extend([k2, c2, d, c, metre(design.stroke), format!("{:.0}", design.force)]);
+                cells.extend(design_cells(&design.at, 4));
+                cells.extend([metre(design.stroke), format!("{:.0}", design.force)]);
                 cells.push(design.verdict.to_owned());
             }
         }
@@ -197,15 +196,15 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 /// A certified design in words.
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
     let Certified { sweep, bound, design, reference, certificate, .. } = one;
-    let [k2, c2, d, c] = design.at.values().map(|value| rounded(value, 4));
     let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
     let words: Vec<String> =
         certificate.short().to_string().lines().map(|line| line.trim().to_owned()).collect();
     format!(
-        "{}, {} at most {bound} {}: k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m with {} J (best {} under the same bound: {reference}). {}",
+        "{}, {} at most {bound} {}: {} with {} J (best {} under the same bound: {reference}). {}",
         fronts.name(design.damper),
         sweep.name(),
         sweep.unit(),
+        design_words(&design.at, 4),
         joule(design.e1_max),
         fronts.name(0),
         words.join("; "),

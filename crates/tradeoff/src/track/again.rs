@@ -19,24 +19,25 @@ struct Results {
     samples: Option<usize>,
     k1: Vec<f64>,
     designs: Sample,
-    /// By the name of a damper, what counts as half of its work.
+    /// By the name of a damper, what counts as half of its work; of the ranges alone.
     thresholds: BTreeMap<String, Threshold>,
 }
 
 /// Checks at most `most` rows of a table.
 ///
 /// # Errors
-/// A file cannot be read, as of all checks.
+/// A file cannot be read, as of all checks; or a threshold cannot be computed.
 pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
     let studies = resolved.studies()?;
-    let is_needed = |(damper, study): &(String, Study)| match name {
-        DESIGNS | CURVES => None,
-        _ => Some((damper.clone(), Threshold::of(study)?)),
+    let threshold = |(damper, study): &(String, Study)| Ok((damper.clone(), Threshold::of(study)?));
+    let thresholds = match name {
+        DESIGNS | CURVES => BTreeMap::new(),
+        _ => studies.iter().map(threshold).collect::<Result<_, Error>>()?,
     };
     let results = Results {
-        thresholds: studies.iter().filter_map(is_needed).collect(),
+        thresholds,
         studies,
         samples: resolved.plan["samples"].as_u64().map(|samples| samples as usize),
         k1: k1.unwrap_or_default(),

@@ -4,6 +4,7 @@ use super::curves::Curve;
 use super::range::Threshold;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
+use crate::caption::{made_by, words};
 use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILION};
 use retune_figures::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
@@ -74,7 +75,7 @@ pub(super) fn retention(dampers: &[Tuned], curves: &[Curve], thresholds: &[Thres
         columns: dampers.len().min(2),
         stacked: false,
         legend,
-        caption: vec![made_by(dampers)],
+        caption: vec![made_by(dampers.first().map(|damper| &damper.study))],
     })
 }
 
@@ -89,7 +90,9 @@ pub(super) fn path(dampers: &[Tuned]) -> Drawing {
         let layers = dampers.iter().enumerate().flat_map(|(i, damper)| {
             let (stroke, mark) = looks(i);
             let points = value(damper);
-            [Layer::Line { points: points.clone(), stroke }, Layer::Marks { points, mark }]
+            // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
+            let line = (which < 2).then(|| Layer::Line { points: points.clone(), stroke });
+            line.into_iter().chain([Layer::Marks { points, mark }])
         });
         let k1 = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1));
         Chart {
@@ -113,7 +116,7 @@ pub(super) fn path(dampers: &[Tuned]) -> Drawing {
         columns: 2,
         stacked: false,
         legend: dampers.iter().enumerate().map(key).collect(),
-        caption: vec![made_by(dampers)],
+        caption: vec![made_by(dampers.first().map(|damper| &damper.study))],
     })
 }
 
@@ -188,7 +191,7 @@ pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &
         columns: 1,
         stacked: false,
         legend,
-        caption: vec![made_by(dampers)],
+        caption: vec![made_by(dampers.first().map(|damper| &damper.study))],
     })
 }
 
@@ -196,19 +199,6 @@ pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &
 fn looks(damper: usize) -> (Stroke, Mark) {
     let (colour, shape) = DAMPERS[damper % DAMPERS.len()];
     (Stroke::solid(colour), Mark::new(shape, colour, 4.0))
-}
-
-/// What the designs are tuned for, and by what.
-fn made_by(dampers: &[Tuned]) -> String {
-    let over = |first: &Tuned| {
-        retune_study::over(&first.study.objective(), first.study.scene.forcing.frequency.get())
-    };
-    format!("{}; Retune {}", dampers.first().map(over).unwrap_or_default(), env!("CARGO_PKG_VERSION"))
-}
-
-/// The words of a legend.
-fn words(legend: &[(Key, String)]) -> String {
-    legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
 }
 
 /// The range of some stiffnesses, a little wider, so that marks at its ends are whole.

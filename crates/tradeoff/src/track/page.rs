@@ -7,7 +7,7 @@ use super::trade::{Point, front};
 use super::tuned::{CURVES, DESIGNS, Tuned, Tuning};
 use crate::document::{Block, Document};
 use retune_store::Directory;
-use retune_study::{SpringBounds, rounded, short};
+use retune_study::{SpringBounds, design_cells, design_words, rounded, short};
 use retune_workbench::Error;
 
 /// Writes the page in both forms, and its figures.
@@ -214,11 +214,11 @@ fn traded(Tracked { points, .. }: &Tracked, number: usize, damper: &Tuned) -> St
         let ends = point.range.map_or(String::new(), |range| {
             format!("{} to {} N/m", rounded(range.from, 4), rounded(range.to, 4))
         });
-        let [k2, c2, d, c] = point.at.values().map(|value| rounded(value, 4));
         format!(
-            "{ends} (a factor of {}) with {} J (k2 = {k2} N/m, c2 = {c2} N·s/m, D = {d} m, C = {c} m)",
+            "{ends} (a factor of {}) with {} J ({})",
             rounded(point.factor(), 3),
-            joule(point.e1_max)
+            joule(point.e1_max),
+            design_words(&point.at, 4)
         )
     };
     format!("{}: from {}, to {}.", damper.name, said(least), said(widest))
@@ -227,7 +227,7 @@ fn traded(Tracked { points, .. }: &Tracked, number: usize, damper: &Tuned) -> St
 /// All designs.
 fn designs(Tracked { table, .. }: &Tracked) -> Block {
     let rows = table.rows.iter().map(|row| {
-        let [k2, c2, d, c] = row.found.design.values().map(|value| rounded(value, 4));
+        let [k2, c2, d, c] = design_cells(&row.found.design, 4);
         vec![row.damper.clone(), row.label.clone(), k2, c2, d, c, joule(row.e1_max), row.verdict.to_owned()]
     });
     let head = ["damper", "tuning", "k2, N/m", "c2, N·s/m", "D, m", "C, m", "E1max, J", "verdict"];

@@ -6,9 +6,10 @@
 
 use super::tuned::on_samples;
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Design, NonNegative, Scene, Variable, den_hartog};
-use retune_optim::{Bounds, Options, Scaling, minimize};
-use retune_study::{Setting, Study};
+use retune_model::{Bare, Coupled, Damper, Design, Scene, Variable, den_hartog};
+use retune_optim::{Bounds, Failures, Options, Scaling, minimize};
+use retune_study::{Rule, Setting, Study};
+use retune_workbench::Error;
 use std::ops::ControlFlow;
 
 /// Stiffnesses are looked at outwards in steps of this ratio.
@@ -62,12 +63,15 @@ pub struct Threshold {
 }
 
 impl Threshold {
-    /// For the structure, the mass of the damper and the band of a study; none without a damper.
-    pub fn of(study: &Study) -> Option<Self> {
+    /// For the structure, the mass of the damper and the band of a study.
+    ///
+    /// # Errors
+    /// The study has no damper, a stiffness is beyond all numbers, or the best TMD cannot be searched for.
+    pub fn of(study: &Study) -> Result<Self, Error> {
         let nominal = study.scene.primary.stiffness.get();
         let steps = (-(STEPS as i32)..=STEPS as i32).into_par_iter();
-        let at = |step: i32| Some(limit(study, nominal * STEP.powi(step))?.ln());
-        Some(Self { nominal, most: steps.map(at).collect::<Option<Vec<f64>>>()? })
+        let at = |step: i32| Ok(limit(study, nominal * STEP.powi(step))?.ln());
+        Ok(Self { nominal, most: steps.map(at).collect::<Result<_, Error>>()? })
     }
 
     /// The largest E1max at a stiffness (N/m) that counts as half of the work, J: exact at the steps, between them by interpolation of
@@ -125,28 +129,24 @@ pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Thr
 }
 
 /// The largest E1max that counts as half of the work at a stiffness, J.
-fn limit(study: &Study, k1: f64) -> Option<f64> {
-    let mut scene = study.scene;
-    scene.primary.stiffness = NonNegative::new(k1).ok()?;
+fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
+    let scene = study.scene_with(&[Setting::new("k1", k1)])?;
+    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
+    let damper = scene.damper.ok_or_else(no_damper)?;
     let omega = scene.forcing.frequency.get();
     let band = study.objective().omega.map(|band| band.of(&scene.primary));
     let band = band.map_or([omega; 2], |band| [band.from, band.to]);
     let none = Bare::new(&scene.primary, &scene.forcing).steady_e1_max(band).value;
-    Some((none * best_tmd(&scene, band)?).sqrt())
+    Ok((none * best_tmd(&scene, damper, band)?).sqrt())
 }
 
-/// The least steady E1max (J) over a band (rad/s) of a TMD with the mass of the damper of a scene, k2 and c2 free.
-fn best_tmd(scene: &Scene, band: [f64; 2]) -> Option<f64> {
-    let damper = scene.damper?;
+/// The least steady E1max (J) over a band (rad/s) of a TMD with the mass of a damper, k2 and c2 free.
+fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<f64, Error> {
     let steady = |x: &[f64], _cutoff: f64| {
-        let design = Design::new(|variable| match variable {
-            Variable::K2 => x[0],
-            Variable::C2 => x[1],
-            _ => f64::NAN, // as it is
-        });
-        let worst =
-            |damper: Damper| Coupled::new(&scene.primary, &scene.forcing, &damper).steady_e1_max(band);
-        design.map_or(f64::INFINITY, |design| worst(design.on(damper)).value)
+        let mut tmd = damper;
+        let set = Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1]));
+        let worst = || Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
+        set.map_or(f64::INFINITY, |()| worst())
     };
     let start = den_hartog(&scene.primary, damper.mass.get());
     let not_negative = Bounds { lower: Some(0.0), upper: None };
@@ -157,7 +157,8 @@ fn best_tmd(scene: &Scene, band: [f64; 2]) -> Option<f64> {
         scaling: Scaling::Start,
         ..Options::default()
     };
-    Some(minimize(steady, &start, options, |_| ControlFlow::Continue(())).ok()?.value)
+    let refuse = |source| Error::Search { source, failures: Failures::default() };
+    Ok(minimize(steady, &start, options, |_| ControlFlow::Continue(())).map_err(refuse)?.value)
 }
 
 #[cfg(test)]
@@ -175,6 +176,14 @@ mod tests {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/retune-tmd.json");
         let threshold = Threshold::of(&retune_study::read(&path).expect("a study")).expect("a threshold");
         assert!((threshold.at(39_500.0) - (1568.3_f64 * 160.6).sqrt()).abs() < 0.5, "{threshold:?}");
+    }
+
+    #[test]
+    fn contract_a_study_without_a_damper_has_no_threshold() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/retune-tmd.json");
+        let mut study = retune_study::read(&path).expect("a study");
+        study.scene.damper = None;
+        assert!(matches!(Threshold::of(&study), Err(Error::Rule { rule: Rule::NoDamper, .. })));
     }
 
     /// E1max grows as the square of the detuning: 100 J (1 + 25 (k1/4e4 - 1)²) is at most 200 J from 0.8 to 1.2 times 4e4 N/m.

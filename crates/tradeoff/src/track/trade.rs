@@ -6,7 +6,7 @@
 
 use super::range::{Care, Range, Threshold, range};
 use super::tuned::{Tuned, Tuning};
-use retune_model::{Design, Variable};
+use retune_model::Design;
 use retune_optim::{Global, PeakEnergy, explore, minimize};
 use retune_study::{Setting, Study};
 use retune_workbench::searches::Searches;
@@ -226,8 +226,7 @@ pub fn csv(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) 
     let named = kept.iter().map(|(tuning, point)| (*tuning, point));
     for (tuning, point) in named.chain(points.iter().map(|point| (FRONT, point))) {
         let name = retune_workbench::designs::quoted(&dampers[point.damper].name);
-        let values = Variable::PAPER.map(|variable| point.at.get(variable));
-        let values = retune_study::joined(&values, ",");
+        let values = retune_study::fields(&point.at.values());
         let ends = point.range.map_or(",".to_owned(), |range| format!("{},{}", range.from, range.to));
         text += &format!("{name},{tuning},{values},{},{ends}\n", point.e1_max);
     }

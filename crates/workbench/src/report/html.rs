@@ -1,7 +1,24 @@
-//! The elements of a page: sections, tables, figures.
+//! The elements of a page: its head, sections, tables, figures.
 
 use maud::{Markup, PreEscaped, html};
 use retune_figures::Drawing;
+
+/// What all pages of Retune look like: light and dark, wide, narrow and in print.
+const STYLE: &str = include_str!("page.css");
+
+/// The head of a page: its title, and the style of all pages with what this page has beside it, as CSS.
+pub fn head(title: &str, own: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="color-scheme" content="light dark";
+            link rel="icon" href="data:,";
+            title { (title) }
+            style { (PreEscaped(STYLE)) (PreEscaped(own)) }
+        }
+    }
+}
 
 /// A section with its heading.
 pub struct Section {

@@ -1,7 +1,7 @@
 //! A damper as in the paper's Table 2.
 
 use retune_model::{Damper, Design, Positive};
-use retune_study::rounded;
+use retune_study::{design_words, rounded};
 use serde::Serialize;
 
 /// A damper as in the paper's Table 2: m2 (kg) and its design.
@@ -23,12 +23,7 @@ impl TunedDamper {
 
     /// The numbers in words, to some digits: `m2 = 60 kg, k2 = 215 N/m, …`.
     pub fn words(&self, digits: usize) -> String {
-        let [m2, k2, c2, d, c] = self.values().map(|value| rounded(value, digits));
-        let walls = match self.design.d {
-            Some(_) => format!("D = {d} m, C = {c} m"),
-            None => "no walls".to_owned(),
-        };
-        format!("m2 = {m2} kg, k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}")
+        format!("m2 = {} kg, {}", rounded(self.mass.get(), digits), design_words(&self.design, digits))
     }
 
     /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.

@@ -13,8 +13,7 @@ use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
 use retune_model::{Measure, Variable};
 use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
-use retune_study::short;
-use retune_study::{PerVariable, Search, Study};
+use retune_study::{PerVariable, Search, Study, design_cells, short};
 use serde::Serialize;
 
 /// The best design and how it was found. SI units.
@@ -206,8 +205,8 @@ pub fn table2_header() -> String {
 
 /// A row of the paper's Table 2.
 pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
-    let said = |value: f64| if value.is_nan() { "none".to_owned() } else { short(value) };
-    let [m2, k2, c2, d, c] = damper.values().map(said);
+    let m2 = short(damper.mass.get());
+    let [k2, c2, d, c] = design_cells(&damper.design, 6);
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
 }
 
