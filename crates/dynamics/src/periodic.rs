@@ -5,10 +5,11 @@
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
 //! Read `shooting` (the equations and their solution), `orbit` (what a motion is like), `trace` (a branch), `events` (its bifurcations),
-//! `switch` (to the branch of twice the period), `settle` (what runs settle on), then `branches`, which asks for all of them.
+//! `switch` (to the branch of twice the period), `settle` (what runs settle on), `largest`, then `branches`, which asks for all of them.
 
 pub mod branches;
 pub mod events;
+pub mod largest;
 mod node;
 pub mod orbit;
 pub mod settle;
@@ -18,6 +19,7 @@ pub mod trace;
 
 pub use branches::{Branches, Ranged, Sample, branches};
 pub use events::{Event, EventKind};
+pub use largest::largest;
 pub use orbit::Orbit;
 pub use shooting::Shooting;
 pub use trace::{Branch, End};

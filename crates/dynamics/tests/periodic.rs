@@ -8,7 +8,7 @@ use retune_dynamics::Parameter;
 use retune_dynamics::periodic::branches::Plan;
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::shooting::Solution;
-use retune_dynamics::periodic::{Branches, End, EventKind, Orbit, Shooting, branches};
+use retune_dynamics::periodic::{End, EventKind, Orbit, Shooting, branches, largest};
 use retune_model::Coupled;
 use retune_solver::observe::Unobserved;
 use retune_solver::{Follower, Method, Motion, Phase, Settings};
@@ -75,11 +75,21 @@ fn exact_the_branch_of_a_tmd() {
             // Newton's last change moves omega after they were computed, by less than 1e-10.
             assert!(error < 1e-10, "{found} {expected}");
         }
-        assert!((orbit.e1_max / steady.e1_max - 1.0).abs() < 1e-11, "{} {}", orbit.e1_max, steady.e1_max);
+        assert!(
+            (orbit.seen.e1_max / steady.e1_max - 1.0).abs() < 1e-11,
+            "{} {}",
+            orbit.seen.e1_max,
+            steady.e1_max
+        );
     }
-    let largest = Branches::largest(branch, |orbit| orbit.e1_max).expect("a largest");
+    let most = largest(branch, |orbit| orbit.seen.e1_max).expect("a largest");
     let exact = TMD.coupled().steady_e1_max([5.0, 8.0]);
-    assert!((largest.e1_max / exact.value - 1.0).abs() < 1e-10, "{} {}", largest.e1_max, exact.value);
+    assert!(
+        (largest.seen.e1_max / exact.value - 1.0).abs() < 1e-10,
+        "{} {}",
+        largest.seen.e1_max,
+        exact.value
+    );
 }
 
 /// Multipliers are those of the motion, into however many segments it is cut.
@@ -87,7 +97,7 @@ fn exact_the_branch_of_a_tmd() {
 fn invariant_multipliers_do_not_depend_on_the_segments() {
     let (own, solution) = on_isola(6.0).expect("the motion of two periods");
     let expected = Orbit::of(&own, &solution).expect("a motion");
-    assert_eq!((expected.impacts.as_str(), expected.is_stable()), ("OOS", true));
+    assert_eq!((expected.seen.impacts.as_str(), expected.is_stable()), ("OOS", true));
     let system = own.system(6.0).expect("a system");
     for segments in [1, 3, 5] {
         let cut = own.in_segments(segments);
@@ -104,7 +114,7 @@ fn invariant_multipliers_do_not_depend_on_the_segments() {
         for (a, b) in found.multipliers.iter().zip(&expected.multipliers) {
             assert!((a - b).norm() < 1e-8, "{segments}: {a} {b}");
         }
-        assert!((found.e1_max - expected.e1_max).abs() < 1e-7 * expected.e1_max);
+        assert!((found.seen.e1_max - expected.seen.e1_max).abs() < 1e-7 * expected.seen.e1_max);
     }
     // Liouville: their product.
     let product: Complex<f64> = expected.multipliers.iter().product();

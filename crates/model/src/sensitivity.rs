@@ -61,6 +61,18 @@ impl Parameter {
     }
 }
 
+impl std::str::FromStr for Parameter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|parameter| parameter.symbol() == text);
+        known.ok_or_else(|| {
+            let all = Self::ALL.map(Self::symbol).join(", ");
+            format!("there is no parameter \"{text}\" here: give one of {all}")
+        })
+    }
+}
+
 impl Parameter {
     /// Its value in a scene; none where the scene has no such parameter.
     pub fn of(self, scene: &Scene) -> Option<f64> {

@@ -6,7 +6,6 @@
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod caption;
-pub mod document;
 pub mod pareto;
 pub mod track;
 

@@ -46,6 +46,7 @@ pub mod certify;
 pub mod describe;
 pub mod design;
 pub mod designs;
+pub mod document;
 pub mod error;
 pub mod evaluate;
 pub mod job;

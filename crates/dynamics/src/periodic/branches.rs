@@ -14,10 +14,6 @@ use retune_solver::Settings;
 const MOST_BRANCHES: usize = 200;
 /// A branch as far as this from a motion is not tried, in units of the motion's size.
 const FAR: f64 = 0.3;
-/// Local maxima as near as this share to the largest are located exactly.
-const CLOSE: f64 = 0.02;
-/// Evaluations to locate a maximum.
-const EVALUATIONS: usize = 40;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,9 +67,6 @@ pub struct Branches {
     pub samples: Vec<Sample>,
 }
 
-/// A quantity of a motion.
-pub type Quantity = fn(&Orbit) -> f64;
-
 /// A range of the parameter.
 pub type Ranged = [f64; 2];
 
@@ -87,10 +80,7 @@ pub fn branches(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Branches, Error> {
-    let middle = plan.parameter.at(*scene, 0.5 * (plan.range[0] + plan.range[1]))?;
-    let bare = Bare::new(&middle.primary, &middle.forcing);
-    let size = (2.0 * bare.steady(middle.forcing.frequency.get()).e1_max).sqrt().max(f64::MIN_POSITIVE);
-    let shooting = Shooting::new(middle, plan.parameter, 1, (plan.range[1] - plan.range[0], size), settings);
+    let shooting = equations(scene, &plan, settings)?;
     let values = evenly(plan.range[0], plan.range[1], plan.samples);
     let seen: Vec<Result<Seen, Error>> = values
         .par_iter()
@@ -102,19 +92,30 @@ pub fn branches(
         .collect();
     let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new() };
     for seen in seen {
-        let seen = seen?;
-        let mut attractors = Vec::new();
-        for (periods, solution, starts, from_rest) in seen.attractors {
-            let own = shooting.of_periods(periods);
-            let branch = found.holds(&own, &solution).or_else(|| found.follow(&own, &solution));
-            attractors.push(Attractor { branch, orbit: Orbit::of(&own, &solution)?, starts, from_rest });
-        }
-        attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
-        let Seen { value, irregular, rest_is_irregular, .. } = seen;
-        let starts = plan.starts + 1;
-        found.samples.push(Sample { value, attractors, irregular, rest_is_irregular, starts });
+        let sample = seen?.sample(&shooting, |own, solution| {
+            found.holds(own, solution).or_else(|| found.follow(own, solution))
+        })?;
+        found.samples.push(sample);
     }
     Ok(found)
+}
+
+/// The equations of motions of one period, in units that suit the plan.
+fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shooting, Error> {
+    let [from, to] = plan.range;
+    let middle = plan.parameter.at(*scene, 0.5 * (from + to))?;
+    let bare = Bare::new(&middle.primary, &middle.forcing);
+    let size = (2.0 * bare.steady(middle.forcing.frequency.get()).e1_max).sqrt().max(f64::MIN_POSITIVE);
+    Ok(Shooting::new(middle, plan.parameter, 1, (to - from, size), settings))
+}
+
+/// What runs settle on at a value of the parameter, without the branches.
+///
+/// # Errors
+/// A scene cannot be run.
+pub fn sample(scene: &Scene, plan: Plan, settings: &Settings, value: f64) -> Result<Sample, Error> {
+    let shooting = equations(scene, &plan, settings)?;
+    look(&shooting, value, plan.starts)?.sample(&shooting, |_, _| None)
 }
 
 /// What runs settle on at a value of the parameter.
@@ -124,12 +125,38 @@ struct Seen {
     attractors: Vec<(usize, Solution, usize, bool)>,
     irregular: Vec<f64>,
     rest_is_irregular: bool,
+    starts: usize,
+}
+
+impl Seen {
+    /// As a sample, with the branch that each motion is on.
+    fn sample(
+        self,
+        shooting: &Shooting,
+        mut branch: impl FnMut(&Shooting, &Solution) -> Option<usize>,
+    ) -> Result<Sample, Error> {
+        let Self { value, irregular, rest_is_irregular, starts, .. } = self;
+        let mut attractors = Vec::new();
+        for (periods, solution, starts, from_rest) in self.attractors {
+            let own = shooting.of_periods(periods);
+            let branch = branch(&own, &solution);
+            attractors.push(Attractor { branch, orbit: Orbit::of(&own, &solution)?, starts, from_rest });
+        }
+        attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
+        Ok(Sample { value, attractors, irregular, rest_is_irregular, starts })
+    }
 }
 
 fn look(shooting: &Shooting, value: f64, starts: usize) -> Result<Seen, Error> {
     let system = shooting.system(value)?;
     let scene = shooting.scene_at(value)?;
-    let mut seen = Seen { value, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false };
+    let mut seen = Seen {
+        value,
+        attractors: Vec::new(),
+        irregular: Vec::new(),
+        rest_is_irregular: false,
+        starts: starts + 1,
+    };
     let all = [system.rest()].into_iter().chain(settle::starts(&system, &scene, starts));
     for (number, y) in all.enumerate() {
         let from_rest = number == 0;
@@ -208,24 +235,6 @@ impl Branches {
         Some(number)
     }
 
-    /// The motion with the largest value of a quantity among the stable ones of a branch, located between the points of the branch.
-    pub fn largest(branch: &Branch, quantity: Quantity) -> Option<Orbit> {
-        let stable = |i: usize| branch.points.get(i).filter(|orbit| orbit.is_stable());
-        let value = |i: usize| stable(i).map_or(f64::NEG_INFINITY, quantity);
-        let all = 0..branch.points.len();
-        let most = all.clone().map(value).fold(f64::NEG_INFINITY, f64::max);
-        let near = |&i: &usize| value(i) >= (1.0 - CLOSE) * most && stable(i).is_some();
-        let peaks =
-            all.filter(near).filter(|&i| (i == 0 || value(i - 1) <= value(i)) && value(i + 1) <= value(i));
-        let located = peaks.filter_map(|i| {
-            let own = stable(i)?.clone();
-            let inner = i > 0 && stable(i - 1).is_some() && stable(i + 1).is_some();
-            let better = if inner { located(branch, i, quantity) } else { None };
-            Some(better.filter(|better| quantity(better) > quantity(&own)).unwrap_or(own))
-        });
-        located.max_by(|a, b| quantity(a).total_cmp(&quantity(b)))
-    }
-
     /// The parts of the range over which a branch has a stable motion, and those over which none has.
     pub fn stable_and_irregular(&self) -> [Vec<Ranged>; 2] {
         let mut parts: Vec<Ranged> = Vec::new();
@@ -250,27 +259,4 @@ impl Branches {
         let irregular = begins.zip(ends).filter(|(a, b)| b - a > narrow).map(|(a, b)| [a, b]).collect();
         [stable, irregular]
     }
-}
-
-/// The largest value between the neighbours of a point, by golden sections.
-fn located(branch: &Branch, i: usize, quantity: Quantity) -> Option<Orbit> {
-    let shooting = &branch.shooting;
-    let x = |i: usize| shooting.unknowns(&branch.points[i].states, branch.points[i].value);
-    let (from, way) = (x(i - 1), x(i + 1) - x(i - 1));
-    let at = |share: f64| Orbit::of(shooting, &shooting.correct(&(&from + &way * share), &way)?).ok();
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut low, mut high) = (0.0, 1.0);
-    let (mut a, mut b) = (at(1.0 - golden)?, at(golden)?);
-    for _ in 0..EVALUATIONS {
-        if quantity(&a) > quantity(&b) {
-            high = low + golden * (high - low);
-            b = a;
-            a = at(high - golden * (high - low))?;
-        } else {
-            low = high - golden * (high - low);
-            a = b;
-            b = at(low + golden * (high - low))?;
-        }
-    }
-    Some(if quantity(&a) > quantity(&b) { a } else { b })
 }

@@ -63,9 +63,9 @@ pub(super) fn located(shooting: &Shooting, now: &Node, next: &Node) -> Vec<Event
             found.push((share, event(kind, node)));
         }
     }
-    let (mut from, mut label) = (0.0, now.orbit.impacts.clone());
+    let (mut from, mut label) = (0.0, now.orbit.seen.impacts.clone());
     for _ in 0..GRAZINGS {
-        if label == next.orbit.impacts {
+        if label == next.orbit.seen.impacts {
             break;
         }
         let Some((share, node, after)) = change(shooting, [now, next], from, &label) else { break };
@@ -117,15 +117,15 @@ fn root(
 /// The first place after `from` at which the impacts are others than `label`, the motion there, and the impacts beyond.
 fn change(shooting: &Shooting, ends: [&Node; 2], from: f64, label: &str) -> Option<(f64, Node, String)> {
     let (mut low, mut high) = (from, 1.0);
-    let (mut best, mut after) = (None, ends[1].orbit.impacts.clone());
+    let (mut best, mut after) = (None, ends[1].orbit.seen.impacts.clone());
     for _ in 0..EVALUATIONS {
         let share = 0.5 * (low + high);
         let node = between(shooting, ends, share)?;
         let placed = (high - low) < PLACED;
-        if node.orbit.impacts == label {
+        if node.orbit.seen.impacts == label {
             low = share;
         } else {
-            (high, after) = (share, node.orbit.impacts.clone());
+            (high, after) = (share, node.orbit.seen.impacts.clone());
         }
         best = Some(node);
         if placed {

@@ -2,12 +2,13 @@
 
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
+use crate::poincare::coupled;
 use nalgebra::{Complex, Matrix4};
-use retune_model::Side;
+use retune_model::{Scene, Side};
 use retune_solver::observe::{
     DisplacementRange, Magnitude, PrimaryEnergy, RunningMaximum, StructureMotion, TouchDownTimes,
 };
-use retune_solver::{Follower, Motion, Phase};
+use retune_solver::{Follower, Motion, Phase, Settings};
 use std::f64::consts::TAU;
 
 /// A periodic motion.
@@ -21,6 +22,13 @@ pub struct Orbit {
     pub states: Vec<[f64; 4]>,
     /// Floquet multipliers, the largest first: a small change grows by them each time the motion repeats.
     pub multipliers: [Complex<f64>; 4],
+    /// Its largest values and its impacts.
+    pub seen: Seen,
+}
+
+/// The largest values and the impacts of a periodic motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
     /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
     /// empty if none.
     pub impacts: String,
@@ -28,10 +36,37 @@ pub struct Orbit {
     pub e1_max: f64,
     /// Largest displacement of the structure, m.
     pub displacement: f64,
-    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
+    /// The stroke, m.
     pub stroke: f64,
     /// Largest contact force, N.
     pub force: f64,
+}
+
+/// Follows a motion of so many periods from its states at the beginnings of equal segments: each segment from its own, so that an
+/// unstable motion is not left.
+///
+/// # Errors
+/// The scene cannot be run.
+pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 4]]) -> Result<Seen, Error> {
+    let system = coupled(scene)?;
+    let share = periods as f64 * TAU / system.bare().frequency() / states.len() as f64;
+    let mut follower = Follower::new(&system, settings, share);
+    let energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
+    let size = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
+    let range = DisplacementRange::new(&system, 0.0, f64::INFINITY);
+    let mut all = ((energy, size), (range, TouchDownTimes::default()));
+    for (k, &y) in states.iter().enumerate() {
+        let start = Motion { t: k as f64 * share, y, phase: Phase::of(&system, &y) };
+        follower.propagate(start, (k + 1) as f64 * share, &mut all)?;
+    }
+    let ((energy, size), (range, touches)) = all;
+    Ok(Seen {
+        impacts: turned(touches.0.iter().map(|(_, side)| *side)),
+        e1_max: energy.record().value,
+        displacement: size.record().value,
+        stroke: range.stroke().value.max(0.0),
+        force: range.force().value.max(0.0),
+    })
 }
 
 impl Orbit {
@@ -41,30 +76,9 @@ impl Orbit {
     /// The scene cannot be run there.
     pub fn of(shooting: &Shooting, solution: &Solution) -> Result<Self, Error> {
         let (value, states) = (shooting.value(&solution.x), shooting.states(&solution.x));
-        let system = shooting.system(value)?;
-        let share = shooting.periods as f64 * TAU / system.bare().frequency() / states.len() as f64;
-        let mut follower = Follower::new(&system, shooting.settings(), share);
-        let energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
-        let size = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
-        let range = DisplacementRange::new(&system, 0.0, f64::INFINITY);
-        let mut seen = ((energy, size), (range, TouchDownTimes::default()));
-        for (k, &y) in states.iter().enumerate() {
-            // Each segment starts at its own state, so that an unstable motion is not left.
-            let start = Motion { t: k as f64 * share, y, phase: Phase::of(&system, &y) };
-            follower.propagate(start, (k + 1) as f64 * share, &mut seen)?;
-        }
-        let ((energy, size), (range, touches)) = seen;
-        Ok(Self {
-            value,
-            periods: shooting.periods,
-            states,
-            multipliers: multipliers(&solution.at.monodromy()),
-            impacts: turned(touches.0.iter().map(|(_, side)| *side)),
-            e1_max: energy.record().value,
-            displacement: size.record().value,
-            stroke: range.stroke().value.max(0.0),
-            force: range.force().value.max(0.0),
-        })
+        let seen = seen(&shooting.scene_at(value)?, shooting.settings(), shooting.periods, &states)?;
+        let multipliers = multipliers(&solution.at.monodromy());
+        Ok(Self { value, periods: shooting.periods, states, multipliers, seen })
     }
 
     /// Whether small changes die out.

@@ -3,10 +3,10 @@
 use super::candidate::SAME;
 use super::draw;
 use super::fronts::{Certified, Fronts, Row};
-use crate::document::{Block, Document};
 use retune_store::Directory;
 use retune_study::{Sweep, design_cells, design_words, short};
 use retune_workbench::Error;
+use retune_workbench::document::{Block, Document};
 
 /// Writes the page in both forms, and its figures.
 ///

@@ -5,10 +5,10 @@ use super::draw;
 use super::tracked::Tracked;
 use super::trade::{Point, front};
 use super::tuned::{CURVES, DESIGNS, Tuned, Tuning};
-use crate::document::{Block, Document};
 use retune_store::Directory;
 use retune_study::{SpringBounds, design_cells, design_words, rounded, short};
 use retune_workbench::Error;
+use retune_workbench::document::{Block, Document};
 
 /// Writes the page in both forms, and its figures.
 ///

@@ -1,8 +1,8 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
+use crate::report::html::{Section, Table, figure, head, link};
 use maud::{DOCTYPE, Markup, html};
 use retune_figures::Drawing;
-use retune_workbench::report::html::{Section, Table, figure, head, link};
 
 /// A piece of a page.
 #[derive(Debug)]
