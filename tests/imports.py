@@ -26,9 +26,10 @@ BELOW = {
     "sweep": "model solver optim study figures",
     "workbench": "model solver optim dynamics study sweep store figures",
     "tradeoff": "model optim study store figures workbench",
+    "branches": "model solver dynamics study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
-    "retune": "model solver optim dynamics study sweep store figures workbench tradeoff paper",
-    "bench": "model solver optim dynamics study sweep store figures workbench tradeoff paper",
+    "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
+    "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
 }
 
 MOST_LINES = 300

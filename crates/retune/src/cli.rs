@@ -1,9 +1,11 @@
 //! What may be typed: commands, arguments and their help.
 
+mod branches;
 mod design;
 mod running;
 mod sweep;
 
+pub use branches::Branches;
 pub use design::Design;
 pub use running::Running;
 pub use sweep::Sweep;
@@ -34,25 +36,76 @@ pub enum Command {
     #[command(allow_negative_numbers = true)]
     Design(Design),
     /// Merge the parts of a grid made by `optimize --shard`, and continue with the search
-    Merge(Merge),
+    Merge {
+        /// The study file
+        study: PathBuf,
+        /// The parts [default: all in DIR/parts]
+        parts: Vec<PathBuf>,
+        /// The options of the run.
+        #[command(flatten)]
+        running: Running,
+    },
     /// Recompute a sample of the rows of results, and report whether they hold (exit code 0), do not (1), or cannot be checked (4)
-    Verify(Verify),
+    Verify {
+        /// A directory of results
+        results: PathBuf,
+        /// Number of rows of each table to recompute, evenly distributed over it
+        #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+        sample: u32,
+        /// Largest relative difference that is accepted; another machine may round differently
+        #[arg(long, value_name = "X", default_value_t = 0.0)]
+        within: f64,
+    },
     /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
-    Certify(Certify),
+    Certify {
+        /// A study (the design in its scene is certified), the optimum.json of a search, or the directory of its results
+        #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
+        design: PathBuf,
+        /// How it is run; the certificate goes beside an optimum, or to results/certify/<study>, unless --out says otherwise.
+        #[command(flatten)]
+        running: Running,
+    },
     /// Run one scene and print a summary of the motion
     Simulate(Simulate),
     /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values; into results/sweep-<study>-<parameter>
     #[command(allow_negative_numbers = true)]
     Sweep(Sweep),
+    /// Follow every periodic motion along omega or another parameter: branches, bifurcations, what coexists and how likely
+    #[command(allow_negative_numbers = true)]
+    Branches(Branches),
     /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line
     #[command(after_help = retune_workbench::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
-    Table2(Table2),
+    Table2 {
+        /// The study file
+        #[arg(default_value = "studies/table2.json")]
+        study: PathBuf,
+        /// The options of the run.
+        #[command(flatten)]
+        running: Running,
+    },
     /// Track the optimum along k1: retune both dampers for other stiffnesses of the structure, and plot the loss by detuning
-    Track(Track),
+    Track {
+        /// Stiffnesses of the primary structure, N/m
+        #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
+        k1: Vec<Setting>,
+        /// The table that names the study of each damper; each is tuned for its own k1 as well
+        #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
+        study: PathBuf,
+        /// The options of the run.
+        #[command(flatten)]
+        running: Running,
+    },
     /// Compute Pareto fronts: tune dampers under successively looser bounds on k2 and on the stroke
-    Fronts(Fronts),
+    Fronts {
+        /// The study file
+        #[arg(default_value = "studies/fronts.json")]
+        study: PathBuf,
+        /// The options of the run.
+        #[command(flatten)]
+        running: Running,
+    },
     /// Reproduce every table and figure of the paper, on one page beside its statements
     Reproduce(Reproduce),
     /// Reproduce one figure of the paper
@@ -117,42 +170,6 @@ pub struct Optimize {
     pub running: Running,
 }
 
-/// `merge`.
-#[derive(Debug, Args)]
-pub struct Merge {
-    /// The study file
-    pub study: PathBuf,
-    /// The parts [default: all in DIR/parts]
-    pub parts: Vec<PathBuf>,
-    /// The options of the run.
-    #[command(flatten)]
-    pub running: Running,
-}
-
-/// `certify`.
-#[derive(Debug, Args)]
-pub struct Certify {
-    /// A study (the design in its scene is certified), the optimum.json of a search, or the directory of its results
-    #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
-    pub design: PathBuf,
-    /// How it is run; the certificate goes beside an optimum, or to results/certify/<study>, unless --out says otherwise.
-    #[command(flatten)]
-    pub running: Running,
-}
-
-/// `verify`.
-#[derive(Debug, Args)]
-pub struct Verify {
-    /// A directory of results
-    pub results: PathBuf,
-    /// Number of rows of each table to recompute, evenly distributed over it
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
-    pub sample: u32,
-    /// Largest relative difference that is accepted; another machine may round differently
-    #[arg(long, value_name = "X", default_value_t = 0.0)]
-    pub within: f64,
-}
-
 /// `reproduce`, `figure`, `table`.
 #[derive(Debug, Args)]
 pub struct Reproduce {
@@ -160,42 +177,6 @@ pub struct Reproduce {
     #[arg(long, value_name = "FILE", default_value = "studies/paper.json")]
     pub study: PathBuf,
     /// How it is run; results go to results/<study> unless --out says otherwise.
-    #[command(flatten)]
-    pub running: Running,
-}
-
-/// `table2`.
-#[derive(Debug, Args)]
-pub struct Table2 {
-    /// The study file
-    #[arg(default_value = "studies/table2.json")]
-    pub study: PathBuf,
-    /// The options of the run.
-    #[command(flatten)]
-    pub running: Running,
-}
-
-/// `track`.
-#[derive(Debug, Args)]
-pub struct Track {
-    /// Stiffnesses of the primary structure, N/m
-    #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
-    pub k1: Vec<Setting>,
-    /// The table that names the study of each damper; each is tuned for its own k1 as well
-    #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
-    pub study: PathBuf,
-    /// The options of the run.
-    #[command(flatten)]
-    pub running: Running,
-}
-
-/// `fronts`.
-#[derive(Debug, Args)]
-pub struct Fronts {
-    /// The study file
-    #[arg(default_value = "studies/fronts.json")]
-    pub study: PathBuf,
-    /// The options of the run.
     #[command(flatten)]
     pub running: Running,
 }

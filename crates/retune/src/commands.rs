@@ -13,9 +13,17 @@ use retune_workbench::observer::Quiet;
 use retune_workbench::simulate::Trajectory;
 use retune_workbench::sweep::Points;
 use retune_workbench::tune::Optimum;
+use retune_workbench::verify::Others;
 use retune_workbench::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
 use std::io::BufReader;
 use std::path::Path;
+
+/// How `verify` computes the files again that only the crates above the workbench know.
+static OTHERS: &Others = &[
+    (&track::KIND, track::again),
+    (&pareto::KIND, pareto::again),
+    (&retune_branches::KIND, retune_branches::again),
+];
 
 /// Runs a command.
 ///
@@ -26,29 +34,30 @@ pub fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Optimize(arguments) => optimize(&arguments),
         Command::Design(arguments) => design(&arguments),
-        Command::Merge(cli::Merge { study, parts, running }) => {
+        Command::Merge { study, parts, running } => {
             let (request, screen) = running.request(&study);
             found(tune::merge::merge(&request, &parts, &screen)?)
         }
-        Command::Verify(cli::Verify { results, sample, within }) => {
-            verify::verify(&results, sample as usize, within, retune_tradeoff::OTHERS, &all)
+        Command::Verify { results, sample, within } => {
+            verify::verify(&results, sample as usize, within, OTHERS, &all)
         }
-        Command::Certify(cli::Certify { design, running }) => {
+        Command::Certify { design, running } => {
             let (request, screen) = running.request(&design);
             certify::certify_file(&request, &screen)?.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
         Command::Sweep(arguments) => sweep(arguments),
+        Command::Branches(arguments) => branches(arguments),
         Command::Evaluate(arguments) => evaluate(&arguments),
-        Command::Table2(cli::Table2 { study, running }) => {
+        Command::Table2 { study, running } => {
             let (request, screen) = running.request(&study);
             made(table2::table2(&request, &screen)?, Designs::check_limits)
         }
-        Command::Track(cli::Track { k1, study, running }) => {
+        Command::Track { k1, study, running } => {
             let (request, screen) = running.request(&study);
             made(track::track(&request, &k1, &screen)?, |tracked| tracked.table.check_limits())
         }
-        Command::Fronts(cli::Fronts { study, running }) => {
+        Command::Fronts { study, running } => {
             let (request, screen) = running.request(&study);
             pareto::pareto(&request, &screen).map(drop)
         }
@@ -131,6 +140,17 @@ fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
     let watch: &dyn Observer = if arguments.json { &quiet } else { &screen };
     let table = retune_workbench::sweep::sweep(&request, &asked, &points, watch)?;
     table.filter(|_| arguments.json).map_or(Ok(()), |table| screen.line(table.trim_end()))
+}
+
+fn branches(arguments: cli::Branches) -> Result<(), Error> {
+    let cli::Branches { study, over, from, to, samples, starts, json: as_json, running } = arguments;
+    let (request, screen) = running.request(&study);
+    let asked = retune_branches::Asked { over, from, to, samples, starts };
+    if !as_json {
+        return retune_branches::branches(&request, &asked, &screen).map(drop);
+    }
+    let found = retune_branches::branches(&request, &asked, &Quiet(&screen))?;
+    made(found, |found| screen.line(json(&retune_branches::summary(&found))?))
 }
 
 fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<(), Error> {

@@ -29,6 +29,14 @@ pub enum Error {
     /// A sweep that cannot be made.
     #[error(transparent)]
     Sweep(#[from] retune_sweep::Error),
+    /// What is asked for on the command line cannot be done.
+    #[error("command line: {option}: {problem}")]
+    Asked {
+        /// The option.
+        option: &'static str,
+        /// What is wrong, and what to give.
+        problem: String,
+    },
     /// The interval of a trajectory is invalid, or gives too many rows.
     #[error(
         "--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows"

@@ -60,6 +60,11 @@ pub struct Solution {
     pub iterations: usize,
 }
 
+/// The settings of the segments, of those of a study.
+pub fn settings_of(settings: &Settings) -> Settings {
+    Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings }
+}
+
 impl Shooting {
     /// The equations of motions of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period.
     pub fn new(
@@ -72,7 +77,7 @@ impl Shooting {
         let omega = scene.forcing.frequency.get();
         let m1 = scene.primary.mass.get().sqrt();
         let m2 = scene.damper.map_or(0.0, |damper| damper.mass.get().sqrt());
-        let settings = Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings };
+        let settings = settings_of(settings);
         let scale = Vector4::new(omega * m1, m1, omega * m2, m2) / size;
         Self { scene, parameter, periods, segments: periods, span, settings, scale }
     }

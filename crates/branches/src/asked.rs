@@ -1,0 +1,112 @@
+//! What is asked for: the parameter, its range, how many runs are started.
+
+use retune_dynamics::periodic::branches::Plan;
+use retune_model::Parameter;
+use retune_solver::Settings;
+use retune_study::{Study, angular_frequency};
+use retune_workbench::Error;
+use serde_json::{Value, json};
+
+/// Most samples, and most starts at each.
+const MOST: usize = 10_000;
+
+/// What is asked for, as it is typed.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// The parameter.
+    pub over: Parameter,
+    /// Its least value; by default that of the band of the study, or 0.8 of its own.
+    pub from: Option<String>,
+    /// Its largest value; by default that of the band of the study, or 1.25 of its own.
+    pub to: Option<String>,
+    /// Number of values at which runs are started.
+    pub samples: usize,
+    /// Number of starts at each, beside that from rest.
+    pub starts: usize,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Self { over: Parameter::Omega, from: None, to: None, samples: 31, starts: 16 }
+    }
+}
+
+impl Asked {
+    /// The plan for a study.
+    ///
+    /// # Errors
+    /// An end is no number or out of range, or there are too many runs.
+    pub(crate) fn plan(&self, study: &Study) -> Result<Plan, Error> {
+        let Self { over, samples, starts, .. } = *self;
+        if study.scene.damper.is_none() {
+            let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
+            return Err(Error::Asked { option: "STUDY", problem });
+        }
+        let [low, high] = default_range(over, study)?;
+        let end = |option, text: &Option<String>, otherwise: f64| {
+            let value = match (text, over) {
+                (None, _) => Ok(otherwise),
+                (Some(text), Parameter::Omega) => angular_frequency(text),
+                (Some(text), _) => text
+                    .trim()
+                    .parse()
+                    .map_err(|_| format!("\"{text}\" is not a number: give one in {}", over.unit())),
+            };
+            let value = value.map_err(|problem| Error::Asked { option, problem })?;
+            match over.at(study.scene, value) {
+                Ok(_) if value.is_finite() && value > 0.0 => Ok(value),
+                _ => Err(Error::Asked {
+                    option,
+                    problem: format!("{value} {}: give a value above 0", over.unit()),
+                }),
+            }
+        };
+        let range = [end("--from", &self.from, low)?, end("--to", &self.to, high)?];
+        if range[0] >= range[1] {
+            let problem = format!("{} is not above --from {}", range[1], range[0]);
+            return Err(Error::Asked { option: "--to", problem });
+        }
+        if !(2..=MOST).contains(&samples) || starts > MOST {
+            let problem = format!("give 2 to {MOST} samples, and at most {MOST} starts at each");
+            return Err(Error::Asked { option: "--samples, --starts", problem });
+        }
+        Ok(Plan { parameter: over, range, samples, starts })
+    }
+}
+
+/// The band of the study for ω, else from 0.8 to 1.25 of the scene's own value.
+fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
+    let band = study.objective().omega.map(|band| band.of(&study.scene.primary));
+    if let (Parameter::Omega, Some(band)) = (over, band) {
+        return Ok([band.from, band.to]);
+    }
+    match over.of(&study.scene) {
+        Some(own) => Ok([0.8 * own, 1.25 * own]),
+        None => Err(Error::Asked {
+            option: "--over",
+            problem: format!("the scene of study {} has no {}", study.name(), over.symbol()),
+        }),
+    }
+}
+
+/// The plan as it stands in the resolved study.
+pub(crate) fn plan_json(plan: &Plan) -> Value {
+    let Plan { parameter, range: [from, to], samples, starts } = plan;
+    json!({ "over": parameter.symbol(), "from": from, "to": to, "samples": samples, "starts": starts })
+}
+
+/// The plan in a resolved study; none if it is not one.
+pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
+    let count = |name: &str| json[name].as_u64().map(|count| count as usize);
+    Some(Plan {
+        parameter: json["over"].as_str()?.parse().ok()?,
+        range: [json["from"].as_f64()?, json["to"].as_f64()?],
+        samples: count("samples")?,
+        starts: count("starts")?,
+    })
+}
+
+/// The settings of all runs.
+pub(crate) fn settings(study: &Study) -> Settings {
+    study.solver.settings()
+}

@@ -1,0 +1,28 @@
+//! What `branches` finds.
+
+use retune_dynamics::periodic::Branches;
+use retune_dynamics::periodic::branches::{Attractor, Sample};
+use retune_study::Study;
+
+/// The motions of a study along a parameter.
+#[derive(Debug)]
+pub struct Found {
+    /// The study.
+    pub study: Study,
+    /// The motions.
+    pub branches: Branches,
+}
+
+impl Found {
+    /// The samples at which runs settle on a branch, each with the motion.
+    pub(crate) fn on(&self, number: usize) -> impl Iterator<Item = (&Sample, &Attractor)> {
+        let samples = self.branches.samples.iter();
+        let all = samples.flat_map(|sample| sample.attractors.iter().map(move |one| (sample, one)));
+        all.filter(move |(_, one)| one.branch == Some(number))
+    }
+
+    /// Whether a run from rest that was made settles on a branch.
+    pub(crate) fn is_reached_from_rest(&self, number: usize) -> bool {
+        self.on(number).any(|(_, one)| one.from_rest)
+    }
+}

@@ -1,0 +1,68 @@
+//! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
+//! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
+//!
+//! The motions are found by `retune_dynamics::periodic`. Read `asked` (what is asked for), `tables` (what is written), `draw`, `page`, and
+//! `again`, which computes rows of the tables again.
+#![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
+
+mod again;
+mod asked;
+mod draw;
+mod found;
+mod page;
+mod tables;
+
+pub use again::again;
+pub use asked::Asked;
+pub use found::Found;
+pub use tables::summary;
+
+use asked::{plan_json, settings};
+use retune_dynamics::periodic::branches as motions;
+use retune_study::read;
+use retune_workbench::artefact::{Content, Kind, artefact};
+use retune_workbench::job::{Done, Job, Made};
+use retune_workbench::{Error, Observer, Request, resolved};
+use std::path::Path;
+
+/// The files of `branches`.
+pub static KIND: Kind = Kind {
+    command: "branches",
+    answer: tables::BRANCHES,
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact(tables::BRANCHES, Content::Own),
+        artefact(tables::BIFURCATIONS, Content::Own),
+        artefact(tables::ATTRACTORS, Content::Own),
+        artefact(tables::STATES, Content::Derived),
+        artefact("branches.json", Content::Derived),
+        artefact("branches.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
+    ],
+};
+
+/// Follows the branches of the scene of a study, or of the design that a search found, along a parameter.
+///
+/// # Errors
+/// The study or what is asked for is wrong, a scene in the range cannot be run, or the results cannot be written.
+pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Result<Done<Found>, Error> {
+    let study = read(&request.study)?;
+    let plan = asked.plan(&study)?;
+    let out = request.out.clone().unwrap_or_else(|| {
+        Path::new("results").join(format!("branches-{}-{}", study.name(), plan.parameter.symbol()))
+    });
+    let request = Request { out: Some(out), ..request.clone() };
+    let studies = [(study.name(), &study)];
+    let job = Job::of_studies(&KIND, &request, plan_json(&plan), studies.into_iter())?;
+    job.run(&request, watch, |directory| {
+        let bar = watch.progress("runs from many starts", plan.samples as u64);
+        let branches = motions(&study.scene, plan, &settings(&study), || bar.inc(1))?;
+        bar.finish();
+        let found = Found { study: study.clone(), branches };
+        tables::write(&found, directory)?;
+        page::write(&found, directory)?;
+        let report = format!("\n{}", page::answer(&found).join("\n"));
+        Ok(Made { report, answer: found, parts: Vec::new() })
+    })
+}

@@ -1,0 +1,131 @@
+//! The tables of `branches`.
+
+use crate::found::Found;
+use retune_dynamics::periodic::{Orbit, largest};
+use retune_store::Directory;
+use retune_study::joined;
+use retune_workbench::Error;
+use serde_json::{Value, json};
+
+/// A row for each motion of each branch.
+pub const BRANCHES: &str = "branches.csv";
+/// A row for each event.
+pub const BIFURCATIONS: &str = "bifurcations.csv";
+/// A row for each motion on which runs settle, at each sample.
+pub const ATTRACTORS: &str = "attractors.csv";
+/// The states from which the motions of the branches are followed.
+pub const STATES: &str = "states.csv";
+
+/// Writes them.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
+    let symbol = found.branches.plan.parameter.symbol();
+    let mut points =
+        format!("branch,place,{symbol},periods,impacts,stable,E1max,x1max,stroke,contact_force,multiplier\n");
+    let mut states = "branch,place,segment,x1,v1,x2,v2\n".to_owned();
+    let mut events =
+        format!("branch,place,kind,{symbol},periods,impacts,E1max,re1,im1,re2,im2,re3,im3,re4,im4\n");
+    for (number, branch) in found.branches.branches.iter().enumerate() {
+        for (place, orbit) in branch.points.iter().enumerate() {
+            points += &format!(
+                "{number},{place},{},{},{},{},{}\n",
+                head(orbit),
+                u8::from(orbit.is_stable()),
+                values(orbit),
+                orbit.seen.force,
+                orbit.multipliers[0].norm(),
+            );
+            for (segment, y) in orbit.states.iter().enumerate() {
+                states += &format!("{number},{place},{segment},{}\n", joined(y, ","));
+            }
+        }
+        for event in &branch.events {
+            let orbit = &event.orbit;
+            let multipliers: Vec<f64> = orbit.multipliers.iter().flat_map(|m| [m.re, m.im]).collect();
+            events += &format!(
+                "{number},{},{},{},{},{}\n",
+                event.place,
+                event.kind.name(),
+                head(orbit),
+                orbit.seen.e1_max,
+                joined(&multipliers, ",")
+            );
+        }
+    }
+    let mut attractors =
+        format!("{symbol},motion,branch,periods,impacts,starts_of,starts,from_rest,E1max,x1,v1,x2,v2\n");
+    for sample in &found.branches.samples {
+        let (value, all) = (sample.value, sample.starts);
+        for one in &sample.attractors {
+            let Orbit { periods, seen, states, .. } = &one.orbit;
+            attractors += &format!(
+                "{value},periodic,{},{periods},{},{all},{},{},{},{}\n",
+                one.branch.map(|branch| branch.to_string()).unwrap_or_default(),
+                seen.impacts,
+                one.starts,
+                u8::from(one.from_rest),
+                seen.e1_max,
+                joined(&states[0], ",")
+            );
+        }
+        if !sample.irregular.is_empty() {
+            let most = sample.irregular.iter().copied().fold(0.0, f64::max);
+            attractors += &format!(
+                "{value},irregular,,,,{all},{},{},{most},,,,\n",
+                sample.irregular.len(),
+                u8::from(sample.rest_is_irregular)
+            );
+        }
+    }
+    directory.write(BRANCHES, &points)?;
+    directory.write(STATES, &states)?;
+    directory.write(BIFURCATIONS, &events)?;
+    directory.write(ATTRACTORS, &attractors)?;
+    Ok(directory.write_json("branches.json", &summary(found))?)
+}
+
+/// The parameter's value, the periods and the impacts.
+fn head(orbit: &Orbit) -> String {
+    format!("{},{},{}", orbit.value, orbit.periods, orbit.seen.impacts)
+}
+
+fn values(orbit: &Orbit) -> String {
+    let seen = &orbit.seen;
+    joined(&[seen.e1_max, seen.displacement, seen.stroke], ",")
+}
+
+/// The answer as data.
+pub fn summary(found: &Found) -> Value {
+    let [stable, irregular] = found.branches.stable_and_irregular();
+    let branches: Vec<Value> = found
+        .branches
+        .branches
+        .iter()
+        .map(|branch| {
+            let most = largest(branch, |orbit| orbit.seen.e1_max);
+            let events = branch.events.iter().map(|event| {
+                json!({ "kind": event.kind.name(), "value": event.orbit.value, "impacts": event.orbit.seen.impacts })
+            });
+            json!({
+                "periods": branch.shooting.periods,
+                "ends": branch.ends.map(|end| end.words()),
+                "points": branch.points.len(),
+                "events": events.collect::<Vec<_>>(),
+                "largest_stable": most.map(|orbit| json!({
+                    "value": orbit.value,
+                    "E1max": orbit.seen.e1_max,
+                    "impacts": orbit.seen.impacts,
+                })),
+            })
+        })
+        .collect();
+    json!({
+        "study": found.study.name(),
+        "plan": crate::asked::plan_json(&found.branches.plan),
+        "stable": stable,
+        "irregular": irregular,
+        "branches": branches,
+    })
+}

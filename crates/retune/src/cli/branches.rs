@@ -1,0 +1,35 @@
+//! What may be typed for `branches`.
+
+use super::running::Running;
+use clap::Args;
+use retune_model::Parameter;
+use std::path::PathBuf;
+
+/// `branches`.
+#[derive(Debug, Args)]
+pub struct Branches {
+    /// A study, the optimum.json of a search, or the directory of its results
+    #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
+    pub study: PathBuf,
+    /// The parameter: omega P k1 c1 m2 k2 c2 D C R
+    #[arg(long, value_name = "NAME", default_value = "omega")]
+    pub over: Parameter,
+    /// Its least value, in its SI unit; a frequency may have one of its own: 0.8Hz [default: of the band of the study, or 0.8 of its own]
+    #[arg(long, value_name = "A")]
+    pub from: Option<String>,
+    /// Its largest value [default: of the band of the study, or 1.25 of its own]
+    #[arg(long, value_name = "B")]
+    pub to: Option<String>,
+    /// Number of values at which runs are started
+    #[arg(long, value_name = "N", default_value_t = 31)]
+    pub samples: usize,
+    /// Number of starts at each, beside that from rest
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    pub starts: usize,
+    /// Print the answer as one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// How it is run; results go to results/branches-<study>-<parameter> unless --out says otherwise.
+    #[command(flatten)]
+    pub running: Running,
+}
