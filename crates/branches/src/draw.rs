@@ -115,16 +115,15 @@ fn chart(found: &Found, (label, value): &Drawn, is_first: bool) -> Chart {
     Chart { title: String::new(), x, y, layers, height: if is_first { 240.0 } else { 150.0 } }
 }
 
-/// The stable or the unstable motions of a branch; where it changes from one to the other, the line of either ends.
+/// The stable or the unstable motions of a branch.
 fn line(branch: &Branch, value: fn(&Orbit) -> f64, stable: bool) -> Layer {
-    let points = &branch.points;
-    let is_own = |i: usize| points[i].is_stable() == stable;
-    let point = |i: usize| {
-        let near = i > 0 && is_own(i - 1) || i + 1 < points.len() && is_own(i + 1);
-        // The first motion beyond is drawn as well, so that no gap is left.
-        let drawn = is_own(i) || near && !stable;
-        (points[i].value, if drawn { value(&points[i]) } else { f64::NAN })
-    };
-    let stroke = if stable { STABLE } else { UNSTABLE };
-    Layer::Line { points: (0..points.len()).map(point).collect(), stroke }
+    let mut points = Vec::new();
+    for (i, pair) in branch.points.windows(2).enumerate() {
+        if branch.is_stable_after(i) == stable {
+            points.extend(pair.iter().map(|orbit| (orbit.value, value(orbit))));
+        } else {
+            points.push((f64::NAN, f64::NAN));
+        }
+    }
+    Layer::Line { points, stroke: if stable { STABLE } else { UNSTABLE } }
 }

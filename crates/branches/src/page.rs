@@ -130,10 +130,11 @@ fn isola(found: &Found, number: usize, branch: &Branch) -> Option<String> {
     let shares = found.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
     let [least, greatest] =
         shares.fold([f64::INFINITY, 0.0], |[low, high], share| [low.min(share), f64::max(high, share)]);
-    let reached = if least > greatest {
-        "no start that was tried ends there".to_owned()
-    } else {
-        format!("{} to {} % of the starts end there", rounded(100.0 * least, 2), rounded(100.0 * greatest, 2))
+    let percent = |share: f64| rounded(100.0 * share, 2);
+    let reached = match (percent(least), percent(greatest)) {
+        _ if least > greatest => "no start that was tried ends there".to_owned(),
+        (low, high) if low == high => format!("{low} % of the starts there end on it"),
+        (low, high) => format!("{low} to {high} % of the starts there end on it"),
     };
     Some(format!(
         "Branch {number} is an isola: it exists from {} = {} to {} {} only, apart from all others ({}); up to {} J; {reached}.",
@@ -159,7 +160,7 @@ fn kind(orbit: &Orbit) -> String {
 fn branches(found: &Found) -> Block {
     let plan = &found.branches.plan;
     let rows = found.branches.branches.iter().enumerate().take(MOST).map(|(number, branch)| {
-        let stable = branch.points.iter().filter(|orbit| orbit.is_stable()).count();
+        let stable = (0..branch.points.len()).filter(|i| branch.is_stable_at(*i)).count();
         let most = largest(branch, |orbit| orbit.seen.e1_max);
         let value = |orbit: &Orbit| orbit.value;
         let low = branch.points.iter().map(value).fold(f64::INFINITY, f64::min);

@@ -10,6 +10,9 @@ use rayon::prelude::*;
 use retune_model::{Bare, Parameter, Scene};
 use retune_solver::Settings;
 
+/// How often gaps without a stable motion are looked into, and the narrowest, as a share of the range.
+const ROUNDS: usize = 3;
+const NARROW: f64 = 2e-4;
 /// Most branches.
 const MOST_BRANCHES: usize = 200;
 /// A branch as far as this from a motion is not tried, in units of the motion's size.
@@ -70,7 +73,8 @@ pub struct Branches {
 /// A range of the parameter.
 pub type Ranged = [f64; 2];
 
-/// Finds the branches of a scene along a parameter. `done` is called after each sample.
+/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. `done` is told of each number
+/// of samples that are done.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
@@ -78,25 +82,24 @@ pub fn branches(
     scene: &Scene,
     plan: Plan,
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: impl Fn(usize) + Sync,
 ) -> Result<Branches, Error> {
     let shooting = equations(scene, &plan, settings)?;
-    let values = evenly(plan.range[0], plan.range[1], plan.samples);
-    let seen: Vec<Result<Seen, Error>> = values
-        .par_iter()
-        .map(|&value| {
-            let seen = look(&shooting, value, plan.starts);
-            done();
-            seen
-        })
-        .collect();
+    let mut values = evenly(plan.range[0], plan.range[1], plan.samples);
     let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new() };
-    for seen in seen {
-        let sample = seen?.sample(&shooting, |own, solution| {
-            found.holds(own, solution).or_else(|| found.follow(own, solution))
-        })?;
-        found.samples.push(sample);
+    for _ in 0..=ROUNDS {
+        let seen: Vec<Result<Seen, Error>> =
+            values.par_iter().map(|&value| look(&shooting, value, plan.starts)).collect();
+        done(values.len());
+        for seen in seen {
+            let sample = seen?.sample(&shooting, |own, solution| {
+                found.holds(own, solution).or_else(|| found.follow(own, solution))
+            })?;
+            found.samples.push(sample);
+        }
+        values = found.unseen();
     }
+    found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
 }
 
@@ -179,6 +182,17 @@ fn look(shooting: &Shooting, value: f64, starts: usize) -> Result<Seen, Error> {
 }
 
 impl Branches {
+    /// The middles of the gaps without a stable motion that no sample is in.
+    fn unseen(&self) -> Vec<f64> {
+        let [from, to] = self.plan.range;
+        let [_, gaps] = self.stable_and_irregular();
+        let gaps = gaps.iter().filter(|[low, high]| high - low > NARROW * (to - from));
+        let seen = |[low, high]: [f64; 2]| {
+            self.samples.iter().any(|sample| sample.value > low && sample.value < high)
+        };
+        gaps.filter(|gap| !seen(**gap)).map(|[low, high]| 0.5 * (low + high)).collect()
+    }
+
     /// The number of the branch that a motion lies on.
     fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
         let value = shooting.value(&motion.x);
@@ -239,7 +253,8 @@ impl Branches {
     pub fn stable_and_irregular(&self) -> [Vec<Ranged>; 2] {
         let mut parts: Vec<Ranged> = Vec::new();
         for branch in &self.branches {
-            for pair in branch.points.windows(2).filter(|pair| pair.iter().all(Orbit::is_stable)) {
+            let pairs = branch.points.windows(2).enumerate();
+            for (_, pair) in pairs.filter(|(i, _)| branch.is_stable_after(*i)) {
                 let [a, b] = [pair[0].value, pair[1].value];
                 parts.push([a.min(b), a.max(b)]);
             }

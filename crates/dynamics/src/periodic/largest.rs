@@ -13,7 +13,7 @@ pub type Quantity = fn(&Orbit) -> f64;
 
 /// The motion with the largest value of a quantity among the stable ones of a branch, located between the points of the branch.
 pub fn largest(branch: &Branch, quantity: Quantity) -> Option<Orbit> {
-    let stable = |i: usize| branch.points.get(i).filter(|orbit| orbit.is_stable());
+    let stable = |i: usize| branch.points.get(i).filter(|_| branch.is_stable_at(i));
     let value = |i: usize| stable(i).map_or(f64::NEG_INFINITY, quantity);
     let all = 0..branch.points.len();
     let most = all.clone().map(value).fold(f64::NEG_INFINITY, f64::max);
@@ -22,7 +22,7 @@ pub fn largest(branch: &Branch, quantity: Quantity) -> Option<Orbit> {
         all.filter(near).filter(|&i| (i == 0 || value(i - 1) <= value(i)) && value(i + 1) <= value(i));
     let located = peaks.filter_map(|i| {
         let own = stable(i)?.clone();
-        let inner = i > 0 && stable(i - 1).is_some() && stable(i + 1).is_some();
+        let inner = i > 0 && branch.is_stable_after(i - 1) && branch.is_stable_after(i);
         let better = if inner { located(branch, i, quantity) } else { None };
         Some(better.filter(|better| quantity(better) > quantity(&own)).unwrap_or(own))
     });

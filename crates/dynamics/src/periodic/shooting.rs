@@ -15,7 +15,7 @@ const ITERATIONS: usize = 9;
 /// A change larger than this share of the motion leaves the neighbourhood in which the iteration can be trusted.
 const FAR: f64 = 0.5;
 /// Largest tolerance of the contacts.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-10;
 
 /// The equations of motions with a number of periods of the force, along a parameter.
 ///

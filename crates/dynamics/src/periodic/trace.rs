@@ -4,7 +4,7 @@
 //! long, where the iteration needs many rounds, ends far from the prediction, or the direction turns by more than [`TURN`]: so it
 //! neither jumps to another branch nor cuts a fold short.
 
-use super::events::{Event, located};
+use super::events::{Event, EventKind, located};
 use super::node::{Node, tests};
 use super::orbit::Orbit;
 use super::shooting::{Shooting, Solution};
@@ -22,6 +22,9 @@ const TURN: f64 = 0.95;
 const STRAIGHT: f64 = 0.995;
 /// How far from the prediction a solution may be, as a share of the step.
 const ASTRAY: f64 = 0.3;
+
+/// Two events of a closed branch as near as this share of the range are one.
+const AGAIN: f64 = 1e-8;
 
 /// Why a branch was followed no farther.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +65,27 @@ pub struct Branch {
     pub events: Vec<Event>,
     /// How it ends on either side.
     pub ends: [End; 2],
+}
+
+impl Branch {
+    /// Whether the motions between point `i` and the next are stable. At a bifurcation itself a multiplier is on the unit circle, and
+    /// rounding decides on which side: the other point counts.
+    pub fn is_stable_after(&self, i: usize) -> bool {
+        let at_bifurcation = |place: usize| {
+            self.events.iter().any(|event| event.place == place && event.kind != EventKind::Grazing)
+        };
+        let mut decisive = [i, i + 1].into_iter().filter(|place| !at_bifurcation(*place)).peekable();
+        i + 1 < self.points.len()
+            && decisive.peek().is_some()
+            && decisive.all(|place| self.points[place].is_stable())
+    }
+
+    /// Whether a motion is stable, or the limit of stable ones.
+    pub fn is_stable_at(&self, i: usize) -> bool {
+        i > 0 && self.is_stable_after(i - 1)
+            || self.is_stable_after(i)
+            || self.points.len() == 1 && self.points[0].is_stable()
+    }
 }
 
 /// The branch through a solution, to both sides.
@@ -126,7 +150,6 @@ fn side(shooting: &Shooting, start: &Node, [from, to]: [f64; 2]) -> (Vec<Found>,
         if joins_half(shooting, &now, &next) {
             return (found, End::Halved);
         }
-        found.push((next.orbit.clone(), None));
         // Back at the start: near it, past it, and in the same direction.
         let (shift, _) = shooting.nearest(&start.solution.x, &next.solution.x);
         let moved = |x: &DVector<f64>| shooting.moved_on(x, shift);
@@ -134,8 +157,25 @@ fn side(shooting: &Shooting, start: &Node, [from, to]: [f64; 2]) -> (Vec<Found>,
         let came = shooting.norm(&(&next.solution.x - &now.solution.x));
         let alike = shooting.inner(&moved(&next.direction), &start.direction) > TURN;
         if apart > 4.0 * came && away < came && alike {
+            // What lies beyond the start has been found before.
+            let known = |event: &Event| {
+                let same = |(_, other): &&Found| {
+                    other.as_ref().is_some_and(|other| {
+                        other.kind == event.kind
+                            && (other.orbit.value - event.orbit.value).abs() < AGAIN * shooting.span
+                    })
+                };
+                found.iter().filter(same).count() > 1
+            };
+            if found.last().is_some_and(|(_, event)| event.as_ref().is_some_and(known)) {
+                found.pop();
+            }
+            let mut last = start.orbit.clone();
+            last.states.rotate_right(shift);
+            found.push((last, None));
             return (found, End::Closed);
         }
+        found.push((next.orbit.clone(), None));
         apart = f64::max(apart, away);
         now = next;
     }
