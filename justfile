@@ -76,6 +76,17 @@ simulate STUDY="studies/ssvi.json" *OPTIONS:
 sweep STUDY *OPTIONS:
     {{retune}} sweep "$@"
 
+# Follow every periodic motion along omega or (`--over k1`) another parameter: branches, bifurcations, what coexists, for instance `just branches results/ssvi`
+branches STUDY *OPTIONS:
+    {{retune}} branches "$@"
+
+# The periodic motions of four dampers into results/branches: the paper's, both tuned ones, and one with 225.8 J from rest that is not safe
+branches-all:
+    {{retune}} branches studies/ssvi.json --out results/branches/paper
+    {{retune}} branches results/ssvi --out results/branches/tuned
+    {{retune}} branches results/ssvi-global --out results/branches/global
+    {{retune}} branches studies/ssvi-isola.json --starts 64 --out results/branches/isola
+
 # Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-free.json`
 evaluate STUDY *OPTIONS:
     {{retune}} evaluate "$@"
@@ -163,6 +174,10 @@ test-bands DAMPERS="1000000":
 # Find values of results/retune and results/fronts again with SciPy (needs numpy and scipy for python3; some minutes)
 test-retention *OPTIONS:
     python3 tests/reference/retention.py "$@"
+
+# Find periodic motions of results/branches again with SciPy, and their multipliers (needs numpy and scipy for python3; a minute)
+test-branches *OPTIONS:
+    python3 tests/reference/orbits.py "$@"
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":

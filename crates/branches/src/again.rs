@@ -73,8 +73,11 @@ impl Results {
         let value = row.number(self.plan.parameter.symbol());
         let (is_periodic, impacts) = (row.text("motion") == "periodic", row.text("impacts").to_owned());
         let (starts, periods) = (row.text("starts").to_owned(), row.text("periods").to_owned());
+        // Beside that from rest.
+        let others = row.text("starts_of").parse::<usize>().ok()?.checked_sub(1)?;
         let again = move || {
-            let Ok(found) = sample(&self.study.scene, self.plan, &settings(&self.study), value) else {
+            let plan = Plan { starts: others, ..self.plan };
+            let Ok(found) = sample(&self.study.scene, plan, &settings(&self.study), value) else {
                 return f64::INFINITY;
             };
             if !is_periodic {

@@ -19,7 +19,7 @@ pub use tables::summary;
 
 use asked::{plan_json, settings};
 use retune_dynamics::periodic::branches as motions;
-use retune_study::read;
+use retune_study::{found_in, read};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::job::{Done, Job, Made};
 use retune_workbench::{Error, Observer, Request, resolved};
@@ -49,8 +49,9 @@ pub static KIND: Kind = Kind {
 pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Result<Done<Found>, Error> {
     let study = read(&request.study)?;
     let plan = asked.plan(&study)?;
+    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
     let out = request.out.clone().unwrap_or_else(|| {
-        Path::new("results").join(format!("branches-{}-{}", study.name(), plan.parameter.symbol()))
+        Path::new("results").join(format!("branches-{}{tuned}-{}", study.name(), plan.parameter.symbol()))
     });
     let request = Request { out: Some(out), ..request.clone() };
     let studies = [(study.name(), &study)];

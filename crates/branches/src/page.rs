@@ -55,8 +55,9 @@ fn asked(found: &Found) -> String {
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
     let damper = found.study.scene.damper.map_or(String::new(), |damper| TunedDamper::of(&damper).words(5));
     format!(
-        "The damper: {damper}. At {} of {symbol} from {} to {} {unit}, runs from rest and from {} are followed until they repeat; the branch \
-         of each motion that they settle on is followed to both sides, and from each period doubling at which it gains or loses stability.",
+        "The damper: {damper}. At {} of {symbol} from {} to {} {unit}, runs from rest and from {} are followed until they repeat, and more where \
+         no stable motion is known; the branch of each motion that they settle on is followed to both sides, and from each period doubling at \
+         which it gains or loses stability.",
         counted(plan.samples as u64, "value"),
         short(from),
         short(to),
@@ -71,23 +72,7 @@ pub fn answer(found: &Found) -> Vec<String> {
     let [stable, irregular] = found.branches.stable_and_irregular();
     let covered: f64 = stable.iter().map(|[from, to]| to - from).sum();
     let share = 100.0 * covered / (plan.range[1] - plan.range[0]);
-    let mut words = vec![format!(
-        "Stable periodic motions, of {}, cover {} % of the range.",
-        counted(found.branches.branches.len() as u64, "branch"),
-        rounded(share, 4)
-    )];
-    for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * (plan.range[1] - plan.range[0]))
-    {
-        let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
-        let energies = found.branches.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
-        let most = energies.copied().fold(0.0, f64::max);
-        let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
-        words.push(format!(
-            "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",
-            rounded(*from, 6),
-            rounded(*to, 6)
-        ));
-    }
+    let mut words = Vec::new();
     let all = found.branches.branches.iter().enumerate();
     let mut most: Vec<(usize, Orbit)> =
         all.filter_map(|(i, branch)| Some((i, largest(branch, |orbit| orbit.seen.e1_max)?))).collect();
@@ -114,6 +99,23 @@ pub fn answer(found: &Found) -> Vec<String> {
     }
     words
         .extend(found.branches.branches.iter().enumerate().filter_map(|(i, branch)| isola(found, i, branch)));
+    words.push(format!(
+        "Stable periodic motions, of {}, cover {} % of the range.",
+        counted(found.branches.branches.len() as u64, "branch"),
+        rounded(share, 4)
+    ));
+    for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * (plan.range[1] - plan.range[0]))
+    {
+        let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
+        let energies = found.branches.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
+        let most = energies.copied().fold(0.0, f64::max);
+        let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
+        words.push(format!(
+            "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",
+            rounded(*from, 6),
+            rounded(*to, 6)
+        ));
+    }
     words
 }
 

@@ -4,8 +4,9 @@
 mod scenes;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use retune_model::{Bare, Coupled, Scene};
-use retune_solver::{Method, Settings, Window, e1_max};
+use retune_model::{Bare, Coupled, Parameter, Scene};
+use retune_solver::observe::{PrimaryEnergy, RunningMaximum, Unobserved};
+use retune_solver::{Follower, Method, Motion, Phase, Settings, Tangent, Window, e1_max};
 use scenes::{ROW3, SSVI, TMD};
 use std::hint::black_box;
 
@@ -62,5 +63,32 @@ fn runs(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, runs);
+/// A run with its derivatives beside the same run without: by the first state, and by all ten parameters as well.
+fn derivatives(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a run over 100 s");
+    for (name, numbers) in [("Table 2", SSVI), ("Table 1 row 3", ROW3)] {
+        let system = numbers.coupled();
+        let settings = Settings::default();
+        let start = Motion { t: 0.0, y: system.start(), phase: Phase::Flight };
+        group.bench_function(format!("{name}, E1max alone"), |bencher| {
+            let mut follower = Follower::new(&system, &settings, WHOLE.to);
+            bencher.iter(|| {
+                let mut e1 = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
+                follower.propagate(black_box(start), WHOLE.to, &mut e1).map(|_| e1.record())
+            });
+        });
+        for parameters in [&Parameter::ALL[..0], &Parameter::ALL[..1], &Parameter::ALL] {
+            group.bench_function(
+                format!("{name}, derivatives by {} parameters", parameters.len()),
+                |bencher| {
+                    let mut tangent = Tangent::new(&system, &settings, WHOLE.to, parameters);
+                    bencher.iter(|| tangent.propagate(black_box(start), WHOLE.to, &mut Unobserved));
+                },
+            );
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, runs, derivatives);
 criterion_main!(benches);

@@ -10,8 +10,11 @@ use rayon::prelude::*;
 use retune_model::{Bare, Parameter, Scene};
 use retune_solver::Settings;
 
-/// How often gaps without a stable motion are looked into, and the narrowest, as a share of the range.
-const ROUNDS: usize = 3;
+/// How far apart runs are started in the gaps without a stable motion, again and again, as shares of the range; with this share of the
+/// starts, for runs that do not settle take longest.
+const SPACINGS: [f64; 2] = [1.0 / 200.0, 1.0 / 400.0];
+const FEWER: usize = 4;
+/// The narrowest gap that is looked into, as a share of the range.
 const NARROW: f64 = 2e-4;
 /// Most branches.
 const MOST_BRANCHES: usize = 200;
@@ -87,9 +90,11 @@ pub fn branches(
     let shooting = equations(scene, &plan, settings)?;
     let mut values = evenly(plan.range[0], plan.range[1], plan.samples);
     let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new() };
-    for _ in 0..=ROUNDS {
+    let mut spacings = SPACINGS.iter();
+    let mut starts = plan.starts;
+    loop {
         let seen: Vec<Result<Seen, Error>> =
-            values.par_iter().map(|&value| look(&shooting, value, plan.starts)).collect();
+            values.par_iter().map(|&value| look(&shooting, value, starts)).collect();
         done(values.len());
         for seen in seen {
             let sample = seen?.sample(&shooting, |own, solution| {
@@ -97,14 +102,18 @@ pub fn branches(
             })?;
             found.samples.push(sample);
         }
-        values = found.unseen();
+        let Some(spacing) = spacings.next() else { break };
+        (values, starts) = (found.unseen(*spacing), plan.starts.div_ceil(FEWER));
     }
     found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
 }
 
 /// The equations of motions of one period, in units that suit the plan.
-fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shooting, Error> {
+///
+/// # Errors
+/// A value in the range is out of the parameter's.
+pub fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shooting, Error> {
     let [from, to] = plan.range;
     let middle = plan.parameter.at(*scene, 0.5 * (from + to))?;
     let bare = Bare::new(&middle.primary, &middle.forcing);
@@ -182,19 +191,23 @@ fn look(shooting: &Shooting, value: f64, starts: usize) -> Result<Seen, Error> {
 }
 
 impl Branches {
-    /// The middles of the gaps without a stable motion that no sample is in.
-    fn unseen(&self) -> Vec<f64> {
+    /// Values in the gaps without a stable motion, at most `spacing` of the range apart, beside those that have been looked at.
+    fn unseen(&self, spacing: f64) -> Vec<f64> {
         let [from, to] = self.plan.range;
+        let near = spacing * (to - from);
         let [_, gaps] = self.stable_and_irregular();
         let gaps = gaps.iter().filter(|[low, high]| high - low > NARROW * (to - from));
-        let seen = |[low, high]: [f64; 2]| {
-            self.samples.iter().any(|sample| sample.value > low && sample.value < high)
-        };
-        gaps.filter(|gap| !seen(**gap)).map(|[low, high]| 0.5 * (low + high)).collect()
+        let inside = gaps.flat_map(|[low, high]| {
+            let count = ((high - low) / near).ceil();
+            (0..count as usize).map(move |i| low + (i as f64 + 0.5) / count * (high - low))
+        });
+        inside
+            .filter(|value| self.samples.iter().all(|sample| (sample.value - value).abs() > 0.25 * near))
+            .collect()
     }
 
-    /// The number of the branch that a motion lies on.
-    fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
+    /// The number of the branch that a motion lies on; none if it is on none.
+    pub fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
         let value = shooting.value(&motion.x);
         self.branches.iter().position(|branch| {
             branch.shooting.periods == shooting.periods

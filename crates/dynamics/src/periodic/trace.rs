@@ -14,8 +14,9 @@ use nalgebra::DVector;
 const FIRST: f64 = 2e-3;
 const LONGEST: f64 = 0.02;
 const SHORTEST: f64 = 1e-8;
-/// Most steps to one side.
+/// Most steps to one side, and the most periods of unstable motions in a row: long ones in chaos wind on without end.
 const MOST: usize = 3000;
+const UNSTABLE: usize = 600;
 /// Least cosine of the angle by which the direction may turn in a step.
 const TURN: f64 = 0.95;
 /// Least cosine after which steps may grow.
@@ -35,7 +36,7 @@ pub enum End {
     Closed,
     /// It has joined the branch of half its period, at a period doubling.
     Halved,
-    /// After the most steps.
+    /// After the most steps, or the most unstable motions in a row.
     Steps,
     /// No solution was found a shortest step ahead.
     Lost,
@@ -48,7 +49,9 @@ impl End {
             Self::Range => "ends where the range ends",
             Self::Closed => "is closed",
             Self::Halved => "ends at a period doubling",
-            Self::Steps => "was followed no farther after the most steps",
+            Self::Steps => {
+                "was followed no farther after the most steps, or the most unstable motions in a row"
+            }
             Self::Lost => "was lost: no motion was found a shortest step ahead",
         }
     }
@@ -116,7 +119,7 @@ type Found = (Orbit, Option<Event>);
 fn side(shooting: &Shooting, start: &Node, [from, to]: [f64; 2]) -> (Vec<Found>, End) {
     let mut found: Vec<Found> = Vec::new();
     let (mut now, mut step) = (start.clone(), FIRST);
-    let mut apart = 0.0;
+    let (mut apart, mut unstable) = (0.0, 0);
     for _ in 0..MOST {
         let next = loop {
             let guess = &now.solution.x + &now.direction * step;
@@ -176,6 +179,10 @@ fn side(shooting: &Shooting, start: &Node, [from, to]: [f64; 2]) -> (Vec<Found>,
             return (found, End::Closed);
         }
         found.push((next.orbit.clone(), None));
+        unstable = if next.orbit.is_stable() { 0 } else { unstable + shooting.periods };
+        if unstable > UNSTABLE {
+            return (found, End::Steps);
+        }
         apart = f64::max(apart, away);
         now = next;
     }

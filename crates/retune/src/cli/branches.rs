@@ -29,7 +29,7 @@ pub struct Branches {
     /// Print the answer as one JSON object
     #[arg(long)]
     pub json: bool,
-    /// How it is run; results go to results/branches-<study>-<parameter> unless --out says otherwise.
+    /// How it is run; results go to results/branches-<study>-<parameter> (of results: <study>-tuned) unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
 }

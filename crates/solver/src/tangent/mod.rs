@@ -4,12 +4,15 @@
 //! nothing jumps there: the equations hold through flight and contact alike, at fixed times (`docs/theory.md`, "Derivatives"). In flight
 //! they are linear with constant coefficients (`flight`); over a contact that was computed at once they are the collocated equations,
 //! differentiated (`collision`), and along one that is followed step by step an integral equation (`contact`). [`Tangent`] follows a run
-//! as an observer and does this piece by piece.
+//! as an observer and does this piece by piece; `gradient` has the
+//! derivatives of a largest value.
 
 mod collision;
 mod contact;
 mod flight;
+mod gradient;
 mod observer;
 mod series;
 
+pub use gradient::{Gradient, gradients};
 pub use observer::{Tangent, Transition};

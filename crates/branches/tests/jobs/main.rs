@@ -1,0 +1,90 @@
+//! The job as another program calls it, on a short stretch of the paper's damper.
+
+#[path = "../../../workbench/tests/jobs/desk.rs"]
+mod desk;
+#[path = "../../../workbench/tests/jobs/observers.rs"]
+mod observers;
+#[allow(dead_code, reason = "this crate has a desk of its own")]
+#[path = "../../../workbench/tests/jobs/verified.rs"]
+mod verified;
+
+use desk::{Desk, committed};
+use observers::{good, refused};
+use retune_branches::{Asked, KIND, again, branches};
+use retune_dynamics::Parameter;
+use retune_dynamics::periodic::EventKind;
+use retune_workbench::verify::Others;
+use retune_workbench::{Done, Error, Request, Silent};
+use serde_json::Value;
+use verified::a_changed_digit_is_found;
+
+static OTHERS: &Others = &[(&KIND, again)];
+
+/// The paper's damper of Table 2, about its first period doubling.
+fn desk() -> Desk {
+    Desk::with(&committed("ssvi.json"))
+}
+
+fn asked() -> Asked {
+    let [from, to] = ["5.2", "5.4"].map(|end| Some(end.to_owned()));
+    Asked { from, to, samples: 5, starts: 2, ..Asked::default() }
+}
+
+fn request(desk: &Desk, threads: u16) -> Request {
+    let out = Some(desk.path(&format!("out{threads}")));
+    Request { out, threads: Some(threads), ..Request::new(&desk.path("study.json")) }
+}
+
+#[test]
+fn invariant_the_motions_of_a_study_are_the_same_for_any_number_of_threads() {
+    let desk = desk();
+    let Done::Made(found) = good(branches(&request(&desk, 1), &asked(), &Silent)) else { panic!("not made") };
+    good(branches(&request(&desk, 2), &asked(), &Silent));
+    for name in
+        ["branches.csv", "bifurcations.csv", "attractors.csv", "states.csv", "branches.svg", "README.md"]
+    {
+        assert_eq!(desk.read(&format!("out1/{name}")), desk.read(&format!("out2/{name}")), "{name}");
+    }
+    // The main branch loses its stability at the period doubling, to a motion of two periods.
+    let main = &found.branches.branches[0];
+    assert_eq!(main.shooting.periods, 1);
+    let doubling = main.events.iter().find(|event| event.kind == EventKind::PeriodDoubling).expect("one");
+    assert!((doubling.orbit.value - 5.265928358).abs() < 1e-8, "{}", doubling.orbit.value);
+    assert!(found.branches.branches.iter().any(|branch| branch.shooting.periods == 2));
+    let json: Value = desk.read_json("out1/branches.json");
+    assert_eq!(json["branches"].as_array().map(Vec::len), Some(found.branches.branches.len()));
+    assert_eq!(json["plan"]["over"], "omega");
+    let events = desk.rows("out1/bifurcations.csv");
+    assert!(events.iter().any(|row| row[2] == "period doubling"), "{events:?}");
+}
+
+#[test]
+fn contract_results_are_verified_and_a_changed_digit_is_found() {
+    let desk = desk();
+    good(branches(&request(&desk, 2), &asked(), &Silent));
+    a_changed_digit_is_found(&desk, "out2", OTHERS, &["branches.csv", "bifurcations.csv", "attractors.csv"]);
+}
+
+#[test]
+fn contract_what_is_asked_for_is_checked() {
+    let desk = desk();
+    let wrong = |asked: Asked, words: &str| {
+        let error = refused(branches(&request(&desk, 1), &asked, &Silent));
+        assert!(matches!(error, Error::Asked { .. }), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    };
+    let text = |text: &str| Some(text.to_owned());
+    wrong(Asked { from: text("fast"), ..asked() }, "--from: ");
+    wrong(Asked { from: text("6"), ..asked() }, "--to: 5.4 is not above --from 6");
+    wrong(Asked { samples: 1, ..asked() }, "2 to 10000 samples");
+    wrong(
+        Asked { over: Parameter::K2, from: text("-1"), to: text("9"), ..asked() },
+        "-1 N/m: give a value above 0",
+    );
+    let mut bare = committed("ssvi.json");
+    bare["scene"]["damper"] = Value::Null;
+    bare["optimize"] = Value::Null;
+    let desk = Desk::with(&bare);
+    let error = refused(branches(&request(&desk, 1), &asked(), &Silent));
+    assert!(error.to_string().contains("no damper"), "{error}");
+}
