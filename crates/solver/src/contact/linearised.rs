@@ -2,6 +2,7 @@
 
 use crate::contact::collocation::nodes::MOMENTS;
 use crate::motion::knot::Knot;
+use nalgebra::DMatrix;
 use retune_model::Side;
 
 /// A contact at the nodes of its rule. A force `K f(t)` on the damper moves the state by `Σ_k A^k b ∫ (t - s)^k / k! f(s) ds`, with `b` what
@@ -23,6 +24,12 @@ pub struct LinearContact {
     pub terms: usize,
     /// The integrals at the nodes and at lift-off: `z^1.5` and powers of time.
     pub impulses: Vec<[f64; MOMENTS]>,
-    /// The share in them, for the nodes and lift-off in turn, of `z^1.5` at each node.
-    pub shares: Vec<Vec<[f64; MOMENTS]>>,
+    /// `A^k b`, and by how much it reduces the indentation.
+    pub kicks: [[f64; 4]; MOMENTS],
+    /// See `kicks`.
+    pub gains: [f64; MOMENTS],
+    /// By how much `z^1.5` at each node reduces the indentation at the nodes and at lift-off, a column for each node.
+    pub reductions: DMatrix<f64>,
+    /// What it adds to the state at lift-off.
+    pub additions: Vec<[f64; 4]>,
 }

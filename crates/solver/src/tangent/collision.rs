@@ -3,18 +3,18 @@
 //! A small change moves touch-down by `s`, the indentation at each node by `δz` and the duration by `δT`. The collocated equations (see
 //! `contact/collocation/solve.rs`), differentiated, are as many linear equations as there are unknowns; their matrix is the true
 //! Jacobian at the solution, not the one that Newton's iteration is preconditioned with. So these are the derivatives of what is
-//! computed, and as accurate.
+//! computed, and as accurate. Wanted are four numbers of each solution, the change of the state after the contact: four solutions of the
+//! transposed equations give them for any number of changes.
 
 use super::flight::Flight;
-use super::series::{Moment, Series};
+use super::series::{BRIEF, Moment, Series};
 use crate::contact::collocation::nodes::MOMENTS;
 use crate::contact::linearised::LinearContact;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use retune_model::{Coupled, Parameter, Side};
 
-/// `A^k b` of a contact with a wall, and its derivatives by each parameter.
+/// The derivatives of `A^k b` of a contact with a wall by each parameter.
 pub(super) struct Kicks {
-    own: [[f64; 4]; MOMENTS],
     by: Vec<[[f64; 4]; MOMENTS]>,
 }
 
@@ -38,8 +38,7 @@ impl Kicks {
             }
             by
         };
-        let by = parameters.iter().enumerate().map(by).collect();
-        Self { own, by }
+        Self { by: parameters.iter().enumerate().map(by).collect() }
     }
 }
 
@@ -53,17 +52,20 @@ pub(super) struct Change {
     pub wall: f64,
 }
 
-/// The linear equations of one contact.
+/// How one contact hands changes on.
 pub(super) struct Crossing<'a> {
-    system: &'a Coupled,
     flight: &'a Flight,
     kicks: &'a Kicks,
     contact: LinearContact,
     /// The motion without contact from touch-down on.
     free: Series,
-    solver: nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>,
-    /// What changes of `z` at the nodes and of the duration do to the state at lift-off.
-    end_by: Vec<[f64; 4]>,
+    /// The rates of the state and of the force at touch-down, without contact, and of the state after lift-off.
+    begin: Moment,
+    after: [f64; 4],
+    /// What a change of the free indentation that grows as a power of time does to the state after the contact.
+    powers: [[f64; BRIEF]; 4],
+    /// What a change of the push of each order does to it by the indentation.
+    pushes: [[f64; MOMENTS]; 4],
 }
 
 impl<'a> Crossing<'a> {
@@ -74,75 +76,76 @@ impl<'a> Crossing<'a> {
         contact: LinearContact,
     ) -> Self {
         let (n, sign, duration) = (contact.roots.len(), contact.side.sign(), contact.duration);
-        let free = flight.free(Moment { y: contact.touch.y, force: contact.touch.excitation });
-        let gains: Vec<f64> = kicks.own.iter().map(|kick| -sign * (kick[2] - kick[0])).collect();
-        let share = |i: usize, j: usize| -> f64 {
-            let along = contact.shares[i][j].iter().zip(&gains).take(contact.terms);
-            1.5 * contact.roots[j] * along.map(|(share, gain)| share * gain).sum::<f64>()
-        };
+        let touch = &contact.touch;
+        let free = flight.free(Moment { y: touch.y, force: touch.excitation }, duration);
         // An integral of order `k` grows as the duration to the power `k + 1`.
-        let growth = |impulses: &[f64; MOMENTS], weights: &dyn Fn(usize) -> f64| -> f64 {
-            let terms = impulses.iter().enumerate().take(contact.terms);
-            terms.map(|(k, impulse)| (k + 1) as f64 / duration * impulse * weights(k)).sum()
+        let growth = |place: usize, weight: &dyn Fn(usize) -> f64| -> f64 {
+            let terms = contact.impulses[place].iter().enumerate().take(contact.terms);
+            terms.map(|(k, impulse)| (k + 1) as f64 / duration * impulse * weight(k)).sum()
         };
-        let matrix = DMatrix::from_fn(n + 1, n + 1, |i, j| {
-            if j < n {
-                return f64::from(u8::from(i == j)) + share(i, j);
-            }
-            let time = contact.times[i];
-            let [v1, _, v2, _] = free.rate(time * duration);
-            growth(&contact.impulses[i], &|k| gains[k]) - sign * (v2 - v1) * time
-        });
-        let mut end_by: Vec<[f64; 4]> = (0..n)
-            .map(|j| {
-                let along = contact.shares[n][j].iter().zip(&kicks.own).take(contact.terms);
-                let mut sum = [0.0; 4];
-                for (share, kick) in along {
-                    for i in 0..4 {
-                        sum[i] += 1.5 * contact.roots[j] * share * kick[i];
-                    }
-                }
-                sum
+        let after = system.derivative_under(free.force(duration), &contact.end, 0.0);
+        // The transposed equations: a row for each unknown, `δz` at the nodes and `δT`, a column for each place.
+        let by_duration: Vec<f64> = (0..=n)
+            .map(|i| {
+                let [v1, _, v2, _] = free.rate(contact.times[i] * duration);
+                growth(i, &|k| contact.gains[k]) - sign * (v2 - v1) * contact.times[i]
             })
             .collect();
+        let matrix = DMatrix::from_fn(n + 1, n + 1, |j, i| match j {
+            _ if j == n => by_duration[i],
+            _ => f64::from(u8::from(i == j)) + 1.5 * contact.roots[j] * contact.reductions[(i, j)],
+        });
+        // What each unknown does to the state after the contact: at lift-off, less what passes until then.
         let rate = free.rate(duration);
-        let growing = |i: usize| growth(&contact.impulses[n], &|k| kicks.own[k][i]);
-        end_by.push(std::array::from_fn(|i| rate[i] + growing(i)));
-        Self { system, flight, kicks, free, solver: matrix.lu(), end_by, contact }
+        let mut weights = DMatrix::from_fn(n + 1, 4, |j, c| match j {
+            _ if j == n => rate[c] + growth(n, &|k| contact.kicks[k][c]) - after[c],
+            _ => 1.5 * contact.roots[j] * contact.additions[j][c],
+        });
+        matrix.lu().solve_mut(&mut weights);
+        let (mut powers, mut pushes) = ([[0.0; BRIEF]; 4], [[0.0; MOMENTS]; 4]);
+        for c in 0..4 {
+            for i in 0..=n {
+                let time = contact.times[i] * duration;
+                let mut power = sign * weights[(i, c)];
+                for k in 0..contact.terms {
+                    pushes[c][k] += power * contact.impulses[i][k];
+                }
+                for term in &mut powers[c] {
+                    *term += power;
+                    power *= time;
+                }
+            }
+        }
+        let rate = system.derivative_under(touch.excitation, &touch.y, 0.0);
+        let begin = Moment { y: rate, force: flight.turn(touch.excitation) };
+        Self { flight, kicks, contact, free, begin, after, powers, pushes }
     }
 
     /// The change of the state at the time of lift-off.
     pub(super) fn carry(&self, change: &Change) -> [f64; 4] {
-        let contact = &self.contact;
-        let (n, sign, touch) = (contact.roots.len(), contact.side.sign(), &contact.touch);
-        let Change { at, parameter, wall } = change;
+        let (Change { at, parameter, wall }, begin) = (change, &self.begin);
         // Touch-down moves to where the gap closes; up to there the motion is that without contact.
-        let begin = self.system.derivative_under(touch.excitation, &touch.y, 0.0);
-        let later = (wall - (at.y[2] - at.y[0])) / (begin[2] - begin[0]);
-        let turn = self.flight.turn(touch.excitation);
+        let later = (wall - (at.y[2] - at.y[0])) / (begin.y[2] - begin.y[0]);
         let at = Moment {
-            y: std::array::from_fn(|i| at.y[i] + begin[i] * later),
-            force: [0, 1].map(|i| at.force[i] + turn[i] * later),
+            y: std::array::from_fn(|i| at.y[i] + begin.y[i] * later),
+            force: [0, 1].map(|i| at.force[i] + begin.force[i] * later),
         };
         let free = self.flight.changed(&self.free, *parameter, at);
-        let kicks = parameter.map(|number| &self.kicks.by[number]);
-        let impulse = |place: usize, weight: &dyn Fn(&[f64; 4]) -> f64| -> f64 {
-            let all = kicks.into_iter().flatten().zip(&contact.impulses[place]).take(contact.terms);
-            all.map(|(kick, impulse)| impulse * weight(kick)).sum()
-        };
-        let mut right = DVector::from_fn(n + 1, |i, _| {
-            let r = free.separation(contact.times[i] * contact.duration);
-            sign * (r - wall + impulse(i, &|kick| kick[2] - kick[0]))
-        });
-        self.solver.solve_mut(&mut right);
-        let mut end = free.state(contact.duration);
-        for i in 0..4 {
-            end[i] += impulse(n, &|kick| kick[i]);
-            end[i] += self.end_by.iter().zip(right.iter()).map(|(by, change)| by[i] * change).sum::<f64>();
+        let mut end = free.state(self.contact.duration);
+        for c in 0..4 {
+            let along = free.terms().iter().zip(&self.powers[c]);
+            let separation: f64 = along.map(|(term, power)| (term.y[2] - term.y[0]) * power).sum();
+            end[c] += separation - wall * self.powers[c][0] - self.after[c] * later;
         }
-        // Back to the time at which the contact itself ended.
-        let force = self.free.force(contact.duration);
-        let rate = self.system.derivative_under(force, &contact.end, 0.0);
-        std::array::from_fn(|i| end[i] - rate[i] * (later + right[n]))
+        if let Some(number) = parameter {
+            let last = &self.contact.impulses[self.contact.roots.len()];
+            let pushed = self.kicks.by[*number].iter().zip(last).enumerate().take(self.contact.terms);
+            for (k, (kick, impulse)) in pushed {
+                for c in 0..4 {
+                    end[c] += impulse * kick[c] + self.pushes[c][k] * (kick[2] - kick[0]);
+                }
+            }
+        }
+        end
     }
 }

@@ -145,29 +145,25 @@ impl Flight {
         }
     }
 
-    /// The series of the motion from a moment on.
-    pub(super) fn free(&self, from: Moment) -> Series {
-        let mut series = Series([from; BRIEF]);
-        for k in 1..BRIEF {
-            let rate = self.derivative(&series.0[k - 1], f64::from(u8::from(k == 1)));
-            series.0[k] = rate.over(k as f64);
+    /// The series of the motion from a moment on, for `seconds` of a brief contact.
+    pub(super) fn free(&self, from: Moment, seconds: f64) -> Series {
+        let (mut count, mut size) = (1, 1.0);
+        while count < BRIEF && size > 1e-18 {
+            size *= self.rate * seconds / count as f64;
+            count += 1;
         }
-        series
+        Series::new(from, count, |k, term| self.derivative(term, f64::from(u8::from(k == 1))))
     }
 
     /// The series of a change of the motion `base`, by the parameter of this number or of where it starts alone.
     pub(super) fn changed(&self, base: &Series, parameter: Option<usize>, from: Moment) -> Series {
-        let mut series = Series([from; BRIEF]);
-        for k in 1..BRIEF {
-            let mut rate = self.derivative(&series.0[k - 1], 0.0);
-            if let Some(number) = parameter {
-                let more = self.more(number, &base.0[k - 1], f64::from(u8::from(k == 1)));
-                rate =
-                    Moment { y: sum(rate.y, more.y), force: [0, 1].map(|i| rate.force[i] + more.force[i]) };
-            }
-            series.0[k] = rate.over(k as f64);
-        }
-        series
+        let base = base.terms();
+        Series::new(from, base.len(), |k, term| {
+            let rate = self.derivative(term, 0.0);
+            let Some(number) = parameter else { return rate };
+            let more = self.more(number, &base[k - 1], f64::from(u8::from(k == 1)));
+            Moment { y: sum(rate.y, more.y), force: [0, 1].map(|i| rate.force[i] + more.force[i]) }
+        })
     }
 
     /// `A y`.

@@ -10,7 +10,9 @@ use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::each;
 use crate::observe::observer::{Observer, Path};
+use nalgebra::DMatrix;
 use retune_model::Growth;
+use wide::f64x4;
 
 /// A contact from touch-down to lift-off.
 pub(super) struct Collision<'a, const N: usize, const M: usize> {
@@ -182,27 +184,43 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     }
 
     fn linearised(&self) -> LinearContact {
-        let rule = self.rule;
+        let (rule, of, terms) = (self.rule, self.of, self.terms + 1);
         let powers: [f64; MOMENTS] = std::array::from_fn(|k| self.duration.powi(k as i32 + 1));
         let force = self.depth * self.depth.sqrt();
-        // Of node `i`, or of lift-off: a moment of the force, and the share of the force at node `j` in it.
+        let mut reductions = DMatrix::zeros(N + 1, N);
+        let (mut last, mut added) = ([f64x4::ZERO; M], [[f64x4::ZERO; M]; 4]);
+        for k in 0..terms {
+            for i in 0..M {
+                last[i] += rule.last[k][i] * (powers[k] * of.gains[k]);
+                for c in 0..4 {
+                    added[c][i] += rule.last[k][i] * (powers[k] * of.kicks[k][c]);
+                }
+            }
+        }
+        for j in 0..N {
+            let mut sum = [f64x4::ZERO; M];
+            for k in 0..terms {
+                for i in 0..M {
+                    sum[i] += rule.moments[k][j][i] * (powers[k] * of.gains[k]);
+                }
+            }
+            let column = (0..N).map(|i| node(&sum, i)).chain([node(&last, j)]);
+            reductions.column_mut(j).iter_mut().zip(column).for_each(|(to, from)| *to = from);
+        }
         let moment = |k: usize, i: usize| if i < N { node(&self.moments[k], i) } else { self.last[k] };
-        let share = |k: usize, i: usize, j: usize| match i < N {
-            true => node(&rule.moments[k][j], i),
-            false => node(&rule.last[k], j),
-        };
         LinearContact {
-            side: self.of.side,
+            side: of.side,
             touch: *self.touch,
             end: self.end,
             duration: self.duration,
             times: (0..=N).map(|i| if i < N { node(&rule.times, i) } else { 1.0 }).collect(),
             roots: (0..N).map(|j| node(&self.roots, j)).collect(),
-            terms: self.terms + 1,
+            terms,
             impulses: (0..=N).map(|i| std::array::from_fn(|k| powers[k] * force * moment(k, i))).collect(),
-            shares: (0..=N)
-                .map(|i| (0..N).map(|j| std::array::from_fn(|k| powers[k] * share(k, i, j))).collect())
-                .collect(),
+            kicks: of.kicks,
+            gains: of.gains,
+            reductions,
+            additions: (0..N).map(|j| added.each_ref().map(|added| node(added, j))).collect(),
         }
     }
 }
