@@ -179,6 +179,12 @@ test-retention *OPTIONS:
 test-branches *OPTIONS:
     python3 tests/reference/orbits.py "$@"
 
+# Run four dampers from rest at FREQUENCIES frequencies: whatever settles must lie on a branch that was found: results/robustness/branches.md
+hunt-branches FREQUENCIES="3001":
+    mkdir -p results/robustness
+    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture | grep -E '^\||^[0-9]+ settled' > results/robustness/branches.md.tmp
+    mv results/robustness/branches.md.tmp results/robustness/branches.md && cat results/robustness/branches.md
+
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":
     cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}

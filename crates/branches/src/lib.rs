@@ -10,6 +10,7 @@ mod asked;
 mod draw;
 mod found;
 mod page;
+mod remedy;
 mod tables;
 
 pub use again::again;

@@ -2,6 +2,7 @@
 
 use crate::draw::draw;
 use crate::found::Found;
+use crate::remedy::{Remedy, remedies};
 use crate::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
 use retune_dynamics::periodic::branches::Sample;
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, largest};
@@ -85,6 +86,7 @@ pub fn answer(found: &Found) -> Vec<String> {
             kind(orbit)
         ));
         if !found.is_reached_from_rest(*number) {
+            let ways = remedies(&found.branches.branches[*number], orbit);
             let reached = most.iter().find(|(other, _)| found.is_reached_from_rest(*other));
             words.extend(reached.map(|(other, orbit)| {
                 format!(
@@ -95,6 +97,14 @@ pub fn answer(found: &Found) -> Vec<String> {
                     kind(orbit)
                 )
             }));
+            if !ways.is_empty() {
+                let ways: Vec<String> = ways.iter().map(Remedy::words).collect();
+                words.push(format!(
+                    "What removes that motion, at {symbol} = {} {unit} and all else as it is: {}.",
+                    rounded(orbit.value, 6),
+                    ways.join("; ")
+                ));
+            }
         }
     }
     words

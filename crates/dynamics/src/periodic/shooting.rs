@@ -88,6 +88,14 @@ impl Shooting {
         Self { periods, segments: periods, ..self.clone() }
     }
 
+    /// The same along another parameter from a value of this one on.
+    ///
+    /// # Errors
+    /// The value is out of range.
+    pub fn along(&self, value: f64, parameter: Parameter, span: f64) -> Result<Self, Error> {
+        Ok(Self { scene: self.scene_at(value)?, parameter, span, ..self.clone() })
+    }
+
     /// The same in so many segments.
     #[must_use]
     pub fn in_segments(&self, segments: usize) -> Self {
