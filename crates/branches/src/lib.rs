@@ -59,7 +59,7 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
     let job = Job::of_studies(&KIND, &request, plan_json(&plan), studies.into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
-        let branches = motions(&study.scene, plan, &settings(&study), |more| bar.inc(more as u64))?;
+        let branches = motions(&study.scene, plan, &settings(&study), || bar.inc(1))?;
         bar.finish();
         let found = Found { study: study.clone(), branches };
         tables::write(&found, directory)?;

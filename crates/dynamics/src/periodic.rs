@@ -17,7 +17,7 @@ pub mod shooting;
 pub mod switch;
 pub mod trace;
 
-pub use branches::{Branches, Ranged, Sample, branches};
+pub use branches::{Branches, Interval, Sample, branches};
 pub use events::{Event, EventKind};
 pub use largest::largest;
 pub use orbit::Orbit;

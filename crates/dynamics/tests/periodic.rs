@@ -47,7 +47,7 @@ fn plan(samples: usize, starts: usize) -> Plan {
 /// A damper that touches nothing: the branch is the steady response, its multipliers those of the linear flow.
 #[test]
 fn exact_the_branch_of_a_tmd() {
-    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), |_| ()).expect("branches");
+    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), || ()).expect("branches");
     let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
     assert!(branch.events.is_empty() && branch.ends == [End::Range; 2]);
     assert_eq!([branch.points[0].value, branch.points[branch.points.len() - 1].value], [5.0, 8.0]);
@@ -164,7 +164,7 @@ fn invariant_the_folds_of_the_isola_are_bracketed_by_runs() {
 /// At a period doubling a motion of twice the period begins that settles on the one side, the single one on the other.
 #[test]
 fn invariant_a_period_doubling_is_bracketed_by_runs() {
-    let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), |_| ()).expect("branches");
+    let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), || ()).expect("branches");
     let main = found.branches.iter().find(|branch| branch.shooting.periods == 1).expect("the main branch");
     let event = main.events.iter().find(|event| event.kind == EventKind::PeriodDoubling).expect("one");
     assert!((event.orbit.multipliers[0] + 1.0).norm() < 1e-7, "{:?}", event.orbit.multipliers);

@@ -31,7 +31,16 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Tune the damper of a study: a coarse grid (surf), then Nelder-Mead (fminsearch)
-    Optimize(Optimize),
+    Optimize {
+        /// The study file
+        study: PathBuf,
+        /// Compute only share i of N of the grid, into DIR/parts; `merge` combines the shares
+        #[arg(long, value_name = "i/N")]
+        shard: Option<Shard>,
+        /// The options of the run.
+        #[command(flatten)]
+        running: Running,
+    },
     /// Design a damper: from a structure and limits to the better of a TMD and an SSVI NES, what each limit costs, and how sure that is
     #[command(allow_negative_numbers = true)]
     Design(Design),
@@ -155,19 +164,6 @@ pub enum Kind {
     Fronts,
     /// The whole paper
     Paper,
-}
-
-/// `optimize`.
-#[derive(Debug, Args)]
-pub struct Optimize {
-    /// The study file
-    pub study: PathBuf,
-    /// Compute only share i of N of the grid, into DIR/parts; `merge` combines the shares
-    #[arg(long, value_name = "i/N")]
-    pub shard: Option<Shard>,
-    /// The options of the run.
-    #[command(flatten)]
-    pub running: Running,
 }
 
 /// `reproduce`, `figure`, `table`.

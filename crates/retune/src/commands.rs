@@ -32,7 +32,13 @@ static OTHERS: &Others = &[
 pub fn run(command: Command) -> Result<(), Error> {
     let all = Screen::new(false, false);
     match command {
-        Command::Optimize(arguments) => optimize(&arguments),
+        Command::Optimize { study, shard, running } => {
+            let (request, screen) = running.request(&study);
+            match shard {
+                Some(shard) => tune::tune_share(&request, shard, &screen),
+                None => found(tune::tune(&request, &screen)?),
+            }
+        }
         Command::Design(arguments) => design(&arguments),
         Command::Merge { study, parts, running } => {
             let (request, screen) = running.request(&study);
@@ -76,14 +82,6 @@ pub fn run(command: Command) -> Result<(), Error> {
             clap_complete::generate(shell, &mut Cli::command(), "retune", &mut script);
             all.line(String::from_utf8_lossy(&script).trim_end())
         }
-    }
-}
-
-fn optimize(cli::Optimize { study, shard, running }: &cli::Optimize) -> Result<(), Error> {
-    let (request, screen) = running.request(study);
-    match shard {
-        Some(shard) => tune::tune_share(&request, *shard, &screen),
-        None => found(tune::tune(&request, &screen)?),
     }
 }
 

@@ -74,10 +74,10 @@ pub struct Branches {
 }
 
 /// A range of the parameter.
-pub type Ranged = [f64; 2];
+pub type Interval = [f64; 2];
 
-/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. `done` is told of each number
-/// of samples that are done.
+/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. `done` is called after each
+/// sample of the plan.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
@@ -85,7 +85,7 @@ pub fn branches(
     scene: &Scene,
     plan: Plan,
     settings: &Settings,
-    done: impl Fn(usize) + Sync,
+    done: impl Fn() + Sync,
 ) -> Result<Branches, Error> {
     let shooting = equations(scene, &plan, settings)?;
     let mut values = evenly(plan.range[0], plan.range[1], plan.samples);
@@ -93,9 +93,14 @@ pub fn branches(
     let mut spacings = SPACINGS.iter();
     let mut starts = plan.starts;
     loop {
-        let seen: Vec<Result<Seen, Error>> =
-            values.par_iter().map(|&value| look(&shooting, value, starts)).collect();
-        done(values.len());
+        let look = |&value: &f64| {
+            let seen = look(&shooting, value, starts);
+            if found.samples.is_empty() {
+                done();
+            }
+            seen
+        };
+        let seen: Vec<Result<Seen, Error>> = values.par_iter().map(look).collect();
         for seen in seen {
             let sample = seen?.sample(&shooting, |own, solution| {
                 found.holds(own, solution).or_else(|| found.follow(own, solution))
@@ -263,8 +268,8 @@ impl Branches {
     }
 
     /// The parts of the range over which a branch has a stable motion, and those over which none has.
-    pub fn stable_and_irregular(&self) -> [Vec<Ranged>; 2] {
-        let mut parts: Vec<Ranged> = Vec::new();
+    pub fn stable_and_irregular(&self) -> [Vec<Interval>; 2] {
+        let mut parts: Vec<Interval> = Vec::new();
         for branch in &self.branches {
             let pairs = branch.points.windows(2).enumerate();
             for (_, pair) in pairs.filter(|(i, _)| branch.is_stable_after(*i)) {
@@ -273,7 +278,7 @@ impl Branches {
             }
         }
         parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut stable: Vec<Ranged> = Vec::new();
+        let mut stable: Vec<Interval> = Vec::new();
         for part in parts {
             match stable.last_mut() {
                 Some(last) if part[0] <= last[1] => last[1] = last[1].max(part[1]),
