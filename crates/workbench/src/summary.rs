@@ -186,6 +186,11 @@ impl Summary {
         self.made_by.omega
     }
 
+    /// Whether the damper strikes a wall in the window.
+    pub fn has_impacts(&self) -> bool {
+        self.impacts.primary + self.impacts.obstacle > 0
+    }
+
     /// The transmissibility of the motion in the window, see [`retune_model::Forcing::transmissibility`]. None without a force.
     pub fn transmissibility(&self) -> Option<f64> {
         let forcing = self.parameters.forcing;

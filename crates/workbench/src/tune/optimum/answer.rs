@@ -61,8 +61,14 @@ impl Optimum {
                 .to_owned();
         }
         let (out, omega) = (out.display(), rounded(self.simulation.omega(), 6));
+        // Another motion may coexist with that from rest only where the damper strikes.
+        let others = if self.simulation.has_impacts() {
+            format!("next: see what it does from other starts than rest with\n  `retune branches {out}`\n")
+        } else {
+            String::new()
+        };
         format!(
-            "next: record the motion at the worst frequency with\n  \
+            "{others}next: record the motion at the worst frequency with\n  \
              `retune simulate {out} --set omega={omega} --trajectory motion.csv`"
         )
     }
