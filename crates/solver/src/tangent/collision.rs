@@ -6,8 +6,8 @@
 //! computed, and as accurate. Wanted are four numbers of each solution, the change of the state after the contact: four solutions of the
 //! transposed equations give them for any number of changes.
 
-use super::flight::Flight;
-use super::series::{BRIEF, Moment, Series};
+use super::flight::{Flight, MOST};
+use super::series::{BRIEF, Moment, Series, applied, sum};
 use crate::contact::collocation::nodes::MOMENTS;
 use crate::contact::linearised::LinearContact;
 use nalgebra::DMatrix;
@@ -59,11 +59,13 @@ pub(super) struct Crossing<'a> {
     contact: LinearContact,
     /// The motion without contact from touch-down on.
     free: Series,
-    /// The rates of the state and of the force at touch-down, without contact, and of the state after lift-off.
-    begin: Moment,
-    after: [f64; 4],
-    /// What a change of the free indentation that grows as a power of time does to the state after the contact.
-    powers: [[f64; BRIEF]; 4],
+    /// By how much the state after the contact changes, for a unit change of each coefficient of the free motion's series, of the wall's
+    /// position, and of the time of touch-down.
+    rows: [[[f64; 6]; 4]; MOST],
+    by_wall: [f64; 4],
+    by_delay: [f64; 4],
+    /// `d(x2 - x1)/dt` at touch-down.
+    closing: f64,
     /// What a change of the push of each order does to it by the indentation.
     pushes: [[f64; MOMENTS]; 4],
 }
@@ -116,28 +118,32 @@ impl<'a> Crossing<'a> {
                 }
             }
         }
+        let mut passed = [1.0; BRIEF];
+        for k in 1..BRIEF {
+            passed[k] = passed[k - 1] * duration;
+        }
+        let rows = flight.functionals(free.terms().len(), 1.0, |k, c| {
+            let mut row = [-powers[c][k], 0.0, powers[c][k], 0.0, 0.0, 0.0];
+            row[c] += passed[k];
+            row
+        });
         let rate = system.derivative_under(touch.excitation, &touch.y, 0.0);
         let begin = Moment { y: rate, force: flight.turn(touch.excitation) };
-        Self { flight, kicks, contact, free, begin, after, powers, pushes }
+        let by_delay = std::array::from_fn(|c| applied(&rows[0][c], &begin) - after[c]);
+        let (by_wall, closing) = (powers.map(|powers| -powers[0]), rate[2] - rate[0]);
+        Self { flight, kicks, contact, free, rows, by_wall, by_delay, closing, pushes }
     }
 
     /// The change of the state at the time of lift-off.
     pub(super) fn carry(&self, change: &Change) -> [f64; 4] {
-        let (Change { at, parameter, wall }, begin) = (change, &self.begin);
+        let Change { at, parameter, wall } = change;
         // Touch-down moves to where the gap closes; up to there the motion is that without contact.
-        let later = (wall - (at.y[2] - at.y[0])) / (begin.y[2] - begin.y[0]);
-        let at = Moment {
-            y: std::array::from_fn(|i| at.y[i] + begin.y[i] * later),
-            force: [0, 1].map(|i| at.force[i] + begin.force[i] * later),
-        };
-        let free = self.flight.changed(&self.free, *parameter, at);
-        let mut end = free.state(self.contact.duration);
-        for c in 0..4 {
-            let along = free.terms().iter().zip(&self.powers[c]);
-            let separation: f64 = along.map(|(term, power)| (term.y[2] - term.y[0]) * power).sum();
-            end[c] += separation - wall * self.powers[c][0] - self.after[c] * later;
-        }
+        let later = (wall - (at.y[2] - at.y[0])) / self.closing;
+        let mut end: [f64; 4] = std::array::from_fn(|c| {
+            applied(&self.rows[0][c], at) + self.by_delay[c] * later + self.by_wall[c] * wall
+        });
         if let Some(number) = parameter {
+            end = sum(end, self.flight.forced(*number, self.free.terms(), &self.rows, 1.0, 1.0));
             let last = &self.contact.impulses[self.contact.roots.len()];
             let pushed = self.kicks.by[*number].iter().zip(last).enumerate().take(self.contact.terms);
             for (k, (kick, impulse)) in pushed {

@@ -1,11 +1,13 @@
 //! Derivatives in flight: Taylor series over whole steps, kept as matrices, and over the rest of the flight.
 
-use super::series::{BRIEF, Moment, Series, dot, sum};
+use super::series::{BRIEF, Moment, Series, applied, dot, sum};
 use retune_model::{Coupled, Excitation, Parameter};
 
 /// Length of a whole step times the rate of the flow, and the terms after which the series has converged (`1.25²⁰/20! = 4e-17`).
 const STEP: f64 = 1.25;
 const TERMS: u32 = 20;
+/// Most terms of a series, the first among them.
+pub(super) const MOST: usize = TERMS as usize + 1;
 
 /// What a flight starts from: the state, the force, and 1 for the constant terms.
 const WIDTH: usize = 7;
@@ -117,32 +119,83 @@ impl Flight {
 
     /// The Taylor series over `h` seconds, `|h| <=` a whole step; `constant` is 1, or 0 without the constant terms of the equations.
     fn series(&self, h: f64, constant: f64, from: &mut Moment, by_state: &mut [[f64; 4]], by: &mut [Moment]) {
-        let (mut term, mut terms, mut terms_by) = (*from, by_state.to_vec(), by.to_vec());
-        let mut constant = constant;
-        let mut size = 1.0;
-        for k in 1..=TERMS {
-            let share = h / f64::from(k);
+        let mut terms = [*from; MOST];
+        let (mut count, mut size) = (1, 1.0);
+        while count < MOST && size > 1e-18 {
+            let share = h / count as f64;
             size *= self.rate * share.abs();
-            for ((number, term_by), by) in terms_by.iter_mut().enumerate().zip(&mut *by) {
-                let (own, more) = (self.derivative(term_by, 0.0), self.more(number, &term, constant));
-                term_by.y = sum(own.y, more.y).map(|v| v * share);
-                term_by.force = [0, 1].map(|i| (own.force[i] + more.force[i]) * share);
-                by.y = sum(by.y, term_by.y);
-                by.force = [0, 1].map(|i| by.force[i] + term_by.force[i]);
-            }
-            for (term, column) in terms.iter_mut().zip(&mut *by_state) {
-                *term = self.derivative(&Moment { y: *term, force: [0.0; 2] }, 0.0).y.map(|v| v * share);
-                *column = sum(*column, *term);
-            }
-            let next = self.derivative(&term, constant);
-            term = Moment { y: next.y.map(|v| v * share), force: next.force.map(|v| v * share) };
+            let constant = if count == 1 { constant } else { 0.0 };
+            terms[count] = self.derivative(&terms[count - 1], constant).times(share);
+            count += 1;
+        }
+        let rows = self.functionals(count, h, |_, c| std::array::from_fn(|i| f64::from(u8::from(i == c))));
+        for column in by_state {
+            *column = rows[0].map(|row| dot(&row[..4], column));
+        }
+        for (number, by) in by.iter_mut().enumerate() {
+            let own = rows[0].map(|row| applied(&row, by));
+            by.y = sum(own, self.forced(number, &terms[..count], &rows, h, constant));
+        }
+        for term in &terms[1..count] {
             from.y = sum(from.y, term.y);
-            from.force = [0, 1].map(|i| from.force[i] + term.force[i]);
-            constant = 0.0;
-            if size < 1e-18 {
-                break;
+        }
+    }
+
+    /// What a change of each coefficient of a Taylor series does to four numbers, where `own(k, c)` is what the coefficient of order `k`
+    /// itself does to number `c`: a change also goes on into all later coefficients. Of `(y, force)`, in steps of `h`.
+    pub(super) fn functionals(
+        &self,
+        count: usize,
+        h: f64,
+        own: impl Fn(usize, usize) -> [f64; 6],
+    ) -> [[[f64; 6]; 4]; MOST] {
+        let mut rows = [[[0.0; 6]; 4]; MOST];
+        for k in (0..count).rev() {
+            for c in 0..4 {
+                let mut row = own(k, c);
+                if k + 1 < count {
+                    let share = h / (k + 1) as f64;
+                    let later = self.transposed(&rows[k + 1][c]);
+                    for i in 0..6 {
+                        row[i] += share * later[i];
+                    }
+                }
+                rows[k][c] = row;
             }
         }
+        rows
+    }
+
+    /// What the change of the equations by the parameter of this number does to the four numbers, along a motion with these terms.
+    pub(super) fn forced(
+        &self,
+        number: usize,
+        terms: &[Moment],
+        rows: &[[[f64; 6]; 4]; MOST],
+        h: f64,
+        constant: f64,
+    ) -> [f64; 4] {
+        let mut sum = [0.0; 4];
+        for k in 1..terms.len() {
+            let Moment { y: [_, a1, _, a2], force: [c, s] } =
+                self.more(number, &terms[k - 1], if k == 1 { constant } else { 0.0 });
+            let share = h / k as f64;
+            for (sum, row) in sum.iter_mut().zip(&rows[k]) {
+                let mut along = row[1] * a1 + row[3] * a2;
+                if self.turning[number] {
+                    along += row[4] * c + row[5] * s;
+                }
+                *sum += share * along;
+            }
+        }
+        sum
+    }
+
+    /// The transposed equations of a flight.
+    fn transposed(&self, &[x1, v1, x2, v2, c, s]: &[f64; 6]) -> [f64; 6] {
+        let [first, second] = &self.rows;
+        let own = |j: usize| v1 * first[j] + v2 * second[j];
+        [own(0), x1 + own(1), own(2), x2 + own(3), own(4) + self.omega * s, -self.omega * c]
     }
 
     /// The series of the motion from a moment on, for `seconds` of a brief contact.
@@ -153,17 +206,6 @@ impl Flight {
             count += 1;
         }
         Series::new(from, count, |k, term| self.derivative(term, f64::from(u8::from(k == 1))))
-    }
-
-    /// The series of a change of the motion `base`, by the parameter of this number or of where it starts alone.
-    pub(super) fn changed(&self, base: &Series, parameter: Option<usize>, from: Moment) -> Series {
-        let base = base.terms();
-        Series::new(from, base.len(), |k, term| {
-            let rate = self.derivative(term, 0.0);
-            let Some(number) = parameter else { return rate };
-            let more = self.more(number, &base[k - 1], f64::from(u8::from(k == 1)));
-            Moment { y: sum(rate.y, more.y), force: [0, 1].map(|i| rate.force[i] + more.force[i]) }
-        })
     }
 
     /// `A y`.

@@ -40,12 +40,7 @@ impl Series {
         &self.terms[..self.count]
     }
 
-    /// The state after `t` seconds.
-    pub(super) fn state(&self, t: f64) -> [f64; 4] {
-        self.terms().iter().rev().fold([0.0; 4], |sum, term| std::array::from_fn(|i| sum[i] * t + term.y[i]))
-    }
-
-    /// Its rate.
+    /// The rate of the state after `t` seconds.
     pub(super) fn rate(&self, t: f64) -> [f64; 4] {
         let terms = self.terms().iter().enumerate().skip(1).rev();
         terms.fold([0.0; 4], |sum, (k, term)| std::array::from_fn(|i| sum[i] * t + k as f64 * term.y[i]))
@@ -63,4 +58,9 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 pub(super) fn sum(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// A row times a state and its force.
+pub(super) fn applied(row: &[f64; 6], moment: &Moment) -> f64 {
+    dot(&row[..4], &moment.y) + row[4] * moment.force[0] + row[5] * moment.force[1]
 }
