@@ -32,7 +32,7 @@ fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<Remedy
     let along = trace(&shooting, &seed, REACH.map(|share| share * own))?;
     let seed = along.points.iter().position(|point| point.value == own)?;
     let folds = || along.events.iter().filter(|event| event.kind == EventKind::Fold);
-    let before = folds().filter(|event| event.place < seed).next_back();
+    let before = folds().rfind(|event| event.place < seed);
     let after = folds().find(|event| event.place > seed);
     let mut ends = [before, after].map(|event| event.map(|event| event.orbit.value));
     if ends.iter().flatten().any(|end| *end < own) && ends[0].is_none_or(|end| end > own) {
