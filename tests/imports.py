@@ -28,6 +28,7 @@ BELOW = {
     "tradeoff": "model optim study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff paper",
+    "python": "solver optim dynamics study sweep store workbench tradeoff",
     "bench": "model solver optim dynamics study sweep store figures workbench tradeoff paper",
 }
 
