@@ -12,6 +12,6 @@ ax = response.plot(x="f_Hz", y=["E1max", "E1max_none"], logy=True, ylabel="large
 ax.legend(["with the damper", "without"])
 plt.savefig("response.svg")
 
-worst = response.loc[response.E1max.idxmax()]
+worst = response.iloc[int(response.E1max.argmax())]
 print(f"worst with the damper: {worst.E1max:.1f} J at {worst.f_Hz:.3f} Hz, {worst.impacts:.0f} impacts; without it {response.E1max_none.max():.0f} J")
 assert worst.E1max < 0.5 * response.E1max_none.max()

@@ -19,6 +19,8 @@ pub struct Core {
     objective: Option<PeakEnergy>,
     /// Whether one evaluation makes runs side by side.
     is_parallel: bool,
+    /// Whether stroke and force are known: a limit asks for them, or the stroke is that of a steady motion.
+    knows: [bool; 2],
 }
 
 /// The columns of a batch, and the rows without a value, each with its exception.
@@ -186,7 +188,10 @@ impl Core {
             at_once && term.k1.is_none() && term.ensemble.is_none()
         };
         let is_parallel = !study.objective().terms().iter().all(|(_, term)| is_one(term));
-        Ok(Self { study, file, objective, is_parallel })
+        let goal = study.goal();
+        let walls = goal.limits.walls_from().is_some();
+        let knows = [walls || goal.objective.is_steady(), walls];
+        Ok(Self { study, file, objective, is_parallel, knows })
     }
 
     fn variables(&self) -> &[Variable] {
@@ -241,11 +246,9 @@ impl Core {
 
     /// What an evaluation found; stroke and force are NaN where no limit asks for them.
     fn numbers(&self, found: &Evaluation) -> [f64; BATCH] {
-        let goal = self.study.goal();
-        let walls = goal.limits.walls_from().is_some();
         let known = |limit, known| if known { found.reached.get(limit) } else { f64::NAN };
-        let stroke = known(Limit::Stroke, walls || goal.objective.is_steady());
-        let force = known(Limit::Force, walls);
+        let [stroke, force] = self.knows;
+        let [stroke, force] = [known(Limit::Stroke, stroke), known(Limit::Force, force)];
         let omega = found.worst.scene.forcing.frequency.get();
         // An empty sum of violations is -0.
         [found.value, found.energy, stroke, force, found.violation + 0.0, omega]

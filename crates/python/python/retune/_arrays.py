@@ -18,7 +18,7 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
         array = np.asarray(values)
         if array.dtype.kind not in "biufO":
             raise StudyError(f"{name}: {array.dtype} is not allowed here: give real numbers", name)
-        return np.require(array, np.float64, "CA")
+        return np.require(array, np.float64, ["C", "A"])
     except (TypeError, ValueError, OverflowError) as error:
         if isinstance(error, StudyError):
             raise

@@ -3,12 +3,28 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
+
+__all__ = [
+    "Core",
+    "__version__",
+    "certify",
+    "design_study",
+    "fronts",
+    "optimize",
+    "run",
+    "study_text",
+    "sweep",
+    "track",
+    "verify",
+]
 
 __version__: str
 
 _Tell = Callable[[str, str, int, int, int], None]
 _Columns = dict[str, NDArray[Any]]
 
+@disjoint_base
 class Core:
     def __new__(cls, text: str, file: str | None = None) -> Self: ...
     @property

@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,8 @@ from retune._arrays import plain
 from retune._run import Run, simulate
 from retune._scene import SSVI, TMD, Structure
 from retune._table import Table
+
+Sort = TypeVar("Sort", bound=_core.Core)
 
 
 @dataclass(frozen=True)
@@ -210,7 +212,7 @@ class Problem(_core.Core):
         return _show.page(["tuned", "value", "from", "to", "unit"], self._rows(), self._title())
 
 
-def rebuilt(cls: type[Any], text: str, file: str | None) -> Any:
+def rebuilt(cls: type[Sort], text: str, file: str | None) -> Sort:
     """A problem from the text of its study, as pickles hold it."""
     return _core.Core.__new__(cls, text, file)
 

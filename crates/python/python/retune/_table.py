@@ -54,8 +54,6 @@ class Table(dict[str, NDArray[Any]]):
             return NotImplemented if not isinstance(other, Table) else False
         return all(a.tobytes() == b.tobytes() for a, b in zip(self.values(), other.values()))
 
-    __hash__ = None  # type: ignore[assignment]
-
     @property
     def rows(self) -> int:
         """The number of rows."""
