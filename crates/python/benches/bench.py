@@ -119,9 +119,9 @@ def main() -> None:
         [thread.start() for thread in threads]
         [thread.join() for thread in threads]
 
-    one_thread, two_threads = least(lambda: on_threads(1), lambda: on_threads(2))
+    one_thread, two_threads = least(lambda: on_threads(1), lambda: on_threads(2), turns=40)
     row("1000 SSVI NES one by one: two Python threads beside one", f"{one_thread / two_threads:.2f} x", "at least 1.8 x")
-    alone, both = least(lambda: ssvi.batch(X, threads=1), lambda: ssvi.batch(X, threads=2))
+    alone, both = least(lambda: ssvi.batch(X, threads=1), lambda: ssvi.batch(X, threads=2), turns=40)
     row("1000 SSVI NES in a batch: threads=2 beside threads=1", f"{alone / both:.2f} x", "at least 1.8 x")
 
     code = "import time, numpy; begun = time.perf_counter(); import retune; print(time.perf_counter() - begun)"
