@@ -28,6 +28,8 @@ type Batch<'py> = (Bound<'py, PyDict>, Vec<(usize, Py<PyAny>)>);
 
 /// The number of columns of a batch.
 const BATCH: usize = 6;
+/// Fewest designs that a thread takes at once: the least of them takes a microsecond.
+const TOGETHER: usize = 8;
 /// Rows without a value whose exceptions are kept.
 const TOLD: usize = 100;
 
@@ -128,8 +130,9 @@ impl Core {
         if shape.len() != 2 || shape[1] != width {
             return Err(self.shape("X", &shape, &format!("(n, {width})"))?.into());
         }
-        let evaluate = |design: &[f64]| match caught(|| self.evaluated(objective, design)) {
-            Ok(found) => (self.numbers(&found), None),
+        let found = |design: &[f64]| self.evaluated(objective, design).map(|found| self.numbers(&found));
+        let evaluate = |design: &[f64]| match caught(|| found(design)) {
+            Ok(numbers) => (numbers, None),
             Err(fault) => {
                 let mut none = [f64::NAN; BATCH];
                 none[0] = f64::INFINITY;
@@ -137,11 +140,12 @@ impl Core {
             }
         };
         let rows = watched(py, None, |watch| {
-            let row = |design: &[f64]| (!watch.is_stopped()).then(|| evaluate(design));
-            let rows: Option<Vec<_>> =
-                pool(threads)?.install(|| designs.par_chunks(width).map(row).collect());
             // Nobody asks for the rows of a batch that was stopped.
-            Ok(rows.unwrap_or_default())
+            let row = |design: &[f64]| {
+                if watch.is_stopped() { ([f64::NAN; BATCH], None) } else { evaluate(design) }
+            };
+            let rows = designs.par_chunks(width).with_min_len(TOGETHER).map(row);
+            Ok(pool(threads)?.install(|| rows.collect::<Vec<_>>()))
         })?;
         let column = |i: usize| rows.iter().map(|(numbers, _)| numbers[i]).collect();
         let columns = self.columns().into_iter().enumerate().map(|(i, name)| (name.to_owned(), column(i)));
