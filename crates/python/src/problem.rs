@@ -28,8 +28,6 @@ type Batch<'py> = (Bound<'py, PyDict>, Vec<(usize, Py<PyAny>)>);
 
 /// The number of columns of a batch.
 const BATCH: usize = 6;
-/// Fewest designs that a thread takes at once: the least of them takes a microsecond.
-const TOGETHER: usize = 8;
 /// Rows without a value whose exceptions are kept.
 const TOLD: usize = 100;
 
@@ -144,7 +142,7 @@ impl Core {
             let row = |design: &[f64]| {
                 if watch.is_stopped() { ([f64::NAN; BATCH], None) } else { evaluate(design) }
             };
-            let rows = designs.par_chunks(width).with_min_len(TOGETHER).map(row);
+            let rows = designs.par_chunks(width).map(row);
             Ok(pool(threads)?.install(|| rows.collect::<Vec<_>>()))
         })?;
         let column = |i: usize| rows.iter().map(|(numbers, _)| numbers[i]).collect();
