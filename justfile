@@ -193,16 +193,28 @@ fuzz TARGET="numbers" SECONDS="1800":
 mutants *OPTIONS:
     CARGO_BUILD_JOBS=1 nice python3 tests/mutants.py "$@"
 
+# Build the Python package into target/wheels (needs python3 with venv; for other machines than this one: `RUSTFLAGS="-C target-cpu=x86-64-v2" just python`)
+python *OPTIONS:
+    crates/python/build "$@"
+
+# Install the Python package into a fresh environment and test it: pytest, mypy on the examples, the stubs against the module; for instance `just test-python -k dask`
+test-python *OPTIONS: python
+    crates/python/test "$@"
+
+# What the Python package costs: batches, single evaluations, threads, import, and the same objective by SciPy's solve_ivp: results/python (needs `just test-python` before)
+bench-python *OPTIONS:
+    crates/python/bench "$@"
+
 # Licences, sources, duplicates and advisories of what is built in
 deny:
     .ci/deny
 
-# Pack every crate that is published (all but the comparison), and build each from its package, on the packages of the others
+# Pack every crate that is published (all but the comparison and the Python package), and build each from its package, on the packages of the others
 package:
     # cargo unpacks each package in target/packing and builds it there, as a registry would serve it: a file that lies outside of its crate is
     # missing. What it unpacked and built of an earlier packing of the same version it would take for the new one.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
-    cargo package --target-dir target/packing --workspace --exclude retune-bench --allow-dirty
+    cargo package --target-dir target/packing --workspace --exclude retune-bench --exclude retune-python --allow-dirty
 
 # Measure speed
 bench *OPTIONS:

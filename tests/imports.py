@@ -29,6 +29,7 @@ BELOW = {
     "branches": "model solver dynamics study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
+    "python": "solver optim dynamics study sweep store workbench tradeoff",
     "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
 }
 

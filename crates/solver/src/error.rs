@@ -100,6 +100,23 @@ pub enum SolverError {
     },
 }
 
+impl SolverError {
+    /// The time that was reached, s.
+    pub fn time(&self) -> f64 {
+        match *self {
+            Self::StepTooSmall { t, .. }
+            | Self::TooFast { t, .. }
+            | Self::Contact { t }
+            | Self::TooManySteps { t, .. }
+            | Self::TooSlow { t, .. }
+            | Self::Unstable { t }
+            | Self::Implausible { t, .. }
+            | Self::Missed { t, .. }
+            | Self::NonFinite { t } => t,
+        }
+    }
+}
+
 /// A number in the fewest digits that read back to the same value, with a power of ten where it is very large or small.
 fn plain(value: f64) -> String {
     if value == 0.0 || (1e-4..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }

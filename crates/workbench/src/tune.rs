@@ -56,9 +56,16 @@ pub static KIND: Kind = Kind {
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
 pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
-    let study = retune_study::read(&request.study)?;
-    let search = searched(&study)?;
-    run(&study, request, watch, |results| tuned(&study, &search, results, watch))
+    tune_study(&retune_study::read(&request.study)?, request, watch)
+}
+
+/// Tunes the damper of a study that is at hand; `request.study` is what its results are said to be made of.
+///
+/// # Errors
+/// As [`tune`].
+pub fn tune_study(study: &Study, request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
+    let search = searched(study)?;
+    run(study, request, watch, |results| tuned(study, &search, results, watch))
 }
 
 /// Computes a share of the grid of a study file, for [`merge`].

@@ -1,0 +1,161 @@
+"""Jobs: searches, certificates, verification. They write the files of the command line, byte for byte."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from retune import _core, _show
+from retune._problem import Problem
+from retune._progress import Progress
+
+Directory = str | os.PathLike[str]
+
+
+class Found:
+    """What a job found, as the JSON file that holds it."""
+
+    #: The fields of the file.
+    data: dict[str, Any]
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self.data = data
+
+    def __getitem__(self, name: str) -> Any:
+        return self.data[name]
+
+    def _rows(self) -> list[list[object]]:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return _show.text(["", ""], self._rows())
+
+    def _repr_html_(self) -> str:
+        return _show.page(["", ""], self._rows())
+
+
+class Result(Found):
+    """What a search found; ``optimum.json`` as ``data``, the other files in ``out``."""
+
+    #: The design, in the order of ``problem.names``.
+    x: NDArray[np.float64]
+    #: The quantity there.
+    fun: float
+    #: Whether it keeps the limits.
+    success: bool
+    #: The directory of the results; ``report.html`` is the page to open first.
+    out: Path
+    problem: Problem
+
+    def __init__(self, problem: Problem, out: Path) -> None:
+        super().__init__(json.loads((out / "optimum.json").read_text(encoding="utf-8")))
+        self.problem, self.out = problem, out
+        self.x = np.array([self.data[name] for name in problem.names])
+        self.fun = float(self.data[problem.quantity[0]])
+        self.success = self.data["certificate"]["verdict"] is not None
+
+    def _rows(self) -> list[list[object]]:
+        quantity, unit = self.problem.quantity
+        design = [[name, f"{_show.number(float(value))} {unit}"] for name, value, unit in zip(self.problem.names, self.x, self.problem.units)]
+        verdict = self.data["certificate"]["words"]
+        return [[quantity, f"{_show.number(self.fun)} {unit}"], *design, ["verdict", verdict], ["results", str(self.out)]]
+
+    def _repr_html_(self) -> str:
+        return _show.page(["", ""], self._rows(), f"{self.data['damper_type']} of {self.problem.study['name']}")
+
+
+class Certificate(Found):
+    """How far a design can be relied on; ``certificate.json`` as ``data``."""
+
+    #: The verdict: "robust", "edge", "sensitive" or "single chaotic realisation"; None if limits are broken.
+    verdict: str | None
+    #: The verdict in words.
+    words: str
+    #: Largest numerical error of the value, in its unit.
+    error_bar: float
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        super().__init__(data)
+        self.verdict, self.words = data["verdict"], data["words"]
+        self.error_bar = float("nan") if data["error_bar"] is None else float(data["error_bar"])
+
+    def _rows(self) -> list[list[object]]:
+        return [["verdict", self.words], ["numerical error at most", self.error_bar], ["motion", self.data["motion"].get("regime")]]
+
+
+def _asked(out: Directory | None, resume: bool, restart: bool, replace: bool, threads: int | None) -> dict[str, Any]:
+    return {"out": None if out is None else os.fspath(out), "resume": resume, "restart": restart, "replace": replace, "threads": threads}
+
+
+def optimize(
+    problem: Problem,
+    out: Directory | None = None,
+    *,
+    resume: bool = False,
+    restart: bool = False,
+    replace: bool = False,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Result:
+    """Makes the whole search of a problem, as `retune optimize` does: grid, global search, refinement, certificate, figures, report.
+
+    The results go to ``out``, by default ``results/`` and the name of the problem. Ctrl-C ends the search, and ``resume=True`` goes on
+    with it, to the bytes of an unbroken one. ``replace=True`` replaces results of another study.
+    """
+    asked = _asked(out, resume, restart, replace, threads)
+    return Result(problem, Path(_core.optimize(problem, asked, Progress(progress))))
+
+
+def certify(problem: Problem, x: ArrayLike | None = None, *, threads: int | None = None) -> Certificate:
+    """The certificate of a design, or of the study's own: error bar, sensitivity, motion, verdict."""
+    return Certificate(json.loads(_core.certify(problem, x, threads)))
+
+
+def verify(path: Directory, *, sample: int = 20, within: float = 0.0) -> list[str]:
+    """Checks results against a computation, as `retune verify` does, and returns what was checked; ``retune.Error`` if they do not hold.
+
+    Of each table ``sample`` rows are run again; numbers that differ by at most the share ``within`` hold.
+    """
+    told = Progress(False)
+    _core.verify(os.fspath(path), sample, within, told)
+    return told.lines
+
+
+def track(
+    study: Directory,
+    k1: Iterable[float],
+    out: Directory | None = None,
+    *,
+    resume: bool = False,
+    restart: bool = False,
+    replace: bool = False,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Path:
+    """How long tunings last: tunes the dampers of a study of kind `table2` anew at stiffnesses ``k1`` (N/m), as `retune track` does.
+
+    Returns the directory of the results; ``README.md`` there is the answer.
+    """
+    asked = _asked(out, resume, restart, replace, threads)
+    return Path(_core.track(os.fspath(study), [float(value) for value in k1], asked, Progress(progress)))
+
+
+def fronts(
+    study: Directory,
+    out: Directory | None = None,
+    *,
+    resume: bool = False,
+    restart: bool = False,
+    replace: bool = False,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Path:
+    """Pareto fronts of a study of kind `fronts`, as `retune fronts` does; returns the directory of the results."""
+    asked = _asked(out, resume, restart, replace, threads)
+    return Path(_core.fronts(os.fspath(study), asked, Progress(progress)))

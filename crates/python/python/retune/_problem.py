@@ -1,0 +1,222 @@
+"""Problems: what is to be made small, as a function of a design."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Self, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from retune import _core, _show
+from retune._arrays import plain
+from retune._run import Run, simulate
+from retune._scene import SSVI, TMD, Structure
+from retune._table import Table
+
+Sort = TypeVar("Sort", bound=_core.Core)
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What a design is worth. SI units."""
+
+    #: What searches make small: the quantity of a design that keeps the limits, above 1e100 for any other.
+    value: float
+    #: The name of the quantity, E1max unless the problem names another, and its unit.
+    quantity: str
+    unit: str
+    #: The quantity itself, whether limits are kept or not.
+    largest: float
+    #: Largest spring deflection, m, and contact force, N; NaN where no limit asks for them.
+    stroke: float
+    force: float
+    #: The sum of reached / limit - 1 over the limits that are broken; 0 if none is.
+    violation: float
+    #: The frequency of the worst run, rad/s.
+    omega_worst: float
+    #: The number of runs, and of those that should have settled and did not.
+    runs: int
+    unsettled: int
+
+    def _rows(self) -> list[list[object]]:
+        return [
+            [self.quantity, self.largest, self.unit],
+            ["stroke", self.stroke, "m"],
+            ["force", self.force, "N"],
+            ["violation", self.violation, ""],
+            ["omega_worst", self.omega_worst, "rad/s"],
+        ]
+
+    def __repr__(self) -> str:
+        return _show.text(["", "value", "unit"], self._rows())
+
+    def _repr_html_(self) -> str:
+        return _show.page(["", "value", "unit"], self._rows())
+
+
+class Problem(_core.Core):
+    """A structure, what makes it move, a damper, and what is to be made small.
+
+    ``problem(x)`` is the value of a design ``x``: one number for each of ``problem.names``, in that order, in SI units. It is the number
+    that Retune's own searches make small: the quantity (E1max, J, unless ``quantity`` names another) of a design that keeps the limits,
+    and a number above 1e100, larger the more they are broken, of one that does not.
+
+    All arguments but structure and damper are keywords:
+
+    - ``P`` (N), ``imbalance`` (kg m) or ``base`` (m) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
+      the natural frequency of the structure, or the end of the band that is nearest to it. ``start`` is a state (``x1``, ``v1``, ``x2``,
+      ``v2``) for a free decay instead.
+    - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0.
+    - ``vary`` names the tuned parameters, of k2, c2, D, C and m2; ``bounds`` gives each its smallest and largest value.
+    - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
+      "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
+    - ``limits`` has largest allowed values of ``stroke`` (m), ``force`` (N) and ``cavity`` (m), and ``from`` (s).
+    - ``surf``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are integrated,
+      with the fields of study files.
+    """
+
+    def __new__(
+        cls,
+        structure: Structure,
+        damper: TMD | SSVI | None = None,
+        *,
+        P: float | None = None,
+        imbalance: float | None = None,
+        base: float | None = None,
+        start: Mapping[str, float] | None = None,
+        omega: float | None = None,
+        window: tuple[float, float] = (50.0, 100.0),
+        vary: Sequence[str] | None = None,
+        bounds: Mapping[str, tuple[float, float | None]] | None = None,
+        band: tuple[float, float] | None = None,
+        samples: int | None = None,
+        response: str | None = None,
+        quantity: str | None = None,
+        objective: Mapping[str, Any] | None = None,
+        limits: Mapping[str, float] | None = None,
+        surf: Mapping[str, Mapping[str, Any]] | None = None,
+        global_search: Mapping[str, Any] | None = None,
+        starts: Sequence[Mapping[str, float]] | None = None,
+        refine: Mapping[str, Any] | None = None,
+        solver: Mapping[str, Any] | None = None,
+        name: str = "problem",
+    ) -> Self:
+        if omega is None and start is None:
+            natural = math.sqrt(structure.k1 / structure.m1)
+            omega = min(max(natural, band[0]), band[1]) if band is not None else natural
+        frequencies = None if band is None else given({"from": band[0], "to": band[1], "samples": samples})
+        goal = {**(objective or {}), **given({"omega": frequencies, "response": response, "quantity": quantity})}
+        open_ended = {key: [low, None if high == math.inf else high] for key, (low, high) in (bounds or {}).items()}
+        search = given({"surf": surf, "global": global_search, "starts": starts, "refine": refine, "limits": limits})
+        optimize = {"vary": vary, "bounds": open_ended, "objective": goal, **search}
+        study = {
+            "name": name,
+            "scene": {
+                "primary": asdict(structure),
+                "forcing": given({"P": P, "imbalance": imbalance, "base": base, "start": start, "omega": omega}),
+                "damper": None if damper is None else damper._study(),
+            },
+            "window": {"t0": window[0], "T": window[1]},
+            "solver": solver or {},
+            "optimize": None if vary is None else optimize,
+        }
+        return super().__new__(cls, json.dumps(plain(study)))
+
+    @classmethod
+    def from_study(cls, study: str | os.PathLike[str] | Mapping[str, Any]) -> Self:
+        """A problem from a study file, the directory of a search's results (with the design that it found), or a mapping with the fields
+        of a study."""
+        if isinstance(study, Mapping):
+            return rebuilt(cls, json.dumps(plain(study)), None)
+        return rebuilt(cls, _core.study_text(os.fspath(study)), os.fspath(study))
+
+    @property
+    def study(self) -> dict[str, Any]:
+        """The study, with every default written out."""
+        study: dict[str, Any] = json.loads(self._text())
+        return study
+
+    def evaluate(self, x: ArrayLike) -> Evaluation:
+        """Everything that the objective finds for a design."""
+        found = self._evaluation(x)
+        quantity, unit = self.quantity
+        return Evaluation(quantity=quantity, unit=unit, largest=found.pop(quantity), **found)
+
+    def batch(self, X: ArrayLike, threads: int | None = None) -> Table:
+        """The values of ``n`` designs, the rows of ``X`` (n, d), on all cores, or on ``threads``; the numbers do not depend on that.
+
+        Returns columns: ``value`` as of ``problem(x)``, the quantity (``E1max``, J), ``stroke`` (m) and ``force`` (N), NaN where no limit
+        asks for them, ``violation``, ``omega_worst`` (rad/s). A row without a value has an infinite ``value`` and NaN elsewhere;
+        ``errors`` has its exception.
+        """
+        columns, errors = self._batch(X, threads)
+        quantity, unit = self.quantity
+        return Table(columns, {"value": unit, quantity: unit, "stroke": "m", "force": "N", "omega_worst": "rad/s"}, dict(errors))
+
+    def simulate(self, x: ArrayLike | None = None, *, interval: float = 0.005, **changes: float) -> Run:
+        """One run, of a design or of the study's own: its motion every ``interval`` seconds of the window, contacts, largest values.
+
+        ``changes`` are numbers of the study: ``omega``, ``k1``, ``P``, ``T``, ``t0`` and others by their symbols.
+        """
+        return simulate(self, x, interval, changes)
+
+    def sweep(self, x: ArrayLike | None = None, *, objective: bool = False, threads: int | None = None, **over: ArrayLike) -> Table:
+        """A run at each value of one parameter, given by its symbol, with the damper and without: ``sweep(x, omega=[5, 6, 7])``.
+
+        With ``objective`` the objective at each value instead. A value that has no answer has NaN.
+        """
+        if len(over) != 1:
+            raise TypeError("give one parameter and its values, for instance omega=numpy.linspace(5, 8, 301)")
+        ((name, values),) = over.items()
+        columns, units = _core.sweep(self, x, name, np.atleast_1d(np.asarray(values)), objective, threads)
+        return Table(columns, dict(units))
+
+    def at(self, x: ArrayLike | None = None, **changes: float) -> Problem:
+        """The same problem with another design as its own, or with other numbers (``k1=30000``)."""
+        text = self._text() if x is None else self._tuned(x)
+        problem = rebuilt(Problem, text, None)
+        return rebuilt(Problem, problem._changed(list(changes.items())), None) if changes else problem
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both are the same study."""
+        return self._text() == other._text() if isinstance(other, Problem) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._text())
+
+    def _rows(self) -> list[list[object]]:
+        return [
+            [name, value, low, high, unit]
+            for name, value, (low, high), unit in zip(self.names, self.start, self.bounds, self.units)
+        ]
+
+    def _title(self) -> str:
+        study = self.study
+        scene = study["scene"]
+        goal = (study["optimize"] or {}).get("objective", {})
+        band = goal.get("omega")
+        where = f"worst over {band['from']:g} to {band['to']:g}{'' if band.get('relative') else ' rad/s'}" if band else ""
+        parts = [f"{key} = {_show.number(value)}" for key, value in {**scene["primary"], **scene["forcing"]}.items()]
+        sought = f"{self.quantity[0]} ({self.quantity[1]}) {where}".strip()
+        return f"problem {study['name']}: {sought or 'one run'}, {', '.join(parts)}"
+
+    def __repr__(self) -> str:
+        return f"{self._title()}\n{_show.text(['tuned', 'value', 'from', 'to', 'unit'], self._rows())}"
+
+    def _repr_html_(self) -> str:
+        return _show.page(["tuned", "value", "from", "to", "unit"], self._rows(), self._title())
+
+
+def rebuilt(cls: type[Sort], text: str, file: str | None) -> Sort:
+    """A problem from the text of its study, as pickles hold it."""
+    return _core.Core.__new__(cls, text, file)
+
+
+def given(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields that are not None."""
+    return {key: value for key, value in fields.items() if value is not None}

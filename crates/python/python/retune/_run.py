@@ -1,0 +1,98 @@
+"""One run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from retune import _core, _show
+from retune._table import Table, axes
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from retune._problem import Problem
+
+UNITS = {"t": "s", "x1": "m", "v1": "m/s", "x2": "m", "v2": "m/s", "E1": "J", "E2": "J", "FconL": "N", "FconR": "N"}
+#: Largest values in the summary of a run, with what is shown of them.
+SHOWN = {"E1max": "J", "E2max": "J", "x1max": "m", "v1max": "m/s", "a1max": "m/s2", "ground_force_max": "N", "spring_deflection_max": "m"}
+
+
+class Run:
+    """One run: the motion at equal intervals, its contacts, and its largest values, each located to rounding."""
+
+    #: Time, s; displacement and velocity of the structure and the damper, m and m/s.
+    t: NDArray[np.float64]
+    x1: NDArray[np.float64]
+    v1: NDArray[np.float64]
+    x2: NDArray[np.float64]
+    v2: NDArray[np.float64]
+    #: The rows at equal intervals: t, x1, v1, x2, v2, the energies E1 and E2 (J), the contact forces FconL and FconR (N).
+    motion: Table
+    #: The same columns at the events between them, and ``moment``: touch-down, force-max, lift-off, E1-max.
+    events: Table
+    #: A row for each contact: touch-down and lift-off (s; NaN beyond the window), largest force (N), wall ("structure" or "obstacle").
+    contacts: Table
+    #: The largest values and everything else that the run is known by, as `retune simulate --json` has it.
+    maxima: dict[str, Any]
+
+    def __init__(self, motion: Table, events: Table, maxima: dict[str, Any]) -> None:
+        self.motion, self.events, self.maxima = motion, events, maxima
+        self.t, self.x1, self.v1, self.x2, self.v2 = (motion[name] for name in ("t", "x1", "v1", "x2", "v2"))
+        self.contacts = _contacts(events)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The motion as a pandas DataFrame."""
+        return self.motion.to_pandas()
+
+    def plot(self, *names: str, ax: Any = None) -> Any:
+        """Draws columns over time with matplotlib, by default x1 and x2; returns the axes."""
+        ax = axes(ax)
+        names = names or ("x1", "x2")
+        for name in names:
+            ax.plot(self.t, self.motion[name], label=f"{name}, {UNITS[name]}")
+        ax.set_xlabel("t, s")
+        ax.legend()
+        return ax
+
+    def _rows(self) -> list[list[object]]:
+        found: list[list[object]] = [[name, self.maxima.get(name), unit] for name, unit in SHOWN.items()]
+        return [*found, ["impacts", sum(self.maxima["impacts"].values()), ""]]
+
+    def _title(self) -> str:
+        return f"run at omega = {self.maxima['omega']:g} rad/s, {self.motion.rows} rows, {self.contacts.rows} contacts"
+
+    def __repr__(self) -> str:
+        return f"{self._title()}\n{_show.text(['largest', 'value', 'unit'], self._rows())}"
+
+    def _repr_html_(self) -> str:
+        return _show.page(["largest", "value", "unit"], self._rows(), self._title())
+
+
+def simulate(problem: Problem, x: ArrayLike | None, interval: float, changes: Mapping[str, float]) -> Run:
+    motion, events, moments, maxima = _core.run(problem, x, interval, list(changes.items()))
+    events["moment"] = np.array(moments, dtype=object)
+    return Run(Table(motion, UNITS), Table(events, UNITS), json.loads(maxima))
+
+
+def _contacts(events: Table) -> Table:
+    """The contacts, from their events in the order of time."""
+    rows: list[list[Any]] = []
+    is_open = False
+    for t, left, right, moment in zip(events["t"], events["FconL"], events["FconR"], events["moment"]):
+        if moment == "E1-max":
+            continue
+        if moment == "touch-down" or not is_open:
+            rows.append([t if moment == "touch-down" else np.nan, np.nan, 0.0, ""])
+            is_open = True
+        if moment == "force-max" and max(left, right) > rows[-1][2]:
+            rows[-1][2:] = [max(left, right), "structure" if left > right else "obstacle"]
+        if moment == "lift-off":
+            rows[-1][1], is_open = t, False
+    names, kinds = ("touch_down", "lift_off", "force", "wall"), (float, float, float, object)
+    columns = {name: np.array([row[i] for row in rows], dtype=kind) for i, (name, kind) in enumerate(zip(names, kinds))}
+    return Table(columns, {"touch_down": "s", "lift_off": "s", "force": "N"})

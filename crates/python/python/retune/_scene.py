@@ -1,0 +1,142 @@
+"""What a scene is made of. Each part is checked as it is made, by the rules of study files."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from typing import Any, ClassVar
+
+from retune import _core, _show
+from retune._arrays import plain
+from retune._errors import StudyError
+
+#: Symbols, their SI units and what they are.
+MEANING = {
+    "m1": ("kg", "mass of the structure"),
+    "c1": ("N s/m", "damping of the structure"),
+    "k1": ("N/m", "stiffness of the structure"),
+    "m2": ("kg", "mass of the damper"),
+    "k2": ("N/m", "stiffness of the damper's spring"),
+    "c2": ("N s/m", "damping between damper and structure"),
+    "D": ("m", "distance between the damper at rest and the structure"),
+    "C": ("m", "clearance between the damper at rest and the obstacle"),
+    "R": ("m", "radius of the damper's surfaces"),
+    "q": ("", "geometrical coefficient of Hertz's theory"),
+    "E1": ("Pa", "Young's modulus of the structure's surface"),
+    "nu1": ("", "Poisson's ratio of the structure's surface"),
+    "E2": ("Pa", "Young's modulus of the damper's surface that meets the structure"),
+    "nu2": ("", "Poisson's ratio of the damper's surface that meets the structure"),
+    "E3": ("Pa", "Young's modulus of the obstacle's surface"),
+    "nu3": ("", "Poisson's ratio of the obstacle's surface"),
+    "E4": ("Pa", "Young's modulus of the damper's surface that meets the obstacle"),
+    "nu4": ("", "Poisson's ratio of the damper's surface that meets the obstacle"),
+}
+
+
+class Part:
+    """A part of a scene, shown as a table of its numbers."""
+
+    title: ClassVar[str]
+
+    def _rows(self) -> list[list[object]]:
+        return [[name, value, *MEANING[name]] for name, value in vars(self).items() if isinstance(value, (int, float))]
+
+    def __repr__(self) -> str:
+        return f"{self.title}\n{_show.text(['', 'value', 'unit', ''], self._rows())}"
+
+    def _repr_html_(self) -> str:
+        return _show.page(["", "value", "unit", ""], self._rows(), self.title)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Structure(Part):
+    """The structure whose vibration is to be reduced: ``m1`` (kg), ``c1`` (N s/m), ``k1`` (N/m)."""
+
+    title: ClassVar[str] = "structure"
+    m1: float
+    c1: float
+    k1: float
+
+    def __post_init__(self) -> None:
+        _check(asdict(self), None)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Contact(Part):
+    """The colliding surfaces of an SSVI NES; the defaults are those of the paper.
+
+    ``R`` (m) is the radius of the damper's surfaces, ``q`` the geometrical coefficient of Hertz's theory, ``E1`` to ``E4`` (Pa) and
+    ``nu1`` to ``nu4`` are Young's moduli and Poisson's ratios: 1 the structure, 2 the damper where it meets the structure, 3 the
+    obstacle, 4 the damper where it meets the obstacle.
+    """
+
+    title: ClassVar[str] = "colliding surfaces"
+    R: float = 2.0
+    q: float = 0.318
+    E1: float = 2.1e11
+    nu1: float = 0.3
+    E2: float = 2.21e7
+    nu2: float = 0.4
+    E3: float = 2.1e11
+    nu3: float = 0.3
+    E4: float = 2.05e7
+    nu4: float = 0.4
+
+    def __post_init__(self) -> None:
+        _check(None, {"m2": 1, "k2": 0, "c2": 0, "D": 0, "C": 0, "contact": asdict(self)})
+
+
+@dataclass(frozen=True, repr=False)
+class TMD(Part):
+    """A tuned mass damper, without walls: ``m2`` (kg), ``k2`` (N/m), ``c2`` (N s/m).
+
+    ``retune.compare`` finds ``k2`` and ``c2`` itself where they are left out.
+    """
+
+    title: ClassVar[str] = "TMD"
+    m2: float
+    k2: float | None = field(default=None, kw_only=True)
+    c2: float | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        _check(None, {"k2": 0, "c2": 0, **self._study()})
+
+    def _study(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+
+@dataclass(frozen=True, repr=False)
+class SSVI(Part):
+    """A single-sided vibro-impact nonlinear energy sink: ``m2`` (kg), ``k2`` (N/m), ``c2`` (N s/m), ``D`` and ``C`` (m), ``contact``.
+
+    ``retune.compare`` finds all but ``m2`` itself where they are left out.
+    """
+
+    title: ClassVar[str] = "SSVI NES"
+    m2: float
+    k2: float | None = field(default=None, kw_only=True)
+    c2: float | None = field(default=None, kw_only=True)
+    D: float | None = field(default=None, kw_only=True)
+    C: float | None = field(default=None, kw_only=True)
+    contact: Contact = field(default_factory=Contact, kw_only=True)
+
+    def __post_init__(self) -> None:
+        _check(None, {"k2": 0, "c2": 0, "D": 0, "C": 0, **self._study()})
+
+    def _study(self) -> dict[str, Any]:
+        return {
+            name: asdict(value) if isinstance(value, Contact) else value
+            for name, value in vars(self).items()
+            if value is not None
+        }
+
+
+def _check(primary: dict[str, Any] | None, damper: dict[str, Any] | None) -> None:
+    """Refuses a part that no study may have: the rules are those of study files."""
+    scene = {"primary": primary or {"m1": 1, "c1": 0, "k1": 1}, "forcing": {"P": 0, "omega": 1}, "damper": damper}
+    study = {"scene": scene, "window": {"t0": 0, "T": 1}}
+    try:
+        _core.Core(json.dumps(plain(study)))
+    except StudyError as error:
+        field = error.field.rpartition(".")[2] if error.field else None
+        raise StudyError(str(error).removeprefix((error.field or "").rpartition(".")[0] + "."), field, error.value) from None

@@ -1,0 +1,31 @@
+"""Results as text and as HTML."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable, Sequence
+
+
+def number(value: object) -> str:
+    """A number in the digits that matter, anything else as it is."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return str(value)
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Rows as aligned columns."""
+    lines = [list(head), *([number(cell) for cell in row] for row in rows)]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
+    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
+
+
+def page(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
+    """Rows as an HTML table."""
+
+    def line(cells: Iterable[object], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(number(cell))}</{tag}>" for cell in cells) + "</tr>"
+
+    top = f"<caption>{html.escape(caption)}</caption>" if caption else ""
+    body = "".join(line(row, "td") for row in rows)
+    return f"<table>{top}<thead>{line(head, 'th')}</thead><tbody>{body}</tbody></table>"

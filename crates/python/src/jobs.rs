@@ -1,0 +1,162 @@
+//! What takes seconds to hours: searches, certificates, verification. The files are those of the command line, to the last byte.
+
+use crate::errors::Fault;
+use crate::pool::check;
+use crate::problem::{Core, json};
+use crate::watch::{Watch, caught, watched};
+use pyo3::prelude::*;
+use retune_store::Begin;
+use retune_study::Setting;
+use retune_workbench::design::Wishes;
+use retune_workbench::{Request, tune, verify as verification};
+use std::path::PathBuf;
+
+/// What a job is asked beside its study: the directory of its results, whether to go on or to begin anew, whether to replace other results,
+/// and the number of threads.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Asked {
+    out: Option<PathBuf>,
+    resume: bool,
+    restart: bool,
+    replace: bool,
+    threads: Option<i64>,
+}
+
+impl Asked {
+    fn request(self, study: PathBuf) -> Result<Request, Fault> {
+        let Self { out, resume, restart, replace, threads } = self;
+        let threads = threads.map(check).transpose()?;
+        let begin = match (resume, restart) {
+            (true, _) => Begin::Resume,
+            (false, true) => Begin::Restart,
+            (false, false) => Begin::New,
+        };
+        Ok(Request { study, out, threads, begin, replace })
+    }
+}
+
+/// The text of a study file, or of the study behind results with the design that was found.
+///
+/// # Errors
+/// `retune.StudyError`.
+#[pyfunction]
+pub fn study_text(path: PathBuf) -> PyResult<String> {
+    let read = || {
+        let study = retune_study::read(&path).map_err(|error| {
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            Fault::of_study(&error, &text, true)
+        })?;
+        json(&study)
+    };
+    Ok(caught(read)?)
+}
+
+/// Makes the whole search of a problem; returns the directory of its results.
+///
+/// # Errors
+/// Those of the job, or Ctrl-C.
+#[pyfunction]
+pub fn optimize(py: Python<'_>, core: &Core, asked: Asked, tell: Option<Py<PyAny>>) -> PyResult<PathBuf> {
+    let study = &core.study;
+    let mut request = asked.request(PathBuf::new())?;
+    let out = request.out_of(study);
+    // A problem that no file says is made of what is written beside its results.
+    request.study = core.file.as_ref().map_or_else(|| out.join("study.json"), PathBuf::from);
+    watched(py, tell.as_ref(), |watch| {
+        tune::tune_study(study, &request, watch)?;
+        Ok(())
+    })?;
+    Ok(out)
+}
+
+/// The certificate of a design, as JSON.
+///
+/// # Errors
+/// The design has no value.
+#[pyfunction]
+#[pyo3(signature = (core, x, threads=None))]
+pub fn certify(
+    py: Python<'_>,
+    core: &Core,
+    x: Option<&Bound<'_, PyAny>>,
+    threads: Option<i64>,
+) -> PyResult<String> {
+    let threads = threads.map(check).transpose()?;
+    let study = core.at(x)?;
+    let request = Request { threads, ..Request::default() };
+    watched(py, None, |_| json(&request.on_threads(|| retune_workbench::certify::certify(&study))?))
+}
+
+/// Checks results; what is found goes to `tell`.
+///
+/// # Errors
+/// They do not hold, or cannot be checked.
+#[pyfunction]
+pub fn verify(
+    py: Python<'_>,
+    path: PathBuf,
+    sample: usize,
+    within: f64,
+    tell: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    watched(py, tell.as_ref(), |watch| {
+        Ok(verification::verify(&path, sample, within, retune_tradeoff::OTHERS, watch)?)
+    })
+}
+
+/// The study with which `design` tunes a damper of a kind, "TMD" or "SSVI NES", for a structure and what is wished: from JSON to JSON.
+///
+/// # Errors
+/// A wish cannot be fulfilled.
+#[pyfunction]
+pub fn design_study(wishes: &str, kind: &str) -> PyResult<String> {
+    let made = || {
+        let wishes: Wishes = serde_json::from_str(wishes).map_err(|error| Fault::Other(error.to_string()))?;
+        wishes.check()?;
+        json(&if kind == "TMD" { wishes.tmd()? } else { wishes.ssvi()? })
+    };
+    Ok(caught(made)?)
+}
+
+/// How long tunings last: tunes the dampers of a study file anew for each stiffness; returns the directory of the results.
+///
+/// # Errors
+/// Those of the job, or Ctrl-C.
+#[pyfunction]
+pub fn track(
+    py: Python<'_>,
+    study: PathBuf,
+    k1: Vec<f64>,
+    asked: Asked,
+    tell: Option<Py<PyAny>>,
+) -> PyResult<PathBuf> {
+    let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
+    on_file(py, study, asked, tell, |request, watch| {
+        retune_tradeoff::track::track(request, &settings, watch).map(drop)
+    })
+}
+
+/// Pareto fronts of a study file; returns the directory of the results.
+///
+/// # Errors
+/// Those of the job, or Ctrl-C.
+#[pyfunction]
+pub fn fronts(py: Python<'_>, study: PathBuf, asked: Asked, tell: Option<Py<PyAny>>) -> PyResult<PathBuf> {
+    on_file(py, study, asked, tell, |request, watch| {
+        retune_tradeoff::pareto::pareto(request, watch).map(drop)
+    })
+}
+
+/// A job on a file of several studies.
+fn on_file(
+    py: Python<'_>,
+    study: PathBuf,
+    asked: Asked,
+    tell: Option<Py<PyAny>>,
+    job: impl FnOnce(&Request, &Watch) -> Result<(), retune_workbench::Error> + Send,
+) -> PyResult<PathBuf> {
+    let request = asked.request(study)?;
+    watched(py, tell.as_ref(), |watch| Ok(job(&request, watch)?))?;
+    Ok(request.out_of_file())
+}

@@ -1,0 +1,33 @@
+//! Retune as a Python package: conversion, exceptions and nothing else. What is computed, and what is allowed, is said by the libraries.
+//!
+//! A problem is a study (`retune_study`): Python builds its JSON, the study's own rules check it, and answers go back as numpy arrays or
+//! as JSON. `python/retune` is what users see; this module is its private `_core`.
+//!
+//! - `errors`: from every error to one of the package's exceptions.
+//! - `arrays`: numbers from numpy and back.
+//! - `watch`: long work without the interpreter's lock, which Ctrl-C ends and which tells how far it is.
+//! - `pool`: the threads that an evaluation may use.
+//! - `problem`: a study as a function of a design; `motion`: its runs and sweeps; `jobs`: what takes minutes and writes files.
+
+mod arrays;
+mod errors;
+mod jobs;
+mod motion;
+mod pool;
+mod problem;
+mod watch;
+
+/// The private part of the package `retune`.
+#[pyo3::pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::jobs::{certify, design_study, fronts, optimize, study_text, track, verify};
+    #[pymodule_export]
+    use crate::motion::{run, sweep};
+    #[pymodule_export]
+    use crate::problem::Core;
+
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "Python's name for it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

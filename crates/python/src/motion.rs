@@ -1,0 +1,133 @@
+//! Runs of a study, and sweeps.
+
+use crate::arrays::{numbers, table};
+use crate::errors::{Fault, Given};
+use crate::pool::pool;
+use crate::problem::{Core, json};
+use crate::watch::watched;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+use retune_optim::Scale;
+use retune_solver::{Moment, Rows, Sample, trajectory};
+use retune_study::Study;
+use retune_sweep::{Parameter, Plan, Sweep};
+
+/// Most rows of a motion that is kept in memory.
+const MOST_ROWS: f64 = 1e7;
+/// The columns of a motion.
+const COLUMNS: [&str; 9] = ["t", "x1", "v1", "x2", "v2", "E1", "E2", "FconL", "FconR"];
+
+/// What came of a run: its rows, its events, the name of each event, and its summary as JSON.
+type Ran<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<&'static str>, String);
+/// The columns of a sweep, and the unit of each.
+type Swept<'py> = (Bound<'py, PyDict>, Vec<(String, &'static str)>);
+
+/// One run: the motion at equal intervals, its events, and its largest values.
+///
+/// # Errors
+/// A number out of its range, or a run that cannot be finished.
+#[pyfunction]
+pub fn run<'py>(
+    py: Python<'py>,
+    core: &Core,
+    x: Option<&Bound<'py, PyAny>>,
+    interval: f64,
+    settings: Vec<(String, f64)>,
+) -> PyResult<Ran<'py>> {
+    let study = changed(&core.at(x)?, &settings)?;
+    let (summary, samples) = watched(py, None, |_| moved(&study, interval))?;
+    let (grid, events): (Vec<_>, Vec<_>) =
+        samples.into_iter().partition(|sample| sample.moment == Moment::Grid);
+    let names = events.iter().map(|sample| sample.moment.name()).collect();
+    Ok((columns(py, &grid)?, columns(py, &events)?, names, summary))
+}
+
+/// A run, or the objective, at each value of a parameter: the columns and their units.
+///
+/// # Errors
+/// A value out of its range, or a parameter that cannot be swept.
+#[pyfunction]
+#[pyo3(signature = (core, x, over, values, objective=false, threads=None))]
+pub fn sweep<'py>(
+    py: Python<'py>,
+    core: &Core,
+    x: Option<&Bound<'py, PyAny>>,
+    over: &str,
+    values: &Bound<'py, PyAny>,
+    objective: bool,
+    threads: Option<i64>,
+) -> PyResult<Swept<'py>> {
+    let (values, shape) = numbers(values, over)?;
+    if shape.len() != 1 || values.is_empty() {
+        let message =
+            format!("{over}: the shape {shape:?} is not allowed here: give one value or more, in one row");
+        return Err(Fault::study(message, Given::Nothing).into());
+    }
+    let sweep = swept(core.at(x)?, over, &values, objective)?;
+    let rows = watched(py, None, |watch| {
+        let row = |value: &f64| (!watch.is_stopped()).then(|| sweep.row(*value, &sweep.numbers(*value).0));
+        let rows: Option<Vec<_>> = pool(threads)?.install(|| values.par_iter().map(row).collect());
+        Ok(rows.unwrap_or_default())
+    })?;
+    let columns = sweep.columns();
+    let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
+    let column = |i: usize| rows.iter().map(|row| finite(row[i])).collect();
+    let all = table(py, columns.iter().enumerate().map(|(i, one)| (one.name.clone(), column(i))))?;
+    Ok((all, columns.into_iter().map(|column| (column.name, column.unit)).collect()))
+}
+
+/// A study with other numbers.
+fn changed(study: &Study, settings: &[(String, f64)]) -> Result<Study, Fault> {
+    let setting = |(name, value): &(String, f64)| format!("{name}={value}").parse();
+    let settings = settings.iter().map(setting).collect::<Result<Vec<_>, _>>()?;
+    Ok(study.with(&settings)?)
+}
+
+/// The summary of a run, and its motion.
+fn moved(study: &Study, interval: f64) -> Result<(String, Vec<Sample>), Fault> {
+    let window = study.window.window();
+    if !(interval > 0.0 && (window.to - window.from) / interval <= MOST_ROWS) {
+        let allowed = "a number above 0 that makes at most ten million rows, s";
+        return Err(Fault::argument("interval", interval, allowed));
+    }
+    let summary = json(&retune_workbench::simulate::simulate(study, None)?)?;
+    let mut samples = Vec::new();
+    let mut keep = |sample: &Sample| samples.push(*sample);
+    trajectory(&study.scene, window, &study.solver.settings(), Rows { interval, events: true }, &mut keep)?;
+    Ok((summary, samples))
+}
+
+fn columns<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
+    let values = |sample: &Sample| {
+        let Sample { t, state: [x1, v1, x2, v2], e1, e2, forces: [left, right], .. } = *sample;
+        [t, x1, v1, x2, v2, e1, e2, left, right]
+    };
+    let column = |i: usize| samples.iter().map(|sample| values(sample)[i]).collect();
+    table(py, COLUMNS.iter().enumerate().map(|(i, name)| ((*name).to_owned(), column(i))))
+}
+
+/// A sweep through any values of a parameter.
+fn swept(study: Study, over: &str, values: &[f64], objective: bool) -> Result<Sweep, Fault> {
+    let refuse = |message: String| Fault::study(message, Given::Nothing);
+    let parameter: Parameter = over.parse().map_err(|words| refuse(format!("{over}: {words}")))?;
+    if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+        return Err(Fault::argument(over, *value, "finite numbers"));
+    }
+    let [from, to] = [f64::min, f64::max].map(|end| values.iter().copied().fold(values[0], end));
+    // Only the ends are asked for, to be checked; those of a sweep differ.
+    let to = if from == to { 2.0 * from.abs() + 1.0 } else { to };
+    let plan = Plan {
+        over: parameter,
+        from,
+        to,
+        points: 2,
+        scale: Scale::Linear,
+        quantities: Vec::new(),
+        objective,
+    };
+    Sweep::new(plan, study).map_err(|error| match error {
+        retune_sweep::Error::Value(error) => error.into(),
+        error => refuse(error.to_string()),
+    })
+}

@@ -1,0 +1,169 @@
+//! Long work without the interpreter's lock: Ctrl-C ends it, and it tells how far it is.
+//!
+//! The work has a thread of its own. The thread that called waits for it, and now and then takes the lock to let Python handle its
+//! signals and to pass on what the work has to tell.
+
+use crate::errors::{Fault, of_panic};
+use pyo3::prelude::*;
+use retune_workbench::{Error, Observer, Progress};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Between two looks at signals and progress.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+/// What a piece of work tells, and whether it is to end.
+#[derive(Clone, Default)]
+pub struct Watch(Arc<Told>);
+
+#[derive(Default)]
+struct Told {
+    stopped: AtomicBool,
+    lines: Mutex<Vec<(&'static str, String)>>,
+    stage: Mutex<Option<Arc<Stage>>>,
+}
+
+/// A stage of a job.
+struct Stage {
+    name: &'static str,
+    count: u64,
+    done: AtomicU64,
+    known: AtomicU64,
+    finished: AtomicBool,
+}
+
+/// The work was stopped: what unwinds, silently, through a job that has no other way to end before its time. Everything computed so far
+/// is in its journal.
+struct Stopped;
+
+impl Watch {
+    /// Whether the work is to end.
+    pub fn is_stopped(&self) -> bool {
+        self.0.stopped.load(Relaxed)
+    }
+
+    /// Ends the job if that was asked for.
+    fn go_on(&self) {
+        if self.is_stopped() {
+            resume_unwind(Box::new(Stopped));
+        }
+    }
+
+    fn tell(&self, kind: &'static str, words: &str) {
+        let mut lines = self.0.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        lines.push((kind, words.to_owned()));
+    }
+
+    /// Passes on what there is to tell: `to(kind, words, done, known, count)`.
+    fn pass_on(&self, py: Python<'_>, to: Option<&Py<PyAny>>) -> PyResult<()> {
+        let lines = std::mem::take(&mut *self.0.lines.lock().unwrap_or_else(PoisonError::into_inner));
+        let stage = self.0.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Some(to) = to else { return Ok(()) };
+        for (kind, words) in lines {
+            to.call1(py, (kind, words, 0, 0, 0))?;
+        }
+        if let Some(stage) = stage {
+            let kind = if stage.finished.load(Relaxed) { "finished" } else { "progress" };
+            let (done, known) = (stage.done.load(Relaxed), stage.known.load(Relaxed));
+            to.call1(py, (kind, stage.name, done, known, stage.count))?;
+        }
+        Ok(())
+    }
+}
+
+/// Does `work` on a thread of its own. `tell` is called with what the [`Watch`] is told.
+///
+/// # Errors
+/// The error of the work, Ctrl-C, or an exception of `tell`.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    tell: Option<&Py<PyAny>>,
+    work: impl FnOnce(&Watch) -> Result<T, Fault> + Send,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let looked = py.detach(|| {
+        let (answers, answer) = mpsc::sync_channel(1);
+        std::thread::scope(|scope| {
+            let own = watch.clone();
+            let thread =
+                std::thread::Builder::new().name("retune".to_owned()).spawn_scoped(scope, move || {
+                    // The receiver is there until this thread has ended.
+                    let _ = answers.send(caught(|| work(&own)));
+                });
+            if let Err(error) = thread {
+                return Err(Fault::Other(format!("cannot start a thread: {error}")));
+            }
+            let mut raised = None;
+            loop {
+                match answer.recv_timeout(LOOK_EVERY) {
+                    Ok(found) => return raised.map_or(found, |error| Err(Fault::Python(error))),
+                    Err(RecvTimeoutError::Timeout) if raised.is_none() => {
+                        let look = |py: Python<'_>| py.check_signals().and_then(|()| watch.pass_on(py, tell));
+                        raised = Python::attach(look).err();
+                        watch.0.stopped.store(raised.is_some(), Relaxed);
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => {
+                        return Err(Fault::Other("the work ended without an answer".to_owned()));
+                    }
+                }
+            }
+        })
+    });
+    let found = looked?;
+    watch.pass_on(py, tell)?;
+    Ok(found)
+}
+
+/// Does `work`; a panic becomes an error, for none may cross the border.
+///
+/// # Errors
+/// Its own, or a panic.
+pub fn caught<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| Err(of_panic(&*payload)))
+}
+
+impl Observer for Watch {
+    fn result(&self, line: &str) -> Result<(), Error> {
+        self.go_on();
+        self.tell("result", line);
+        Ok(())
+    }
+    fn log(&self, line: &str) -> Result<(), Error> {
+        self.go_on();
+        self.tell("log", line);
+        Ok(())
+    }
+    fn warn(&self, words: &str) {
+        self.tell("warning", words);
+    }
+    fn progress(&self, name: &'static str, count: u64) -> Box<dyn Progress> {
+        let [done, known] = [0; 2].map(AtomicU64::new);
+        let stage = Arc::new(Stage { name, count, done, known, finished: AtomicBool::new(false) });
+        *self.0.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&stage));
+        Box::new(Watched { watch: self.clone(), stage })
+    }
+    fn resumable(&self) {}
+}
+
+/// A stage that is watched.
+struct Watched {
+    watch: Watch,
+    stage: Arc<Stage>,
+}
+
+impl Progress for Watched {
+    fn known(&self) {
+        self.stage.known.fetch_add(1, Relaxed);
+    }
+    fn inc(&self, more: u64) {
+        self.stage.done.fetch_add(more, Relaxed);
+        self.watch.go_on();
+    }
+    fn finish(&self) {
+        self.stage.finished.store(true, Relaxed);
+    }
+}

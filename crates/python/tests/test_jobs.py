@@ -1,0 +1,179 @@
+"""Jobs: the files of the command line, Ctrl-C, comparisons, certificates."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from conftest import STUDIES
+
+import retune as rt
+
+SMALL = {"k2": {"from": 100, "to": 600, "points": 4}, "c2": {"from": 50, "to": 300, "points": 4}}
+
+
+def small(tmp_path: Path) -> Path:
+    """A study whose search takes a second."""
+    study = json.loads((STUDIES / "ssvi.json").read_text())
+    study["optimize"] |= {
+        "vary": ["k2", "c2"],
+        "bounds": {"k2": [10, 600], "c2": [1, 1000]},
+        "surf": SMALL,
+        "objective": {"omega": {"from": 5, "to": 8, "samples": 9}},
+        "refine": {"starts": 1, "MaxFunEvals": 25},
+    }
+    del study["$schema"]
+    file = tmp_path / "small.json"
+    file.write_text(json.dumps(study))
+    return file
+
+
+def files(place: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in sorted(place.iterdir()) if not path.name.startswith(".")}
+
+
+def test_contract_a_search_has_the_bytes_of_the_command_line(program: Path, tmp_path: Path) -> None:
+    study = small(tmp_path)
+    subprocess.run([program, "optimize", study, "--out", tmp_path / "line"], check=True, capture_output=True)
+    result = rt.optimize(rt.Problem.from_study(study), out=tmp_path / "package")
+    assert files(tmp_path / "line") == files(tmp_path / "package")
+    assert "manifest.json" in files(result.out) and "report.html" in files(result.out)
+    assert result.fun == rt.Problem.from_study(study)(result.x) and result.success
+    assert rt.Problem.from_study(result.out).start == result.x.tolist()
+    assert "E1max" in repr(result) and "<table>" in result._repr_html_()
+    assert any("holds" in line for line in rt.verify(result.out))
+    (result.out / "optimum.json").write_text((result.out / "optimum.json").read_text().replace("E1max", "E1min"))
+    with pytest.raises(rt.Error, match="optimum.json"):
+        rt.verify(result.out)
+
+
+def test_contract_a_problem_without_a_file_is_written_and_verified(tmp_path: Path) -> None:
+    problem = rt.Problem.from_study(json.loads(small(tmp_path).read_text()))
+    first = rt.optimize(problem, tmp_path / "out")
+    again = rt.optimize(problem, tmp_path / "out")
+    assert first.x.tolist() == again.x.tolist() and rt.verify(again.out)
+    foreign = tmp_path / "foreign"
+    foreign.mkdir()
+    (foreign / "optimum.json").write_text("{}")
+    with pytest.raises(rt.Error, match="--replace"):
+        rt.optimize(problem, foreign)
+    assert rt.optimize(problem, foreign, replace=True).fun == first.fun
+
+
+INTERRUPTED = """
+import sys, retune as rt
+problem = rt.Problem.from_study(sys.argv[1])
+print("ready", flush=True)
+try:
+    rt.optimize(problem, sys.argv[2], resume=True)
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+    # The interpreter lives, and so does the package.
+    assert problem(problem.start) > 0
+    sys.exit(42)
+"""
+
+
+def test_contract_ctrl_c_ends_a_search_and_resume_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    study = json.loads(small(tmp_path).read_text())
+    study["optimize"]["surf"] = {name: {**axis, "points": 40} for name, axis in SMALL.items()}
+    slow = tmp_path / "slow.json"
+    slow.write_text(json.dumps(study))
+    out = tmp_path / "broken"
+    stopped = 0
+    for attempt in range(3):
+        process = subprocess.Popen([sys.executable, "-c", INTERRUPTED, slow, out], stdout=subprocess.PIPE, text=True)
+        assert process.stdout is not None and process.stdout.readline() == "ready\n"
+        time.sleep(0.7)
+        process.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        process.communicate(timeout=60)
+        assert time.monotonic() - begun < 5, "Ctrl-C ends it soon"
+        stopped += process.returncode == 42
+    assert stopped, "at least one was stopped on the way"
+    problem = rt.Problem.from_study(slow)
+    resumed = rt.optimize(problem, out, resume=True)
+    unbroken = rt.optimize(problem, tmp_path / "unbroken")
+    assert files(resumed.out) == files(unbroken.out)
+
+
+def test_contract_ctrl_c_ends_a_batch(tmp_path: Path) -> None:
+    code = """
+import sys, numpy as np, retune as rt
+problem = rt.Problem.from_study(sys.argv[1])
+print("ready", flush=True)
+try:
+    problem.batch(np.tile(problem.start, (10**6, 1)))
+except KeyboardInterrupt:
+    sys.exit(42)
+"""
+    with subprocess.Popen([sys.executable, "-c", code, STUDIES / "ssvi.json"], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stdout.readline() == "ready\n"
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        assert process.wait(timeout=60) == 42
+        assert time.monotonic() - begun < 5
+
+
+def test_contract_an_exception_of_the_progress_ends_the_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise LookupError("shown nowhere")
+
+    monkeypatch.setattr("retune._progress.Progress.__call__", fail)
+    with pytest.raises(LookupError, match="shown nowhere"):
+        rt.optimize(rt.Problem.from_study(small(tmp_path)), tmp_path / "out")
+
+
+def test_contract_progress_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from retune._progress import Progress
+
+    told: list[tuple[str, str, int]] = []
+    shown = Progress.__call__
+
+    def note(self: Progress, kind: str, words: str, done: int, known: int, count: int) -> None:
+        told.append((kind, words, done))
+        assert done <= max(count, done if words != "surf" else count)
+        shown(self, kind, words, done, known, count)
+
+    monkeypatch.setattr(Progress, "__call__", note)
+    rt.optimize(rt.Problem.from_study(small(tmp_path)), tmp_path / "out")
+    assert {"surf"} <= {words for kind, words, _ in told if kind in ("progress", "finished")}
+    assert any(kind == "result" and "E1max" in words for kind, words, _ in told)
+
+
+def test_contract_a_certificate_is_that_of_the_command_line(program: Path, tmp_path: Path) -> None:
+    study = STUDIES / "tmd.json"
+    out = tmp_path / "certificate"
+    subprocess.run([program, "certify", study, "--out", out], check=True, capture_output=True)
+    certificate = rt.certify(rt.Problem.from_study(study))
+    assert certificate.data == json.loads((out / "certificate.json").read_text())
+    assert certificate.words in repr(certificate) and certificate.verdict == certificate["verdict"]
+
+
+def test_contract_dampers_are_compared(tmp_path: Path) -> None:
+    problem = rt.Problem(
+        rt.Structure(m1=1000, c1=452, k1=3.95e4),
+        rt.TMD(60, k2=1900, c2=150),
+        P=800,
+        band=(5, 8),
+        samples=7,
+        vary=["k2", "c2"],
+        bounds={"k2": (10, 4000), "c2": (0, 1000)},
+        response="steady",
+    )
+    compared = rt.compare(problem, [rt.TMD(20), rt.TMD(60, k2=1900, c2=150), rt.TMD(60)], tmp_path / "compared")
+    light, given, found = (next(r for r in compared.results if r.out.name.startswith(f"{i}-")) for i in (1, 2, 3))
+    assert compared.best is compared.results[0] and light is compared.results[-1], "a heavier damper does more"
+    assert given.fun == pytest.approx(found.fun, rel=1e-3), "both find the same optimum"
+    assert found["m2"] == 60 and "verdict" in repr(compared) and compared._repr_html_().count("<tr>") == 4
+    with pytest.raises(rt.StudyError, match="k2: missing") as caught:
+        rt.compare(rt.Problem.from_study({**problem.study, "scene": {**problem.study["scene"], "forcing": {"base": 0.01, "omega": 6}}}), [rt.TMD(60)])
+    assert caught.value.field == "damper.k2"
+    with pytest.raises(rt.StudyError, match="give one damper"):
+        rt.compare(problem, [])

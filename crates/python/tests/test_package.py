@@ -1,0 +1,68 @@
+"""The package itself: its tag, its size, what it shows, what it documents."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, STUDIES
+
+import retune as rt
+from retune import _scene
+
+
+def test_contract_the_wheel_is_for_every_later_python_and_small() -> None:
+    (wheel,) = (ROOT / "target" / "wheels").glob("retune-*.whl")
+    assert re.fullmatch(r"retune-[\d.]+-cp311-abi3-\w+\.whl", wheel.name), wheel.name
+    assert wheel.stat().st_size <= 5e6
+    assert Path(rt.__file__).with_name("py.typed").is_file()
+    assert rt.__version__ == tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
+
+
+def test_contract_everything_has_a_docstring_and_every_number_a_unit() -> None:
+    for name in rt.__all__:
+        if name != "__version__":
+            assert inspect.getdoc(getattr(rt, name)), name
+    for part in (rt.Structure, rt.Contact, rt.TMD, rt.SSVI):
+        for field, (unit, words) in _scene.MEANING.items():
+            if field in part.__dataclass_fields__:
+                assert words and (unit or field in ("q", "nu1", "nu2", "nu3", "nu4")), field
+    said = inspect.getdoc(rt.Problem) or ""
+    for argument in inspect.signature(rt.Problem.__new__).parameters:
+        assert argument in ("cls", "structure", "damper", "name") or f"``{argument}``" in said, argument
+
+
+def test_contract_the_default_contact_is_the_studies() -> None:
+    study = json.loads((STUDIES / "ssvi.json").read_text())
+    assert vars(rt.Contact()) == study["scene"]["damper"]["contact"]
+
+
+def test_contract_results_are_shown_as_tables(ssvi: rt.Problem) -> None:
+    assert "stroke" in repr(ssvi.evaluate(ssvi.start)) and "k2" in repr(ssvi) and "E1max" in repr(ssvi)
+    run = ssvi.simulate()
+    sweep = ssvi.sweep(omega=np.linspace(5, 8, 31))
+    assert "31 rows" in repr(sweep) and len(repr(sweep).splitlines()) == 13
+    assert "contacts" in repr(run)
+    for shown in (ssvi, ssvi.evaluate(ssvi.start), run, sweep, rt.TMD(1), rt.Structure(m1=1, c1=0, k1=1)):
+        assert shown._repr_html_().startswith("<table>"), shown
+        assert "&lt;" in type(shown)._repr_html_(shown) or "<script" not in shown._repr_html_()
+    assert "N/m" in repr(rt.SSVI(60, k2=215))
+
+
+def test_contract_tables_are_data_frames_and_plots(ssvi: rt.Problem) -> None:
+    pd = pytest.importorskip("pandas")
+    import matplotlib
+
+    matplotlib.use("Agg")
+    sweep = ssvi.sweep(omega=[5, 6, 7])
+    assert sweep.to_pandas().equals(pd.DataFrame(sweep)) and list(sweep.to_pandas().columns) == list(sweep)
+    assert sweep.plot("E1max").get_ylabel() == "E1max, J"
+    assert ssvi.simulate().to_pandas().t.iloc[0] == 50
+    assert len(ssvi.simulate().plot("x1", "E1").get_lines()) >= 2
+    with pytest.raises(AttributeError, match="the columns are omega"):
+        sweep.E3max
