@@ -131,7 +131,7 @@ test-kills KILLS="240":
 
 # Open the pages of results in a browser, narrow and wide, light and dark (needs python3 and chromium); for instance `just test-pages --shots target/pages`
 test-pages *OPTIONS:
-    python3 tests/pages.py "$@" results/ssvi/report.html results/tmd/report.html results/paper/index.html results/retune/report.html results/fronts/report.html
+    python3 tests/pages.py "$@" results/ssvi/report.html results/tmd/report.html results/paper/index.html results/retune/report.html results/fronts/report.html results/branches/isola/report.html
 
 # Try the HyperQueue script for real, with two workers on this machine (needs python3; with `hq` on the path, too, one worker is killed): results/robustness/hyperqueue.txt
 test-hyperqueue:
