@@ -29,7 +29,7 @@ BELOW = {
     "branches": "model solver dynamics study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
-    "python": "solver optim dynamics study sweep store workbench tradeoff",
+    "python": "solver optim dynamics study sweep store workbench tradeoff branches",
     "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
 }
 

@@ -7,9 +7,19 @@ use crate::watch::{Watch, caught, watched};
 use pyo3::prelude::*;
 use retune_store::Begin;
 use retune_study::Setting;
+use retune_tradeoff::{pareto, track as tracking};
 use retune_workbench::design::Wishes;
+use retune_workbench::job::Done;
+use retune_workbench::verify::Others;
 use retune_workbench::{Request, tune, verify as verification};
 use std::path::PathBuf;
+
+/// How `verify` computes the files again that only the crates above the workbench know.
+static OTHERS: &Others = &[
+    (&tracking::KIND, tracking::again),
+    (&pareto::KIND, pareto::again),
+    (&retune_branches::KIND, retune_branches::again),
+];
 
 /// What a job is asked beside its study: the directory of its results, whether to go on or to begin anew, whether to replace other results,
 /// and the number of threads.
@@ -100,9 +110,7 @@ pub fn verify(
     within: f64,
     tell: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    watched(py, tell.as_ref(), |watch| {
-        Ok(verification::verify(&path, sample, within, retune_tradeoff::OTHERS, watch)?)
-    })
+    watched(py, tell.as_ref(), |watch| Ok(verification::verify(&path, sample, within, OTHERS, watch)?))
 }
 
 /// The study with which `design` tunes a damper of a kind, "TMD" or "SSVI NES", for a structure and what is wished: from JSON to JSON.
@@ -132,9 +140,7 @@ pub fn track(
     tell: Option<Py<PyAny>>,
 ) -> PyResult<PathBuf> {
     let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
-    on_file(py, study, asked, tell, |request, watch| {
-        retune_tradeoff::track::track(request, &settings, watch).map(drop)
-    })
+    on_file(py, study, asked, tell, |request, watch| tracking::track(request, &settings, watch).map(drop))
 }
 
 /// Pareto fronts of a study file; returns the directory of the results.
@@ -143,8 +149,42 @@ pub fn track(
 /// Those of the job, or Ctrl-C.
 #[pyfunction]
 pub fn fronts(py: Python<'_>, study: PathBuf, asked: Asked, tell: Option<Py<PyAny>>) -> PyResult<PathBuf> {
-    on_file(py, study, asked, tell, |request, watch| {
-        retune_tradeoff::pareto::pareto(request, watch).map(drop)
+    on_file(py, study, asked, tell, |request, watch| pareto::pareto(request, watch).map(drop))
+}
+
+/// How every periodic motion of a study, or of the design behind results, is looked for: the parameter, its range, the values at which
+/// runs are started, and their starts.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Along {
+    over: String,
+    from: Option<String>,
+    to: Option<String>,
+    samples: usize,
+    starts: usize,
+}
+
+/// Follows every periodic motion along a parameter; returns the answer as JSON.
+///
+/// # Errors
+/// Those of the job, or Ctrl-C.
+#[pyfunction]
+pub fn branches(
+    py: Python<'_>,
+    study: PathBuf,
+    along: Along,
+    asked: Asked,
+    tell: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let request = asked.request(study)?;
+    let Along { over, from, to, samples, starts } = along;
+    let over = over.parse().map_err(Fault::Other)?;
+    let asked = retune_branches::Asked { over, from, to, samples, starts };
+    watched(py, tell.as_ref(), |watch| match retune_branches::branches(&request, &asked, watch)? {
+        Done::Made(found) => json(&retune_branches::summary(&found)),
+        Done::FinishedBefore => {
+            Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
+        }
     })
 }
 

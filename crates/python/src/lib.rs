@@ -21,7 +21,7 @@ mod watch;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::jobs::{certify, design_study, fronts, optimize, study_text, track, verify};
+    use crate::jobs::{branches, certify, design_study, fronts, optimize, study_text, track, verify};
     #[pymodule_export]
     use crate::motion::{run, sweep};
     #[pymodule_export]

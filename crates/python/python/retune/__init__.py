@@ -14,7 +14,7 @@ are in SI units (kg, N/m, N s/m, N, m, s, rad/s), all parameters have the symbol
 from retune._compare import Comparison, compare
 from retune._core import __version__
 from retune._errors import Error, SolverError, StudyError
-from retune._jobs import Certificate, Result, certify, fronts, optimize, track, verify
+from retune._jobs import Certificate, Result, branches, certify, fronts, optimize, track, verify
 from retune._problem import Evaluation, Problem
 from retune._run import Run
 from retune._scene import SSVI, TMD, Contact, Structure
@@ -36,6 +36,7 @@ __all__ = [
     "StudyError",
     "Table",
     "__version__",
+    "branches",
     "certify",
     "compare",
     "fronts",

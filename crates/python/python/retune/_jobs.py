@@ -159,3 +159,29 @@ def fronts(
     """Pareto fronts of a study of kind `fronts`, as `retune fronts` does; returns the directory of the results."""
     asked = _asked(out, resume, restart, replace, threads)
     return Path(_core.fronts(os.fspath(study), asked, Progress(progress)))
+
+
+def branches(
+    study: Directory,
+    out: Directory | None = None,
+    *,
+    over: str = "omega",
+    span: tuple[float, float] | None = None,
+    samples: int = 31,
+    starts: int = 16,
+    restart: bool = False,
+    replace: bool = False,
+    threads: int | None = None,
+    progress: bool = True,
+) -> dict[str, Any]:
+    """Every periodic motion of a study, or of the design in a directory of results, as `retune branches` does.
+
+    ``over`` is the parameter, by its symbol, and ``span`` its range (SI units), by default the band of the study. Runs are started at
+    ``samples`` values, from rest and from ``starts`` other states. Returns the answer as `branches.json` has it: ``branches`` with their
+    ``events`` and ``largest_stable``, and the ``stable`` and ``irregular`` parts of the range.
+    """
+    ends = (None, None) if span is None else tuple(repr(float(end)) for end in span)
+    along = {"over": over, "from": ends[0], "to": ends[1], "samples": samples, "starts": starts}
+    asked = _asked(out, False, restart, replace, threads)
+    answer: dict[str, Any] = json.loads(_core.branches(os.fspath(study), along, asked, Progress(progress)))
+    return answer
