@@ -81,11 +81,11 @@ branches STUDY *OPTIONS:
     {{retune}} branches "$@"
 
 # The periodic motions of four dampers into results/branches: the paper's, both tuned ones, and one with 225.8 J from rest that is not safe
-branches-all:
-    {{retune}} branches studies/ssvi.json --out results/branches/paper
-    {{retune}} branches results/ssvi --out results/branches/tuned
-    {{retune}} branches results/ssvi-global --out results/branches/global
-    {{retune}} branches studies/ssvi-isola.json --starts 64 --out results/branches/isola
+branches-all *OPTIONS:
+    {{retune}} branches studies/ssvi.json --out results/branches/paper "$@"
+    {{retune}} branches results/ssvi --out results/branches/tuned "$@"
+    {{retune}} branches results/ssvi-global --out results/branches/global "$@"
+    {{retune}} branches studies/ssvi-isola.json --starts 64 --out results/branches/isola "$@"
 
 # Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-free.json`
 evaluate STUDY *OPTIONS:

@@ -56,3 +56,20 @@ fn contract_a_sweep_is_one_object_on_standard_output() {
         desk.run(&["sweep", "study.json", "--over", "omga", "--from", "1", "--to", "2"]);
     assert!(code == Some(2) && stderr.contains("give one of m1, c1, k1, m2"), "{stderr}");
 }
+
+/// `branches` answers with one object, too; its results are verified by the program, and a wrong parameter is refused.
+#[test]
+fn contract_branches_are_one_object_on_standard_output_and_are_verified() {
+    let desk = Desk::with(&tiny());
+    let asked = ["--from", "5.2", "--to", "0.86Hz", "--samples", "3", "--starts", "1", "--out", "out"];
+    let json: serde_json::Value =
+        serde_json::from_str(&desk.good(&[&["branches", "study.json", "--json"], &asked[..]].concat()))
+            .expect("an object");
+    assert_eq!(json, desk.read_json("out/branches.json"));
+    assert_eq!(json["branches"][0]["events"][1]["kind"], "period doubling", "{json}");
+    assert!(desk.good(&["verify", "out"]).contains("holds: "));
+    let Answer { code, stderr, .. } = desk.run(&["branches", "study.json", "--over", "zeta"]);
+    assert!(code == Some(2) && stderr.contains("give one of omega, P, k1"), "{stderr}");
+    let Answer { code, stderr, .. } = desk.run(&["branches", "study.json", "--from", "8", "--to", "5"]);
+    assert!(code == Some(2) && stderr.contains("--to: 5 is not above --from 8"), "{stderr}");
+}

@@ -97,6 +97,7 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
         "table2",
         "track",
         "fronts",
+        "branches",
         "reproduce",
         "figure",
         "table",
