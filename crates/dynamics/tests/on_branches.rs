@@ -73,6 +73,7 @@ fn invariant_what_settles_lies_on_a_branch() {
         assert!(on > count / 2, "hardly a run settles");
     }
     println!("\n{} settled on no branch that is known (k2 in N/m, omega in rad/s): {lost:?}", lost.len());
-    // Narrow stable windows inside chaos, and frequencies beside a bifurcation, where runs settle slowly: 18 of 12,004.
-    assert!(lost.len() <= count / 100, "{lost:?}");
+    // Narrow stable windows inside chaos, and frequencies beside a bifurcation, where runs settle slowly: 18 of 12,004, of which 41
+    // frequencies meet two.
+    assert!(lost.len() <= 2 + count / 150, "{lost:?}");
 }
