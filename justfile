@@ -220,6 +220,12 @@ package:
 bench *OPTIONS:
     cargo bench --bench runs "$@"
 
+# Time the branches of two dampers on one core
+bench-branches:
+    cargo build --release --quiet --package retune
+    time target/release/retune branches results/ssvi --out target/branches/tuned --threads 1 --replace --quiet
+    time target/release/retune branches studies/ssvi.json --out target/branches/paper --threads 1 --replace --quiet
+
 # Count the instructions of a run (needs valgrind): the same on a busy machine as on a quiet one
 bench-instructions *OPTIONS:
     # For a processor that valgrind knows: one with AVX2, without AVX-512.

@@ -46,11 +46,17 @@ const TOLERANCE: f64 = 1e-11;
 /// The state in the common unit √J: `[ω√m1 x1, √m1 v1, ω√m2 (x2 - x1 - D), √m2 v2]`. Its square is twice the kinetic energy plus
 /// that of springs that would resonate at ω, so that a distance weighs all four coordinates by their energy.
 pub fn coordinates(scene: &Scene, &[x1, v1, x2, v2]: &[f64; 4]) -> [f64; 4] {
+    let d = scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
+    let [a, b, c, e] = weights(scene);
+    [a * x1, b * v1, c * (x2 - x1 - d), e * v2]
+}
+
+/// `[ω√m1, √m1, ω√m2, √m2]`: the weights of positions (√J/m) and speeds (√J s/m) in the common unit.
+pub(crate) fn weights(scene: &Scene) -> [f64; 4] {
     let omega = scene.forcing.frequency.get();
     let m1 = scene.primary.mass.get().sqrt();
-    let (m2, d) =
-        scene.damper.map_or((0.0, 0.0), |damper| (damper.mass.get().sqrt(), damper.rest_distance.get()));
-    [omega * m1 * x1, m1 * v1, omega * m2 * (x2 - x1 - d), m2 * v2]
+    let m2 = scene.damper.map_or(0.0, |damper| damper.mass.get().sqrt());
+    [omega * m1, m1, omega * m2, m2]
 }
 
 /// Euclidean distance.

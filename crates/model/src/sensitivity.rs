@@ -1,6 +1,8 @@
 //! The derivatives of equation (1) by its parameters, at a fixed state and a fixed time.
 
-use crate::{Bare, Coupled, Excitation, NonNegative, OutOfRange, Positive, Scene, Side, Source};
+use crate::{
+    Bare, Coupled, Damper, Excitation, NonNegative, OutOfRange, Positive, Scene, Side, Source, Variable,
+};
 
 /// A parameter by which derivatives are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,31 +34,39 @@ impl Parameter {
     pub const ALL: [Self; 10] =
         [Self::Omega, Self::P, Self::K1, Self::C1, Self::M2, Self::K2, Self::C2, Self::D, Self::C, Self::R];
 
+    /// The parameter of the damper that may be varied; none if it is another.
+    const fn variable(self) -> Option<Variable> {
+        match self {
+            Self::M2 => Some(Variable::M2),
+            Self::K2 => Some(Variable::K2),
+            Self::C2 => Some(Variable::C2),
+            Self::D => Some(Variable::D),
+            Self::C => Some(Variable::C),
+            Self::Omega | Self::P | Self::K1 | Self::C1 | Self::R => None,
+        }
+    }
+
     /// Its symbol in the paper.
     pub const fn symbol(self) -> &'static str {
-        match self {
-            Self::Omega => "omega",
-            Self::P => "P",
-            Self::K1 => "k1",
-            Self::C1 => "c1",
-            Self::M2 => "m2",
-            Self::K2 => "k2",
-            Self::C2 => "c2",
-            Self::D => "D",
-            Self::C => "C",
-            Self::R => "R",
+        match (self.variable(), self) {
+            (Some(variable), _) => variable.symbol(),
+            (None, Self::Omega) => "omega",
+            (None, Self::P) => "P",
+            (None, Self::K1) => "k1",
+            (None, Self::C1) => "c1",
+            (None, _) => "R",
         }
     }
 
     /// Its SI unit.
     pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Omega => "rad/s",
-            Self::P => "N",
-            Self::K1 | Self::K2 => "N/m",
-            Self::C1 | Self::C2 => "N·s/m",
-            Self::M2 => "kg",
-            Self::D | Self::C | Self::R => "m",
+        match (self.variable(), self) {
+            (Some(variable), _) => variable.unit(),
+            (None, Self::Omega) => "rad/s",
+            (None, Self::P) => "N",
+            (None, Self::K1) => "N/m",
+            (None, Self::C1) => "N·s/m",
+            (None, _) => "m",
         }
     }
 }
@@ -74,48 +84,37 @@ impl std::str::FromStr for Parameter {
 }
 
 impl Parameter {
-    /// Its value in a scene; none where the scene has no such parameter.
+    /// Its value in a scene, in its SI unit; none where the scene has no such parameter.
     pub fn of(self, scene: &Scene) -> Option<f64> {
-        let damper = scene.damper.as_ref();
+        if let Some(variable) = self.variable() {
+            return scene.damper.as_ref().map(|damper| variable.get(damper)).filter(|value| !value.is_nan());
+        }
         match self {
             Self::Omega => Some(scene.forcing.frequency.get()),
             Self::P => scene.forcing.amplitude().map(|(_, amplitude)| amplitude.get()),
             Self::K1 => Some(scene.primary.stiffness.get()),
             Self::C1 => Some(scene.primary.damping.get()),
-            Self::M2 => damper.map(|damper| damper.mass.get()),
-            Self::K2 => damper.map(|damper| damper.stiffness.get()),
-            Self::C2 => damper.map(|damper| damper.damping.get()),
-            Self::D => damper.map(|damper| damper.rest_distance.get()),
-            Self::C => damper.map(|damper| damper.clearance.get()),
-            Self::R => damper.and_then(|damper| damper.contact).map(|contact| contact.radius.get()),
+            _ => scene.damper.and_then(|damper| damper.contact).map(|contact| contact.radius.get()),
         }
     }
 
-    /// The scene with this parameter at `value`; as it is where it has no such parameter.
+    /// The scene with this parameter at `value`, in its SI unit; as it is where it has no such parameter.
     ///
     /// # Errors
     /// The value is out of the parameter's range.
     pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, OutOfRange> {
-        match self {
-            Self::Omega => scene.forcing.frequency = NonNegative::new(value)?,
-            Self::P => scene.forcing = scene.forcing.with_amplitude(NonNegative::new(value)?),
-            Self::K1 => scene.primary.stiffness = NonNegative::new(value)?,
-            Self::C1 => scene.primary.damping = NonNegative::new(value)?,
-            _ => {}
-        }
-        let Some(damper) = &mut scene.damper else { return Ok(scene) };
-        match self {
-            Self::M2 => damper.mass = Positive::new(value)?,
-            Self::K2 => damper.stiffness = NonNegative::new(value)?,
-            Self::C2 => damper.damping = NonNegative::new(value)?,
-            Self::D => damper.rest_distance = NonNegative::new(value)?,
-            Self::C => damper.clearance = NonNegative::new(value)?,
-            Self::R => {
-                if let Some(contact) = &mut damper.contact {
-                    contact.radius = Positive::new(value)?;
-                }
+        match (self.variable(), &mut scene.damper) {
+            (Some(variable), Some(damper)) => variable.set(damper, value)?,
+            (None, Some(Damper { contact: Some(contact), .. })) if self == Self::R => {
+                contact.radius = Positive::new(value)?;
             }
-            _ => {}
+            _ => match self {
+                Self::Omega => scene.forcing.frequency = NonNegative::new(value)?,
+                Self::P => scene.forcing = scene.forcing.with_amplitude(NonNegative::new(value)?),
+                Self::K1 => scene.primary.stiffness = NonNegative::new(value)?,
+                Self::C1 => scene.primary.damping = NonNegative::new(value)?,
+                _ => {}
+            },
         }
         Ok(scene)
     }

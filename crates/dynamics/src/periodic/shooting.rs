@@ -2,6 +2,7 @@
 
 use crate::parameter::Error;
 use crate::poincare::coupled;
+use crate::record::weights;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use retune_model::{Coupled, Parameter, Scene};
 use retune_solver::observe::Unobserved;
@@ -74,11 +75,8 @@ impl Shooting {
         (span, size): (f64, f64),
         settings: &Settings,
     ) -> Self {
-        let omega = scene.forcing.frequency.get();
-        let m1 = scene.primary.mass.get().sqrt();
-        let m2 = scene.damper.map_or(0.0, |damper| damper.mass.get().sqrt());
         let settings = settings_of(settings);
-        let scale = Vector4::new(omega * m1, m1, omega * m2, m2) / size;
+        let scale = Vector4::from(weights(&scene)) / size;
         Self { scene, parameter, periods, segments: periods, span, settings, scale }
     }
 
