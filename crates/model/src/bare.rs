@@ -68,11 +68,6 @@ impl Bare {
         self.m1
     }
 
-    /// c1, N·s/m.
-    pub fn damping(&self) -> f64 {
-        self.c1
-    }
-
     /// Angular frequency ω of the force, rad/s.
     pub fn frequency(&self) -> f64 {
         self.omega

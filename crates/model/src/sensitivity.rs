@@ -1,7 +1,8 @@
 //! The derivatives of equation (1) by its parameters, at a fixed state and a fixed time.
 
 use crate::{
-    Bare, Coupled, Damper, Excitation, NonNegative, OutOfRange, Positive, Scene, Side, Source, Variable,
+    Bare, Coupled, Damper, Excitation, Measure, NonNegative, OutOfRange, Positive, Scene, Side, Source,
+    Variable, hertz_force_slope,
 };
 
 /// A parameter by which derivatives are taken.
@@ -202,5 +203,48 @@ impl Coupled {
                 _ => 0.0,
             };
         [-on_damper / m1, on_damper / m2]
+    }
+
+    /// The derivative by a parameter of what a measure is the largest size of, at time `t` (s) and state `y`, where `by` is the derivative
+    /// of the state: in the unit of the measure per unit of the parameter. Of the contact force, that of the wall that is nearer.
+    pub fn measure_by(
+        &self,
+        measure: Measure,
+        parameter: Parameter,
+        t: f64,
+        y: &[f64; 4],
+        by: &[f64; 4],
+    ) -> f64 {
+        let [m1, k1] = self.bare().primary_energy_weights();
+        let [near, far] = self.indentation(y);
+        let side = if near > far { Side::Primary } else { Side::Obstacle };
+        let depth = near.max(far).max(0.0);
+        let contact = self.contact_force_by(parameter, side, depth.sqrt());
+        let is = |other: Parameter| if parameter == other { 1.0 } else { 0.0 };
+        match measure {
+            Measure::Energy => k1 * y[0] * by[0] + m1 * y[1] * by[1] + 0.5 * y[0] * y[0] * is(Parameter::K1),
+            Measure::Displacement => y[0].signum() * by[0],
+            Measure::Velocity => y[1].signum() * by[1],
+            Measure::Acceleration => {
+                let [own, _] = self.acceleration_by(parameter, y, contact);
+                let driven = self.bare().excitation_by(parameter, t)[0] / m1;
+                let jacobian = self.jacobian(y);
+                let along: f64 = (0..4).map(|j| jacobian[(1, j)] * by[j]).sum();
+                self.derivative(self.excitation(t), y)[1].signum() * (along + own + driven)
+            }
+            Measure::GroundForce => {
+                let [k1, c1] = self.bare().ground_force_weights();
+                let own = y[0] * is(Parameter::K1) + y[1] * is(Parameter::C1);
+                (k1 * y[0] + c1 * y[1]).signum() * (k1 * by[0] + c1 * by[1] + own)
+            }
+            Measure::Stroke => {
+                let stretch = y[2] - y[0] - self.rest_distance();
+                stretch.signum() * (by[2] - by[0] - is(Parameter::D))
+            }
+            Measure::ContactForce => {
+                let slope = hertz_force_slope(self.hertz(side), depth);
+                side.sign() * (slope * (by[2] - by[0]) - contact[1])
+            }
+        }
     }
 }

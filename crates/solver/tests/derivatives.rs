@@ -187,9 +187,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
                 // Beside the change of the value by a change of the parameter as large as itself.
                 let scale = expected.abs().max(1e-3 * first.at.value / size(&numbers, parameter));
                 let error = (by - expected).abs() / scale;
-                // The time of a greatest acceleration is known to half of its digits alone.
-                let allowed = if measure == Measure::Acceleration { 10.0 } else { 1.0 };
-                worst = worst.max(error / allowed);
+                worst = worst.max(error);
                 compared += 1;
             }
         }

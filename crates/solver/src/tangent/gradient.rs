@@ -8,7 +8,7 @@ use crate::observe::observer::Unobserved;
 use crate::response::Extreme;
 use crate::run::Follower;
 use crate::settings::{Settings, Window};
-use retune_model::{Coupled, Measure, Parameter, Side, Source};
+use retune_model::{Coupled, Measure, Parameter, Source};
 use std::f64::consts::TAU;
 
 /// Maxima as near as this share to the largest are ties: each has a gradient of its own.
@@ -23,7 +23,7 @@ const LATE: f64 = 1e-5;
 pub struct Gradient {
     /// The value, in the unit of the measure, and when it is reached.
     pub at: Extreme,
-    /// Its derivatives by each parameter.
+    /// Its derivatives, in the unit of the measure per SI unit of each parameter.
     pub by: Vec<f64>,
 }
 
@@ -70,79 +70,39 @@ pub fn gradients(
 
 /// By how much (s) a moment is later than the maximum beside it: the slope of the measured quantity over its curvature.
 fn lateness(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
-    let (y, excitation) = (now.y, system.excitation(now.t));
-    let rate = system.derivative(excitation, &y);
-    let jacobian = system.jacobian(&y);
-    let jerk =
-        (0..4).map(|j| jacobian[(1, j)] * rate[j]).sum::<f64>() + system.time_derivative(excitation)[1];
-    let [_, k1] = system.bare().primary_energy_weights();
-    let c1 = system.bare().damping();
-    let m1 = system.bare().mass();
+    let excitation = system.excitation(now.t);
+    let motion = || system.primary_motion(excitation, &now.y);
     let [slope, curvature] = match measure {
         Measure::Energy => {
-            // m1 v1 a1 + k1 x1 v1, and its rate.
-            let power = m1 * rate[1] + k1 * y[0];
-            [y[1] * power, rate[1] * power + y[1] * (m1 * jerk + k1 * y[1])]
+            let [_, slope, curvature] = system.primary_energy_rates(excitation, &now.y);
+            [slope, curvature]
         }
-        Measure::Displacement => [y[1], rate[1]],
-        Measure::Velocity => [rate[1], jerk],
-        Measure::GroundForce => [k1 * y[1] + c1 * rate[1], k1 * rate[1] + c1 * jerk],
-        Measure::Stroke | Measure::ContactForce => [y[3] - y[1], rate[3] - rate[1]],
-        Measure::Acceleration => return 0.0,
+        Measure::Displacement => [motion()[1], motion()[2]],
+        Measure::Velocity => [motion()[2], motion()[3]],
+        Measure::Acceleration => [motion()[3], motion()[4]],
+        Measure::GroundForce => {
+            let [k1, c1] = system.bare().ground_force_weights();
+            let [_, v1, a1, jerk, _] = motion();
+            [k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk]
+        }
+        Measure::Stroke | Measure::ContactForce => {
+            let [_, slope, curvature] = system.relative_position_rates(excitation, &now.y);
+            [slope, curvature]
+        }
     };
     if curvature == 0.0 { 0.0 } else { slope / curvature }
 }
 
-/// The derivatives of a measure's value at the end of a run.
+/// The derivatives of a measure's value at the end of a run, per unit of each parameter.
 fn derivatives(system: &Coupled, measure: Measure, found: &Transition, parameters: &[Parameter]) -> Vec<f64> {
-    let (y, t) = (found.end.y, found.end.t);
-    let [m1, k1] = system.bare().primary_energy_weights();
-    let c1 = system.bare().damping();
-    let jacobian = system.jacobian(&y);
-    let rate = system.derivative(system.excitation(t), &y);
-    let [near, far] = system.indentation(&y);
-    let side = if near > far { Side::Primary } else { Side::Obstacle };
-    let depth = near.max(far).max(0.0);
-    parameters
-        .iter()
-        .zip(&found.by)
-        .map(|(&parameter, by)| {
-            let mut by = *by;
-            if parameter == Parameter::D && starts_at_rest(system) {
-                // The damper starts at D.
-                by = std::array::from_fn(|i| by[i] + found.by_state[2][i]);
-            }
-            let is = |other: Parameter| f64::from(u8::from(parameter == other));
-            let force = y[0] * k1 + y[1] * c1;
-            match measure {
-                Measure::Energy => {
-                    k1 * y[0] * by[0] + m1 * y[1] * by[1] + 0.5 * y[0] * y[0] * is(Parameter::K1)
-                }
-                Measure::Displacement => y[0].signum() * by[0],
-                Measure::Velocity => y[1].signum() * by[1],
-                Measure::GroundForce => {
-                    let own = y[0] * is(Parameter::K1) + y[1] * is(Parameter::C1);
-                    force.signum() * (k1 * by[0] + c1 * by[1] + own)
-                }
-                Measure::Acceleration => {
-                    let contact = system.contact_force_by(parameter, side, depth.sqrt());
-                    let [own, _] = system.acceleration_by(parameter, &y, contact);
-                    let driven = system.bare().excitation_by(parameter, t)[0] / m1;
-                    let along: f64 = (0..4).map(|j| jacobian[(1, j)] * by[j]).sum();
-                    rate[1].signum() * (along + own + driven)
-                }
-                Measure::Stroke => {
-                    let stretch = y[2] - y[0] - system.rest_distance();
-                    stretch.signum() * (by[2] - by[0] - is(Parameter::D))
-                }
-                Measure::ContactForce => {
-                    let q = depth.sqrt();
-                    let [_, own] = system.contact_force_by(parameter, side, q);
-                    let slope = 1.5 * system.hertz(side) * q;
-                    slope * side.sign() * (by[2] - by[0]) - side.sign() * own
-                }
-            }
-        })
+    let by_start = |parameter: Parameter, by: [f64; 4]| -> [f64; 4] {
+        // The damper starts at D.
+        let moves = parameter == Parameter::D && starts_at_rest(system);
+        std::array::from_fn(|i| if moves { by[i] + found.by_state[2][i] } else { by[i] })
+    };
+    let all = parameters.iter().zip(&found.by);
+    let at = &found.end;
+    all.map(|(&parameter, by)| system.measure_by(measure, parameter, at.t, &at.y, &by_start(parameter, *by)))
         .collect()
 }
 
