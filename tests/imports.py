@@ -26,7 +26,7 @@ BELOW = {
     "sweep": "model solver optim study figures",
     "workbench": "model solver optim dynamics study sweep store figures",
     "tradeoff": "model optim study store figures workbench",
-    "branches": "model solver dynamics study store figures workbench",
+    "branches": "model dynamics study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
     "python": "solver optim dynamics study sweep store workbench tradeoff branches",

@@ -1,6 +1,6 @@
 //! `branches`, computed again: motions from their states, what runs settle on.
 
-use crate::asked::{plan_of, settings};
+use crate::asked::plan_of;
 use crate::tables::{ATTRACTORS, STATES};
 use retune_dynamics::periodic::branches::{Plan, sample};
 use retune_dynamics::periodic::orbit::seen;
@@ -62,7 +62,7 @@ impl Results {
         let states = self.states.get(&motion(row))?;
         let scene = self.scene(row)?;
         let periods = row.text("periods").parse().ok()?;
-        let settings = settings_of(&settings(&self.study));
+        let settings = settings_of(&self.study.solver.settings());
         let again =
             move || seen(&scene, &settings, periods, states).map_or(f64::INFINITY, |seen| seen.e1_max);
         Some(Check { said: row.number("E1max"), again: Box::new(again) })
@@ -77,7 +77,7 @@ impl Results {
         let others = row.text("starts_of").parse::<usize>().ok()?.checked_sub(1)?;
         let again = move || {
             let plan = Plan { starts: others, ..self.plan };
-            let Ok(found) = sample(&self.study.scene, plan, &settings(&self.study), value) else {
+            let Ok(found) = sample(&self.study.scene, plan, &self.study.solver.settings(), value) else {
                 return f64::INFINITY;
             };
             if !is_periodic {

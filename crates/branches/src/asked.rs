@@ -2,7 +2,6 @@
 
 use retune_dynamics::periodic::branches::Plan;
 use retune_model::Parameter;
-use retune_solver::Settings;
 use retune_study::{Study, angular_frequency};
 use retune_workbench::Error;
 use serde_json::{Value, json};
@@ -104,9 +103,4 @@ pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
         samples: count("samples")?,
         starts: count("starts")?,
     })
-}
-
-/// The settings of all runs.
-pub(crate) fn settings(study: &Study) -> Settings {
-    study.solver.settings()
 }

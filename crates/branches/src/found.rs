@@ -1,7 +1,7 @@
 //! What `branches` finds.
 
-use retune_dynamics::periodic::Branches;
 use retune_dynamics::periodic::branches::{Attractor, Sample};
+use retune_dynamics::periodic::{Branches, Orbit, largest};
 use retune_study::Study;
 
 /// The motions of a study along a parameter.
@@ -11,9 +11,17 @@ pub struct Found {
     pub study: Study,
     /// The motions.
     pub branches: Branches,
+    /// The stable motion with the largest E1max of each branch; none of a branch without stable motions.
+    pub largest: Vec<Option<Orbit>>,
 }
 
 impl Found {
+    /// Of the motions of a study.
+    pub(crate) fn new(study: Study, branches: Branches) -> Self {
+        let largest = branches.branches.iter().map(|branch| largest(branch, |orbit| orbit.seen.e1_max));
+        Self { study, largest: largest.collect(), branches }
+    }
+
     /// The samples at which runs settle on a branch, each with the motion.
     pub(crate) fn on(&self, number: usize) -> impl Iterator<Item = (&Sample, &Attractor)> {
         let samples = self.branches.samples.iter();

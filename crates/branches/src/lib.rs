@@ -13,16 +13,16 @@ mod page;
 mod remedy;
 mod tables;
 
-pub use again::again;
 pub use asked::Asked;
 pub use found::Found;
 pub use tables::summary;
 
-use asked::{plan_json, settings};
+use asked::plan_json;
 use retune_dynamics::periodic::branches as motions;
 use retune_study::{found_in, read};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::job::{Done, Job, Made};
+use retune_workbench::verify::Others;
 use retune_workbench::{Error, Observer, Request, resolved};
 use std::path::Path;
 
@@ -43,6 +43,9 @@ pub static KIND: Kind = Kind {
     ],
 };
 
+/// How `verify` computes the files again that only this job knows.
+pub static OTHERS: &Others = &[(&KIND, again::again)];
+
 /// Follows the branches of the scene of a study, or of the design that a search found, along a parameter.
 ///
 /// # Errors
@@ -59,9 +62,9 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
     let job = Job::of_studies(&KIND, &request, plan_json(&plan), studies.into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
-        let branches = motions(&study.scene, plan, &settings(&study), || bar.inc(1))?;
+        let branches = motions(&study.scene, plan, &study.solver.settings(), || bar.inc(1))?;
         bar.finish();
-        let found = Found { study: study.clone(), branches };
+        let found = Found::new(study.clone(), branches);
         tables::write(&found, directory)?;
         page::write(&found, directory)?;
         let report = format!("\n{}", page::answer(&found).join("\n"));

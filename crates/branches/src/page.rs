@@ -5,7 +5,7 @@ use crate::found::Found;
 use crate::remedy::{Remedy, remedies};
 use crate::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
 use retune_dynamics::periodic::branches::Sample;
-use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, largest};
+use retune_dynamics::periodic::{Branch, End, EventKind, Orbit};
 use retune_store::Directory;
 use retune_study::{counted, rounded, short};
 use retune_workbench::Error;
@@ -74,9 +74,8 @@ pub fn answer(found: &Found) -> Vec<String> {
     let covered: f64 = stable.iter().map(|[from, to]| to - from).sum();
     let share = 100.0 * covered / (plan.range[1] - plan.range[0]);
     let mut words = Vec::new();
-    let all = found.branches.branches.iter().enumerate();
-    let mut most: Vec<(usize, Orbit)> =
-        all.filter_map(|(i, branch)| Some((i, largest(branch, |orbit| orbit.seen.e1_max)?))).collect();
+    let all = found.largest.iter().enumerate();
+    let mut most: Vec<(usize, &Orbit)> = all.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
     most.sort_by(|a, b| b.1.seen.e1_max.total_cmp(&a.1.seen.e1_max));
     if let Some((number, orbit)) = most.first() {
         words.push(format!(
@@ -135,10 +134,8 @@ fn isola(found: &Found, number: usize, branch: &Branch) -> Option<String> {
         return None;
     }
     let plan = &found.branches.plan;
-    let value = |orbit: &Orbit| orbit.value;
-    let low = branch.points.iter().map(value).fold(f64::INFINITY, f64::min);
-    let high = branch.points.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
-    let most = largest(branch, |orbit| orbit.seen.e1_max)?;
+    let [low, high] = span(branch);
+    let most = found.largest[number].as_ref()?;
     let shares = found.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
     let [least, greatest] =
         shares.fold([f64::INFINITY, 0.0], |[low, high], share| [low.min(share), f64::max(high, share)]);
@@ -154,9 +151,15 @@ fn isola(found: &Found, number: usize, branch: &Branch) -> Option<String> {
         rounded(low, 8),
         rounded(high, 8),
         plan.parameter.unit(),
-        kind(&most),
+        kind(most),
         joule(most.seen.e1_max)
     ))
+}
+
+/// The least and the largest value of the parameter on a branch.
+fn span(branch: &Branch) -> [f64; 2] {
+    let values = || branch.points.iter().map(|orbit| orbit.value);
+    [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// The periods and impacts of a motion in words.
@@ -173,19 +176,17 @@ fn branches(found: &Found) -> Block {
     let plan = &found.branches.plan;
     let rows = found.branches.branches.iter().enumerate().take(MOST).map(|(number, branch)| {
         let stable = (0..branch.points.len()).filter(|i| branch.is_stable_at(*i)).count();
-        let most = largest(branch, |orbit| orbit.seen.e1_max);
-        let value = |orbit: &Orbit| orbit.value;
-        let low = branch.points.iter().map(value).fold(f64::INFINITY, f64::min);
-        let high = branch.points.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+        let most = found.largest[number].as_ref();
+        let [low, high] = span(branch);
         let [first, last] = branch.ends.map(End::words);
         vec![
             number.to_string(),
             branch.shooting.periods.to_string(),
             format!("{} to {}", rounded(low, 6), rounded(high, 6)),
             format!("{stable} of {}", branch.points.len()),
-            most.as_ref().map_or("-".to_owned(), |orbit| joule(orbit.seen.e1_max)),
-            most.as_ref().map_or(String::new(), |orbit| rounded(orbit.value, 6)),
-            most.map_or(String::new(), |orbit| orbit.seen.impacts),
+            most.map_or("-".to_owned(), |orbit| joule(orbit.seen.e1_max)),
+            most.map_or(String::new(), |orbit| rounded(orbit.value, 6)),
+            most.map_or(String::new(), |orbit| orbit.seen.impacts.clone()),
             if first == last { first.to_owned() } else { format!("{first}; {last}") },
         ]
     });

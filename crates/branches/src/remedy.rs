@@ -1,7 +1,7 @@
 //! What removes a motion: how far each parameter can be changed before it vanishes at a fold.
 
 use retune_dynamics::periodic::trace::trace;
-use retune_dynamics::periodic::{Branch, EventKind, Orbit};
+use retune_dynamics::periodic::{Branch, End, EventKind, Orbit};
 use retune_model::Parameter;
 
 /// The parameters that are tried: the gaps, the dashpot, the spring, the force.
@@ -32,13 +32,12 @@ fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<Remedy
     let along = trace(&shooting, &seed, REACH.map(|share| share * own))?;
     let seed = along.points.iter().position(|point| point.value == own)?;
     let folds = || along.events.iter().filter(|event| event.kind == EventKind::Fold);
-    let before = folds().rfind(|event| event.place < seed);
+    // Traced towards larger values first. A closed branch comes back from the other side.
+    let closed = along.ends == [End::Closed; 2];
+    let before = folds().rfind(|event| event.place < seed || closed);
     let after = folds().find(|event| event.place > seed);
-    let mut ends = [before, after].map(|event| event.map(|event| event.orbit.value));
-    if ends.iter().flatten().any(|end| *end < own) && ends[0].is_none_or(|end| end > own) {
-        ends.reverse();
-    }
-    let folds = [ends[0].filter(|end| *end < own), ends[1].filter(|end| *end > own)];
+    let [low, high] = [before, after].map(|event| event.map(|event| event.orbit.value));
+    let folds = [low.filter(|end| *end < own), high.filter(|end| *end > own)];
     folds.iter().any(Option::is_some).then_some(Remedy { parameter, own, folds })
 }
 

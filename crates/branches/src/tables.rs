@@ -1,7 +1,7 @@
 //! The tables of `branches`.
 
 use crate::found::Found;
-use retune_dynamics::periodic::{Orbit, largest};
+use retune_dynamics::periodic::Orbit;
 use retune_store::Directory;
 use retune_study::joined;
 use retune_workbench::Error;
@@ -103,8 +103,8 @@ pub fn summary(found: &Found) -> Value {
         .branches
         .branches
         .iter()
-        .map(|branch| {
-            let most = largest(branch, |orbit| orbit.seen.e1_max);
+        .zip(&found.largest)
+        .map(|(branch, most)| {
             let events = branch.events.iter().map(|event| {
                 json!({ "kind": event.kind.name(), "value": event.orbit.value, "impacts": event.orbit.seen.impacts })
             });
@@ -113,7 +113,7 @@ pub fn summary(found: &Found) -> Value {
                 "ends": branch.ends.map(|end| end.words()),
                 "points": branch.points.len(),
                 "events": events.collect::<Vec<_>>(),
-                "largest_stable": most.map(|orbit| json!({
+                "largest_stable": most.as_ref().map(|orbit| json!({
                     "value": orbit.value,
                     "E1max": orbit.seen.e1_max,
                     "impacts": orbit.seen.impacts,

@@ -173,7 +173,13 @@ impl Coupled {
     pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64) -> [f64; 2] {
         let stiffness = self.hertz(side);
         let force = -side.sign() * stiffness * q * q * q;
-        [force, 1.5 * stiffness * q * self.wall_by(parameter, side) + force * self.hertz_by(parameter)]
+        let own = force * self.hertz_by(parameter);
+        [force, self.contact_slope(side, q) * self.wall_by(parameter, side) + own]
+    }
+
+    /// The slope `dF/dz` of Hertz's force on a wall at the indentation `q²` (m), N/m: [`crate::hertz_force_slope`] where the root is known.
+    pub fn contact_slope(&self, side: Side, q: f64) -> f64 {
+        1.5 * self.hertz(side) * q
     }
 
     /// `∂[x1'', x2'']/∂parameter` by equation (1), m/s² per unit of the parameter, at a state, with the net contact force on the damper

@@ -7,19 +7,10 @@ use crate::watch::{Watch, caught, watched};
 use pyo3::prelude::*;
 use retune_store::Begin;
 use retune_study::Setting;
-use retune_tradeoff::{pareto, track as tracking};
 use retune_workbench::design::Wishes;
 use retune_workbench::job::Done;
-use retune_workbench::verify::Others;
 use retune_workbench::{Request, tune, verify as verification};
 use std::path::PathBuf;
-
-/// How `verify` computes the files again that only the crates above the workbench know.
-static OTHERS: &Others = &[
-    (&tracking::KIND, tracking::again),
-    (&pareto::KIND, pareto::again),
-    (&retune_branches::KIND, retune_branches::again),
-];
 
 /// What a job is asked beside its study: the directory of its results, whether to go on or to begin anew, whether to replace other results,
 /// and the number of threads.
@@ -110,7 +101,15 @@ pub fn verify(
     within: f64,
     tell: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    watched(py, tell.as_ref(), |watch| Ok(verification::verify(&path, sample, within, OTHERS, watch)?))
+    watched(py, tell.as_ref(), |watch| {
+        Ok(verification::verify(
+            &path,
+            sample,
+            within,
+            &[retune_tradeoff::OTHERS, retune_branches::OTHERS],
+            watch,
+        )?)
+    })
 }
 
 /// The study with which `design` tunes a damper of a kind, "TMD" or "SSVI NES", for a structure and what is wished: from JSON to JSON.
@@ -140,7 +139,9 @@ pub fn track(
     tell: Option<Py<PyAny>>,
 ) -> PyResult<PathBuf> {
     let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
-    on_file(py, study, asked, tell, |request, watch| tracking::track(request, &settings, watch).map(drop))
+    on_file(py, study, asked, tell, |request, watch| {
+        retune_tradeoff::track::track(request, &settings, watch).map(drop)
+    })
 }
 
 /// Pareto fronts of a study file; returns the directory of the results.
@@ -149,7 +150,9 @@ pub fn track(
 /// Those of the job, or Ctrl-C.
 #[pyfunction]
 pub fn fronts(py: Python<'_>, study: PathBuf, asked: Asked, tell: Option<Py<PyAny>>) -> PyResult<PathBuf> {
-    on_file(py, study, asked, tell, |request, watch| pareto::pareto(request, watch).map(drop))
+    on_file(py, study, asked, tell, |request, watch| {
+        retune_tradeoff::pareto::pareto(request, watch).map(drop)
+    })
 }
 
 /// How every periodic motion of a study, or of the design behind results, is looked for: the parameter, its range, the values at which

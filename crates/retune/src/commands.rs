@@ -13,17 +13,9 @@ use retune_workbench::observer::Quiet;
 use retune_workbench::simulate::Trajectory;
 use retune_workbench::sweep::Points;
 use retune_workbench::tune::Optimum;
-use retune_workbench::verify::Others;
 use retune_workbench::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
 use std::io::BufReader;
 use std::path::Path;
-
-/// How `verify` computes the files again that only the crates above the workbench know.
-static OTHERS: &Others = &[
-    (&track::KIND, track::again),
-    (&pareto::KIND, pareto::again),
-    (&retune_branches::KIND, retune_branches::again),
-];
 
 /// Runs a command.
 ///
@@ -44,9 +36,13 @@ pub fn run(command: Command) -> Result<(), Error> {
             let (request, screen) = running.request(&study);
             found(tune::merge::merge(&request, &parts, &screen)?)
         }
-        Command::Verify { results, sample, within } => {
-            verify::verify(&results, sample as usize, within, OTHERS, &all)
-        }
+        Command::Verify { results, sample, within } => verify::verify(
+            &results,
+            sample as usize,
+            within,
+            &[retune_tradeoff::OTHERS, retune_branches::OTHERS],
+            &all,
+        ),
         Command::Certify { design, running } => {
             let (request, screen) = running.request(&design);
             certify::certify_file(&request, &screen)?.check_limits()

@@ -29,7 +29,8 @@ pub type Again = fn(&Path, &str, usize, &mut Report<'_>) -> Result<(), Error>;
 pub type Others = [(&'static Kind, Again)];
 
 /// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
-/// again; numbers that differ by at most `within` of their size hold. `others` are the jobs of crates above this one.
+/// again; numbers that differ by at most `within` of their size hold. `others` are the jobs of crates
+/// above this one, a list of each.
 ///
 /// # Errors
 /// There are no results, they do not hold, or something cannot be checked.
@@ -37,7 +38,7 @@ pub fn verify(
     path: &Path,
     sample: usize,
     within: f64,
-    others: &Others,
+    others: &[&Others],
     watch: &dyn Observer,
 ) -> Result<(), Error> {
     let refuse = |source| retune_store::Error::Input { path: path.to_owned(), source };
@@ -64,7 +65,7 @@ pub fn verify(
 static KINDS: [&Kind; 4] = [&tune::KIND, &certify::KIND, &table2::KIND, &sweep::KIND];
 
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
-fn look(place: &Path, most: usize, others: &Others, report: &mut Report<'_>) -> Result<(), Error> {
+fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
     let known = known(&there, others);
     let of_searches = |content| matches!(content, Content::Searched | Content::Band);
@@ -104,10 +105,12 @@ fn look(place: &Path, most: usize, others: &Others, report: &mut Report<'_>) -> 
 type Known<'a> = (&'a str, Content, Option<Again>);
 
 /// The files of a directory that a job makes, in the order of its list.
-fn known<'a>(there: &'a [String], others: &Others) -> Vec<Known<'a>> {
+fn known<'a>(there: &'a [String], others: &[&Others]) -> Vec<Known<'a>> {
     let mut known: Vec<Known> = Vec::new();
     let ours = KINDS.iter().map(|kind| (*kind, None));
-    for (kind, again) in ours.chain(others.iter().map(|(kind, again)| (*kind, Some(*again)))) {
+    for (kind, again) in
+        ours.chain(others.iter().copied().flatten().map(|(kind, again)| (*kind, Some(*again))))
+    {
         for artefact in kind.artefacts {
             for name in there.iter().filter(|name| artefact.is(name)) {
                 if known.iter().all(|(other, ..)| other != name) {

@@ -10,15 +10,12 @@ mod verified;
 
 use desk::{Desk, committed};
 use observers::{good, refused};
-use retune_branches::{Asked, KIND, again, branches};
+use retune_branches::{Asked, OTHERS, branches};
 use retune_dynamics::Parameter;
 use retune_dynamics::periodic::EventKind;
-use retune_workbench::verify::Others;
 use retune_workbench::{Done, Error, Request, Silent};
 use serde_json::Value;
 use verified::a_changed_digit_is_found;
-
-static OTHERS: &Others = &[(&KIND, again)];
 
 /// The paper's damper of Table 2, about its first period doubling.
 fn desk() -> Desk {

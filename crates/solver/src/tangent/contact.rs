@@ -26,7 +26,7 @@ pub(super) fn carry(
     let [m1, m2] = system.masses();
     let seconds = nodes.span[1] - nodes.span[0];
     let side = side(system, nodes);
-    let slope = |i: usize| 1.5 * system.hertz(side) * nodes.roots[i];
+    let slope = |i: usize| system.contact_slope(side, nodes.roots[i]);
     // What becomes of unit speeds at each node until the end, and which row gives `δr` at each node from what `A` would make of it.
     let mut kicks = [[[0.0; 4]; 2]; FOLLOWED];
     let mut rows = [[0.0; 4]; FOLLOWED];

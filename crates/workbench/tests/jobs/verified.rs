@@ -20,7 +20,7 @@ pub enum End {
 #[track_caller]
 pub fn look(desk: &Desk, out: &str, sample: usize, within: f64, others: &Others) -> (String, End) {
     let record = Record::default();
-    let end = match verify(&desk.path(out), sample, within, others, &record) {
+    let end = match verify(&desk.path(out), sample, within, &[others], &record) {
         Ok(()) => End::Holds,
         Err(Error::NotHeld { path, problem }) if path == desk.path(out) => End::Not(problem),
         Err(Error::NotChecked { path, problem }) if path == desk.path(out) => End::Unchecked(problem),
