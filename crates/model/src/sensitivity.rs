@@ -72,6 +72,18 @@ impl Parameter {
     }
 }
 
+impl From<Variable> for Parameter {
+    fn from(variable: Variable) -> Self {
+        match variable {
+            Variable::M2 => Self::M2,
+            Variable::K2 => Self::K2,
+            Variable::C2 => Self::C2,
+            Variable::D => Self::D,
+            Variable::C => Self::C,
+        }
+    }
+}
+
 impl std::str::FromStr for Parameter {
     type Err = String;
 

@@ -15,7 +15,8 @@ pub mod search;
 
 pub use objective::band::{Band, worst_over};
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
-pub use objective::evaluate::{Evaluation, Goal, Place};
+pub use objective::evaluate::Goal;
+pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
 pub use objective::peak_energy::{Counts, Failures, PeakEnergy};
 pub use objective::spec::{FrequencyBand, Objective, Part, Response, StiffnessRange, Stiffnesses};
@@ -26,5 +27,6 @@ pub use search::fminsearch::{
 };
 pub use search::global::{Basin, Descent, Global, GlobalError, Point, basins, explore};
 pub use search::grid::{Axis, AxisError, Grid, GridError, Scale};
+pub use search::minimax::{Height, Piece, minimax};
 pub use search::space::{Side, Space};
 pub use search::surf::{best_separated, surf, surf_part};

@@ -3,5 +3,6 @@
 pub mod fminsearch;
 pub mod global;
 pub mod grid;
+pub mod minimax;
 pub mod space;
 pub mod surf;

@@ -2,6 +2,7 @@
 
 mod again;
 mod candidate;
+mod descents;
 mod draw;
 mod fronts;
 mod page;

@@ -6,6 +6,7 @@
 
 use super::band::{Band, all_worst_over};
 use super::ensemble::SLACK;
+use super::evaluation::{Evaluation, Place, Run};
 use super::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
 use super::spec::{Objective, Response, Stiffnesses};
 use super::unusable::Unusable;
@@ -32,50 +33,6 @@ impl From<Window> for Goal {
     }
 }
 
-/// The run with the largest quantity among those behind a value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// That quantity, in its unit.
-    pub largest: f64,
-    /// Its scene, with the parameter errors of its ensemble member.
-    pub scene: Scene,
-    /// Phase of its force, rad.
-    pub phase: f64,
-    /// Number of its term.
-    pub term: usize,
-}
-
-/// The value of a design and the quantities behind it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evaluation {
-    /// The value that searches minimise: the quantity of a feasible design, above [`INFEASIBLE`] for any other.
-    pub value: f64,
-    /// The weighted sum of the terms, in the unit of the quantity.
-    pub energy: f64,
-    /// Total violation of the limits; see [`Limits::violation`].
-    pub violation: f64,
-    /// The largest stroke and force from [`Limits::from`] on, and the cavity; stroke and force are 0 if no limit needs them.
-    pub reached: PerLimit<f64>,
-    /// The worst run.
-    pub worst: Place,
-    /// Runs made; a steady response in closed form counts as one.
-    pub runs: u64,
-    /// Runs that should have settled and did not.
-    pub unsettled: u64,
-}
-
-impl Evaluation {
-    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
-    /// with the force starting at a crest.
-    pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
-        scene.forcing.frequency = self.worst.scene.forcing.frequency;
-        if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
-            scene.primary.stiffness = self.worst.scene.primary.stiffness;
-        }
-        scene
-    }
-}
-
 impl Goal {
     /// A term of the objective, by its number.
     pub fn term(&self, number: usize) -> Option<&Objective> {
@@ -87,12 +44,32 @@ impl Goal {
     /// # Errors
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
     pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
+        self.evaluate_and(scene, settings, cutoff, |_| ())
+    }
+
+    /// The same, and `keep` is given each run, in any order.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn evaluate_and(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        cutoff: f64,
+        keep: impl Fn(Run) + Sync,
+    ) -> Result<Evaluation, Unusable> {
         let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
         let nothing = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
         let mut reached = PerLimit::default();
         reached.set(Limit::Cavity, cavity);
         let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
-        let watch = Watch { settings, window: self.window, limits: &self.limits, seen: Mutex::new(seen) };
+        let watch = Watch {
+            settings,
+            window: self.window,
+            limits: &self.limits,
+            keep: &keep,
+            seen: Mutex::new(seen),
+        };
         // A cavity above its limit makes the design infeasible without any run.
         let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
             f64::INFINITY
@@ -131,6 +108,18 @@ impl Goal {
     }
 }
 
+impl Evaluation {
+    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
+    /// with the force starting at a crest.
+    pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
+        scene.forcing.frequency = self.worst.scene.forcing.frequency;
+        if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
+            scene.primary.stiffness = self.worst.scene.primary.stiffness;
+        }
+        scene
+    }
+}
+
 /// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 struct Seen {
     reached: PerLimit<f64>,
@@ -144,6 +133,7 @@ struct Watch<'a> {
     settings: &'a Settings,
     window: Window,
     limits: &'a Limits,
+    keep: &'a (dyn Fn(Run) + Sync),
     seen: Mutex<Seen>,
 }
 
@@ -262,6 +252,7 @@ impl Watch<'_> {
     }
 
     fn see(&self, place: Place, stroke: f64, force: f64, settled: bool) {
+        (self.keep)(Run { place, reached: [place.largest, stroke, force] });
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         seen.runs += 1;
         seen.unsettled += u64::from(!settled);

@@ -1,8 +1,10 @@
 //! The objective as a function of a design, as searches call it.
 
-use super::evaluate::{Evaluation, Goal};
+use super::evaluate::Goal;
+use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
 use super::unusable::Unusable;
+use crate::search::minimax::{Height, Piece};
 use retune_model::{Damper, Scene, Variable};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -100,6 +102,26 @@ impl PeakEnergy {
                 f64::INFINITY
             }
         }
+    }
+
+    /// What is behind [`Self::value`], with the runs that it is made of; failures are not recorded.
+    pub fn look(&self, design: &[f64], cutoff: f64) -> (Height, Vec<Run>) {
+        self.counts[0].fetch_add(1, Relaxed);
+        let runs = Mutex::new(Vec::new());
+        let keep = |run| runs.lock().unwrap_or_else(PoisonError::into_inner).push(run);
+        let found =
+            self.scene(design).and_then(|scene| self.goal.evaluate_and(&scene, &self.settings, cutoff, keep));
+        let height = found.map_or(Height { worst: f64::INFINITY, broken: 0.0 }, |found| Height {
+            worst: found.energy,
+            broken: found.violation,
+        });
+        (height, runs.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The peaks of the `runs` of [`Self::look`], with their derivatives.
+    pub fn pieces(&self, design: &[f64], runs: &[Run]) -> Vec<Piece> {
+        let scene = self.scene(design).ok();
+        scene.map_or_else(Vec::new, |scene| self.goal.pieces(&scene, &self.settings, runs, &self.variables))
     }
 
     /// Counts a value that [`Self::value`] returned in an earlier run of the same search, so that [`Self::counts`] are those of an

@@ -34,6 +34,14 @@ impl Side {
         }
     }
 
+    /// The derivative of the value by the coordinate, at a value.
+    pub fn slope(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => self.to - self.from,
+            Scale::Log => value * (self.to / self.from).ln(),
+        }
+    }
+
     /// The coordinate of a value, from 0 to 1 inside the box.
     pub fn coordinate(&self, value: f64) -> f64 {
         match self.scale {
@@ -56,6 +64,11 @@ impl Space {
     /// The parameters at `u`.
     pub fn point(&self, u: &[f64]) -> Vec<f64> {
         self.0.iter().zip(u).map(|(side, &u)| side.value(u)).collect()
+    }
+
+    /// The derivatives of the parameters by their coordinates.
+    pub fn slopes(&self, x: &[f64]) -> Vec<f64> {
+        self.0.iter().zip(x).map(|(side, &x)| side.slope(x)).collect()
     }
 
     /// The coordinates of parameters.

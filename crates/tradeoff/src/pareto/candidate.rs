@@ -7,6 +7,9 @@ use std::cmp::Ordering;
 /// E1max that differs by less than this share is the same.
 pub const SAME: f64 = 0.01;
 
+/// The verdict of a design that a descent found, until it is judged.
+pub(super) const CONTINUED: &str = "not certified";
+
 /// A design, evaluated on the samples of the study of fronts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
@@ -41,6 +44,11 @@ impl Candidate {
         }
     }
 
+    /// The worst E1max over the band on the finest samples that it was looked at on, J.
+    pub fn known(&self) -> f64 {
+        self.checked.unwrap_or(self.e1_max)
+    }
+
     /// Whether E1max rises on more samples by more than what is the same.
     pub fn rises(&self) -> bool {
         self.checked.is_some_and(|checked| checked > (1.0 + SAME) * self.e1_max)
@@ -69,7 +77,7 @@ impl Candidate {
 /// The design that keeps a bound first, then that which is beyond it by less.
 pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Ordering {
     let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
-    own.total_cmp(&other).then(a.e1_max.total_cmp(&b.e1_max))
+    own.total_cmp(&other).then(a.known().total_cmp(&b.known()))
 }
 
 #[cfg(test)]

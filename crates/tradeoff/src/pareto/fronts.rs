@@ -67,7 +67,7 @@ impl Fronts {
         let kept =
             |(_, design): &(usize, &Candidate)| design.damper == damper && design.excess(sweep, bound) == 0.0;
         let all = self.designs.iter().enumerate().filter(kept);
-        all.min_by(|a, b| a.1.e1_max.total_cmp(&b.1.e1_max)).map(|(number, _)| number)
+        all.min_by(|a, b| a.1.known().total_cmp(&b.1.known())).map(|(number, _)| number)
     }
 
     /// The best designs under each bound, the dampers in their order under each.
@@ -75,7 +75,7 @@ impl Fronts {
         let row = |bound: f64, damper: usize| {
             let kept = |design: &&Candidate| design.damper == damper && design.excess(sweep, bound) == 0.0;
             let all = self.designs.iter().chain(&self.given);
-            let design = all.filter(kept).min_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
+            let design = all.filter(kept).min_by(|a, b| a.known().total_cmp(&b.known()));
             Row { sweep, bound, damper, design }
         };
         let dampers = 0..self.plan.dampers.len();

@@ -1,20 +1,15 @@
-//! The refinement of one design under a bound.
+//! The descent of one design under a bound.
 
 use retune_model::{Design, Variable};
-use retune_optim::minimize;
+use retune_optim::{Side, Space, minimax};
+use retune_store::Journal;
 use retune_study::{Optimize, PerVariable, Study, Sweep};
 use retune_workbench::Error;
-use retune_workbench::searches::Searches;
-use retune_workbench::tune::objective::{kept, objective};
-use std::ops::ControlFlow;
-
-/// `fminsearch` starts again where it ended, with a whole simplex, at most so often,
-const RESTARTS: usize = 2;
-/// and as long as it gains this share: where motions are irregular, it often ends early.
-const GAIN: f64 = 3e-3;
+use retune_workbench::tune::objective::objective;
+use std::cell::OnceCell;
 
 /// What is done under one bound.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Under {
     /// The number of the damper.
     pub damper: usize,
@@ -24,58 +19,46 @@ pub(super) struct Under {
     pub bound: f64,
 }
 
-/// The end of a refinement by the rules of a study, and its value; with one parameter held at a value, if asked for.
-pub(super) fn minimum(
+/// Where a side of the box ends that has no upper bound: so many times the start, or at one unit.
+const WIDE: f64 = 4.0;
+
+/// The design at the foot of the slope from `start` by the objective and within the bounds of a study; none where there is no way down. The
+/// journal keeps it.
+///
+/// # Errors
+/// The study breaks a rule.
+pub(super) fn descend(
     study: &Study,
     start: &PerVariable<f64>,
-    held: Option<(Variable, f64)>,
-    Under { damper, sweep, bound }: Under,
-    searches: &Searches,
-) -> Result<Option<(Design, f64)>, Error> {
+    under: Under,
+    journal: &Journal,
+) -> Result<Option<Design>, Error> {
     let mut study = study.clone();
-    let mut start = *start;
-    if let (Some((variable, value)), Some(optimize)) = (held, &mut study.optimize) {
-        optimize.vary.retain(|other| *other != variable);
-        *optimize.bounds.get_mut(variable) = None;
-        *start.get_mut(variable) = None;
-        let design = study.scene.damper.map(|damper| Design::of(&damper));
-        let moved = |design: Design| {
-            Design::new(|other| if other == variable { value } else { design.get(other) }).ok()
-        };
-        if let Some(scene) = design.and_then(moved).and_then(|design| study.scene_at(&design)) {
-            study.scene = scene;
-        }
-    }
-    let samples = if let Some(optimize) = &mut study.optimize {
+    let mut samples = 0;
+    if let Some(optimize) = &mut study.optimize {
         (optimize.global, optimize.surf) = (None, None);
-        optimize.starts = vec![start];
-        optimize.objective.omega.map_or(0, |band| band.samples)
-    } else {
-        0
-    };
+        optimize.starts = vec![*start];
+        samples = optimize.objective.omega.map_or(0, |band| band.samples);
+    }
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let of = objective(&study, &search, &search.variables);
-    let limit = if sweep == Sweep::K2 { 0.0 } else { bound };
-    let held = held.map_or(String::new(), |(variable, _)| format!(" {variable}"));
-    // The stage names the objective in the journal: a bound on k2 does not change it, a limit does.
-    let stage = format!("{damper} {} {limit} {samples}{held}", sweep.name());
-    let value = kept(&of, searches.journal(), &stage, || ());
     let Some(at) = search.given.first() else { return Ok(None) };
-    if !value(at, f64::INFINITY).is_finite() {
-        return Ok(None);
-    }
-    let (mut x, mut least) = (at.clone(), f64::INFINITY);
-    for _ in 0..RESTARTS {
-        let found = minimize(&value, &x, search.options.clone(), |_| ControlFlow::Continue(()))
-            .map_err(|source| Error::Search { source, failures: of.failures() })?;
-        searches.journal().check()?;
-        let gains = found.value < (1.0 - GAIN) * least;
-        (x, least) = (found.x, found.value);
-        if !gains {
-            break;
-        }
-    }
-    Ok(Some((Design::of(&of.damper(&x)?), least)))
+    let side = |(bounds, at): (&retune_optim::Bounds, &f64)| {
+        Side::natural(bounds.lower.unwrap_or(0.0), bounds.upper.unwrap_or((WIDE * at).max(1.0)))
+    };
+    let space = Space(search.options.bounds.iter().zip(at).map(side).collect());
+    let of = objective(&study, &search, &search.variables);
+    let found = OnceCell::new();
+    let go = || {
+        found.get_or_init(|| minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, at))
+    };
+    let Under { damper, sweep, bound } = under;
+    let end = (0..at.len()).map(|i| {
+        let stage = format!("{damper} {} {bound} {samples} {i}", sweep.name());
+        journal.value(&stage, at, f64::INFINITY, || go().0[i], |_| ())
+    });
+    let end: Vec<f64> = end.collect();
+    let at = of.damper(&end).ok();
+    Ok(at.map(|damper| Design::of(&damper)))
 }
 
 /// A design moved into the bounds of a search.
@@ -89,16 +72,43 @@ pub(super) fn clipped(at: &Design, optimize: &Optimize) -> PerVariable<f64> {
     start
 }
 
+/// The starts about a design: itself, and each copy with a gap at its lower bound that is this near to it, as a share of the side.
+pub(super) fn starts(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
+    const NEAR: f64 = 0.05;
+    let own = clipped(at, optimize);
+    let at_bound = |variable: Variable| {
+        let value = own.get(variable)?;
+        let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
+        let is_near = value > low && value - low < NEAR * (high.unwrap_or(f64::INFINITY) - low).min(1.0);
+        let mut start = own;
+        *start.get_mut(variable) = Some(low);
+        is_near.then_some(start)
+    };
+    [own].into_iter().chain([Variable::D, Variable::C].into_iter().filter_map(at_bound)).collect()
+}
+
+/// Places about a design: along each parameter by a twentieth of its side of the box, where it has two ends, or of its value.
+pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
+    const FAR: f64 = 0.05;
+    let moved = |variable: Variable, sign: f64| {
+        let value = at.get(variable);
+        let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
+        let side = high.map_or(value, |high| (high - low).min(value.max(1.0)));
+        Design::new(
+            |other| if other == variable { (value + sign * FAR * side).max(low) } else { at.get(other) },
+        )
+        .ok()
+    };
+    optimize
+        .vary
+        .iter()
+        .flat_map(|&variable| [-1.0, 1.0].into_iter().filter_map(move |sign| moved(variable, sign)))
+        .collect()
+}
+
 /// Sets the samples of the band of a study.
 pub(super) fn set_samples(study: &mut Study, samples: usize) {
     if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
         band.samples = samples;
-    }
-}
-
-/// Refines the samples of the band of a study, those that it has among them.
-pub(super) fn scale_samples(study: &mut Study, by: usize) {
-    if let Some(band) = study.objective().omega {
-        set_samples(study, by * (band.samples - 1) + 1);
     }
 }

@@ -157,6 +157,11 @@ impl Basins {
         }
     }
 
+    /// The best design of each basin, best first.
+    pub(super) fn places(&self) -> impl Iterator<Item = PerVariable<f64>> {
+        self.basins.iter().map(|basin| basin.design)
+    }
+
     /// Writes `basins.csv`.
     pub(super) fn write(&self, objective: &PeakEnergy, results: &Directory) -> Result<(), Error> {
         let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);

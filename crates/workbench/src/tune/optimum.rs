@@ -119,6 +119,11 @@ pub(crate) struct FailureNote {
 }
 
 impl Optimum {
+    /// The tuned parameters of every place that a global search came to, best first.
+    pub fn places(&self) -> Vec<PerVariable<f64>> {
+        self.global.iter().flat_map(Basins::places).collect()
+    }
+
     /// Collects the results of a search; `summary` is of a run of the best design at the worst frequency of `evaluation`.
     pub(super) fn new(
         study: &Study,

@@ -1,0 +1,45 @@
+//! What an evaluation of a design returns.
+
+use super::limits::PerLimit;
+use retune_model::Scene;
+
+/// The run with the largest quantity among those behind a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// That quantity, in its unit.
+    pub largest: f64,
+    /// Its scene, with the parameter errors of its ensemble member.
+    pub scene: Scene,
+    /// Phase of its force, rad.
+    pub phase: f64,
+    /// Number of its term.
+    pub term: usize,
+}
+
+/// A run behind a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// What it is of.
+    pub place: Place,
+    /// Its quantity, its stroke (m) and its largest contact force (N); the latter are 0 if no limit needs them.
+    pub reached: [f64; 3],
+}
+
+/// The value of a design and the quantities behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluation {
+    /// The value that searches minimise: the quantity of a feasible design, above [`INFEASIBLE`] for any other.
+    pub value: f64,
+    /// The weighted sum of the terms, in the unit of the quantity.
+    pub energy: f64,
+    /// Total violation of the limits; see [`Limits::violation`].
+    pub violation: f64,
+    /// The largest stroke and force from [`Limits::from`] on, and the cavity; stroke and force are 0 if no limit needs them.
+    pub reached: PerLimit<f64>,
+    /// The worst run.
+    pub worst: Place,
+    /// Runs made; a steady response in closed form counts as one.
+    pub runs: u64,
+    /// Runs that should have settled and did not.
+    pub unsettled: u64,
+}

@@ -1,0 +1,104 @@
+//! The smooth functions of a design that its value is the largest of: the peaks over the frequencies, of the quantity and of what has a
+//! limit, with their derivatives.
+//!
+//! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
+//! those of the run at its frequency (the envelope theorem).
+
+use super::evaluate::Goal;
+use super::evaluation::{Place, Run};
+use super::limits::Limit;
+use super::spec::Response;
+use crate::search::minimax::Piece;
+use rayon::prelude::*;
+use retune_model::{Coupled, Measure, Parameter, Scene, Variable};
+use retune_solver::{Settings, Window, gradients};
+
+/// A peak below this share of the largest of its kind cannot soon be the largest.
+const HIGH: f64 = 0.7;
+/// Most peaks of a kind: an irregular motion has one at every other sample.
+const MOST: usize = 12;
+/// Peaks as near as this, as a share of the frequency, are one, which its search met twice.
+const APART: f64 = 1e-5;
+
+impl Goal {
+    /// Whether its values have derivatives by [`Goal::pieces`]: the worst over frequencies and stiffnesses of what runs from rest reach.
+    pub fn is_differentiable(&self) -> bool {
+        let term = &self.objective;
+        term.sum.is_empty() && term.ensemble.is_none() && term.response == Response::Window
+    }
+
+    /// The highest peaks of `runs`, which were made to evaluate `scene`, with their derivatives by `variables`; those that have none, since
+    /// their run cannot be followed, are left out. Limits come as shares, 0 where they are just kept.
+    pub fn pieces(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        runs: &[Run],
+        variables: &[Variable],
+    ) -> Vec<Piece> {
+        let by: Vec<Parameter> = variables.iter().map(|&variable| variable.into()).collect();
+        let walls = Window { from: self.limits.walls_from().unwrap_or(0.0), to: self.window.to };
+        let kinds = [
+            (0, self.objective.quantity(), self.window, None),
+            (1, Measure::Stroke, walls, self.limits.get(Limit::Stroke)),
+            (2, Measure::ContactForce, walls, self.limits.get(Limit::Force)),
+        ];
+        let asked = kinds.into_iter().filter(|(number, .., limit)| *number == 0 || limit.is_some());
+        let peaks: Vec<_> =
+            asked.flat_map(|kind| peaks(runs, kind.0).into_iter().map(move |run| (kind, run))).collect();
+        let piece = |&((_, measure, window, limit), run): &((usize, Measure, Window, Option<f64>), &Run)| {
+            let Place { scene: Scene { primary, forcing, damper: Some(damper) }, .. } = &run.place else {
+                return Vec::new();
+            };
+            let system = Coupled::new(primary, forcing, damper);
+            let found = gradients(&system, window, settings, measure, &by).unwrap_or_default();
+            let piece = |value: f64, by: Vec<f64>| match limit {
+                None => Piece { is_limit: false, value, slope: by },
+                Some(limit) => Piece {
+                    is_limit: true,
+                    value: value / limit - 1.0,
+                    slope: by.into_iter().map(|by| by / limit).collect(),
+                },
+            };
+            found.into_iter().map(|found| piece(found.at.value, found.by)).collect::<Vec<_>>()
+        };
+        let mut pieces: Vec<Piece> = peaks.par_iter().flat_map_iter(piece).collect();
+        if let (Some(most), Some(damper)) = (self.limits.get(Limit::Cavity), &scene.damper) {
+            let slope = |variable| f64::from(matches!(variable, Variable::D | Variable::C)) / most;
+            let value = (damper.rest_distance.get() + damper.clearance.get()) / most - 1.0;
+            pieces.push(Piece {
+                is_limit: true,
+                value,
+                slope: variables.iter().map(|&v| slope(v)).collect(),
+            });
+        }
+        pieces
+    }
+}
+
+/// The highest peaks of a quantity over the frequencies at each stiffness, highest first.
+fn peaks(runs: &[Run], quantity: usize) -> Vec<&Run> {
+    let key = |run: &Run| [run.place.scene.primary.stiffness.get(), run.place.scene.forcing.frequency.get()];
+    let mut order: Vec<&Run> = runs.iter().collect();
+    order.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+    let beside = |i: Option<usize>, run: &Run| {
+        let other = i.and_then(|i| order.get(i)).filter(|other| key(other)[0] == key(run)[0]);
+        other.map_or(f64::NEG_INFINITY, |other| other.reached[quantity])
+    };
+    let is_peak = |&(i, run): &(usize, &&Run)| {
+        let value = run.reached[quantity];
+        value > beside(i.checked_sub(1), run) && value >= beside(Some(i + 1), run)
+    };
+    let mut peaks: Vec<&Run> = order.iter().enumerate().filter(is_peak).map(|(_, run)| *run).collect();
+    peaks.sort_by(|a, b| b.reached[quantity].total_cmp(&a.reached[quantity]));
+    let least = peaks.first().map_or(0.0, |run| HIGH * run.reached[quantity]);
+    let mut high: Vec<&Run> = Vec::new();
+    for run in peaks.into_iter().take_while(|run| run.reached[quantity] >= least) {
+        let [k1, omega] = key(run);
+        let is_known = |other: &&Run| key(other)[0] == k1 && (key(other)[1] / omega - 1.0).abs() < APART;
+        if high.len() < MOST && !high.iter().any(is_known) {
+            high.push(run);
+        }
+    }
+    high
+}

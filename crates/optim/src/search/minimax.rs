@@ -1,0 +1,174 @@
+//! The least of the largest of several smooth functions, by their derivatives.
+//!
+//! The worst over a band is the largest of its peaks, and each peak is a smooth function of the design where motions are regular. At the
+//! optimum several are equally high: a kink, in which a simplex collapses before it arrives. Here each step is the minimum of the largest of
+//! all linearised peaks, a linear program, within a trust region (K. Madsen, An algorithm for minimax solution of overdetermined systems of
+//! non-linear equations, IMA J. Appl. Math. 16, 1975, its first stage). Linear programs are solved by the crate `microlp`.
+
+use crate::search::space::Space;
+use microlp::{ComparisonOp, OptimizationDirection, Problem};
+
+/// One of the functions, at a design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Whether it is a limit, which is kept where the value is at most zero, and not one of those whose largest is made small.
+    pub is_limit: bool,
+    /// Its value.
+    pub value: f64,
+    /// Its derivatives by the parameters, in their own units.
+    pub slope: Vec<f64>,
+}
+
+/// Half of the side of the trust region at first, in coordinates of [`Space`].
+const FIRST: f64 = 0.03;
+/// Below it a search ends.
+const LEAST: f64 = 1e-6;
+/// Most steps that are tried.
+const STEPS: usize = 60;
+/// A search ends where the linear program promises less than this share.
+const GAIN: f64 = 1e-8;
+/// A step is taken if it brings this share of what was promised, and the region grows where it brings this share.
+const TAKEN: f64 = 0.1;
+const GOOD: f64 = 0.7;
+
+/// By what a limit that is broken by its whole size weighs, as a share of the worst: more than any limit is worth.
+const WEIGHT: f64 = 20.0;
+/// Steps are aimed this far inside limits, as shares of them, so that they are kept and not just met.
+const INSIDE: f64 = 1e-6;
+
+/// What a design has: the largest of the functions, and by how much it breaks the limits, as a share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Height {
+    /// The largest of the functions; infinite where the design has no value.
+    pub worst: f64,
+    /// By how much limits are broken, 0 where they are kept.
+    pub broken: f64,
+}
+
+impl Height {
+    /// Whether it is better: breaks limits by less, or keeps them too and has less.
+    fn is_below(&self, other: &Self) -> bool {
+        self.broken < other.broken || self.broken == other.broken && self.worst < other.worst
+    }
+
+    /// What steps make smaller, as a share of `of`.
+    fn merit(&self, of: f64) -> f64 {
+        self.worst / of + WEIGHT * self.broken
+    }
+}
+
+/// Goes down from `start` in a box, and ends at the best design on the way: of those that break limits by least, the lowest. `look(parameters, cutoff)` may stop as
+/// soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to find the functions of that design. A
+/// step is taken only where it pays, so that wrong derivatives cost time alone.
+pub fn minimax<T>(
+    look: impl Fn(&[f64], f64) -> (Height, T),
+    pieces: impl Fn(&[f64], &T) -> Vec<Piece>,
+    space: &Space,
+    start: &[f64],
+) -> (Vec<f64>, Height) {
+    let (mut height, seen) = look(start, f64::INFINITY);
+    let mut best = (start.to_vec(), height);
+    if !height.worst.is_finite() || height.worst <= 0.0 {
+        return best;
+    }
+    let (mut x, mut here) = (start.to_vec(), pieces(start, &seen));
+    let (mut radius, mut tried) = (FIRST, 0);
+    while let Some((to, promised)) = step(&here, height.worst, space, &x, radius).filter(|_| tried < STEPS) {
+        if promised < GAIN || radius < LEAST {
+            break;
+        }
+        tried += 1;
+        let cutoff = if here.iter().any(|piece| piece.is_limit) { f64::INFINITY } else { height.worst };
+        let (found, seen) = look(&to, cutoff);
+        let brought = (height.merit(height.worst) - found.merit(height.worst)) / promised;
+        if found.is_below(&best.1) {
+            best = (to.clone(), found);
+        }
+        if brought > TAKEN {
+            here = pieces(&to, &seen);
+            (x, height) = (to, found);
+        }
+        radius *= if brought > GOOD {
+            2.0
+        } else if brought > TAKEN {
+            1.0
+        } else {
+            0.25
+        };
+    }
+    best
+}
+
+/// The step that is best for the linearised functions, and by how much it lowers their merit; none where there is nothing to go by.
+fn step(pieces: &[Piece], worst: f64, space: &Space, x: &[f64], radius: f64) -> Option<(Vec<f64>, f64)> {
+    let (u, slopes) = (space.coordinates(x), space.slopes(x));
+    let mut program = Problem::new(OptimizationDirection::Minimize);
+    let most = program.add_var(1.0, (0.0, f64::INFINITY));
+    let broken = program.add_var(WEIGHT, (0.0, f64::INFINITY));
+    let moves: Vec<_> =
+        u.iter().map(|&u| program.add_var(0.0, ((-u).max(-radius), (1.0 - u).min(radius)))).collect();
+    let (mut highest, mut most_broken) = (0.0_f64, 0.0_f64);
+    for piece in pieces.iter().filter(|piece| piece.slope.iter().all(|slope| slope.is_finite())) {
+        // Shares of the worst, so that all rows are of one size.
+        let scale = if piece.is_limit { 1.0 } else { worst };
+        let (value, slack) = (piece.value / scale, if piece.is_limit { broken } else { most });
+        let value = if piece.is_limit { value + INSIDE } else { value };
+        let reached = if piece.is_limit { &mut most_broken } else { &mut highest };
+        *reached = reached.max(value);
+        let along = piece.slope.iter().zip(&slopes).map(|(own, slope)| own * slope / scale);
+        let row: Vec<_> = moves.iter().copied().zip(along).chain([(slack, -1.0)]).collect();
+        program.add_constraint(row, ComparisonOp::Le, -value);
+    }
+    let found = program.solve().ok()?.into_solution().ok()?;
+    let to: Vec<f64> = u.iter().zip(&moves).map(|(u, &along)| u + found.var_value(along)).collect();
+    (highest > 0.0).then(|| (space.point(&to), highest + WEIGHT * most_broken - found.objective()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::grid::Scale;
+    use crate::search::space::Side;
+
+    fn square(from: f64, to: f64) -> Space {
+        Space(vec![Side { from, to, scale: Scale::Linear }; 2])
+    }
+
+    /// Madsen's first example is the largest of three functions (J. Charalambous and A. R. Conn, An efficient method to solve the minimax
+    /// problem directly, SIAM J. Numer. Anal. 15, 1978, problem CB2): 1.952224 at (1.139038, 0.899560).
+    #[test]
+    fn reference_charalambous_conn() {
+        let all = |x: &[f64]| {
+            let (a, b) = (x[0], x[1]);
+            let e = 2.0 * (b - a).exp();
+            [
+                (a * a + b.powi(4), vec![2.0 * a, 4.0 * b.powi(3)]),
+                ((2.0 - a).powi(2) + (2.0 - b).powi(2), vec![2.0 * a - 4.0, 2.0 * b - 4.0]),
+                (e, vec![-e, e]),
+            ]
+        };
+        let worst = |x: &[f64]| all(x).iter().map(|(value, _)| *value).fold(0.0, f64::max);
+        let look = |x: &[f64], _: f64| (Height { worst: worst(x), broken: 0.0 }, ());
+        let pieces = |x: &[f64], (): &()| {
+            all(x).map(|(value, slope)| Piece { is_limit: false, value, slope }).to_vec()
+        };
+        let (x, found) = minimax(look, pieces, &square(-3.0, 3.0), &[1.0, -0.1]);
+        assert!((found.worst - 1.952_224_49).abs() < 1e-6, "{found:?}");
+        assert!((x[0] - 1.139_038).abs() < 1e-3 && (x[1] - 0.899_560).abs() < 1e-3, "{x:?}");
+    }
+
+    /// The least of x + y with x y >= 1, from a point that breaks it: 2 at (1, 1).
+    #[test]
+    fn exact_limits_are_kept_where_they_can_be() {
+        let broken = |x: &[f64]| 1.0 - x[0] * x[1];
+        let look = |x: &[f64], _: f64| (Height { worst: x[0] + x[1], broken: broken(x).max(0.0) }, ());
+        let pieces = |x: &[f64], (): &()| {
+            vec![
+                Piece { is_limit: false, value: x[0] + x[1], slope: vec![1.0, 1.0] },
+                Piece { is_limit: true, value: broken(x), slope: vec![-x[1], -x[0]] },
+            ]
+        };
+        let (_, found) = minimax(look, pieces, &square(0.1, 4.0), &[0.5, 0.7]);
+        assert!(found.broken == 0.0 && (found.worst - 2.0).abs() < 1e-4, "{found:?}");
+    }
+}
