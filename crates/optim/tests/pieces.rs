@@ -29,7 +29,8 @@ fn objective(limits: Limits) -> PeakEnergy {
 /// The derivatives of the largest peaks of energy and stroke against central differences of the whole objective.
 #[test]
 fn reference_slopes_are_differences_of_the_objective() {
-    let limits = Limits { stroke: Some(positive(0.3)), from: NonNegative::new(50.0).ok(), ..Limits::default() };
+    let limits =
+        Limits { stroke: Some(positive(0.3)), from: NonNegative::new(50.0).ok(), ..Limits::default() };
     let of = objective(limits);
     let look = |x: &[f64]| {
         let (height, runs) = of.look(x, f64::INFINITY);
