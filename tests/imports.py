@@ -18,8 +18,8 @@ ROOT = Path(__file__).resolve().parent.parent
 BELOW = {
     "model": "",
     "solver": "model",
-    "optim": "model solver",
     "dynamics": "model solver",
+    "optim": "model solver dynamics",
     "store": "",
     "figures": "",
     "study": "model solver optim dynamics",

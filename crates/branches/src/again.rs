@@ -81,7 +81,7 @@ impl Results {
                 return f64::INFINITY;
             };
             if !is_periodic {
-                return found.irregular.iter().copied().fold(0.0, f64::max);
+                return found.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max);
             }
             let own = found.attractors.iter().find(|one| {
                 let orbit = &one.orbit;

@@ -1,6 +1,6 @@
 //! What is asked for: the parameter, its range, how many runs are started.
 
-use retune_dynamics::periodic::branches::Plan;
+use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_model::Parameter;
 use retune_study::{Study, angular_frequency};
 use retune_workbench::Error;
@@ -69,7 +69,7 @@ impl Asked {
             let problem = format!("give 2 to {MOST} samples, and at most {MOST} starts at each");
             return Err(Error::Asked { option: "--samples, --starts", problem });
         }
-        Ok(Plan { parameter: over, range, samples, starts })
+        Ok(Plan { parameter: over, range, samples, starts, looks: SPACINGS.len() })
     }
 }
 
@@ -90,7 +90,7 @@ fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
 
 /// The plan as it stands in the resolved study.
 pub(crate) fn plan_json(plan: &Plan) -> Value {
-    let Plan { parameter, range: [from, to], samples, starts } = plan;
+    let Plan { parameter, range: [from, to], samples, starts, .. } = plan;
     json!({ "over": parameter.symbol(), "from": from, "to": to, "samples": samples, "starts": starts })
 }
 
@@ -102,5 +102,6 @@ pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
         range: [json["from"].as_f64()?, json["to"].as_f64()?],
         samples: count("samples")?,
         starts: count("starts")?,
+        looks: SPACINGS.len(),
     })
 }

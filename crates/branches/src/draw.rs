@@ -84,8 +84,8 @@ fn chart(found: &Found, (label, value): &Drawn, is_first: bool) -> Chart {
     let (mut rest, mut others): (Vec<_>, Vec<_>) = (attractors(true).collect(), attractors(false).collect());
     if is_first {
         for sample in samples {
-            for (i, energy) in sample.irregular.iter().enumerate() {
-                let point = (sample.value, *energy);
+            for (i, seen) in sample.irregular.iter().enumerate() {
+                let point = (sample.value, seen.e1_max);
                 if i == 0 && sample.rest_is_irregular { rest.push(point) } else { others.push(point) }
             }
         }

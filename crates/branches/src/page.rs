@@ -84,9 +84,9 @@ pub fn answer(found: &Found) -> Vec<String> {
             rounded(orbit.value, 6),
             kind(orbit)
         ));
-        if !found.is_reached_from_rest(*number) {
+        if !found.branches.is_reached_from_rest(*number) {
             let ways = remedies(&found.branches.branches[*number], orbit);
-            let reached = most.iter().find(|(other, _)| found.is_reached_from_rest(*other));
+            let reached = most.iter().find(|(other, _)| found.branches.is_reached_from_rest(*other));
             words.extend(reached.map(|(other, orbit)| {
                 format!(
                     "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {} J at {symbol} = {} \
@@ -117,7 +117,7 @@ pub fn answer(found: &Found) -> Vec<String> {
     {
         let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
         let energies = found.branches.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
-        let most = energies.copied().fold(0.0, f64::max);
+        let most = energies.map(|seen| seen.e1_max).fold(0.0, f64::max);
         let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
         words.push(format!(
             "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",
@@ -136,7 +136,7 @@ fn isola(found: &Found, number: usize, branch: &Branch) -> Option<String> {
     let plan = &found.branches.plan;
     let [low, high] = span(branch);
     let most = found.largest[number].as_ref()?;
-    let shares = found.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
+    let shares = found.branches.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
     let [least, greatest] =
         shares.fold([f64::INFINITY, 0.0], |[low, high], share| [low.min(share), f64::max(high, share)]);
     let percent = |share: f64| rounded(100.0 * share, 2);
@@ -271,7 +271,7 @@ fn attractors(found: &Found) -> Block {
                 rounded(sample.value, 6),
                 "-".to_owned(),
                 "irregular".to_owned(),
-                joule(sample.irregular.iter().copied().fold(0.0, f64::max)),
+                joule(sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max)),
                 format!("{} of {}", sample.irregular.len(), sample.starts),
                 if sample.rest_is_irregular { "yes" } else { "no" }.to_owned(),
             ]);

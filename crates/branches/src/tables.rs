@@ -71,7 +71,7 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
             );
         }
         if !sample.irregular.is_empty() {
-            let most = sample.irregular.iter().copied().fold(0.0, f64::max);
+            let most = sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max);
             attractors += &format!(
                 "{value},irregular,,,,{all},{},{},{most},,,,\n",
                 sample.irregular.len(),

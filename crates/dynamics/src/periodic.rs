@@ -5,7 +5,7 @@
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
 //! Read `shooting` (the equations and their solution), `orbit` (what a motion is like), `trace` (a branch), `events` (its bifurcations),
-//! `switch` (to the branch of twice the period), `settle` (what runs settle on), `largest`, then `branches`, which asks for all of them.
+//! `switch` (to the branch of twice the period), `settle` (what runs settle on), `largest`, then `branches`, which asks for all of them, and `worst`, the largest value over them.
 
 pub mod branches;
 pub mod events;
@@ -16,6 +16,7 @@ pub mod settle;
 pub mod shooting;
 pub mod switch;
 pub mod trace;
+pub mod worst;
 
 pub use branches::{Branches, Interval, Sample, branches};
 pub use events::{Event, EventKind};
@@ -23,3 +24,4 @@ pub use largest::largest;
 pub use orbit::Orbit;
 pub use shooting::Shooting;
 pub use trace::{Branch, End};
+pub use worst::{Largest, Motions, motions};

@@ -36,7 +36,7 @@ fn invariant_what_settles_lies_on_a_branch() {
     let mut lost = Vec::new();
     for numbers in DAMPERS {
         let settings = Settings::default();
-        let plan = Plan { parameter: Parameter::Omega, range: [5.0, 8.0], samples: 31, starts: 8 };
+        let plan = Plan { parameter: Parameter::Omega, range: [5.0, 8.0], samples: 31, starts: 8, looks: 2 };
         let found = branches(&numbers.scene(), plan, &settings, || ()).expect("branches");
         let shooting = equations(&numbers.scene(), &plan, &settings).expect("equations");
         let values = retune_dynamics::parameter::evenly(5.0, 8.0, count);

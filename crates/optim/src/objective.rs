@@ -8,6 +8,7 @@ pub mod ensemble;
 pub mod evaluate;
 pub mod evaluation;
 pub mod limits;
+mod motions;
 pub mod peak_energy;
 pub mod pieces;
 pub mod spec;

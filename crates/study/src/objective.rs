@@ -10,6 +10,8 @@ use retune_solver::Settle;
 
 /// Most samples of a band: at a third of a millisecond each, three seconds for each design.
 const MOST_SAMPLES: usize = 10_000;
+/// Most starts at a frequency.
+const MOST_STARTS: usize = 1000;
 
 /// Checks the rules that serde cannot; `path` is that of this objective in the study.
 ///
@@ -43,6 +45,16 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
     if objective.response == Response::Steady && objective.quantity == Measure::ContactForce {
         let allowed = "another quantity, or another response: what is steady touches no wall";
         return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
+    }
+    let unwatched =
+        matches!(objective.quantity, Measure::Velocity | Measure::Acceleration | Measure::GroundForce);
+    if objective.response == Response::Motions && unwatched {
+        let allowed = "energy, displacement, stroke or contact_force, which motions are watched for; or another response";
+        return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
+    }
+    if let Some(starts) = objective.starts.filter(|starts| !(1..=MOST_STARTS).contains(starts)) {
+        let allowed = "a whole number from 1 to 1000";
+        return bad(field("starts"), starts.to_string(), allowed);
     }
     let based = matches!(forcing.source, Source::Base(_));
     if objective.response == Response::Steady && objective.quantity == Measure::GroundForce && based {

@@ -2,8 +2,9 @@
 
 mod certificate;
 mod measure;
+mod motions;
 
-pub use certificate::{Certificate, Short};
+pub use certificate::{Certificate, Short, Verdict};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Job, open};

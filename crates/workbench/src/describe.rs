@@ -96,6 +96,7 @@ fn goal(study: &Study) -> Vec<String> {
         }
         (Response::Window, None) => "in the window".to_owned(),
         (Response::Settled, None) => "settled".to_owned(),
+        (Response::Motions, _) => "over all stable motions that are found".to_owned(),
         (Response::Steady, _) => "steady, exact".to_owned(),
     };
     if !objective.sum.is_empty() {
@@ -109,6 +110,8 @@ fn goal(study: &Study) -> Vec<String> {
             lines.push(format!("for the steady {name}"));
         } else if objective.response == Response::Settled {
             lines.push(format!("for the settled {name}"));
+        } else if objective.response == Response::Motions {
+            lines.push(format!("for the largest {name} of all stable motions that are found"));
         } else if study.quantity() != Measure::Energy {
             lines.push(format!("for {name} in the window"));
         }

@@ -1,6 +1,7 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
 pub mod band;
+pub(crate) mod choice;
 pub(crate) mod global;
 pub mod log;
 pub mod merge;
@@ -14,7 +15,7 @@ pub(crate) mod surf;
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
-use crate::certify::{self, certify};
+use crate::certify;
 use crate::job::{Done, Job, Made};
 use crate::parts::Shard;
 use crate::report::{self, Findings};
@@ -153,7 +154,10 @@ fn search_and_write(
     if starts.is_empty() {
         starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
     }
-    let refined = refine::refine(study, search, starts, results, watch)?;
+    let mut refined = refine::refine(study, search, starts, results, watch)?;
+    results.journal().check()?;
+    let (certificate, passed_over) = choice::choose(study, &mut refined)?;
+    refine::write_winner(study, &refined, results)?;
     let basins = explored
         .as_ref()
         .map(|found| Basins::new(found, study.quantity(), search, &refined, results.journal(), on_grid));
@@ -167,8 +171,7 @@ fn search_and_write(
     let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let searched = Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins };
-    let certificate = certify(&Study { scene: design, ..study.clone() })?;
+    let searched = Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over };
     results.write_json(certify::FILE, &certificate)?;
     let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short())?;
     results.write_json(OPTIMUM, &optimum)?;

@@ -1,6 +1,6 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
-use super::orbit::Orbit;
+use super::orbit::{Orbit, Seen as Values};
 use super::settle::{self, MOST_PERIODS, Settled, is_same, settle};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
@@ -12,7 +12,7 @@ use retune_solver::Settings;
 
 /// How far apart runs are started in the gaps without a stable motion, again and again, as shares of the range; with this share of the
 /// starts, for runs that do not settle take longest.
-const SPACINGS: [f64; 2] = [1.0 / 200.0, 1.0 / 400.0];
+pub const SPACINGS: [f64; 2] = [1.0 / 200.0, 1.0 / 400.0];
 const FEWER: usize = 4;
 /// The narrowest gap that is looked into, as a share of the range.
 const NARROW: f64 = 2e-4;
@@ -32,6 +32,8 @@ pub struct Plan {
     pub samples: usize,
     /// Starts at each, beside that from rest.
     pub starts: usize,
+    /// How often the gaps without a stable motion are looked into, more closely each time: at most as often as [`SPACINGS`] says.
+    pub looks: usize,
 }
 
 /// A motion on which runs settle, at one sample.
@@ -54,8 +56,8 @@ pub struct Sample {
     pub value: f64,
     /// The periodic motions, the most frequent first.
     pub attractors: Vec<Attractor>,
-    /// Largest energies of the structure in the runs that settled on none, J; the first one that from rest, if it did not.
-    pub irregular: Vec<f64>,
+    /// What the runs reach that settled on none; the first one that from rest, if it did not.
+    pub irregular: Vec<Values>,
     /// Whether the run from rest settled on none.
     pub rest_is_irregular: bool,
     /// Number of starts, that from rest among them.
@@ -90,7 +92,7 @@ pub fn branches(
     let shooting = equations(scene, &plan, settings)?;
     let mut values = evenly(plan.range[0], plan.range[1], plan.samples);
     let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new() };
-    let mut spacings = SPACINGS.iter();
+    let mut spacings = SPACINGS.iter().take(plan.looks);
     let mut starts = plan.starts;
     loop {
         let look = |&value: &f64| {
@@ -140,7 +142,7 @@ struct Seen {
     value: f64,
     /// Periods, the motion, how many starts, whether from rest.
     attractors: Vec<(usize, Solution, usize, bool)>,
-    irregular: Vec<f64>,
+    irregular: Vec<Values>,
     rest_is_irregular: bool,
     starts: usize,
 }
@@ -178,8 +180,8 @@ fn look(shooting: &Shooting, value: f64, starts: usize) -> Result<Seen, Error> {
     for (number, y) in all.enumerate() {
         let from_rest = number == 0;
         match settle(shooting, value, y)? {
-            Settled::Irregular(e1_max) => {
-                seen.irregular.push(e1_max);
+            Settled::Irregular(values) => {
+                seen.irregular.push(values);
                 seen.rest_is_irregular |= from_rest;
             }
             Settled::On(periods, solution) => {

@@ -8,18 +8,15 @@ const CLOSE: f64 = 0.02;
 /// Evaluations to locate a maximum.
 const EVALUATIONS: usize = 40;
 
-/// A quantity of a motion.
-pub type Quantity = fn(&Orbit) -> f64;
-
 /// The motion with the largest value of a quantity among the stable ones of a branch, located between the points of the branch.
-pub fn largest(branch: &Branch, quantity: Quantity) -> Option<Orbit> {
+pub fn largest(branch: &Branch, quantity: impl Fn(&Orbit) -> f64 + Copy) -> Option<Orbit> {
     let stable = |i: usize| branch.points.get(i).filter(|_| branch.is_stable_at(i));
-    let value = |i: usize| stable(i).map_or(f64::NEG_INFINITY, quantity);
+    let value = |i: usize| stable(i).map_or(f64::NEG_INFINITY, &quantity);
     let all = 0..branch.points.len();
     let most = all.clone().map(value).fold(f64::NEG_INFINITY, f64::max);
     let near = |&i: &usize| value(i) >= (1.0 - CLOSE) * most && stable(i).is_some();
-    let peaks =
-        all.filter(near).filter(|&i| (i == 0 || value(i - 1) <= value(i)) && value(i + 1) <= value(i));
+    // Of a level stretch, as a force of zero is, the first point.
+    let peaks = all.filter(near).filter(|&i| (i == 0 || value(i - 1) < value(i)) && value(i + 1) <= value(i));
     let located = peaks.filter_map(|i| {
         let own = stable(i)?.clone();
         let inner = i > 0 && branch.is_stable_after(i - 1) && branch.is_stable_after(i);
@@ -30,7 +27,7 @@ pub fn largest(branch: &Branch, quantity: Quantity) -> Option<Orbit> {
 }
 
 /// The largest value between the neighbours of a point, by golden sections.
-fn located(branch: &Branch, i: usize, quantity: Quantity) -> Option<Orbit> {
+fn located(branch: &Branch, i: usize, quantity: impl Fn(&Orbit) -> f64) -> Option<Orbit> {
     let shooting = &branch.shooting;
     let x = |i: usize| shooting.unknowns(&branch.points[i].states, branch.points[i].value);
     let (from, way) = (x(i - 1), x(i + 1) - x(i - 1));

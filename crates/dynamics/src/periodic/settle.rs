@@ -1,11 +1,12 @@
 //! What runs settle on: periodic motions from many starts, and how many of the starts end there.
 
+use super::orbit::{Seen, seen};
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
 use crate::poincare::PoincareMap;
 use crate::record::{coordinates, distance};
 use retune_model::{Bare, Coupled, Scene};
-use retune_solver::observe::{PrimaryEnergy, RunningMaximum, Unobserved};
+use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings};
 
 /// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
@@ -16,7 +17,7 @@ pub const MOST_PERIODS: usize = 12;
 const NEAR: f64 = 1e-4;
 /// Two motions nearer than this share of their size are one.
 pub const SAME: f64 = 1e-6;
-/// Periods over which an irregular motion's largest energy is taken.
+/// Periods over which an irregular motion's largest values are taken.
 const WATCHED: usize = 100;
 
 /// What a run ends on.
@@ -24,8 +25,8 @@ const WATCHED: usize = 100;
 pub enum Settled {
     /// A stable periodic motion.
     On(usize, Solution),
-    /// None was found: the largest energy of the structure over its last periods, J.
-    Irregular(f64),
+    /// None was found: the largest values over its last periods.
+    Irregular(Seen),
 }
 
 /// Follows a run from a state at a crest of the force.
@@ -51,11 +52,7 @@ pub fn settle(shooting: &Shooting, value: f64, y: [f64; 4]) -> Result<Settled, E
             return Ok(Settled::On(periods, solution));
         }
     }
-    let mut energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
-    for _ in 0..WATCHED {
-        motion = map.next(motion, &mut energy)?;
-    }
-    Ok(Settled::Irregular(energy.record().value))
+    Ok(Settled::Irregular(seen(&scene, shooting.settings(), WATCHED, &[motion.y])?))
 }
 
 /// The stable motion that the latest states of a run repeat, by the least number of periods.

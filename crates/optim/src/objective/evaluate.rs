@@ -8,6 +8,7 @@ use super::band::{Band, all_worst_over};
 use super::ensemble::SLACK;
 use super::evaluation::{Evaluation, Place, Run};
 use super::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
+use super::motions::{Found, largest_motion};
 use super::spec::{Objective, Response, Stiffnesses};
 use super::unusable::Unusable;
 use crate::chunks::in_groups;
@@ -189,6 +190,13 @@ impl Watch<'_> {
         if term.1.response == Response::Steady {
             return self.steady(scene, band.map_or([own; 2], |band| [band.from, band.to]), term);
         }
+        if term.1.response == Response::Motions {
+            return self.motions(
+                scene,
+                band.map_or((own, own, 1), |band| (band.from, band.to, band.samples)),
+                term,
+            );
+        }
         let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
         match band {
             Some(band) => self.worst_over(&band, at, cutoff),
@@ -223,10 +231,30 @@ impl Watch<'_> {
             Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
             Response::Window => extremes(&scene, self.window, self.settings, ask)?,
             Response::Steady => return self.steady(&scene, [omega; 2], (number, term)),
+            Response::Motions => return self.motions(&scene, (omega, omega, 1), (number, term)),
         };
         let largest = found.largest.value;
         self.see(Place { largest, scene, phase, term: number }, found.stroke, found.force, found.settled);
         Ok([largest, found.stroke, found.force])
+    }
+
+    /// The largest over all motions in a band of so many samples. The place is that of the largest, which may not be of a run from rest.
+    fn motions(
+        &self,
+        scene: &Scene,
+        (from, to, samples): (f64, f64, usize),
+        (number, term): Numbered,
+    ) -> Result<Largest, Unusable> {
+        if scene.damper.is_none() {
+            return self.steady(scene, [from, to], (number, term));
+        }
+        let Found { at, largest: [largest, stroke, force], settled } =
+            largest_motion(scene, (from, to, samples), term, self.settings)?;
+        let mut scene = *scene;
+        scene.forcing.frequency = NonNegative::new(at).map_err(Unusable::Frequency)?;
+        let place = Place { largest, scene, phase: 0.0, term: number };
+        self.see(place, stroke, force, settled);
+        Ok([largest, stroke, force])
     }
 
     fn steady(&self, scene: &Scene, band: [f64; 2], (number, term): Numbered) -> Result<Largest, Unusable> {

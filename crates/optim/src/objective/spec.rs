@@ -22,6 +22,10 @@ pub struct Objective {
     pub k1: Option<Stiffnesses>,
     /// The part of the response in which the quantity is evaluated: in `window`, steady, or settled.
     pub response: Response,
+    /// Starts at each frequency beside that from rest, for the response "motions".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub starts: Option<usize>,
     /// The criterion by which a motion is settled, for the response "settled".
     #[serde(skip_serializing_if = "is_default")]
     pub settle: Settle,
@@ -101,6 +105,9 @@ pub enum Response {
     /// The maximum once the motion of a run from rest has become periodic, see `settle`; the maximum in `window` if it has not by the
     /// end of the run (the number of such runs is reported). Valid for motions with contacts as well.
     Settled,
+    /// The largest over every stable periodic motion that is found, from rest and from other starts, exact in ω along their branches; where
+    /// none is known, the largest of the runs that are made there. Tens to hundreds of times the work of a window.
+    Motions,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
@@ -116,6 +123,9 @@ fn is_energy(quantity: &Measure) -> bool {
 fn is_default(settle: &Settle) -> bool {
     *settle == Settle::default()
 }
+
+/// Starts beside that from rest, where a study does not say how many.
+pub const STARTS: usize = 16;
 
 fn samples() -> usize {
     61

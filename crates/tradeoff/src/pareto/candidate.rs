@@ -2,6 +2,7 @@
 
 use retune_model::Design;
 use retune_study::{Sweep, fields};
+use retune_workbench::certify::Verdict;
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -57,6 +58,19 @@ impl Candidate {
     /// Whether it is of the same damper and has nearly the same E1max.
     pub fn is_like(&self, other: &Self) -> bool {
         self.damper == other.damper && (self.e1_max / other.e1_max - 1.0).abs() < SAME
+    }
+
+    /// Whether its certificate says that other starts than rest lead to much more.
+    pub fn is_unsafe(&self) -> bool {
+        self.verdict == Verdict::FromRest.name()
+    }
+
+    /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
+    pub fn is_nearly(&self, other: &Self) -> bool {
+        let near = |(a, b): (f64, f64)| {
+            a.is_nan() && b.is_nan() || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
+        };
+        self.damper == other.damper && self.at.values().into_iter().zip(other.at.values()).all(near)
     }
 
     /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.

@@ -62,20 +62,27 @@ impl Fronts {
         Self { plan, designs: Vec::new(), given: Vec::new(), certified: Vec::new() }
     }
 
-    /// The number of the design found that is the best of a damper under a bound; none where none keeps it.
+    /// The number of the design found that is the best of a damper under a bound; none where none keeps it. Of those as good, the best
+    /// that is not known to do much worse from other starts than rest, nor is nearly one that does.
     pub(super) fn row_index(&self, damper: usize, sweep: Sweep, bound: f64) -> Option<usize> {
-        let kept =
-            |(_, design): &(usize, &Candidate)| design.damper == damper && design.excess(sweep, bound) == 0.0;
-        let all = self.designs.iter().enumerate().filter(kept);
-        all.min_by(|a, b| a.1.known().total_cmp(&b.1.known())).map(|(number, _)| number)
+        let keeps = |design: &Candidate| design.damper == damper && design.excess(sweep, bound) == 0.0;
+        let mut kept: Vec<usize> = (0..self.designs.len()).filter(|&i| keeps(&self.designs[i])).collect();
+        kept.sort_by(|&a, &b| self.designs[a].known().total_cmp(&self.designs[b].known()));
+        let most = (1.0 + SAME) * self.designs[*kept.first()?].known();
+        let unsafe_ones = || self.designs.iter().filter(|design| design.is_unsafe());
+        let is_safe = |i: &&usize| !unsafe_ones().any(|other| other.is_nearly(&self.designs[**i]));
+        let mut as_good = kept.iter().take_while(|&&i| self.designs[i].known() <= most);
+        as_good.find(is_safe).or(kept.first()).copied()
     }
 
     /// The best designs under each bound, the dampers in their order under each.
     pub fn rows(&self, sweep: Sweep) -> Vec<Row<'_>> {
         let row = |bound: f64, damper: usize| {
             let kept = |design: &&Candidate| design.damper == damper && design.excess(sweep, bound) == 0.0;
-            let all = self.designs.iter().chain(&self.given);
-            let design = all.filter(kept).min_by(|a, b| a.known().total_cmp(&b.known()));
+            let found = self.row_index(damper, sweep, bound).map(|number| &self.designs[number]);
+            let given = self.given.iter().filter(kept).min_by(|a, b| a.known().total_cmp(&b.known()));
+            let is_better = |given: &&Candidate| found.is_none_or(|found| given.known() < found.known());
+            let design = given.filter(is_better).or(found);
             Row { sweep, bound, damper, design }
         };
         let dampers = 0..self.plan.dampers.len();

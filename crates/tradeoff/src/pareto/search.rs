@@ -96,46 +96,41 @@ impl Fronts {
         Some(Candidate { damper, at, e1_max: found.energy, checked: None, stroke, force, verdict })
     }
 
-    /// Looks at the best designs under each bound once more, on the finest samples, until the best by these is known; those that descents
-    /// found get a verdict.
+    /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
+    /// best by both are known.
     fn judge(&mut self) -> Result<(), Error> {
         loop {
             let rows = self
                 .all()
                 .into_iter()
-                .filter_map(|Under { damper, sweep, bound }| self.row_index(damper, sweep, bound));
-            let mut open: Vec<usize> = rows.filter(|&at| self.designs[at].checked.is_none()).collect();
-            open.sort_unstable();
-            open.dedup();
+                .filter_map(|under| Some((self.row_index(under.damper, under.sweep, under.bound)?, under)));
+            let open = |design: &Candidate| design.checked.is_none() || design.verdict == CONTINUED;
+            let mut open: Vec<(usize, Under)> = rows.filter(|&(at, _)| open(&self.designs[at])).collect();
+            open.sort_by_key(|(at, _)| *at);
+            open.dedup_by_key(|(at, _)| *at);
             if open.is_empty() {
-                break;
+                return Ok(());
             }
-            let check = |&at: &usize| {
-                let Candidate { damper, at: design, e1_max, .. } = &self.designs[at];
-                let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), design);
-                (
-                    at,
-                    study
-                        .and_then(|study| look(&study))
-                        .map_or(f64::INFINITY, |found| found.energy.max(*e1_max)),
-                )
-            };
-            let checked: Vec<(usize, f64)> = open.par_iter().map(check).collect();
-            for (at, value) in checked {
-                self.designs[at].checked = Some(value);
+            let judged = open.par_iter().map(|&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)));
+            for (at, design) in judged.collect::<Result<Vec<_>, Error>>()? {
+                self.designs[at] = design;
             }
         }
-        for under in self.all() {
-            let Some(at) = self.row_index(under.damper, under.sweep, under.bound) else { continue };
-            let Candidate { at: design, verdict, .. } = self.designs[at].clone();
-            if verdict == CONTINUED {
-                let study = self.under(under, Vec::new())?;
-                let scene = study.scene_at(&design);
-                let own = Study { scene: scene.unwrap_or(study.scene), ..study };
-                self.designs[at].verdict = certify(&own)?.short().verdict();
-            }
+    }
+
+    /// A design looked at on the finest samples; or, where that is done, with the verdict of its certificate.
+    fn judged(&self, design: &Candidate, under: Under) -> Result<Candidate, Error> {
+        let Candidate { damper, at, e1_max, checked, .. } = design;
+        if checked.is_none() {
+            let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
+            let seen =
+                study.and_then(|study| look(&study)).map_or(f64::INFINITY, |found| found.energy.max(*e1_max));
+            return Ok(Candidate { checked: Some(seen), ..design.clone() });
         }
-        Ok(())
+        let study = self.under(under, Vec::new())?;
+        let scene = study.scene_at(at).unwrap_or(study.scene);
+        let certificate = certify(&Study { scene, ..study })?;
+        Ok(Candidate { verdict: certificate.short().verdict(), ..design.clone() })
     }
 
     /// Every bound for every damper.

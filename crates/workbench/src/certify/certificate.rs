@@ -2,11 +2,13 @@
 
 mod limits;
 mod measured;
+mod motions;
 mod text;
 mod verdict;
 
 pub use limits::{Kept, Near};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
+pub use motions::{Another, Irregular, Motions};
 pub use verdict::Verdict;
 
 use crate::Error;
@@ -45,6 +47,9 @@ pub struct Certificate {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) finer: Option<f64>,
     pub(crate) motion: Motion,
+    /// Every motion that was found, from rest and from other starts, where the damper can strike and the force has a period.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) motions: Option<Motions>,
     pub(crate) sensitivity: Vec<Sensitivity>,
     pub(crate) neighbourhood: Neighbourhood,
 }
@@ -109,7 +114,8 @@ impl Certificate {
         let predictable = verdict::is_predictable(error_bar, measured.worst_run.value.value);
         let value = Amount::new(study.quantity(), own.energy);
         let (verdict, words) = verdict::judge(value, error_bar, predictable, &measured);
-        let Measured { worst_run, convergence, finer, motion, sensitivity, neighbourhood, limits } = measured;
+        let Measured { worst_run, convergence, finer, motion, motions, sensitivity, neighbourhood, limits } =
+            measured;
         Self {
             made_by: MadeBy::new(study),
             design: TunedDamper::of(damper),
@@ -124,6 +130,7 @@ impl Certificate {
             convergence,
             finer,
             motion,
+            motions,
             sensitivity,
             neighbourhood,
         }

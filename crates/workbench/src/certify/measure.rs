@@ -3,13 +3,14 @@
 use super::certificate::{
     Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Run, Sensitivity, WorstRun,
 };
+use super::motions::coexisting;
 use crate::Error;
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Scene, Source};
-use retune_optim::{Ensemble, Goal, PerLimit, Place, Response, Statistic};
-use retune_solver::{Ask, Method, Settings, Settle, SolverError, Window, extremes, settled};
+use retune_optim::{Ensemble, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Unusable};
+use retune_solver::{Ask, Method, Settings, Settle, Window, extremes, settled};
 use retune_study::{Setting, Study};
 
 /// Relative errors of a parameter that its sensitivity is read from.
@@ -53,6 +54,13 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
         Source::Decay(_) => Motion::decay(),
         _ => Motion::new(&classify(&follow(&own.worst.scene, None, Stretch::default(), &settings)?)),
     };
+    let motions = match coexisting(&study.scene, &own, &goal, &settings)? {
+        None => None,
+        Some((motions, reached)) => {
+            near.push(Near { at: "on a motion from another start".to_owned(), neighbour: false, reached });
+            Some(motions)
+        }
+    };
     let limits = Kept::new(&goal.limits, &own.reached, &near);
     let Place { largest, scene, phase, .. } = own.worst;
     let quantity = study.quantity();
@@ -62,7 +70,8 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
         k1: scene.primary.stiffness.get(),
         phase,
     };
-    let measured = Measured { worst_run, convergence, finer, motion, sensitivity, neighbourhood, limits };
+    let measured =
+        Measured { worst_run, convergence, finer, motion, motions, sensitivity, neighbourhood, limits };
     Ok(Certificate::new(study, damper, &own, measured))
 }
 
@@ -79,7 +88,7 @@ fn finer(goal: &Goal) -> Option<Goal> {
 }
 
 /// The value of the worst run by every method of the convergence study.
-fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Run>, SolverError> {
+fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Run>, Unusable> {
     let (response, settle) =
         goal.term(worst.term).map_or((Response::Steady, STEADY), |term| (term.response, term.settle));
     let quantity = goal.objective.quantity();
@@ -89,13 +98,22 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
         let found = match response {
             Response::Window => extremes(&worst.scene, goal.window, &settings, ask)?,
             Response::Settled => settled(&worst.scene, goal.window, settle, &settings, ask)?,
+            Response::Motions => {
+                let term = goal.term(worst.term).cloned().unwrap_or_default();
+                let objective = Objective { omega: None, k1: None, ensemble: None, ..term };
+                let own = Goal { objective, limits: Limits::default(), ..goal.clone() };
+                let value = own.evaluate(&worst.scene, &settings, f64::INFINITY)?.energy;
+                return Ok(Run { method, rtol, value: Amount::new(quantity, value) });
+            }
             Response::Steady => {
                 settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask)?
             }
         };
         Ok(Run { method, rtol, value: Amount::new(quantity, found.largest.value) })
     };
-    CONVERGENCE.par_iter().map(run).collect()
+    // Motions are followed by the study's own method alone.
+    let other = |method: Method| response != Response::Motions || method == Method::Hybrid;
+    CONVERGENCE.par_iter().filter(|(method, _)| other(*method)).map(run).collect()
 }
 
 /// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to

@@ -44,6 +44,7 @@ pub fn objective(findings: &Findings) -> String {
     let how = |response| match response {
         Response::Window => format!("in the window from {window}"),
         Response::Settled => "of the settled motion".to_owned(),
+        Response::Motions => "of every stable motion that is found".to_owned(),
         Response::Steady => "of the steady motion, in closed form".to_owned(),
     };
     let mut hows: Vec<String> = objective.terms().iter().map(|(_, term)| how(term.response)).collect();

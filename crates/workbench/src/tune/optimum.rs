@@ -3,6 +3,7 @@
 mod answer;
 pub(crate) mod notes;
 
+use super::choice::PassedOver;
 use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
@@ -48,6 +49,9 @@ pub struct Optimum {
     pub(crate) global: Option<Basins>,
     refine: Refinement,
     pub(crate) failures: FailureNote,
+    /// Designs with smaller values that other motions make much worse, if one without was as good.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) passed_over: Vec<PassedOver>,
     /// The short form of `certificate.json`.
     certificate: Short,
     simulation: Summary,
@@ -62,6 +66,7 @@ pub(super) struct Searched<'a> {
     pub surf: Option<&'a Surf>,
     pub explored: Option<&'a Explored>,
     pub basins: Option<Basins>,
+    pub passed_over: Vec<PassedOver>,
 }
 
 /// A damper that was found, and its value by the objective.
@@ -128,7 +133,7 @@ impl Optimum {
     pub(super) fn new(
         study: &Study,
         search: &Search,
-        Searched { surf, explored, basins }: Searched,
+        Searched { surf, explored, basins, passed_over }: Searched,
         refined: &Refined,
         summary: Summary,
         evaluation: Evaluation,
@@ -167,6 +172,7 @@ impl Optimum {
                 explored.map(|explored| &explored.failures),
                 Some(&refined.objective.failures()),
             ]),
+            passed_over,
             certificate,
             simulation: summary,
             start: start(refined)?,

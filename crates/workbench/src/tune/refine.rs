@@ -30,14 +30,13 @@ pub struct Run {
 }
 
 impl Refined {
-    /// The run that found the smallest value; of equal ones the first.
+    /// The run that found the smallest value, of equal ones the first; or that which was chosen for its safety.
     pub fn best(&self) -> &Run {
         &self.runs[self.winner]
     }
 }
 
-/// Refines every start; writes `fminsearch.csv` and `fminsearch.txt` of the best run, and `fminsearch-starts.csv` of all
-/// where there are several.
+/// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
 ///
 /// # Errors
 /// A run cannot be started, or a file cannot be written.
@@ -71,7 +70,6 @@ pub(super) fn refine(
         runs.push(run);
     }
     let refined = Refined { objective, runs, winner };
-    write_winner(study, &refined, results)?;
     if refined.runs.len() > 1 {
         all.finish()?;
     }
@@ -109,7 +107,11 @@ fn run(
     Ok(Run { rows, minimum })
 }
 
-fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
+/// Writes `fminsearch.csv` and `fminsearch.txt` of the run that was chosen.
+///
+/// # Errors
+/// A file cannot be written.
+pub(super) fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
     let varied = refined.objective.variables();
     let mut csv = results.file("fminsearch.csv")?;
     let mut txt: Pending = results.file("fminsearch.txt")?;

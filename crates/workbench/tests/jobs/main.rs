@@ -9,6 +9,7 @@ mod desk;
 mod evaluate;
 mod interrupted;
 mod links;
+mod motions;
 mod observers;
 mod quantity;
 mod replaced;

@@ -1,6 +1,7 @@
 //! The measurements that a certificate is made from.
 
 use super::limits::Kept;
+use super::motions::Motions;
 use crate::amount::Amount;
 use retune_dynamics::{Kind, Regime};
 use retune_solver::Method;
@@ -78,6 +79,7 @@ pub struct Measured {
     pub convergence: Vec<Run>,
     pub finer: Option<f64>,
     pub motion: Motion,
+    pub motions: Option<Motions>,
     pub sensitivity: Vec<Sensitivity>,
     pub neighbourhood: Neighbourhood,
     pub limits: Option<Kept>,

@@ -48,6 +48,9 @@ impl std::fmt::Display for Certificate {
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
+        if let Some(motions) = &self.motions {
+            writeln!(f, "motions       {}", motions.words())?;
+        }
         writeln!(f, "exponent      {exponent:.4} ± {exponent_error:.4} /s, the largest Lyapunov exponent")?;
         writeln!(
             f,

@@ -19,6 +19,9 @@ const SENSITIVE: f64 = 0.1;
 pub enum Verdict {
     /// Small errors change little.
     Robust,
+    /// Small errors change little, but other starts, or frequencies between the samples, lead to a motion with much more.
+    #[serde(rename = "from rest only")]
+    FromRest,
     /// Small errors change the value little, but break a limit.
     Edge,
     /// Small errors change much, in a regular way or at an edge.
@@ -33,6 +36,7 @@ impl Verdict {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Robust => "robust",
+            Self::FromRest => "from rest only",
             Self::Edge => "edge",
             Self::Sensitive => "sensitive",
             Self::SingleChaoticRealisation => "single chaotic realisation",
@@ -101,7 +105,16 @@ fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -
         Some(worst) if worst.worst > (1.0 + SENSITIVE) * own => {
             (Verdict::Sensitive, format!("sensitive: {said}, {} times as much", short(worst.worst / own)))
         }
-        _ => (Verdict::Robust, format!("robust: at worst {said}")),
+        _ => match all.motions.as_ref().and_then(|motions| motions.largest.as_ref()) {
+            Some(other) if other.value.value > (1.0 + WIDE) * own => {
+                let words = format!("{}; {}", other.words(), other.reached());
+                (Verdict::FromRest, format!("robust from rest only: {said}; but a motion has {words}"))
+            }
+            other => {
+                let others = if other.is_some() { "; no motion from other starts has 5 % more" } else { "" };
+                (Verdict::Robust, format!("robust: at worst {said}{others}"))
+            }
+        },
     }
 }
 
@@ -131,10 +144,12 @@ pub fn rule(quantity: Measure, limits: bool) -> String {
     format!(
         "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of {name}; single chaotic realisation: wide, and the \
          motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sensitive: \
-         wide, or 1 % of one parameter raises {name} by more than {} %; robust: none of these{edge}. predictable: the error bar is at \
+         wide, or 1 % of one parameter raises {name} by more than {} %; from rest only: none of these, but a motion from \
+         another start or between the samples has {} % more; robust: none of these{edge}. predictable: the error bar is at \
          most {} % of the worst run's {name}",
         100.0 * WIDE,
         100.0 * SENSITIVE,
+        100.0 * WIDE,
         100.0 * PREDICTABLE
     )
 }

@@ -105,6 +105,7 @@ impl Optimum {
                 counted(*runs, "run")
             ));
         }
+        lines.extend(self.passed_over.iter().map(|passed| passed.words()));
         lines.extend(notes::on_bound_words(&self.on_bound));
         if !self.on_edge.is_empty() {
             let names: Vec<&str> = self.on_edge.iter().map(|variable: &Variable| variable.symbol()).collect();

@@ -1,0 +1,72 @@
+//! Motions beside those from rest: what certificates and searches make of them.
+
+use crate::desk::{Desk, committed, number, studies};
+use crate::observers::good;
+use crate::{found, request};
+use retune_study::{Setting, Study};
+use retune_workbench::Silent;
+use retune_workbench::certify::certify;
+use retune_workbench::tune::tune;
+use serde_json::{Value, json};
+
+/// The best damper by runs from rest that `fronts` once found: an isola from 5.8155 to 6.0684 rad/s reaches 735.639 J
+/// (`just branches-all`, results/branches/isola).
+fn isola() -> Study {
+    retune_study::read(&studies().join("ssvi-isola.json")).expect("a study")
+}
+
+/// With 40 mm more D it is gone (28.1 mm at the frequency of its largest energy, a little more beside it).
+#[test]
+fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
+    let certificate = good(certify(&isola()));
+    let said = certificate.to_string();
+    let seen = json!(certificate);
+    assert_eq!(seen["verdict"], "from rest only", "{said}");
+    assert!((number(&seen, "/E1max") - 225.796).abs() < 1e-3);
+    let largest = &seen["motions"]["largest"];
+    assert!((number(largest, "/E1max") - 735.639).abs() < 1e-3, "{largest}");
+    assert!((number(largest, "/omega") - 5.98192).abs() < 1e-4 && largest["from_rest"] == false, "{largest}");
+    assert!(largest["periods"] == 2 && (0.1..0.4).contains(&number(largest, "/share")), "{largest}");
+    assert!((0.9..1.0).contains(&number(&seen, "/motions/covered")), "{said}");
+    assert!(said.contains("a motion has 735.639 J at omega = 5.98192 rad/s (2 periods, impacts "), "{said}");
+    let safe = isola().with(&[Setting::new("D", 0.607_212_882_590_035_9 + 0.04)]).expect("a study");
+    let safe = json!(good(certify(&safe)));
+    assert_eq!(safe["verdict"], "robust", "{}", safe["words"]);
+}
+
+/// The damper of `results/ssvi` has 225.814 J, 0.02 J more than that with the isola, and is taken.
+#[test]
+fn contract_of_two_as_good_the_search_takes_the_one_that_is_safe() {
+    let mut study = committed("ssvi-isola.json");
+    let at = |k2: f64, c2: f64, d: f64, c: f64| json!({ "k2": k2, "c2": c2, "D": d, "C": c });
+    study["optimize"]["starts"] =
+        json!([at(597.274, 95.72416, 0.6072129, 0.037405), at(583.9214, 94.970517, 0.0288498, 1.1045446)]);
+    // The ends are the starts.
+    study["optimize"]["refine"]["MaxIter"] = json!(0);
+    let desk = Desk::with(&study);
+    let optimum = found(good(tune(&request(&desk, "study.json", "out"), &Silent)));
+    let seen = desk.read_json("out/optimum.json");
+    assert!((number(&seen, "/k2") - 583.9214).abs() < 5.0, "{seen}");
+    let passed = seen["passed_over"].as_array().expect("one");
+    assert_eq!(passed.len(), 1);
+    assert!(passed[0]["start"] == 1 && number(&passed[0], "/E1max") < number(&seen, "/E1max"));
+    assert!(optimum.report().contains("passed over for it: start 1"), "{}", optimum.report());
+}
+
+/// As an objective: the same damper has the energy of its isola, and with the response "window" that of the run from rest.
+#[test]
+fn regress_the_response_motions_has_what_other_starts_lead_to() {
+    let mut study = committed("ssvi-isola.json");
+    let value = |study: &Value| {
+        let desk = Desk::with(study);
+        let study = retune_study::read(&desk.path("study.json")).expect("a study");
+        study.energy(&study.scene).expect("a value")
+    };
+    assert!((value(&study) - 225.796).abs() < 1e-3);
+    study["optimize"]["objective"]["response"] = json!("motions");
+    assert!((value(&study) - 735.639).abs() < 1e-3);
+    study["optimize"]["objective"]["quantity"] = json!("a1max");
+    let desk = Desk::with(&study);
+    let error = retune_study::read(&desk.path("study.json")).expect_err("not watched");
+    assert!(error.to_string().contains("optimize.objective.quantity"), "{error}");
+}
