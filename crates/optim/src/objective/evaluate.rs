@@ -8,43 +8,33 @@ use super::band::{Band, all_worst_over};
 use super::ensemble::SLACK;
 use super::evaluation::{Evaluation, Place, Run};
 use super::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
-use super::spec::{Objective, Response, Stiffnesses};
+use super::spec::{Goal, Objective, Response, Stiffnesses};
 use super::unusable::Unusable;
 use crate::chunks::in_groups;
 use retune_model::{Bare, Coupled, NonNegative, Scene, Worst};
 use retune_solver::{Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
-/// The objective of a search, the window of its runs, and the limits.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Goal {
-    /// The objective.
-    pub objective: Objective,
-    /// The window of the objective's runs; a steady response has none.
-    pub window: Window,
-    /// The limits, which apply to the largest values over all runs of all terms.
-    pub limits: Limits,
+/// Whether an evaluation goes on.
+pub type GoesOn<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// What is asked before each run of an evaluation in time, and what is given each run.
+#[derive(Clone, Copy)]
+struct Hooks<'a> {
+    goes_on: GoesOn<'a>,
+    keep: &'a (dyn Fn(Run) + Sync),
 }
 
-impl From<Window> for Goal {
-    /// E1max in a window, without limits.
-    fn from(window: Window) -> Self {
-        Self { objective: Objective::default(), window, limits: Limits::default() }
-    }
-}
+/// No questions, and nothing kept.
+const FREE: Hooks<'static> = Hooks { goes_on: &|| true, keep: &|_| () };
 
 impl Goal {
-    /// A term of the objective, by its number.
-    pub fn term(&self, number: usize) -> Option<&Objective> {
-        self.objective.terms().get(number).map(|(_, term)| *term)
-    }
-
     /// Evaluates a scene. The value may be any number above `cutoff` once it is known to exceed it; the rest is then incomplete.
     ///
     /// # Errors
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
     pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
-        self.evaluate_and(scene, settings, cutoff, |_| ())
+        self.evaluate_with(scene, settings, cutoff, FREE)
     }
 
     /// The same, and `keep` is given each run, in any order.
@@ -58,18 +48,35 @@ impl Goal {
         cutoff: f64,
         keep: impl Fn(Run) + Sync,
     ) -> Result<Evaluation, Unusable> {
+        self.evaluate_with(scene, settings, cutoff, Hooks { keep: &keep, ..FREE })
+    }
+
+    /// The same as long as `goes_on` says so, which is asked before each run in time.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`], and [`Unusable::Stopped`].
+    pub fn evaluate_while(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        cutoff: f64,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Evaluation, Unusable> {
+        self.evaluate_with(scene, settings, cutoff, Hooks { goes_on, ..FREE })
+    }
+
+    fn evaluate_with(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        cutoff: f64,
+        hooks: Hooks<'_>,
+    ) -> Result<Evaluation, Unusable> {
         let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
-        let nothing = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
-        let mut reached = PerLimit::default();
-        reached.set(Limit::Cavity, cavity);
-        let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
-        let watch = Watch {
-            settings,
-            window: self.window,
-            limits: &self.limits,
-            keep: &keep,
-            seen: Mutex::new(seen),
-        };
+        let mut watch = Watch::new(self, scene, settings, hooks);
+        let seen = watch.seen.get_mut().unwrap_or_else(PoisonError::into_inner);
+        seen.reached.set(Limit::Cavity, cavity);
+        let reached = seen.reached;
         // A cavity above its limit makes the design infeasible without any run.
         let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
             f64::INFINITY
@@ -91,6 +98,21 @@ impl Goal {
         })
     }
 
+    /// The worst run of a term at a phase of the force (rad), without limits.
+    pub(super) fn worst(
+        &self,
+        scene: &Scene,
+        phase: f64,
+        term: Numbered,
+        settings: &Settings,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Place, Unusable> {
+        let free = Self { limits: Limits::default(), ..self.clone() };
+        let watch = Watch::new(&free, scene, settings, Hooks { goes_on, ..FREE });
+        watch.over_k1(scene, phase, term, f64::INFINITY)?;
+        Ok(watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
+    }
+
     /// The weighted sum, in the unit of the quantity.
     fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
         if self.objective.sum.is_empty() {
@@ -108,18 +130,6 @@ impl Goal {
     }
 }
 
-impl Evaluation {
-    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
-    /// with the force starting at a crest.
-    pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
-        scene.forcing.frequency = self.worst.scene.forcing.frequency;
-        if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
-            scene.primary.stiffness = self.worst.scene.primary.stiffness;
-        }
-        scene
-    }
-}
-
 /// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 struct Seen {
     reached: PerLimit<f64>,
@@ -133,17 +143,23 @@ struct Watch<'a> {
     settings: &'a Settings,
     window: Window,
     limits: &'a Limits,
-    keep: &'a (dyn Fn(Run) + Sync),
+    hooks: Hooks<'a>,
     seen: Mutex<Seen>,
 }
 
 /// A term with its number.
-type Numbered<'a> = (usize, &'a Objective);
+pub(super) type Numbered<'a> = (usize, &'a Objective);
 
 /// The largest quantity, stroke (m) and contact force (N) of some runs; all but the first are 0 if no limit needs them.
 type Largest = [f64; 3];
 
-impl Watch<'_> {
+impl<'a> Watch<'a> {
+    fn new(goal: &'a Goal, scene: &Scene, settings: &'a Settings, hooks: Hooks<'a>) -> Self {
+        let worst = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
+        let seen = Mutex::new(Seen { reached: PerLimit::default(), worst, runs: 0, unsettled: 0 });
+        Self { settings, window: goal.window, limits: &goal.limits, hooks, seen }
+    }
+
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
         let Some(ensemble) = &term.1.ensemble else { return Ok(self.over_k1(scene, 0.0, term, cutoff)?[0]) };
         let member = |i: u32, cutoff: f64| {
@@ -218,6 +234,9 @@ impl Watch<'_> {
     ) -> Result<Largest, Unusable> {
         let mut scene = *scene;
         scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
+        if !(self.hooks.goes_on)() {
+            return Err(Unusable::Stopped);
+        }
         let ask = Ask { measure: term.quantity, phase, walls: self.limits.walls_from(), cutoff };
         let found = match term.response {
             Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
@@ -252,7 +271,7 @@ impl Watch<'_> {
     }
 
     fn see(&self, place: Place, stroke: f64, force: f64, settled: bool) {
-        (self.keep)(Run { place, reached: [place.largest, stroke, force] });
+        (self.hooks.keep)(Run { place, reached: [place.largest, stroke, force] });
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         seen.runs += 1;
         seen.unsettled += u64::from(!settled);

@@ -1,8 +1,8 @@
 //! The objective as a function of a design, as searches call it.
 
-use super::evaluate::Goal;
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
+use super::spec::Goal;
 use super::unusable::Unusable;
 use crate::search::minimax::{Height, Piece};
 use retune_model::{Damper, Scene, Variable};
@@ -61,6 +61,11 @@ impl PeakEnergy {
     /// The goal.
     pub fn goal(&self) -> &Goal {
         &self.goal
+    }
+
+    /// The settings of its runs.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The varied parameters, in the order of a design.

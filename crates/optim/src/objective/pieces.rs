@@ -4,10 +4,9 @@
 //! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
 //! those of the run at its frequency (the envelope theorem).
 
-use super::evaluate::Goal;
 use super::evaluation::{Place, Run};
 use super::limits::Limit;
-use super::spec::Response;
+use super::spec::{Goal, Response};
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene, Variable};

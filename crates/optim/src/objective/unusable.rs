@@ -27,6 +27,9 @@ pub enum Unusable {
     /// The run could not be finished.
     #[error(transparent)]
     Run(#[from] SolverError),
+    /// The evaluation was stopped on the way.
+    #[error("stopped before all of its runs were made")]
+    Stopped,
     /// The steady motion reaches a wall, so that it is not linear.
     #[error(
         "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \
