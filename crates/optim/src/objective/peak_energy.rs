@@ -1,5 +1,6 @@
 //! The objective as a function of a design, as searches call it.
 
+use super::evaluate::GoesOn;
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
 use super::spec::Goal;
@@ -142,6 +143,19 @@ impl PeakEnergy {
     /// As [`Goal::evaluate`].
     pub fn evaluate(&self, scene: &Scene, cutoff: f64) -> Result<Evaluation, Unusable> {
         self.goal.evaluate(scene, &self.settings, cutoff)
+    }
+
+    /// The same as long as `goes_on` says so; see [`Goal::evaluate_while`].
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate_while`].
+    pub fn evaluate_while(
+        &self,
+        scene: &Scene,
+        cutoff: f64,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Evaluation, Unusable> {
+        self.goal.evaluate_while(scene, &self.settings, cutoff, goes_on)
     }
 
     /// The failed evaluations so far.
