@@ -33,11 +33,21 @@ assert np.allclose([simplex.fun, evolved.fun, together.fun, descent.fun], simple
 
 # At one frequency the value is smooth: the paper's SSVI NES, four parameters, by derivatives. A limit on the stroke is a constraint with
 # derivatives of its own: the stroke is a problem, too.
-parts = rt.Structure(m1=1000, c1=452, k1=3.95e4), rt.SSVI(60, k2=584, c2=95, D=0.029, C=1.1)
-bounds = {"k2": (10, 600), "c2": (40, 1000), "D": (0, 1), "C": (0, 2)}
-search = {"P": 800, "omega": 6.63, "vary": list(bounds), "bounds": bounds}
-energy = rt.Problem(*parts, **search)
-stroke = rt.Problem(*parts, **search, quantity="stroke")
+
+
+def largest(quantity: str) -> rt.Problem:
+    return rt.Problem(
+        rt.Structure(m1=1000, c1=452, k1=3.95e4),
+        rt.SSVI(60, k2=584, c2=95, D=0.029, C=1.1),
+        P=800,
+        omega=6.63,
+        vary=["k2", "c2", "D", "C"],
+        bounds={"k2": (10, 600), "c2": (40, 1000), "D": (0, 1), "C": (0, 2)},
+        quantity=quantity,
+    )
+
+
+energy, stroke = largest("E1max"), largest("stroke")
 kept = {"type": "ineq", "fun": lambda x: 0.45 - stroke(x), "jac": lambda x: -stroke.gradient(x)}
 held = minimize(energy.value_and_gradient, energy.start, jac=True, method="SLSQP", bounds=energy.bounds, constraints=[kept])
 print(f"from {energy(energy.start):.2f} J, {stroke(energy.start):.4f} m to {held.fun:.2f} J, {stroke(held.x):.4f} m: {held.x.round(3)}")
