@@ -15,7 +15,7 @@ type Pools = (u32, [Option<(u16, Arc<ThreadPool>)>; 2]);
 
 static POOLS: Mutex<Pools> = Mutex::new((0, [None, None]));
 
-/// A pool of this many threads, by default one a core. The last is kept: to start threads takes as long as to evaluate a hundred designs.
+/// A pool of this many threads, by default one a core. The last is kept, so that not every batch starts threads.
 ///
 /// # Errors
 /// Their number is not allowed, or they cannot be started.
