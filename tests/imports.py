@@ -29,7 +29,7 @@ BELOW = {
     "branches": "model dynamics study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
-    "python": "solver optim dynamics study sweep store workbench tradeoff branches",
+    "python": "solver optim dynamics study sweep store workbench tradeoff branches paper",
     "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
 }
 

@@ -1,6 +1,6 @@
 //! Steady response of the linear scenes in closed form: no damper, or a damper that never touches.
 
-use crate::{Bare, Coupled, Measure};
+use crate::{Bare, Coupled, Measure, Variable};
 use nalgebra::Complex;
 
 /// Amplitudes of a steady harmonic motion `x1 = Re(X1 e^{iωt})`, `x2 - D = Re(X2 e^{iωt})`.
@@ -78,5 +78,41 @@ impl Coupled {
             e1_max: largest_energy(x1, k1, m1 * omega2),
             e2_max: largest_energy(x2, k2, m2 * omega2),
         }
+    }
+
+    /// The derivative of [`Steady::largest`] by a parameter of the damper, in the unit of the measure per SI unit of the parameter, at a
+    /// fixed angular frequency (rad/s). With `N = S d - m2 ω² Q` and primes for derivatives,
+    /// `X1' = (P e^{iφ} d' - X1 N') / N` and `X2' = (P e^{iφ} Q' - X2 N') / N`; walls that are not touched do not matter.
+    pub fn steady_by(&self, measure: Measure, variable: Variable, omega: f64) -> f64 {
+        let steady = self.steady(omega);
+        let bare = self.bare();
+        let Bare { m1, c1, k1, .. } = *bare;
+        let (m2, k2, c2) = self.damper();
+        let (omega2, one) = (omega * omega, Complex::new(1.0, 0.0));
+        let [by_spring, by_mass] = match variable {
+            Variable::K2 => [one, 0.0 * one],
+            Variable::C2 => [Complex::new(0.0, omega), 0.0 * one],
+            Variable::M2 => [0.0 * one, one],
+            Variable::D | Variable::C => return 0.0,
+        };
+        let spring = Complex::new(k2, omega * c2);
+        let primary = Complex::new(k1 - m1 * omega2, omega * c1);
+        let by_dynamic = by_spring - by_mass * omega2;
+        let divisor = primary * (spring - m2 * omega2) - spring * (m2 * omega2);
+        let by_divisor = primary * by_dynamic - (by_mass * spring + by_spring * m2) * omega2;
+        let by_x1 = (bare.force(omega) * by_dynamic - steady.x1 * by_divisor) / divisor;
+        let by_x2 = (bare.force(omega) * by_spring - steady.x2 * by_divisor) / divisor;
+        // Each measure is a constant times the size, or for the energy its square, of one complex number.
+        let [own, by] = match measure {
+            Measure::Stroke => [steady.x2 - steady.x1, by_x2 - by_x1],
+            Measure::GroundForce if bare.is_on_moving_base() => {
+                let ground = Complex::new(k1, omega * c1);
+                [ground * steady.x1 - bare.force(omega), ground * by_x1]
+            }
+            _ => [steady.x1, by_x1],
+        };
+        let largest = steady.largest(bare, omega, measure);
+        let power = if measure == Measure::Energy { 2.0 } else { 1.0 };
+        if largest == 0.0 { 0.0 } else { power * largest * (by / own).re }
     }
 }

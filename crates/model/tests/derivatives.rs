@@ -2,8 +2,8 @@
 
 mod scenes;
 
-use retune_model::Coupled;
-use scenes::{ROW1, SSVI, Spread, TWO_SIDED, slope};
+use retune_model::{Coupled, Measure, NonNegative, Source, Variable};
+use scenes::{Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
 
@@ -165,5 +165,43 @@ fn exact_rates_of_the_bare_motion() {
     assert_eq!(found[..3], [y[0], y[1], f[1]]);
     for order in 0..4 {
         assert_close(found[order + 1], differences[order], found[order + 1].abs(), 1e-10, "a rate");
+    }
+}
+
+/// Every measure of the steady response by every parameter of the damper, below and above the structure's own frequency.
+#[test]
+fn exact_steady_derivatives() {
+    let sources: [fn(NonNegative) -> Source; 3] = [Source::Force, Source::Imbalance, Source::Base];
+    let mut spread = Spread::new(4);
+    for source in sources {
+        for _ in 0..20 {
+            let numbers = Numbers {
+                k2: spread.logarithmic(200.0, 4000.0),
+                c2: spread.logarithmic(20.0, 800.0),
+                m2: spread.logarithmic(20.0, 100.0),
+                omega: spread.logarithmic(4.0, 9.0),
+                ..TMD
+            };
+            let scene = numbers.forced_by(source);
+            let damper = scene.damper.expect("a damper");
+            let at = |variable: Variable, value: f64| {
+                let mut damper = damper;
+                variable.set(&mut damper, value).expect("in range");
+                Coupled::new(&scene.primary, &scene.forcing, &damper)
+            };
+            for measure in Measure::ALL {
+                for variable in Variable::ALL {
+                    let value = variable.get(&damper);
+                    let largest = |share: f64| {
+                        let system = at(variable, value * (1.0 + share));
+                        [system.steady(numbers.omega).largest(system.bare(), numbers.omega, measure)]
+                    };
+                    let [expected] = slope(1e-3, largest);
+                    let found = value * at(variable, value).steady_by(measure, variable, numbers.omega);
+                    let what = format!("{measure:?} by {variable:?}, {:?}", scene.forcing.source);
+                    assert_close(found, expected, largest(0.0)[0].max(1e-300), 1e-10, &what);
+                }
+            }
+        }
     }
 }

@@ -15,12 +15,12 @@ pub mod search;
 
 pub use objective::band::{Band, worst_over};
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
-pub use objective::evaluate::Goal;
 pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
 pub use objective::peak_energy::{Counts, Failures, PeakEnergy};
-pub use objective::spec::{FrequencyBand, Objective, Part, Response, StiffnessRange, Stiffnesses};
+pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;
+pub use objective::watch::GoesOn;
 pub use retune_model::{Design, Variable};
 pub use search::fminsearch::{
     Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize,

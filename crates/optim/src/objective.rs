@@ -1,15 +1,18 @@
 //! The objective of a damper's design.
 //!
-//! Read `spec` (the specification in a study), `evaluate` (its value for a scene), then its parts: `band` (the worst over
-//! frequencies), `ensemble` (a statistic over small errors), `limits`; `pieces`, its derivatives; and `peak_energy`, the function that searches call.
+//! Read `spec` (the specification in a study), `evaluate` (its value for a scene: an `evaluation`), then its parts: `band` (the worst
+//! over frequencies), `ensemble` (a statistic over small errors), `limits`; `peak_energy`, the function that searches call; and its
+//! derivatives, `gradient` (of the value) and `pieces` (of each of the peaks that it is the largest of).
 
 pub mod band;
 pub mod ensemble;
 pub mod evaluate;
 pub mod evaluation;
+pub mod gradient;
 pub mod limits;
 mod motions;
 pub mod peak_energy;
 pub mod pieces;
 pub mod spec;
 pub mod unusable;
+pub mod watch;

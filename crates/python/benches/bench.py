@@ -96,7 +96,7 @@ def main() -> None:
     print(f"retune {rt.__version__}, Python {platform.python_version()}, numpy {np.__version__}, SciPy {scipy.__version__}")
     print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the beginning; least times, taken in turns\n")
 
-    batches("TMD (steady over a band)", tmd, 10_000, 15, 20)
+    batches("TMD (steady over a band)", tmd, 10_000, 60, 5)
     batches("SSVI NES (runs of 100 s)", ssvi, 10_000, 5, 1)
 
     x = np.array(tmd.start)

@@ -95,7 +95,7 @@ impl From<Unusable> for Fault {
             | Unusable::Stiffness(source)
             | Unusable::Member(source)
             | Unusable::Frequency(source) => Self::study(error.to_string(), Given::Number(source.value)),
-            Unusable::Touches { .. } => {
+            Unusable::Touches { .. } | Unusable::Stopped => {
                 Self::Study { message: error.to_string(), field: None, given: Given::Nothing }
             }
         }

@@ -1,12 +1,11 @@
 //! What takes seconds to hours: searches, certificates, verification. The files are those of the command line, to the last byte.
 
 use crate::errors::Fault;
-use crate::pool::check;
+use crate::pool::{check, pool};
 use crate::problem::{Core, json};
-use crate::watch::{Watch, caught, watched};
+use crate::watch::{caught, on_pool, watched};
 use pyo3::prelude::*;
 use retune_store::Begin;
-use retune_study::Setting;
 use retune_workbench::design::Wishes;
 use retune_workbench::job::Done;
 use retune_workbench::{Request, tune, verify as verification};
@@ -25,7 +24,7 @@ pub struct Asked {
 }
 
 impl Asked {
-    fn request(self, study: PathBuf) -> Result<Request, Fault> {
+    pub(crate) fn request(self, study: PathBuf) -> Result<Request, Fault> {
         let Self { out, resume, restart, replace, threads } = self;
         let threads = threads.map(check).transpose()?;
         let begin = match (resume, restart) {
@@ -86,7 +85,8 @@ pub fn certify(
     let threads = threads.map(check).transpose()?;
     let study = core.at(x)?;
     let request = Request { threads, ..Request::default() };
-    watched(py, None, |_| json(&request.on_threads(|| retune_workbench::certify::certify(&study))?))
+    let certificate = move || request.on_threads(|| retune_workbench::certify::certify(&study));
+    on_pool(py, &*pool(Some(1))?, move |_| json(&certificate()?))
 }
 
 /// Checks results; what is found goes to `tell`.
@@ -126,35 +126,6 @@ pub fn design_study(wishes: &str, kind: &str) -> PyResult<String> {
     Ok(caught(made)?)
 }
 
-/// How long tunings last: tunes the dampers of a study file anew for each stiffness; returns the directory of the results.
-///
-/// # Errors
-/// Those of the job, or Ctrl-C.
-#[pyfunction]
-pub fn track(
-    py: Python<'_>,
-    study: PathBuf,
-    k1: Vec<f64>,
-    asked: Asked,
-    tell: Option<Py<PyAny>>,
-) -> PyResult<PathBuf> {
-    let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
-    on_file(py, study, asked, tell, |request, watch| {
-        retune_tradeoff::track::track(request, &settings, watch).map(drop)
-    })
-}
-
-/// Pareto fronts of a study file; returns the directory of the results.
-///
-/// # Errors
-/// Those of the job, or Ctrl-C.
-#[pyfunction]
-pub fn fronts(py: Python<'_>, study: PathBuf, asked: Asked, tell: Option<Py<PyAny>>) -> PyResult<PathBuf> {
-    on_file(py, study, asked, tell, |request, watch| {
-        retune_tradeoff::pareto::pareto(request, watch).map(drop)
-    })
-}
-
 /// How every periodic motion of a study, or of the design behind results, is looked for: the parameter, its range, the values at which
 /// runs are started, and their starts.
 #[derive(FromPyObject)]
@@ -189,17 +160,4 @@ pub fn branches(
             Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
         }
     })
-}
-
-/// A job on a file of several studies.
-fn on_file(
-    py: Python<'_>,
-    study: PathBuf,
-    asked: Asked,
-    tell: Option<Py<PyAny>>,
-    job: impl FnOnce(&Request, &Watch) -> Result<(), retune_workbench::Error> + Send,
-) -> PyResult<PathBuf> {
-    let request = asked.request(study)?;
-    watched(py, tell.as_ref(), |watch| Ok(job(&request, watch)?))?;
-    Ok(request.out_of_file())
 }

@@ -5,12 +5,16 @@
 //!
 //! - `errors`: from every error to one of the package's exceptions.
 //! - `arrays`: numbers from numpy and back.
+//! - `columns`: what is told of an evaluation.
 //! - `watch`: long work without the interpreter's lock, which Ctrl-C ends and which tells how far it is.
 //! - `pool`: the threads that an evaluation may use.
-//! - `problem`: a study as a function of a design; `motion`: its runs and sweeps; `jobs`: what takes minutes and writes files.
+//! - `problem`: a study as a function of a design; `motion`: its runs and sweeps; `jobs`: what takes minutes and writes files;
+//!   `files`: the jobs whose answer is their files.
 
 mod arrays;
+mod columns;
 mod errors;
+mod files;
 mod jobs;
 mod motion;
 mod pool;
@@ -21,7 +25,9 @@ mod watch;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::jobs::{branches, certify, design_study, fronts, optimize, study_text, track, verify};
+    use crate::files::job;
+    #[pymodule_export]
+    use crate::jobs::{branches, certify, design_study, optimize, study_text, verify};
     #[pymodule_export]
     use crate::motion::{run, sweep};
     #[pymodule_export]

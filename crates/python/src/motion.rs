@@ -4,7 +4,7 @@ use crate::arrays::{numbers, table};
 use crate::errors::{Fault, Given};
 use crate::pool::pool;
 use crate::problem::{Core, json};
-use crate::watch::watched;
+use crate::watch::on_pool;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ pub fn run<'py>(
     settings: Vec<(String, f64)>,
 ) -> PyResult<Ran<'py>> {
     let study = changed(&core.at(x)?, &settings)?;
-    let (summary, samples) = watched(py, None, |_| moved(&study, interval))?;
+    let (summary, samples) = on_pool(py, &*pool(None)?, move |_| moved(&study, interval))?;
     let (grid, events): (Vec<_>, Vec<_>) =
         samples.into_iter().partition(|sample| sample.moment == Moment::Grid);
     let names = events.iter().map(|sample| sample.moment.name()).collect();
@@ -65,12 +65,12 @@ pub fn sweep<'py>(
         return Err(Fault::study(message, Given::Nothing).into());
     }
     let sweep = swept(core.at(x)?, over, &values, objective)?;
-    let rows = watched(py, None, |watch| {
+    let columns = sweep.columns();
+    let rows = on_pool(py, &*pool(threads)?, move |watch| {
         let row = |value: &f64| (!watch.is_stopped()).then(|| sweep.row(*value, &sweep.numbers(*value).0));
-        let rows: Option<Vec<_>> = pool(threads)?.install(|| values.par_iter().map(row).collect());
+        let rows: Option<Vec<_>> = values.par_iter().map(row).collect();
         Ok(rows.unwrap_or_default())
     })?;
-    let columns = sweep.columns();
     let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
     let column = |i: usize| rows.iter().map(|row| finite(row[i])).collect();
     let all = table(py, columns.iter().enumerate().map(|(i, one)| (one.name.clone(), column(i))))?;

@@ -10,25 +10,34 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Most threads that may be asked for.
 pub const MOST_THREADS: u16 = 1024;
 
-static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+/// The pools of a process, by its number: the one of all cores, and the last of another number of threads.
+type Pools = (u32, [Option<(u16, Arc<ThreadPool>)>; 2]);
 
-/// A pool of this many threads, by default one a core.
+static POOLS: Mutex<Pools> = Mutex::new((0, [None, None]));
+
+/// A pool of this many threads, by default one a core. The last is kept, so that not every batch starts threads.
 ///
 /// # Errors
 /// Their number is not allowed, or they cannot be started.
 pub fn pool(threads: Option<i64>) -> Result<Arc<ThreadPool>, Fault> {
-    if let Some(threads) = threads {
-        return made(check(threads)?);
+    let threads = threads.map_or(Ok(0), check)?;
+    let mut kept = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.0 != std::process::id() {
+        // The threads of a parent cannot be waited for.
+        std::mem::forget(std::mem::replace(&mut *kept, (std::process::id(), [None, None])));
     }
-    let mut kept = POOL.lock().unwrap_or_else(PoisonError::into_inner);
-    let process = std::process::id();
-    if let Some((_, pool)) = kept.as_ref().filter(|(own, _)| *own == process) {
+    let place = &mut kept.1[usize::from(threads != 0)];
+    if let Some((_, pool)) = place.as_ref().filter(|(own, _)| *own == threads) {
         return Ok(Arc::clone(pool));
     }
-    let pool = made(0)?;
-    // The threads of a parent cannot be waited for.
-    std::mem::forget(kept.replace((process, Arc::clone(&pool))));
-    Ok(pool)
+    let pool = ThreadPoolBuilder::new().num_threads(threads.into()).build();
+    let pool = pool.map_err(|error| Fault::Other(format!("cannot start the threads: {error}")))?;
+    Ok(Arc::clone(&place.insert((threads, Arc::new(pool))).1))
+}
+
+/// Gives the present pools up: what they have begun goes on, and what comes next has threads of its own.
+pub fn give_up() {
+    POOLS.lock().unwrap_or_else(PoisonError::into_inner).1 = [None, None];
 }
 
 /// A number of threads that may be asked for.
@@ -43,9 +52,4 @@ pub fn check(threads: i64) -> Result<u16, Fault> {
             Err(Fault::argument("threads", threads as f64, allowed))
         }
     }
-}
-
-fn made(threads: u16) -> Result<Arc<ThreadPool>, Fault> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads.into()).build();
-    pool.map(Arc::new).map_err(|error| Fault::Other(format!("cannot start the threads: {error}")))
 }

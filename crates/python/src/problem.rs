@@ -1,14 +1,17 @@
 //! A study as a function of a design.
 
 use crate::arrays::{numbers, plain_row, table};
+use crate::columns::{COUNT, TOLD, column_names, in_columns, numbers_of};
 use crate::errors::{Fault, Given};
 use crate::pool::pool;
-use crate::watch::{caught, watched};
+use crate::watch::{caught, on_pool};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use rayon::prelude::*;
-use retune_optim::{Evaluation, Limit, Objective, PeakEnergy, Response, Variable};
+use retune_optim::{Evaluation, GoesOn, Objective, PeakEnergy, Response, Variable};
 use retune_study::{Rule, Setting, Study, read::from_text};
+use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// A study, checked, with its objective: what `retune.Problem` is made of.
 #[pyclass(subclass, frozen, module = "retune._core")]
@@ -16,9 +19,9 @@ pub struct Core {
     pub(crate) study: Study,
     /// What its results are said to be made of: the file that it was read from, if any.
     pub(crate) file: Option<String>,
-    objective: Option<PeakEnergy>,
-    /// Whether one evaluation makes runs side by side.
-    is_parallel: bool,
+    objective: Option<Arc<PeakEnergy>>,
+    /// Whether one evaluation may take long: it makes many runs, or a long one.
+    takes_long: bool,
     /// Whether stroke and force are known: a limit asks for them, or the stroke is that of a steady motion.
     knows: [bool; 2],
 }
@@ -26,11 +29,8 @@ pub struct Core {
 /// The columns of a batch, and the rows without a value, each with its exception.
 type Batch<'py> = (Bound<'py, PyDict>, Vec<(usize, Py<PyAny>)>);
 
-/// The number of columns of a batch.
-const BATCH: usize = 6;
-/// Rows without a value whose exceptions are kept.
-const TOLD: usize = 100;
-
+/// Periods of the force from which on one run takes long: some tenths of a second.
+const LONG: f64 = 2e4;
 #[pymethods]
 impl Core {
     /// From the text of a study and the file that it stands for.
@@ -94,8 +94,7 @@ impl Core {
         let mut row = [0.0; Variable::ALL.len()];
         let row = &mut row[..objective.variables().len()];
         self.design(x, row)?;
-        let row = &*row;
-        Ok(py.detach(|| caught(|| Ok(self.found(objective, row)?.value)))?)
+        Ok(self.found(py, objective, row)?.value)
     }
 
     /// Everything that an evaluation finds, by its name.
@@ -104,14 +103,36 @@ impl Core {
         let objective = self.objective()?;
         let mut row = vec![0.0; objective.variables().len()];
         self.design(x, &mut row)?;
-        let found = py.detach(|| caught(|| self.found(objective, &row)))?;
+        let found = self.found(py, objective, &row)?;
         let all = PyDict::new(py);
-        for (name, value) in self.columns().into_iter().zip(self.numbers(&found)) {
+        for (name, value) in column_names(self.quantity().0).into_iter().zip(numbers_of(&found, self.knows)) {
             all.set_item(name, value)?;
         }
         all.set_item("runs", found.runs)?;
         all.set_item("unsettled", found.unsettled)?;
         Ok(all)
+    }
+
+    /// The value that searches make small, and its derivatives.
+    #[pyo3(name = "_gradient")]
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+    ) -> PyResult<(f64, Bound<'py, PyArray1<f64>>)> {
+        let objective = Arc::clone(self.objective()?);
+        let mut row = vec![0.0; objective.variables().len()];
+        self.design(x, &mut row)?;
+        let by = move |goes_on: GoesOn<'_>| {
+            let (found, by) = objective.gradient(&row, goes_on)?;
+            Ok((found.value, by))
+        };
+        let (value, by) = if self.takes_long {
+            on_pool(py, &*pool(None)?, move |watch| by(&|| !watch.is_stopped()))?
+        } else {
+            py.detach(|| caught(|| by(&|| true)))?
+        };
+        Ok((value, PyArray1::from_vec(py, by)))
     }
 
     /// The same for each row of designs, as columns; and the rows without a value, each with its exception.
@@ -128,28 +149,27 @@ impl Core {
         if shape.len() != 2 || shape[1] != width {
             return Err(self.shape("X", &shape, &format!("(n, {width})"))?.into());
         }
-        let found = |design: &[f64]| self.evaluated(objective, design).map(|found| self.numbers(&found));
-        let evaluate = |design: &[f64]| match caught(|| found(design)) {
-            Ok(numbers) => (numbers, None),
-            Err(fault) => {
-                let mut none = [f64::NAN; BATCH];
-                none[0] = f64::INFINITY;
-                (none, Some(Box::new(fault)))
-            }
-        };
-        let rows = watched(py, None, |watch| {
+        let (goal, knows) = (Arc::clone(objective), self.knows);
+        let (columns, failed) = on_pool(py, &*pool(threads)?, move |watch| {
             // Nobody asks for the rows of a batch that was stopped.
+            let goes_on = || !watch.is_stopped();
             let row = |design: &[f64]| {
-                if watch.is_stopped() { ([f64::NAN; BATCH], None) } else { evaluate(design) }
+                if watch.is_stopped() {
+                    return Ok([f64::NAN; COUNT]);
+                }
+                caught(|| {
+                    let found = goal
+                        .scene(design)
+                        .and_then(|scene| goal.evaluate_while(&scene, f64::INFINITY, &goes_on));
+                    found.map(|found| numbers_of(&found, knows)).map_err(Fault::from)
+                })
             };
-            let rows = designs.par_chunks(width).map(row);
-            Ok(pool(threads)?.install(|| rows.collect::<Vec<_>>()))
+            Ok(in_columns(&designs, width, row))
         })?;
-        let column = |i: usize| rows.iter().map(|(numbers, _)| numbers[i]).collect();
-        let columns = self.columns().into_iter().enumerate().map(|(i, name)| (name.to_owned(), column(i)));
-        let columns = table(py, columns)?;
-        let failed = rows.into_iter().enumerate().filter_map(|(i, (_, fault))| Some((i, *fault?))).take(TOLD);
-        let failed = failed.map(|(i, fault)| (i, PyErr::from(fault).into_value(py).into_any()));
+        let names = column_names(self.quantity().0).map(str::to_owned);
+        let columns = table(py, names.into_iter().zip(columns))?;
+        let failed = failed.into_iter().take(TOLD);
+        let failed = failed.map(|(i, fault)| (i, PyErr::from(*fault).into_value(py).into_any()));
         Ok((columns, failed.collect()))
     }
 
@@ -182,25 +202,28 @@ impl Core {
             Some(_) => {
                 let search = study.search().map_err(|rule| Fault::of_rule(&rule))?;
                 let settings = study.solver.settings();
-                Some(PeakEnergy::new(study.scene, search.damper, search.variables, study.goal(), settings))
+                let goal = study.goal();
+                Some(Arc::new(PeakEnergy::new(study.scene, search.damper, search.variables, goal, settings)))
             }
         };
         let is_one = |term: &Objective| {
             let at_once = term.omega.is_none() || term.response == Response::Steady;
             at_once && term.k1.is_none() && term.ensemble.is_none()
         };
-        let is_parallel = !study.objective().terms().iter().all(|(_, term)| is_one(term));
+        let periods = study.window.window().to * study.scene.forcing.frequency.get() / TAU;
+        let takes_long = periods > LONG && !study.objective().is_steady()
+            || !study.objective().terms().iter().all(|(_, term)| is_one(term));
         let goal = study.goal();
         let walls = goal.limits.walls_from().is_some();
         let knows = [walls || goal.objective.is_steady(), walls];
-        Ok(Self { study, file, objective, is_parallel, knows })
+        Ok(Self { study, file, objective, takes_long, knows })
     }
 
     fn variables(&self) -> &[Variable] {
-        self.objective.as_ref().map_or(&[], PeakEnergy::variables)
+        self.objective.as_ref().map_or(&[], |objective| objective.variables())
     }
 
-    fn objective(&self) -> Result<&PeakEnergy, Fault> {
+    fn objective(&self) -> Result<&Arc<PeakEnergy>, Fault> {
         self.objective.as_ref().ok_or_else(|| Fault::of_rule(&Rule::NoOptimize))
     }
 
@@ -228,32 +251,17 @@ impl Core {
         ))
     }
 
-    /// Evaluates a design on the pool if it makes runs side by side, else here.
-    fn found(&self, objective: &PeakEnergy, design: &[f64]) -> Result<Evaluation, Fault> {
-        if self.is_parallel {
-            pool(None)?.install(|| self.evaluated(objective, design))
-        } else {
-            self.evaluated(objective, design)
+    /// Evaluates a design: here, or on the pool if that may take long, so that Ctrl-C ends it.
+    fn found(&self, py: Python<'_>, objective: &Arc<PeakEnergy>, design: &[f64]) -> PyResult<Evaluation> {
+        if !self.takes_long {
+            let here = || Ok(objective.evaluate(&objective.scene(design)?, f64::INFINITY)?);
+            return Ok(py.detach(|| caught(here))?);
         }
-    }
-
-    fn evaluated(&self, objective: &PeakEnergy, design: &[f64]) -> Result<Evaluation, Fault> {
-        Ok(objective.evaluate(&objective.scene(design)?, f64::INFINITY)?)
-    }
-
-    /// The names of [`Self::numbers`].
-    fn columns(&self) -> [&'static str; BATCH] {
-        ["value", self.quantity().0, "stroke", "force", "violation", "omega_worst"]
-    }
-
-    /// What an evaluation found; stroke and force are NaN where no limit asks for them.
-    fn numbers(&self, found: &Evaluation) -> [f64; BATCH] {
-        let known = |limit, known| if known { found.reached.get(limit) } else { f64::NAN };
-        let [stroke, force] = self.knows;
-        let [stroke, force] = [known(Limit::Stroke, stroke), known(Limit::Force, force)];
-        let omega = found.worst.scene.forcing.frequency.get();
-        // An empty sum of violations is -0.
-        [found.value, found.energy, stroke, force, found.violation + 0.0, omega]
+        let (objective, design) = (Arc::clone(objective), design.to_vec());
+        on_pool(py, &*pool(None)?, move |watch| {
+            let goes_on = || !watch.is_stopped();
+            Ok(objective.evaluate_while(&objective.scene(&design)?, f64::INFINITY, &goes_on)?)
+        })
     }
 
     /// The study with other numbers.

@@ -1,10 +1,12 @@
 //! Long work without the interpreter's lock: Ctrl-C ends it, and it tells how far it is.
 //!
-//! The work has a thread of its own. The thread that called waits for it, and now and then takes the lock to let Python handle its
-//! signals and to pass on what the work has to tell.
+//! The work is done on other threads: a job on one of its own ([`watched`]), anything else on a pool ([`on_pool`]). The thread that called
+//! waits for it, and now and then takes the lock to let Python handle its signals and to pass on what the work has to tell.
 
 use crate::errors::{Fault, of_panic};
+use crate::pool::give_up;
 use pyo3::prelude::*;
+use rayon::ThreadPool;
 use retune_workbench::{Error, Observer, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -45,6 +47,10 @@ impl Watch {
         self.0.stopped.load(Relaxed)
     }
 
+    fn stop(&self) {
+        self.0.stopped.store(true, Relaxed);
+    }
+
     /// Ends the job if that was asked for.
     fn go_on(&self) {
         if self.is_stopped() {
@@ -74,7 +80,46 @@ impl Watch {
     }
 }
 
-/// Does `work` on a thread of its own. `tell` is called with what the [`Watch`] is told.
+/// Does `work` on a pool, while the thread that called looks for Ctrl-C: that ends the wait at once. What has begun goes on until it next
+/// asks [`Watch::is_stopped`], and nobody waits for it.
+///
+/// # Errors
+/// The error of the work, or Ctrl-C.
+pub fn on_pool<T: Send + 'static>(
+    py: Python<'_>,
+    pool: &ThreadPool,
+    work: impl FnOnce(&Watch) -> Result<T, Fault> + Send + 'static,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let own = watch.clone();
+    let (answers, answer) = mpsc::sync_channel(1);
+    pool.spawn(move || {
+        // Nobody may wait for it any more.
+        let _ = answers.send(caught(|| work(&own)));
+    });
+    let found = py.detach(move || {
+        loop {
+            match answer.recv_timeout(LOOK_EVERY) {
+                Ok(found) => return found,
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(error) = Python::attach(|py| py.check_signals()) {
+                        watch.stop();
+                        give_up();
+                        return Err(Fault::Python(error));
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return Err(no_answer()),
+            }
+        }
+    });
+    Ok(found?)
+}
+
+fn no_answer() -> Fault {
+    Fault::Other("the work ended without an answer".to_owned())
+}
+
+/// Does `work` on a thread of its own, to the end whatever ends it. `tell` is called with what the [`Watch`] is told.
 ///
 /// # Errors
 /// The error of the work, Ctrl-C, or an exception of `tell`.
@@ -103,11 +148,13 @@ pub fn watched<T: Send>(
                     Err(RecvTimeoutError::Timeout) if raised.is_none() => {
                         let look = |py: Python<'_>| py.check_signals().and_then(|()| watch.pass_on(py, tell));
                         raised = Python::attach(look).err();
-                        watch.0.stopped.store(raised.is_some(), Relaxed);
+                        if raised.is_some() {
+                            watch.stop();
+                        }
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
-                        return Err(Fault::Other("the work ended without an answer".to_owned()));
+                        return Err(no_answer());
                     }
                 }
             }

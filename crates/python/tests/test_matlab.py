@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from array import array
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,17 @@ import pytest
 from conftest import STUDIES
 
 import retune as rt
+
+def test_contract_the_lines_for_pyenv_are_python_as_matlab_says_it() -> None:
+    """MATLAB gives a row of numbers as an `array.array`, and calls methods."""
+    problem = rt.Problem.from_study(str(STUDIES / "ssvi.json"))
+    row = array("d", [215, 232, 0.06, 0.36])
+    assert problem.evaluate(row).value == problem([215, 232, 0.06, 0.36])
+    batch = problem.batch(np.array([row, [250, 200, 0.05, 0.4]]))
+    assert batch.get("E1max")[0] == problem.evaluate(row).value
+    run = problem.simulate(**{"omega": 6.28})
+    assert len(run.t) == len(run.x1) > 1000
+
 
 MATLAB = Path(__file__).parent.parent / "examples" / "matlab"
 octave = shutil.which("octave-cli")

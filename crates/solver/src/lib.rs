@@ -39,6 +39,7 @@
 
 mod budget;
 mod contact;
+mod derivatives;
 mod energy_bound;
 mod error;
 mod extremes;
@@ -57,6 +58,7 @@ mod tangent;
 mod trajectory;
 
 pub use budget::{Budget, Pace};
+pub use derivatives::{extremes_by, settled_by};
 pub use error::{Remedy, SolverError};
 pub use extremes::{Ask, Extremes, extremes};
 pub use hybrid::propagator::{Hybrid, Motion, Phase};

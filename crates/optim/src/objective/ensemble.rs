@@ -123,6 +123,20 @@ impl Ensemble {
     }
 }
 
+impl Ensemble {
+    /// The derivative of the statistic by the value of each member, in their order: of a quantile that of the member in its place.
+    pub(crate) fn by_member(&self, values: &[f64]) -> Vec<f64> {
+        let count = values.len();
+        if self.statistic == Statistic::Mean {
+            return vec![1.0 / count as f64; count];
+        }
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+        let place = order.get(rank(self.statistic, count) - 1);
+        (0..count).map(|i| f64::from(u8::from(Some(&i) == place))).collect()
+    }
+}
+
 /// Share by which a sum must pass a cutoff to be above it whatever its rounding.
 pub(crate) const SLACK: f64 = 1.0 + 1e-9;
 

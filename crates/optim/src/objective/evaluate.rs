@@ -7,45 +7,22 @@
 use super::band::{Band, all_worst_over};
 use super::ensemble::SLACK;
 use super::evaluation::{Evaluation, Place, Run};
-use super::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked};
-use super::motions::{Found, largest_motion};
-use super::spec::{Objective, Response, Stiffnesses};
+use super::limits::{INFEASIBLE, Limit, Limits, ranked};
+use super::spec::{Goal, Response, Stiffnesses};
 use super::unusable::Unusable;
+use super::watch::{FREE, GoesOn, Hooks, Largest, Numbered, Seen, Watch};
 use crate::chunks::in_groups;
-use retune_model::{Bare, Coupled, NonNegative, Scene, Worst};
-use retune_solver::{Ask, Settings, Window, extremes, settled};
-use std::sync::{Mutex, PoisonError};
-
-/// The objective of a search, the window of its runs, and the limits.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Goal {
-    /// The objective.
-    pub objective: Objective,
-    /// The window of the objective's runs; a steady response has none.
-    pub window: Window,
-    /// The limits, which apply to the largest values over all runs of all terms.
-    pub limits: Limits,
-}
-
-impl From<Window> for Goal {
-    /// E1max in a window, without limits.
-    fn from(window: Window) -> Self {
-        Self { objective: Objective::default(), window, limits: Limits::default() }
-    }
-}
+use retune_model::{NonNegative, Scene};
+use retune_solver::Settings;
+use std::sync::PoisonError;
 
 impl Goal {
-    /// A term of the objective, by its number.
-    pub fn term(&self, number: usize) -> Option<&Objective> {
-        self.objective.terms().get(number).map(|(_, term)| *term)
-    }
-
     /// Evaluates a scene. The value may be any number above `cutoff` once it is known to exceed it; the rest is then incomplete.
     ///
     /// # Errors
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
     pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
-        self.evaluate_and(scene, settings, cutoff, |_| ())
+        self.evaluate_with(scene, settings, cutoff, FREE)
     }
 
     /// The same, and `keep` is given each run, in any order.
@@ -59,18 +36,35 @@ impl Goal {
         cutoff: f64,
         keep: impl Fn(Run) + Sync,
     ) -> Result<Evaluation, Unusable> {
+        self.evaluate_with(scene, settings, cutoff, Hooks { keep: &keep, ..FREE })
+    }
+
+    /// The same as long as `goes_on` says so, which is asked before each run in time.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`], and [`Unusable::Stopped`].
+    pub fn evaluate_while(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        cutoff: f64,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Evaluation, Unusable> {
+        self.evaluate_with(scene, settings, cutoff, Hooks { goes_on, ..FREE })
+    }
+
+    fn evaluate_with(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        cutoff: f64,
+        hooks: Hooks<'_>,
+    ) -> Result<Evaluation, Unusable> {
         let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
-        let nothing = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
-        let mut reached = PerLimit::default();
-        reached.set(Limit::Cavity, cavity);
-        let seen = Seen { reached, worst: nothing, runs: 0, unsettled: 0 };
-        let watch = Watch {
-            settings,
-            window: self.window,
-            limits: &self.limits,
-            keep: &keep,
-            seen: Mutex::new(seen),
-        };
+        let mut watch = Watch::new(self, scene, settings, hooks);
+        let seen = watch.seen.get_mut().unwrap_or_else(PoisonError::into_inner);
+        seen.reached.set(Limit::Cavity, cavity);
+        let reached = seen.reached;
         // A cavity above its limit makes the design infeasible without any run.
         let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
             f64::INFINITY
@@ -92,6 +86,21 @@ impl Goal {
         })
     }
 
+    /// The worst run of a term at a phase of the force (rad), without limits.
+    pub(super) fn worst(
+        &self,
+        scene: &Scene,
+        phase: f64,
+        term: Numbered,
+        settings: &Settings,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Place, Unusable> {
+        let free = Self { limits: Limits::default(), ..self.clone() };
+        let watch = Watch::new(&free, scene, settings, Hooks { goes_on, ..FREE });
+        watch.over_k1(scene, phase, term, f64::INFINITY)?;
+        Ok(watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
+    }
+
     /// The weighted sum, in the unit of the quantity.
     fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
         if self.objective.sum.is_empty() {
@@ -108,41 +117,6 @@ impl Goal {
         Ok(sum)
     }
 }
-
-impl Evaluation {
-    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
-    /// with the force starting at a crest.
-    pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
-        scene.forcing.frequency = self.worst.scene.forcing.frequency;
-        if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
-            scene.primary.stiffness = self.worst.scene.primary.stiffness;
-        }
-        scene
-    }
-}
-
-/// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
-struct Seen {
-    reached: PerLimit<f64>,
-    worst: Place,
-    runs: u64,
-    unsettled: u64,
-}
-
-/// The settings of a goal's runs, and the values that are kept of them.
-struct Watch<'a> {
-    settings: &'a Settings,
-    window: Window,
-    limits: &'a Limits,
-    keep: &'a (dyn Fn(Run) + Sync),
-    seen: Mutex<Seen>,
-}
-
-/// A term with its number.
-type Numbered<'a> = (usize, &'a Objective);
-
-/// The largest quantity, stroke (m) and contact force (N) of some runs; all but the first are 0 if no limit needs them.
-type Largest = [f64; 3];
 
 impl Watch<'_> {
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
@@ -214,89 +188,5 @@ impl Watch<'_> {
         let beyond = |limit| Some(self.limits.get(limit).unwrap_or(f64::INFINITY));
         let limits = [None, beyond(Limit::Stroke), beyond(Limit::Force)];
         Ok(all_worst_over(band, at, cutoff, limits)?.map(|worst| worst.value))
-    }
-
-    fn run(
-        &self,
-        scene: &Scene,
-        omega: f64,
-        phase: f64,
-        (number, term): Numbered,
-        cutoff: f64,
-    ) -> Result<Largest, Unusable> {
-        let mut scene = *scene;
-        scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
-        let ask = Ask { measure: term.quantity, phase, walls: self.limits.walls_from(), cutoff };
-        let found = match term.response {
-            Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
-            Response::Window => extremes(&scene, self.window, self.settings, ask)?,
-            Response::Steady => return self.steady(&scene, [omega; 2], (number, term)),
-            Response::Motions => return self.motions(&scene, (omega, omega, 1), (number, term)),
-        };
-        let largest = found.largest.value;
-        self.see(Place { largest, scene, phase, term: number }, found.stroke, found.force, found.settled);
-        Ok([largest, found.stroke, found.force])
-    }
-
-    /// The largest over all motions in a band of so many samples. The place is that of the largest, which may not be of a run from rest.
-    fn motions(
-        &self,
-        scene: &Scene,
-        (from, to, samples): (f64, f64, usize),
-        (number, term): Numbered,
-    ) -> Result<Largest, Unusable> {
-        if scene.damper.is_none() {
-            return self.steady(scene, [from, to], (number, term));
-        }
-        let Found { at, largest: [largest, stroke, force], settled } =
-            largest_motion(scene, (from, to, samples), term, self.settings)?;
-        let mut scene = *scene;
-        scene.forcing.frequency = NonNegative::new(at).map_err(Unusable::Frequency)?;
-        let place = Place { largest, scene, phase: 0.0, term: number };
-        self.see(place, stroke, force, settled);
-        Ok([largest, stroke, force])
-    }
-
-    fn steady(&self, scene: &Scene, band: [f64; 2], (number, term): Numbered) -> Result<Largest, Unusable> {
-        let Scene { primary, forcing, damper } = scene;
-        let (worst, stroke) = match damper {
-            None => (Bare::new(primary, forcing).steady_max(term.quantity, band), 0.0),
-            Some(damper) => {
-                let system = Coupled::new(primary, forcing, damper);
-                let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
-                let gaps = damper.rest_distance.get().min(damper.clearance.get());
-                let room = if damper.contact.is_some() { gaps } else { f64::INFINITY };
-                if stroke >= room {
-                    return Err(Unusable::Touches { omega, stroke, room });
-                }
-                (system.steady_max(term.quantity, band), stroke)
-            }
-        };
-        let mut scene = *scene;
-        scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
-        let place = Place { largest: worst.value, scene, phase: 0.0, term: number };
-        self.see(place, stroke, 0.0, true);
-        Ok([worst.value, stroke, 0.0])
-    }
-
-    fn see(&self, place: Place, stroke: f64, force: f64, settled: bool) {
-        (self.keep)(Run { place, reached: [place.largest, stroke, force] });
-        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.runs += 1;
-        seen.unsettled += u64::from(!settled);
-        for (limit, value) in [(Limit::Stroke, stroke), (Limit::Force, force)] {
-            let largest = seen.reached.get(limit).max(value);
-            seen.reached.set(limit, largest);
-        }
-        let key = |place: &Place| {
-            let Scene { primary, forcing, .. } = place.scene;
-            [-place.largest, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]
-        };
-        // Of equal ones the first by term, ω, k1 and phase.
-        let order =
-            key(&place).iter().zip(&key(&seen.worst)).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne());
-        if order.is_some_and(|order| order.is_lt()) {
-            seen.worst = place;
-        }
     }
 }

@@ -1,6 +1,7 @@
-//! What an evaluation of a design returns.
+//! What an evaluation finds: a value and the runs behind it.
 
 use super::limits::PerLimit;
+use super::spec::Goal;
 use retune_model::Scene;
 
 /// The run with the largest quantity among those behind a value.
@@ -28,13 +29,13 @@ pub struct Run {
 /// The value of a design and the quantities behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
-    /// The value that searches minimise: the quantity of a feasible design, above [`INFEASIBLE`] for any other.
+    /// The value that searches minimise: the quantity of a feasible design, above [`INFEASIBLE`](crate::INFEASIBLE) for any other.
     pub value: f64,
     /// The weighted sum of the terms, in the unit of the quantity.
     pub energy: f64,
-    /// Total violation of the limits; see [`Limits::violation`].
+    /// Total violation of the limits; see [`crate::Limits::violation`].
     pub violation: f64,
-    /// The largest stroke and force from [`Limits::from`] on, and the cavity; stroke and force are 0 if no limit needs them.
+    /// The largest stroke and force from [`crate::Limits::from`] on, and the cavity; stroke and force are 0 if no limit needs them.
     pub reached: PerLimit<f64>,
     /// The worst run.
     pub worst: Place,
@@ -42,4 +43,16 @@ pub struct Evaluation {
     pub runs: u64,
     /// Runs that should have settled and did not.
     pub unsettled: u64,
+}
+
+impl Evaluation {
+    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
+    /// with the force starting at a crest.
+    pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
+        scene.forcing.frequency = self.worst.scene.forcing.frequency;
+        if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
+            scene.primary.stiffness = self.worst.scene.primary.stiffness;
+        }
+        scene
+    }
 }

@@ -1,9 +1,10 @@
 //! The objective as a function of a design, as searches call it.
 
-use super::evaluate::Goal;
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
+use super::spec::Goal;
 use super::unusable::Unusable;
+use super::watch::GoesOn;
 use crate::search::minimax::{Height, Piece};
 use retune_model::{Damper, Scene, Variable};
 use retune_solver::Settings;
@@ -61,6 +62,11 @@ impl PeakEnergy {
     /// The goal.
     pub fn goal(&self) -> &Goal {
         &self.goal
+    }
+
+    /// The settings of its runs.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The varied parameters, in the order of a design.
@@ -137,6 +143,19 @@ impl PeakEnergy {
     /// As [`Goal::evaluate`].
     pub fn evaluate(&self, scene: &Scene, cutoff: f64) -> Result<Evaluation, Unusable> {
         self.goal.evaluate(scene, &self.settings, cutoff)
+    }
+
+    /// The same as long as `goes_on` says so; see [`Goal::evaluate_while`].
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate_while`].
+    pub fn evaluate_while(
+        &self,
+        scene: &Scene,
+        cutoff: f64,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Evaluation, Unusable> {
+        self.goal.evaluate_while(scene, &self.settings, cutoff, goes_on)
     }
 
     /// The failed evaluations so far.

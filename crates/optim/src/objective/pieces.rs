@@ -4,10 +4,9 @@
 //! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
 //! those of the run at its frequency (the envelope theorem).
 
-use super::evaluate::Goal;
 use super::evaluation::{Place, Run};
 use super::limits::Limit;
-use super::spec::Response;
+use super::spec::Goal;
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene, Variable};
@@ -21,12 +20,6 @@ const MOST: usize = 12;
 const APART: f64 = 1e-5;
 
 impl Goal {
-    /// Whether its values have derivatives by [`Goal::pieces`]: the worst over frequencies and stiffnesses of what runs from rest reach.
-    pub fn is_differentiable(&self) -> bool {
-        let term = &self.objective;
-        term.sum.is_empty() && term.ensemble.is_none() && term.response == Response::Window
-    }
-
     /// The highest peaks of `runs`, which were made to evaluate `scene`, with their derivatives by `variables`; those that have none, since
     /// their run cannot be followed, are left out. Limits come as shares, 0 where they are just kept.
     pub fn pieces(

@@ -2,10 +2,36 @@
 
 use super::band::Band;
 use super::ensemble::Ensemble;
+use super::limits::Limits;
 use retune_model::{Measure, Positive, Primary};
-use retune_solver::Settle;
+use retune_solver::{Settle, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// The objective of a search, the window of its runs, and the limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goal {
+    /// The objective.
+    pub objective: Objective,
+    /// The window of the objective's runs; a steady response has none.
+    pub window: Window,
+    /// The limits, which apply to the largest values over all runs of all terms.
+    pub limits: Limits,
+}
+
+impl From<Window> for Goal {
+    /// E1max in a window, without limits.
+    fn from(window: Window) -> Self {
+        Self { objective: Objective::default(), window, limits: Limits::default() }
+    }
+}
+
+impl Goal {
+    /// A term of the objective, by its number.
+    pub fn term(&self, number: usize) -> Option<&Objective> {
+        self.objective.terms().get(number).map(|(_, term)| *term)
+    }
+}
 
 /// The objective to minimise: a statistic over `ensemble` of the maximum over `k1` of the maximum over `omega` of `quantity`, evaluated
 /// in each run as `response` specifies. Fields left out keep their nominal value, that of `scene`.

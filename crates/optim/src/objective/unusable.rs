@@ -30,6 +30,12 @@ pub enum Unusable {
     /// The motions of the design could not be found.
     #[error(transparent)]
     Motions(#[from] retune_dynamics::Error),
+    /// The evaluation was stopped on the way.
+    #[error("stopped before all of its runs were made")]
+    Stopped,
+    /// Derivatives of what other starts than rest lead to were asked for.
+    #[error("the response \"motions\" has no derivatives here: give the response \"window\" or \"settled\"")]
+    NoDerivatives,
     /// The steady motion reaches a wall, so that it is not linear.
     #[error(
         "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \

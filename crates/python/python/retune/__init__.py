@@ -14,7 +14,8 @@ are in SI units (kg, N/m, N s/m, N, m, s, rad/s), all parameters have the symbol
 from retune._compare import Comparison, compare
 from retune._core import __version__
 from retune._errors import Error, SolverError, StudyError
-from retune._jobs import Certificate, Result, branches, certify, fronts, optimize, track, verify
+from retune._files import Design, certify_file, design, fronts, merge, reproduce, share, sweep, table2, track
+from retune._jobs import Certificate, Result, branches, certify, optimize, verify
 from retune._problem import Evaluation, Problem
 from retune._run import Run
 from retune._scene import SSVI, TMD, Contact, Structure
@@ -26,6 +27,7 @@ __all__ = [
     "Certificate",
     "Comparison",
     "Contact",
+    "Design",
     "Error",
     "Evaluation",
     "Problem",
@@ -38,9 +40,16 @@ __all__ = [
     "__version__",
     "branches",
     "certify",
+    "certify_file",
     "compare",
+    "design",
     "fronts",
+    "merge",
     "optimize",
+    "reproduce",
+    "share",
+    "sweep",
+    "table2",
     "track",
     "verify",
 ]

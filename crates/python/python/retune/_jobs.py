@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -89,7 +88,10 @@ class Certificate(Found):
         return [["verdict", self.words], ["numerical error at most", self.error_bar], ["motion", self.data["motion"].get("regime")]]
 
 
-def _asked(out: Directory | None, resume: bool, restart: bool, replace: bool, threads: int | None) -> dict[str, Any]:
+def asked(
+    out: Directory | None, resume: bool = False, restart: bool = False, replace: bool = False, threads: int | None = None
+) -> dict[str, Any]:
+    """What every job is asked."""
     return {"out": None if out is None else os.fspath(out), "resume": resume, "restart": restart, "replace": replace, "threads": threads}
 
 
@@ -108,12 +110,15 @@ def optimize(
     The results go to ``out``, by default ``results/`` and the name of the problem. Ctrl-C ends the search, and ``resume=True`` goes on
     with it, to the bytes of an unbroken one. ``replace=True`` replaces results of another study.
     """
-    asked = _asked(out, resume, restart, replace, threads)
-    return Result(problem, Path(_core.optimize(problem, asked, Progress(progress))))
+    what = asked(out, resume, restart, replace, threads)
+    return Result(problem, Path(_core.optimize(problem, what, Progress(progress))))
 
 
 def certify(problem: Problem, x: ArrayLike | None = None, *, threads: int | None = None) -> Certificate:
-    """The certificate of a design, or of the study's own: error bar, sensitivity, motion, verdict."""
+    """The certificate of a design, or of the study's own: error bar, sensitivity, motion, verdict.
+
+    ``retune.certify_file`` does it for a study file or for results, and writes `certificate.json`.
+    """
     return Certificate(json.loads(_core.certify(problem, x, threads)))
 
 
@@ -125,40 +130,6 @@ def verify(path: Directory, *, sample: int = 20, within: float = 0.0) -> list[st
     told = Progress(False)
     _core.verify(os.fspath(path), sample, within, told)
     return told.lines
-
-
-def track(
-    study: Directory,
-    k1: Iterable[float],
-    out: Directory | None = None,
-    *,
-    resume: bool = False,
-    restart: bool = False,
-    replace: bool = False,
-    threads: int | None = None,
-    progress: bool = True,
-) -> Path:
-    """How long tunings last: tunes the dampers of a study of kind `table2` anew at stiffnesses ``k1`` (N/m), as `retune track` does.
-
-    Returns the directory of the results; ``README.md`` there is the answer.
-    """
-    asked = _asked(out, resume, restart, replace, threads)
-    return Path(_core.track(os.fspath(study), [float(value) for value in k1], asked, Progress(progress)))
-
-
-def fronts(
-    study: Directory,
-    out: Directory | None = None,
-    *,
-    resume: bool = False,
-    restart: bool = False,
-    replace: bool = False,
-    threads: int | None = None,
-    progress: bool = True,
-) -> Path:
-    """Pareto fronts of a study of kind `fronts`, as `retune fronts` does; returns the directory of the results."""
-    asked = _asked(out, resume, restart, replace, threads)
-    return Path(_core.fronts(os.fspath(study), asked, Progress(progress)))
 
 
 def branches(
@@ -182,6 +153,6 @@ def branches(
     """
     ends = (None, None) if span is None else tuple(repr(float(end)) for end in span)
     along = {"over": over, "from": ends[0], "to": ends[1], "samples": samples, "starts": starts}
-    asked = _asked(out, False, restart, replace, threads)
-    answer: dict[str, Any] = json.loads(_core.branches(os.fspath(study), along, asked, Progress(progress)))
+    what = asked(out, False, restart, replace, threads)
+    answer: dict[str, Any] = json.loads(_core.branches(os.fspath(study), along, what, Progress(progress)))
     return answer

@@ -7,10 +7,11 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any, Self, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from retune import _core, _show
 from retune._arrays import plain
@@ -141,11 +142,28 @@ class Problem(_core.Core):
         study: dict[str, Any] = json.loads(self._text())
         return study
 
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the study to a file, for the command line and for the jobs that take one."""
+        Path(file).write_text(json.dumps(self.study, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
     def evaluate(self, x: ArrayLike) -> Evaluation:
         """Everything that the objective finds for a design."""
         found = self._evaluation(x)
         quantity, unit = self.quantity
         return Evaluation(quantity=quantity, unit=unit, largest=found.pop(quantity), **found)
+
+    def gradient(self, x: ArrayLike) -> NDArray[np.float64]:
+        """The derivatives of ``problem(x)`` by the design, exact: one for each of ``problem.names``, per SI unit.
+
+        They are those of the run behind the value, at its frequency and at the time of its maximum. Where two maxima are equally high (two
+        peaks over a band, two periods of a run) the value has a kink, and these are the derivatives of one of them: a subgradient. Of a
+        design that breaks a limit they are those of its value above 1e100. Of an irregular motion they are right, large, and of no use.
+        """
+        return self._gradient(x)[1]
+
+    def value_and_gradient(self, x: ArrayLike) -> tuple[float, NDArray[np.float64]]:
+        """``problem(x)`` and ``problem.gradient(x)`` together: ``minimize(problem.value_and_gradient, x0, jac=True)``."""
+        return self._gradient(x)
 
     def batch(self, X: ArrayLike, threads: int | None = None) -> Table:
         """The values of ``n`` designs, the rows of ``X`` (n, d), on all cores, or on ``threads``; the numbers do not depend on that.
@@ -203,7 +221,8 @@ class Problem(_core.Core):
         where = f"worst over {band['from']:g} to {band['to']:g}{'' if band.get('relative') else ' rad/s'}" if band else ""
         parts = [f"{key} = {_show.number(value)}" for key, value in {**scene["primary"], **scene["forcing"]}.items()]
         sought = f"{self.quantity[0]} ({self.quantity[1]}) {where}".strip()
-        return f"problem {study['name']}: {sought or 'one run'}, {', '.join(parts)}"
+        name = "" if study["name"] == "problem" else f" {study['name']}"
+        return f"problem{name}: {sought or 'one run'}, {', '.join(parts)}"
 
     def __repr__(self) -> str:
         return f"{self._title()}\n{_show.text(['tuned', 'value', 'from', 'to', 'unit'], self._rows())}"

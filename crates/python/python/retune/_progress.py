@@ -1,4 +1,4 @@
-"""How far a job is: a line on a terminal, a line that changes in a notebook, nothing elsewhere."""
+"""How far a job is: a line that changes, on a terminal and in a notebook; nothing elsewhere."""
 
 from __future__ import annotations
 
@@ -16,27 +16,39 @@ class Progress:
 
     def __init__(self, show: bool) -> None:
         self.lines: list[str] = []
-        self._begun = time.monotonic()
+        #: The stage, when it began, and what the line says.
+        self._stage = ""
+        self._begun = 0.0
+        self._line = ""
         self._display = _display() if show else None
         self._is_terminal = show and self._display is None and sys.stderr.isatty()
-        self._is_open = False
 
     def __call__(self, kind: str, words: str, done: int, known: int, count: int) -> None:
         if kind in ("result", "warning"):
             self.lines.append(words)
             self._show("")
-            if self._display is not None or self._is_terminal:
+            if self._display is not None:
+                print(words)  # what goes to standard error looks like an error in a notebook
+            elif self._is_terminal:
                 print(words, file=sys.stderr)
-        elif kind in ("progress", "finished"):
+        elif kind == "progress":
+            if words != self._stage:
+                self._stage, self._begun = words, time.monotonic()
+            # Values from the journal of an interrupted run take no time.
             rate = (done - known) / max(time.monotonic() - self._begun, 1e-3)
-            self._show(f"{words} {done}/{count}  {rate:.0f}/s" if kind == "progress" else "")
+            left = f"  {(count - done) / rate:.0f} s left" if rate > 0 and count >= done else ""
+            self._show(f"{words} {done}/{count}  {rate:.0f}/s{left}")
+        elif kind == "finished":
+            self._show("")
 
     def _show(self, line: str) -> None:
+        if line == self._line:
+            return
+        self._line = line
         if self._display is not None:
             self._display.update({"text/plain": line}, raw=True)
-        elif self._is_terminal and (line or self._is_open):
+        elif self._is_terminal:
             print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
-            self._is_open = bool(line)
 
 
 def _display() -> Any:

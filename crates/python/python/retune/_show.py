@@ -17,6 +17,8 @@ def text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Rows as aligned columns."""
     lines = [list(head), *([number(cell) for cell in row] for row in rows)]
     widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
+    if not any(head):
+        del lines[0]
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
 
 
@@ -28,4 +30,5 @@ def page(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "
 
     top = f"<caption>{html.escape(caption)}</caption>" if caption else ""
     body = "".join(line(row, "td") for row in rows)
-    return f"<table>{top}<thead>{line(head, 'th')}</thead><tbody>{body}</tbody></table>"
+    named = f"<thead>{line(head, 'th')}</thead>" if any(head) else ""
+    return f"<table>{top}{named}<tbody>{body}</tbody></table>"

@@ -19,7 +19,7 @@ use crate::response::Extreme;
 use crate::run::follow_coupled;
 use crate::settings::{Method, Settings, Window};
 use blocks::Blocks;
-use retune_model::{Bare, Coupled, Scene};
+use retune_model::{Bare, Coupled, Scene, Steady};
 
 /// The largest value of [`Ask::measure`] once the motion has settled: over the last of the first blocks, counted from t = 0, that agree as `settle`
 /// says. A scene whose damper provably stays off both walls is answered in closed form.
@@ -53,9 +53,7 @@ pub fn settled(
         return Ok(closed(system.steady(omega).largest(&system, omega, ask.measure), 0.0));
     };
     let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-    let steady = system.steady(omega);
-    let free = ContactFree::new(&system, window.to, settings.max_steps);
-    if settings.method == Method::Hybrid && free.clears_walls() && steady.e1_max.is_finite() {
+    if let Some(steady) = in_closed_form(&system, window, settings) {
         let largest = steady.largest(system.bare(), omega, ask.measure);
         let Some(from) = ask.walls else { return Ok(closed(largest, 0.0)) };
         let mut range = DisplacementRange::new(&system, from, f64::INFINITY);
@@ -69,4 +67,11 @@ pub fn settled(
     let seen = blocks.verdict();
     let largest = energy_bound::largest(scene, whole, settings, ask.measure, seen.largest)?;
     Ok(Extremes { largest, ..seen })
+}
+
+/// The steady motion, if the damper provably stays off both walls.
+pub(crate) fn in_closed_form(system: &Coupled, window: Window, settings: &Settings) -> Option<Steady> {
+    let steady = system.steady(system.bare().frequency());
+    let free = ContactFree::new(system, window.to, settings.max_steps);
+    (settings.method == Method::Hybrid && free.clears_walls() && steady.e1_max.is_finite()).then_some(steady)
 }

@@ -40,8 +40,7 @@ pub fn gradients(
     measure: Measure,
     parameters: &[Parameter],
 ) -> Result<Vec<Gradient>, SolverError> {
-    let start = system.start();
-    let start = Motion { t: 0.0, y: start, phase: Phase::of(system, &start) };
+    let start = start(system);
     let period = TAU / system.bare().frequency();
     let mut follower = Follower::new(system, settings, window.to);
     let mut now = follower.propagate(start, window.from, &mut Unobserved)?;
@@ -57,15 +56,33 @@ pub fn gradients(
     let least = peaks.first().map_or(0.0, |peak| peak.value * (1.0 - TIE));
     let mut tangent = Tangent::new(system, settings, window.to, parameters);
     let ties = peaks.into_iter().take_while(|peak| peak.value >= least);
-    ties.map(|at| {
-        let mut found = tangent.propagate(start, at.time, &mut Unobserved)?;
-        let late = lateness(system, measure, &found.end);
-        if late != 0.0 && late.abs() <= LATE && at.time - late <= window.to {
-            found = tangent.propagate(start, at.time - late, &mut Unobserved)?;
-        }
-        Ok(Gradient { at, by: derivatives(system, measure, &found, parameters) })
-    })
-    .collect()
+    ties.map(|at| gradient_at(system, &mut tangent, window.to, measure, at, parameters)).collect()
+}
+
+/// The derivatives of a largest value that a run from its start at t = 0, until `last` (s), reaches at a known time.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub(crate) fn gradient_at(
+    system: &Coupled,
+    tangent: &mut Tangent<'_>,
+    last: f64,
+    measure: Measure,
+    at: Extreme,
+    parameters: &[Parameter],
+) -> Result<Gradient, SolverError> {
+    let start = start(system);
+    let mut found = tangent.propagate(start, at.time, &mut Unobserved)?;
+    let late = lateness(system, measure, &found.end);
+    if late != 0.0 && late.abs() <= LATE && at.time - late <= last {
+        found = tangent.propagate(start, at.time - late, &mut Unobserved)?;
+    }
+    Ok(Gradient { at, by: derivatives(system, measure, &found, parameters) })
+}
+
+fn start(system: &Coupled) -> Motion {
+    let y = system.start();
+    Motion { t: 0.0, y, phase: Phase::of(system, &y) }
 }
 
 /// By how much (s) a moment is later than the maximum beside it: the slope of the measured quantity over its curvature.

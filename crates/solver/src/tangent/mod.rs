@@ -14,5 +14,6 @@ mod gradient;
 mod observer;
 mod series;
 
+pub(crate) use gradient::gradient_at;
 pub use gradient::{Gradient, gradients};
 pub use observer::{Tangent, Transition};

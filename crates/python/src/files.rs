@@ -1,0 +1,111 @@
+//! The jobs whose answer is the files that they write, from a study file and options: each as the command line calls it.
+
+use crate::errors::{Fault, Given};
+use crate::jobs;
+use crate::problem::json;
+use crate::watch::{Watch, watched};
+use pyo3::prelude::*;
+use retune_study::Setting;
+use retune_sweep::Asked;
+use retune_tradeoff::{pareto, track};
+use retune_workbench::design::Wishes;
+use retune_workbench::sweep::Points;
+use retune_workbench::{Error, Request, certify, design, sweep, table2, tune};
+use serde::Deserialize;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// What a job is asked, beside its study file and [`jobs::Asked`].
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Job {
+    Certify,
+    Design(Wishes),
+    Fronts,
+    Merge { parts: Vec<PathBuf> },
+    Reproduce { only: Option<String> },
+    Share(String),
+    Sweep(Swept),
+    Table2,
+    Track(Vec<f64>),
+}
+
+/// A sweep as it is typed.
+#[derive(Deserialize)]
+struct Swept {
+    over: String,
+    from: String,
+    to: String,
+    points: usize,
+    log: bool,
+    quantities: Vec<String>,
+    objective: bool,
+    shard: Option<String>,
+    merge: bool,
+}
+
+/// Does a job on a study file; returns its answer as JSON: a certificate or a table, else the directory of the results.
+///
+/// # Errors
+/// Those of the job, or Ctrl-C.
+#[pyfunction]
+pub fn job(
+    py: Python<'_>,
+    study: PathBuf,
+    job: &str,
+    asked: jobs::Asked,
+    tell: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let job: Job = serde_json::from_str(job).map_err(|error| Fault::Other(error.to_string()))?;
+    let request = asked.request(study)?;
+    watched(py, tell.as_ref(), |watch| done(job, &request, watch))
+}
+
+fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
+    let mut out = request.out_of_file();
+    match job {
+        Job::Certify => return json(&certify::certify_file(request, watch)?),
+        Job::Design(wishes) => drop(design::design(&wishes, request, watch)?),
+        Job::Fronts => drop(pareto::pareto(request, watch)?),
+        Job::Merge { parts } => {
+            tune::merge::merge(request, &parts, watch)?;
+            out = out_of_one(request)?;
+        }
+        Job::Reproduce { only } => drop(retune_paper::reproduce(request, only.as_deref(), watch)?),
+        Job::Share(shard) => {
+            tune::tune_share(request, read("shard", &shard)?, watch)?;
+            out = out_of_one(request)?;
+        }
+        Job::Sweep(swept) => return swept.made(request, watch),
+        Job::Table2 => drop(table2::table2(request, watch)?),
+        Job::Track(k1) => {
+            let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
+            track::track(request, &settings, watch)?;
+        }
+    }
+    json(&out)
+}
+
+/// The directory of the results of a job on one study.
+fn out_of_one(request: &Request) -> Result<PathBuf, Error> {
+    Ok(request.out_of(&retune_study::read(&request.study)?))
+}
+
+impl Swept {
+    /// The table as `sweep.json` has it; null of a share.
+    fn made(self, request: &Request, watch: &Watch) -> Result<String, Fault> {
+        let Self { over, from, to, points, log, quantities, objective, shard, merge } = self;
+        let over = read("over", &over)?;
+        let quantities =
+            quantities.iter().map(|name| read("quantities", name)).collect::<Result<Vec<_>, _>>()?;
+        let shard = shard.map(|shard| read("shard", &shard)).transpose()?;
+        let asked = Asked { over, from, to, unit: None, points, log, quantities, objective };
+        let table = sweep::sweep(request, &asked, &Points::asked(shard, merge), watch)?;
+        Ok(table.unwrap_or_else(|| "null".to_owned()))
+    }
+}
+
+/// An argument that is a word.
+fn read<T: FromStr<Err = String>>(name: &str, text: &str) -> Result<T, Fault> {
+    text.parse().map_err(|words| Fault::study(format!("{name}: {words}"), Given::Json(text.into())))
+}

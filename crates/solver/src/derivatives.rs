@@ -1,0 +1,74 @@
+//! The derivatives of a run's largest value by parameters of the damper, beside the value itself: [`extremes_by`] for [`extremes`],
+//! [`settled_by`] for [`settled`].
+//!
+//! They are those of the value at the time at which it is reached: at a maximum the time does not matter to first order, and an end of the
+//! window does not move. Where several moments have the same value it has a kink, and these are the derivatives at the first: a
+//! subgradient. They are taken by the exact method, whichever the settings name.
+
+use crate::error::SolverError;
+use crate::extremes::{Ask, extremes};
+use crate::response::Extreme;
+use crate::settings::{Method, Settings, Window};
+use crate::settle::{Settle, in_closed_form, settled};
+use crate::tangent::{Tangent, gradient_at};
+use retune_model::{Coupled, Parameter, Scene, Variable};
+
+/// The derivatives of the largest value of [`Ask::measure`] that [`extremes`] finds in a window by parameters of the damper, in the unit of
+/// the measure per SI unit of each; zeros without a damper. [`Ask::cutoff`] is not used.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn extremes_by(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    ask: Ask,
+    variables: &[Variable],
+) -> Result<Vec<f64>, SolverError> {
+    let Some(system) = system(scene, ask) else { return Ok(vec![0.0; variables.len()]) };
+    let settings = Settings { method: Method::Hybrid, ..*settings };
+    let ask = Ask { walls: None, cutoff: f64::INFINITY, ..ask };
+    let at = extremes(scene, window, &settings, ask)?.largest;
+    by(&system, window, &settings, ask, at, variables)
+}
+
+/// The derivatives of the largest value that [`settled`] finds, as [`extremes_by`]. Those of a motion with contacts are of the run from
+/// rest up to the time of the value: as far as the run has settled, those of the settled motion.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn settled_by(
+    scene: &Scene,
+    window: Window,
+    settle: Settle,
+    settings: &Settings,
+    ask: Ask,
+    variables: &[Variable],
+) -> Result<Vec<f64>, SolverError> {
+    let Some(system) = system(scene, ask) else { return Ok(vec![0.0; variables.len()]) };
+    let settings = Settings { method: Method::Hybrid, ..*settings };
+    if in_closed_form(&system, window, &settings).is_some() {
+        let omega = scene.forcing.frequency.get();
+        return Ok(variables.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
+    }
+    let at = settled(scene, window, settle, &settings, Ask { walls: None, ..ask })?.largest;
+    by(&system, window, &settings, ask, at, variables)
+}
+
+fn system(scene: &Scene, ask: Ask) -> Option<Coupled> {
+    let damper = scene.damper.as_ref()?;
+    Some(Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase))
+}
+
+fn by(
+    system: &Coupled,
+    window: Window,
+    settings: &Settings,
+    ask: Ask,
+    at: Extreme,
+    variables: &[Variable],
+) -> Result<Vec<f64>, SolverError> {
+    let parameters: Vec<Parameter> = variables.iter().map(|&variable| variable.into()).collect();
+    let mut tangent = Tangent::new(system, settings, window.to, &parameters);
+    Ok(gradient_at(system, &mut tangent, window.to, ask.measure, at, &parameters)?.by)
+}
