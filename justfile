@@ -83,7 +83,7 @@ branches STUDY *OPTIONS:
 # The periodic motions of four dampers into results/branches: the paper's, both tuned ones, and one with 225.8 J from rest that is not safe
 branches-all *OPTIONS:
     {{retune}} branches studies/ssvi.json --out results/branches/paper "$@"
-    {{retune}} branches results/ssvi --out results/branches/tuned "$@"
+    {{retune}} branches results/ssvi --margin --out results/branches/tuned "$@"
     {{retune}} branches results/ssvi-global --out results/branches/global "$@"
     {{retune}} branches studies/ssvi-isola.json --starts 64 --out results/branches/isola "$@"
 

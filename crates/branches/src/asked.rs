@@ -22,11 +22,13 @@ pub struct Asked {
     pub samples: usize,
     /// Number of starts at each, beside that from rest.
     pub starts: usize,
+    /// Whether to look for the force at which an isola begins.
+    pub margin: bool,
 }
 
 impl Default for Asked {
     fn default() -> Self {
-        Self { over: Parameter::Omega, from: None, to: None, samples: 31, starts: 16 }
+        Self { over: Parameter::Omega, from: None, to: None, samples: 31, starts: 16, margin: false }
     }
 }
 
@@ -40,6 +42,10 @@ impl Asked {
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
             return Err(Error::Asked { option: "STUDY", problem });
+        }
+        if self.margin && over != Parameter::Omega {
+            let problem = format!("an isola is looked for over omega, not over {}", over.symbol());
+            return Err(Error::Asked { option: "--margin", problem });
         }
         let [low, high] = default_range(over, study)?;
         let end = |option, text: &Option<String>, otherwise: f64| {

@@ -12,12 +12,25 @@ pub struct Found {
     pub branches: Branches,
     /// The stable motion with the largest E1max of each branch; none of a branch without stable motions.
     pub largest: Vec<Option<Orbit>>,
+    /// How much more force it bears, where that was asked for.
+    pub margin: Option<Margin>,
 }
 
 impl Found {
     /// Of the motions of a study.
     pub(crate) fn new(study: Study, branches: Branches) -> Self {
         let largest = branches.branches.iter().map(|branch| largest(branch, |orbit| orbit.seen.e1_max));
-        Self { study, largest: largest.collect(), branches }
+        Self { study, largest: largest.collect(), branches, margin: None }
     }
+}
+
+/// Where the first isola begins.
+#[derive(Clone, Debug)]
+pub struct Margin {
+    /// The scene's own force, N.
+    pub own: f64,
+    /// The frequency and the motion at which it is born, the value of the latter being the force; none up to the largest that was tried.
+    pub birth: Option<(f64, Orbit)>,
+    /// The largest that was tried.
+    pub tried: f64,
 }

@@ -9,12 +9,13 @@ mod again;
 mod asked;
 mod draw;
 mod found;
+mod margin;
 mod page;
 mod remedy;
 mod tables;
 
 pub use asked::Asked;
-pub use found::Found;
+pub use found::{Found, Margin};
 pub use tables::summary;
 
 use asked::plan_json;
@@ -59,12 +60,19 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
     });
     let request = Request { out: Some(out), ..request.clone() };
     let studies = [(study.name(), &study)];
-    let job = Job::of_studies(&KIND, &request, plan_json(&plan), studies.into_iter())?;
+    let mut said = plan_json(&plan);
+    if asked.margin {
+        said["margin"] = true.into();
+    }
+    let job = Job::of_studies(&KIND, &request, said, studies.into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
         let branches = motions(&study.scene, plan, &study.solver.settings(), || bar.inc(1))?;
         bar.finish();
-        let found = Found::new(study.clone(), branches);
+        let mut found = Found::new(study.clone(), branches);
+        if asked.margin {
+            found.margin = margin::margin(&found)?;
+        }
         tables::write(&found, directory)?;
         page::write(&found, directory)?;
         let report = format!("\n{}", page::answer(&found).join("\n"));

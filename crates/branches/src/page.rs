@@ -1,7 +1,7 @@
 //! The page of `branches`, and its answer in words. Every number on it is one of the tables beside it.
 
 use crate::draw::draw;
-use crate::found::Found;
+use crate::found::{Found, Margin};
 use crate::remedy::{Remedy, remedies};
 use crate::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
 use retune_dynamics::periodic::branches::Sample;
@@ -108,6 +108,7 @@ pub fn answer(found: &Found) -> Vec<String> {
     }
     words
         .extend(found.branches.branches.iter().enumerate().filter_map(|(i, branch)| isola(found, i, branch)));
+    words.extend(found.margin.as_ref().map(Margin::words));
     words.push(format!(
         "Stable periodic motions, of {}, cover {} % of the range.",
         counted(found.branches.branches.len() as u64, "branch"),

@@ -27,6 +27,13 @@ pub fn remedies(branch: &Branch, orbit: &Orbit) -> Vec<Remedy> {
 
 fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<Remedy> {
     let own = parameter.of(&branch.shooting.scene).filter(|own| *own > 0.0)?;
+    let folds = folds(branch, orbit, parameter)?.map(|fold| fold.map(|orbit| orbit.value));
+    folds.iter().any(Option::is_some).then_some(Remedy { parameter, own, folds })
+}
+
+/// The motions at the folds below and above a parameter's value in the scene at which a motion of a branch vanishes.
+pub fn folds(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<[Option<Orbit>; 2]> {
+    let own = parameter.of(&branch.shooting.scene).filter(|own| *own > 0.0)?;
     let shooting = branch.shooting.along(orbit.value, parameter, own).ok()?;
     let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, own))?;
     let along = trace(&shooting, &seed, REACH.map(|share| share * own))?;
@@ -36,9 +43,8 @@ fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<Remedy
     let closed = along.ends == [End::Closed; 2];
     let before = folds().rfind(|event| event.place < seed || closed);
     let after = folds().find(|event| event.place > seed);
-    let [low, high] = [before, after].map(|event| event.map(|event| event.orbit.value));
-    let folds = [low.filter(|end| *end < own), high.filter(|end| *end > own)];
-    folds.iter().any(Option::is_some).then_some(Remedy { parameter, own, folds })
+    let [low, high] = [before, after].map(|event| event.map(|event| event.orbit.clone()));
+    Some([low.filter(|end| end.value < own), high.filter(|end| end.value > own)])
 }
 
 impl Remedy {

@@ -127,5 +127,15 @@ pub fn summary(found: &Found) -> Value {
         "stable": stable,
         "irregular": irregular,
         "branches": branches,
+        "margin": found.margin.as_ref().map(|margin| json!({
+            "P": margin.own,
+            "tried": margin.tried,
+            "birth": margin.birth.as_ref().map(|(omega, orbit)| json!({
+                "P": orbit.value,
+                "omega": omega,
+                "E1max": orbit.seen.e1_max,
+                "impacts": orbit.seen.impacts,
+            })),
+        })),
     })
 }

@@ -137,9 +137,9 @@ fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
 }
 
 fn branches(arguments: cli::Branches) -> Result<(), Error> {
-    let cli::Branches { study, over, from, to, samples, starts, json: as_json, running } = arguments;
+    let cli::Branches { study, over, from, to, samples, starts, margin, json: as_json, running } = arguments;
     let (request, screen) = running.request(&study);
-    let asked = retune_branches::Asked { over, from, to, samples, starts };
+    let asked = retune_branches::Asked { over, from, to, samples, starts, margin };
     if !as_json {
         return retune_branches::branches(&request, &asked, &screen).map(drop);
     }

@@ -1,7 +1,9 @@
 //! The searches that a larger job is made of, each a job of its own below the directory of the whole.
 
+use crate::observer::Quiet;
 use crate::tune::{Optimum, optimize};
 use crate::{Error, Observer};
+use rayon::prelude::*;
 use retune_store::{Directory, Journal, Order};
 use retune_study::Study;
 
@@ -38,5 +40,30 @@ impl<'a> Searches<'a> {
         self.results.push(results);
         self.infeasible = self.infeasible.take().or(optimum.check_limits().err());
         Ok(optimum)
+    }
+
+    /// Makes the searches of some studies side by side, each in its place; what each is told is not shown.
+    ///
+    /// # Errors
+    /// As [`optimize`], the first in their order.
+    pub fn tune_all(&mut self, all: &[(Study, String)]) -> Result<Vec<Optimum>, Error> {
+        let bar = self.watch.progress("searches", all.len() as u64);
+        let quiet = Quiet(self.watch);
+        let search = |(study, place): &(Study, String)| {
+            let name = format!("{place}/{}", study.name());
+            let found = optimize(study, &self.directory.part(&name), self.order, &quiet);
+            bar.inc(1);
+            found
+        };
+        let found: Vec<Result<(Optimum, Directory), Error>> = all.par_iter().map(search).collect();
+        bar.finish();
+        let mut optima = Vec::new();
+        for found in found {
+            let (optimum, results) = found?;
+            self.results.push(results);
+            self.infeasible = self.infeasible.take().or(optimum.check_limits().err());
+            optima.push(optimum);
+        }
+        Ok(optima)
     }
 }

@@ -85,3 +85,32 @@ fn contract_what_is_asked_for_is_checked() {
     let error = refused(branches(&request(&desk, 1), &asked(), &Silent));
     assert!(error.to_string().contains("no damper"), "{error}");
 }
+
+/// The damper with an isola and 40 mm more D, which removes it: with a little more force it is back. Below the force that the margin says no
+/// isola is found, above it one is, where and as high as said.
+#[test]
+fn exact_an_isola_begins_at_the_margin_of_the_force() {
+    let mut study = committed("ssvi-isola.json");
+    study["scene"]["damper"]["D"] = (0.607_212_882_590_035_9 + 0.04).into();
+    let [from, to] = ["5.6", "6.3"].map(|end| Some(end.to_owned()));
+    let asked = Asked { from, to, samples: 15, margin: true, ..Asked::default() };
+    let desk = Desk::with(&study);
+    let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("not made") };
+    let (omega, birth) = found.margin.expect("asked for").birth.expect("within twice the force");
+    assert!(birth.value > 800.0, "{}", birth.value);
+    assert!(desk.read("out2/README.md").contains("times the force"));
+    for (share, is_there) in [(0.999, false), (1.003, true)] {
+        study["scene"]["forcing"]["P"] = (share * birth.value).into();
+        let desk = Desk::with(&study);
+        // Samples about the place where it begins, for just above its birth it is narrow.
+        let [from, to] = [-0.05, 0.05].map(|way| Some((omega + way).to_string()));
+        let asked = Asked { from, to, samples: 15, starts: 32, ..Asked::default() };
+        let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("made") };
+        let energies = found.largest.iter().flatten().map(|orbit| orbit.seen.e1_max);
+        let most = energies.fold(0.0, f64::max);
+        assert_eq!(most > 0.8 * birth.seen.e1_max, is_there, "{most} J at {share} of the force");
+    }
+    let wrong = Asked { over: Parameter::K1, margin: true, ..Asked::default() };
+    let error = refused(branches(&request(&desk, 1), &wrong, &Silent));
+    assert!(error.to_string().contains("--margin"), "{error}");
+}

@@ -26,6 +26,9 @@ pub struct Branches {
     /// Number of starts at each, beside that from rest
     #[arg(long, value_name = "N", default_value_t = 16)]
     pub starts: usize,
+    /// Look for the force at which an isola begins, up to twice the study's
+    #[arg(long)]
+    pub margin: bool,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub json: bool,

@@ -60,17 +60,18 @@ fn made(fronts: &Fronts, names: &[&str]) -> String {
         .last()
         .map(|(_, study)| retune_study::over(&study.objective(), study.scene.forcing.frequency.get()));
     let mut text = format!(
-        "Dampers: {}. E1max is the {}. Searches look at the samples of their studies and keep 1 % below a limit of stroke or force; the best \
-         design under each bound is then carried to its neighbours, towards tighter bounds and back, and refined on four times the samples. \
-         Each is looked at again on {} frequencies, and under each bound stands the best design that keeps it, whichever search found it: a \
-         looser bound is never worse.",
+        "Dampers: {}. E1max is the {}. Searches look at the samples of their studies and keep 1 % below a limit of stroke or force; from each place that \
+         they come to, and from the best design under a bound under those beside it, the slope is followed down by exact derivatives, on four \
+         times the samples. Each design is looked at again on {} frequencies, and under each bound stands the best that keeps it, whichever \
+         search found it: a looser bound is never worse. Of designs within 1 % the best is taken that no motion from other starts than rest \
+         makes much worse.",
         names.join(", "),
         over.unwrap_or_default(),
         plan.said.samples
     );
     if plan.check() != plan.said.samples {
         text += &format!(
-            " E1max on {} frequencies stands beside it; designs that rise there by more than 1 % are marked with ↑, and by a ring in the figures.",
+            " E1max on {} frequencies stands beside it, and designs are compared by it; those that rise there by more than 1 % are marked with ↑, and by a ring in the figures.",
             plan.check()
         );
     }
@@ -178,6 +179,16 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
             " For {what} at most {} {unit} it is a single chaotic realisation: practically equal designs have much more or \
              less.",
             draws.join(", ")
+        );
+    }
+    let unsafe_ones: Vec<String> = own()
+        .filter(|row| row.design.is_some_and(super::Candidate::is_unsafe))
+        .map(|row| row.bound.to_string())
+        .collect();
+    if !unsafe_ones.is_empty() {
+        words += &format!(
+            " For {what} at most {} {unit} other starts than rest lead it to much more, and no design as good was found that is free of this.",
+            unsafe_ones.join(", ")
         );
     }
     let idle: Vec<String> = own()

@@ -35,8 +35,8 @@ pub(super) fn search(
             fronts.given.extend(fronts.look(damper, at, GIVEN));
         }
     }
-    for under in fronts.all() {
-        tasks.extend(fronts.tune(under, searches, watch)?);
+    for damper in 0..fronts.plan.dampers.len() {
+        tasks.extend(fronts.tune(damper, searches, watch)?);
     }
     fronts.go_down(tasks, searches, watch)?;
     fronts.judge()?;
@@ -45,30 +45,41 @@ pub(super) fn search(
 }
 
 impl Fronts {
-    /// The search of a study under a bound; the descents that begin where it came to. A steady response is exact over the whole band: its
-    /// search needs none.
+    /// The searches of a damper under all bounds, side by side; the descents that begin where they came to. A steady response is exact over
+    /// the whole band: its searches need none.
     fn tune(
         &mut self,
-        under: Under,
+        damper: usize,
         searches: &mut Searches,
         watch: &dyn Observer,
     ) -> Result<Vec<Task>, Error> {
-        let Under { damper, sweep, bound } = under;
-        let (name, what, unit) = (self.name(damper).to_owned(), sweep.name(), sweep.unit());
-        let study = self.under(under, self.starts(under))?;
-        watch.log(&format!("\n{name}, {what} at most {bound} {unit}"))?;
-        let optimum = searches.tune(&study, &format!("{what}-{bound}"))?;
-        watch.log(&optimum.report())?;
-        let found = optimum.found().damper.design;
-        self.designs.extend(self.look(damper, found, optimum.verdict()));
-        if self.is_steady(damper) {
-            return Ok(Vec::new());
+        let bounds: Vec<Under> = self.all().into_iter().filter(|under| under.damper == damper).collect();
+        let study = |under: &Under| -> Result<(Study, String), Error> {
+            Ok((self.under(*under, self.starts(*under))?, format!("{}-{}", under.sweep.name(), under.bound)))
+        };
+        let optima = searches.tune_all(&bounds.iter().map(study).collect::<Result<Vec<_>, _>>()?)?;
+        let mut tasks = Vec::new();
+        for (under, optimum) in bounds.into_iter().zip(optima) {
+            let Under { sweep, bound, .. } = under;
+            watch.log(&format!(
+                "\n{}, {} at most {bound} {}",
+                self.name(damper),
+                sweep.name(),
+                sweep.unit()
+            ))?;
+            watch.log(&optimum.report())?;
+            let found = optimum.found().damper.design;
+            self.designs.extend(self.look(damper, found, optimum.verdict()));
+            if self.is_steady(damper) {
+                continue;
+            }
+            let places = optimum.places().into_iter().filter_map(|place| {
+                Design::new(|variable| place.get(variable).unwrap_or_else(|| found.get(variable))).ok()
+            });
+            let all: Vec<Design> = [found].into_iter().chain(places).collect();
+            tasks.extend(all.iter().flat_map(|at| self.descents(at, under)));
         }
-        let places = optimum.places().into_iter().filter_map(|place| {
-            Design::new(|variable| place.get(variable).unwrap_or_else(|| found.get(variable))).ok()
-        });
-        let all: Vec<Design> = [found].into_iter().chain(places).collect();
-        Ok(all.iter().flat_map(|at| self.descents(at, under)).collect())
+        Ok(tasks)
     }
 
     /// The study of a damper under a bound.
@@ -80,11 +91,11 @@ impl Fronts {
         study::bounded(study, sweep, room * bound, starts).map_err(refuse)
     }
 
-    /// The designs at which a search starts: the best so far of the damper itself, and of those before it, under the bound.
+    /// The designs at which a search starts: the best of the dampers before it under the bound.
     fn starts(&self, under: Under) -> Vec<PerVariable<f64>> {
         let Ok(study) = self.under(under, Vec::new()) else { return Vec::new() };
         let Some(optimize) = &study.optimize else { return Vec::new() };
-        let best = (0..=under.damper).filter_map(|other| self.best(Under { damper: other, ..under }));
+        let best = (0..under.damper).filter_map(|other| self.best(Under { damper: other, ..under }));
         best.map(|design| clipped(&design.at, optimize)).collect()
     }
 

@@ -139,6 +139,8 @@ fn unusable() -> Vec<Unusable> {
         Unusable::Member(out_of_range()),
         Unusable::Run(SolverError::NonFinite { t: 1.5 }),
         Unusable::Stopped,
+        Unusable::Motions(retune_dynamics::Error::NoPeriod),
+        Unusable::NoDerivatives,
         Unusable::Touches { omega: 6.3, stroke: 0.4, room: 0.06 },
     ]
 }
@@ -233,7 +235,7 @@ fn regress_the_words_of_every_error() {
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),
-        each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Stopped Touches),
+        each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Stopped Motions NoDerivatives Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
             NonFinite),
         each!(lines(), LineError: Count Number Long Unusable),

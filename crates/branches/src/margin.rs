@@ -1,0 +1,119 @@
+//! How much more force a damper bears before a motion appears that runs from rest do not lead to.
+//!
+//! The force is raised in steps until a branch of such motions is found. Each of them vanishes at a fold as the force falls again; the least
+//! force of these folds over ω is where the branch is born, as an isola. Just below, the motions are looked for again, for another may be
+//! born earlier.
+
+use crate::found::{Found, Margin};
+use crate::remedy::folds;
+use retune_dynamics::periodic::branches::branches;
+use retune_dynamics::periodic::{Branch, Orbit};
+use retune_model::Parameter;
+use retune_workbench::Error;
+
+/// The forces at which motions are looked for, as multiples of the scene's own.
+const STEPS: [f64; 10] = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0];
+/// How far below a birth another is looked for, as a share of the force, and how often.
+const BELOW: f64 = 0.995;
+const AGAIN: usize = 4;
+/// Motions of a branch from which the force is lowered first.
+const FIRST: usize = 12;
+/// A branch counts whose largest energy is by this factor above that of all motions that runs from rest lead to.
+const MUCH: f64 = 1.05;
+/// Golden sections about the least of them.
+const SECTIONS: usize = 30;
+
+/// Looks for it. None where the answer is not along ω, nothing has an amplitude, or there is such a motion already.
+///
+/// # Errors
+/// A scene cannot be run.
+pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
+    let plan = found.branches.plan;
+    let own = Parameter::P.of(&found.study.scene).filter(|own| *own > 0.0);
+    let Some(own) = own.filter(|_| plan.parameter == Parameter::Omega && others(found).next().is_none())
+    else {
+        return Ok(None);
+    };
+    let first_birth = |force: f64| -> Result<Option<(f64, Orbit)>, Error> {
+        let scene = Parameter::P.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
+        let there = branches(&scene, plan, &found.study.solver.settings(), || ())?;
+        let there = Found::new(found.study.clone(), there);
+        Ok(others(&there).filter_map(birth).min_by(|a, b| a.1.value.total_cmp(&b.1.value)))
+    };
+    for step in STEPS {
+        let Some(mut born) = first_birth(step * own)? else { continue };
+        for _ in 0..AGAIN {
+            let below = BELOW * born.1.value;
+            match if below > own { first_birth(below)? } else { None } {
+                Some(earlier) => born = earlier,
+                None => break,
+            }
+        }
+        return Ok(Some(Margin { own, birth: Some(born), tried: step * own }));
+    }
+    Ok(Some(Margin { own, birth: None, tried: STEPS[STEPS.len() - 1] * own }))
+}
+
+/// The branches that no run from rest leads to, with stable motions of much more energy than any on branches that runs from rest do.
+fn others(found: &Found) -> impl Iterator<Item = &Branch> {
+    let energy = |i: usize| found.largest[i].as_ref().map_or(0.0, |orbit| orbit.seen.e1_max);
+    let from_rest = |i: &usize| found.branches.is_reached_from_rest(*i);
+    let usual = (0..found.largest.len()).filter(from_rest).map(energy).fold(0.0, f64::max);
+    let is_other = move |(i, _): &(usize, &Branch)| !from_rest(i) && energy(*i) > MUCH * usual;
+    found.branches.branches.iter().enumerate().filter(is_other).map(|(_, branch)| branch)
+}
+
+/// The frequency and the motion with which a branch is born as the force rises: at the least of the folds at which its motions vanish as it
+/// falls.
+fn birth(branch: &Branch) -> Option<(f64, Orbit)> {
+    let fold = |orbit: &Orbit| folds(branch, orbit, Parameter::P).and_then(|[below, _]| below);
+    let every = branch.points.len().div_ceil(FIRST);
+    let some: Vec<(f64, Orbit)> = branch
+        .points
+        .iter()
+        .step_by(every)
+        .filter_map(|point| Some((fold(point)?.value, point.clone())))
+        .collect();
+    let (_, least) = some.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let omegas = || branch.points.iter().map(|point| point.value);
+    let width = omegas().fold(f64::MIN, f64::max) - omegas().fold(f64::MAX, f64::min);
+    let at = |omega: f64| {
+        let shooting = &branch.shooting;
+        let near = shooting.correct_at_value(&shooting.unknowns(&least.states, omega))?;
+        fold(&Orbit::of(shooting, &near).ok()?)
+    };
+    let value = |omega: f64| at(omega).map_or(f64::INFINITY, |birth| birth.value);
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let reach = width / FIRST as f64;
+    let (mut low, mut high) = (least.value - reach, least.value + reach);
+    for _ in 0..SECTIONS {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        if value(a) < value(b) { high = b } else { low = a }
+    }
+    let omega = 0.5 * (low + high);
+    Some((omega, at(omega)?))
+}
+
+impl Margin {
+    /// In words.
+    pub fn words(&self) -> String {
+        let Self { own, birth, tried } = self;
+        match birth {
+            None => format!(
+                "No isola was found up to {} times the force, {} N.",
+                retune_study::short(tried / own),
+                retune_study::short(*tried)
+            ),
+            Some((omega, birth)) => format!(
+                "Up to {} times the force, {} N, there is no isola; with more, one begins at omega = {} rad/s, {} J ({} \
+                 periods, impacts {}).",
+                retune_study::rounded(birth.value / own, 6),
+                retune_study::rounded(birth.value, 8),
+                retune_study::rounded(*omega, 6),
+                retune_study::rounded(birth.seen.e1_max, 5),
+                birth.periods,
+                birth.seen.impacts
+            ),
+        }
+    }
+}
