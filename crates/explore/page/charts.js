@@ -10,15 +10,16 @@ export const axis = (label, size, more = {}) => ({
     ticks: { stroke: () => css("--grid"), width: 1, size: 4 },
     font: FONT,
     labelFont: FONT,
-    labelSize: 14,
+    labelSize: 15,
+    labelGap: 0,
     label,
     size,
-    gap: 3,
+    gap: 2,
     ...more,
 });
 
 // Numbers of an axis: short, and alike.
-const worded = (_, splits) => splits.map((value) => (value === null ? "" : String(Number(value.toPrecision(5)))));
+export const worded = (_, splits) => splits.map((value) => (value === null ? "" : String(Number(value.toPrecision(5)))));
 
 const KINDS = [
     { name: "x1", label: "x1, m", words: "displacement of the structure", columns: ["x1"], colours: ["--blue"] },
@@ -64,7 +65,7 @@ export class Series {
                     cursor: { sync: { key: "time" }, drag: { setScale: false, x: true, y: false }, points: { show: false } },
                     scales: { x: { time: false }, y: { range: (u, least, largest) => this.range(kind, least, largest) } },
                     series: [{}, ...kind.columns.map((_, n) => ({ stroke: () => css(kind.colours[n]), width: 1, points: { show: false } }))],
-                    axes: [axis(last ? "t, s" : null, last ? 34 : 8, last ? { values: worded } : { values: () => [] }), axis(kind.label, 52, { values: worded })],
+                    axes: [axis(last ? "t, s" : null, last ? 22 : 8, last ? { values: worded } : { values: () => [] }), axis(kind.label, 50, { values: worded, space: 22 })],
                     hooks: {
                         drawAxes: [(u) => this.behind(kind, u)],
                         draw: [(u) => this.before(kind, u)],
@@ -103,15 +104,23 @@ export class Series {
         const wanted = kinds.map((kind) => kind.name).join(" ");
         if (wanted !== this.shown) this.build(kinds);
         this.shown = wanted;
-        const [from, to] = motion.span;
-        for (const chart of this.charts) {
-            const { columns } = chart.kind;
-            chart.batch(() => {
-                chart.setData([motion.columns.t, ...columns.map((name) => motion.columns[name])], false);
-                chart.setScale("x", { min: from, max: to });
-            });
-        }
+        for (const chart of this.charts) this.fill(chart);
         this.name();
+    }
+
+    fill(chart) {
+        const { columns, span } = this.motion;
+        chart.batch(() => {
+            chart.setData([columns.t, ...chart.kind.columns.map((name) => columns[name])], false);
+            chart.setScale("x", { min: span[0], max: span[1] });
+        });
+    }
+
+    // The neighbours of an irregular motion; none of a regular one.
+    scatter(spread) {
+        if (!spread && !this.spread) return;
+        this.spread = spread;
+        for (const chart of this.charts) if (chart.kind.name === "E1" && this.motion) this.fill(chart);
     }
 
     name() {

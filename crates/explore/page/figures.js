@@ -61,7 +61,7 @@ export class Figures {
         const [value, unit] = worst?.words ? [worst.words, quantity.unit] : ["–", ""];
         const heroes = [
             [value, unit, `worst ${quantity.name} over ${over}`, worst?.words ? `at ω = ${Number(worst.omega.toPrecision(4))} rad/s` : (worst?.problem ?? "")],
-            [worst?.reduction ? `${worst.reduction}×` : "–", "", "less than without a damper", worst?.none ? `which has ${worst.none} ${quantity.unit}` : ""],
+            [worst?.reduction ? worst.reduction : "–", "", "times less than without a damper", worst?.none ? `which has ${worst.none} ${quantity.unit}` : ""],
             [kind?.label ?? "–", "", "kind of motion at this ω", kind?.words ?? ""],
         ];
         this.heroes.replaceChildren(

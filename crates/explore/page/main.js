@@ -38,9 +38,13 @@ function problem(words, field = null) {
     mark(field);
 }
 
+// Tells whoever watches the page how far it is: tests and measurements do.
+const tell = (what, detail) => document.dispatchEvent(new CustomEvent(what, { detail }));
+
 // Asks for what the page should show now. The server drops what it was doing for an earlier place.
 function turned() {
     id += 1;
+    tell("asked", id);
     response.at(omega());
     remember();
     link.send({ look: { id, place: asked(), span: place.span, columns: series.columns() } });
@@ -76,21 +80,17 @@ const answers = {
     "motion kind"(answer) {
         figures.kind(answer);
         if (answer.whose) return;
-        if (!answer.irregular && series.spread) {
-            series.spread = null;
-            series.redraw();
-        }
+        if (!answer.irregular) series.scatter(null);
         const { columns } = answer;
         if (columns["crest.x1"]?.length) points(columns);
     },
     spread(answer) {
         figures.scatter(answer);
-        series.spread = answer;
-        series.redraw();
+        series.scatter(answer);
     },
-    done() {
+    done(answer) {
         figures.say();
-        document.dispatchEvent(new CustomEvent("known", { detail: id }));
+        tell("known", answer.id);
     },
     pinned(answer) {
         if (answer.problem) problem(`${answer.whose}: ${answer.problem}`);
@@ -132,17 +132,15 @@ const link = new Link(
 function paint() {
     const motion = fresh;
     fresh = null;
-    if (series.spread && !same(series.spread.of, place)) series.spread = null;
+    series.spread = null; // that of an earlier place
     series.show(motion, place.damper);
     figures.motion(motion, omega());
     const P = controls().find(({ name }) => ["P", "imbalance", "base"].includes(name));
     drawing.show(motion, { damper: place.damper, P: P ? value(P) : 0 });
     $("phase-2-figure").hidden = place.damper === "none";
     points(motion.columns, motion);
-    document.dispatchEvent(new CustomEvent("painted", { detail: motion.id }));
+    tell("painted", motion.id);
 }
-
-const same = (a, b) => a === b;
 
 function points(columns, motion = null) {
     const drawn = motion?.columns;
@@ -175,10 +173,10 @@ function show(span, name) {
 
 for (const button of document.querySelectorAll("[data-span]")) {
     button.addEventListener("click", () => {
-        const [t0, end] = hello.window;
+        const end = hello.window[1];
         const periods = (12 * 2 * Math.PI) / Math.max(omega(), 1e-9);
         const spans = { window: null, run: [0, end], start: [0, Math.min(end, periods)], end: [Math.max(0, end - periods), end] };
-        show(spans[button.dataset.span] ?? (t0 >= 0 ? null : null), button.dataset.span);
+        show(spans[button.dataset.span], button.dataset.span);
     });
 }
 

@@ -1,6 +1,7 @@
 // The response over frequency: this design, no damper, the pinned ones; the present ω as a cursor to drag.
 
-import { axis, css } from "./charts.js";
+import { axis, css, worded } from "./charts.js";
+import { ticks } from "./phase.js";
 
 const WHOSE = ["none", "A", "B", "now"];
 const STROKES = { none: ["--ink", [5, 4]], A: ["--blue", []], B: ["--green", []], now: ["--vermilion", []] };
@@ -26,7 +27,13 @@ export class Response {
             points: { show: false },
             spanGaps: true,
         }));
-        const hertz = { side: 0, scale: "x", grid: { show: false }, values: (_, splits) => splits.map((omega) => (omega / (2 * Math.PI)).toFixed(2)) };
+        const turn = 2 * Math.PI;
+        const hertz = {
+            side: 0,
+            grid: { show: false },
+            splits: (u, _, from, to) => ticks([from / turn, to / turn], u.width / 90).map((hertz) => hertz * turn),
+            values: (_, splits) => splits.map((omega) => String(Number((omega / turn).toPrecision(6)))),
+        };
         this.chart?.destroy();
         this.into.replaceChildren();
         this.chart = new uPlot(
@@ -36,7 +43,7 @@ export class Response {
                 cursor: { drag: { x: false, y: false }, points: { show: false }, y: false },
                 scales: { x: { time: false, range: () => this.band }, y: { range: (u, least, largest) => [0, 1.06 * (largest || 1)] } },
                 series: [{}, ...series],
-                axes: [axis("ω, rad/s", 34), axis(`${quantity.name}, ${quantity.unit}`, 56), { ...axis("frequency, Hz", 32), ...hertz }],
+                axes: [axis("ω, rad/s", 22), axis(`${quantity.name}, ${quantity.unit}`, 50, { values: worded, space: 32 }), axis("frequency, Hz", 20, hertz)],
                 hooks: { draw: [(u) => this.cursor(u)] },
             },
             [[], ...WHOSE.map(() => [])],

@@ -44,12 +44,19 @@ pub fn kind(study: &Study) -> (Answer, bool) {
 }
 
 fn words(regime: &Regime) -> String {
-    let [structure, obstacle] = regime.impacts.map(|impacts| rounded(impacts, 3));
-    let each = format!("{structure} impacts on the structure and {obstacle} on the obstacle");
+    let on = |impacts: f64, wall: &str| {
+        let count = rounded(impacts, 3);
+        format!("{count} {} on the {wall}", if count == "1" { "impact" } else { "impacts" })
+    };
+    let [structure, obstacle] = regime.impacts;
+    let each = match structure + obstacle {
+        0.0 => "without impacts".to_owned(),
+        _ => format!("with {} and {}", on(structure, "structure"), on(obstacle, "obstacle")),
+    };
     match (regime.kind, regime.period) {
-        (Kind::Periodic, Some(1)) => format!("repeats every period of the force, with {each}"),
-        (Kind::Periodic, Some(n)) => format!("repeats every {n} periods of the force, with {each}"),
-        (kind, _) => format!("{}, with {each} per period of the force", kind.words()),
+        (Kind::Periodic, Some(1)) => format!("repeats every period of the force, {each}"),
+        (Kind::Periodic, Some(n)) => format!("repeats every {n} periods of the force, {each}"),
+        (kind, _) => format!("{}, {each} per period of the force", kind.words()),
     }
 }
 
