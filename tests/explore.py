@@ -314,7 +314,7 @@ def try_it(program, shots):
     return 1 if checks.bad else 0
 
 
-# A slider that is turned once a frame; the time from the event to the frame in which its time series were painted.
+# A slider that is turned again and again; the time from the event to the end of the frame that shows its time series.
 DRAG = """(async (seconds, pause) => {
     const slider = document.getElementById("slider-c2");
     const times = [];
@@ -329,7 +329,8 @@ DRAG = """(async (seconds, pause) => {
         slider.dispatchEvent(new Event("input", { bubbles: true }));
         await seen;
         painted = null;
-        // After the frame: a message is handled once what the frame has drawn is on its way to the screen.
+        // After the next frame: the message is handled once what was drawn is on its way to the screen.
+        await new Promise(requestAnimationFrame);
         await new Promise((r) => { const c = new MessageChannel(); c.port1.onmessage = r; c.port2.postMessage(0); });
         times.push(performance.now() - begun);
     }

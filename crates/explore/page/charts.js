@@ -1,6 +1,12 @@
 // Time series: displacement, relative displacement with walls and contacts, E1 with its maximum and the spread of neighbours, forces.
 
-export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+// Colours of the style sheet. They are kept, for asking in the middle of drawing costs a layout.
+const colours = new Map();
+export function css(name) {
+    if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+    return colours.get(name);
+}
+export const forget = () => colours.clear();
 
 export const FONT = "11px system-ui, sans-serif";
 

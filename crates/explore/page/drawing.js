@@ -89,7 +89,7 @@ export class Drawing {
         const block = Math.min(84, 0.15 * width);
         const mass = Math.min(46, 0.09 * width);
         const scale = (width - 24 - spring - block - (damped ? mass + 34 : 10)) / (2 * this.reach + right - left);
-        const floor = height - 26;
+        const floor = Math.min(height - 26, height / 2 + 58);
         const ink = css("--ink");
         ctx.strokeStyle = ctx.fillStyle = ink;
         ctx.lineWidth = 1.25;
@@ -107,7 +107,7 @@ export class Drawing {
         ctx.fillStyle = css("--blue");
         ctx.fillRect(at, floor - high, block, high - 6);
         const face = at + block;
-        const place = (x) => face + scale * (x - left) + (damped && left < 0 ? 0 : 0);
+        const place = (x) => face + scale * (x - left);
         ctx.fillStyle = css("--card");
         ctx.font = "600 12px system-ui, sans-serif";
         ctx.textAlign = "center";

@@ -1,6 +1,6 @@
-// The page: what is turned goes to the server, and what comes back is shown, once a frame.
+// The page: what is turned goes to the server, and what comes back is shown.
 
-import { Series } from "./charts.js";
+import { Series, forget } from "./charts.js";
 import { build, mark, refresh } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { Figures } from "./figures.js";
@@ -16,7 +16,8 @@ const SLOTS = ["A", "B"];
 
 let hello = null;
 let id = 0;
-let fresh = null; // a motion that is not painted yet
+let resting = false; // whether what does not move with the hand waits to be drawn
+let latest = null;
 let tuningHere = false;
 
 const series = new Series($("series"), (span) => show(span, null));
@@ -68,8 +69,7 @@ const answers = {
     motion(answer) {
         if (answer.id !== id) return;
         problem(null);
-        if (!fresh) requestAnimationFrame(paint);
-        fresh = answer;
+        paint(answer);
     },
     response(answer) {
         response.set(answer.whose, answer);
@@ -89,6 +89,7 @@ const answers = {
         series.scatter(answer);
     },
     done(answer) {
+        if (resting) rest();
         figures.say();
         tell("known", answer.id);
     },
@@ -129,17 +130,23 @@ const link = new Link(
     },
 );
 
-function paint() {
-    const motion = fresh;
-    fresh = null;
+// What moves with the hand is drawn at once, so that the next frame has it; the rest after that frame.
+function paint(motion) {
+    latest = motion;
     series.spread = null; // that of an earlier place
     series.show(motion, place.damper);
-    figures.motion(motion, omega());
-    const P = controls().find(({ name }) => ["P", "imbalance", "base"].includes(name));
-    drawing.show(motion, { damper: place.damper, P: P ? value(P) : 0 });
-    $("phase-2-figure").hidden = place.damper === "none";
-    points(motion.columns, motion);
     tell("painted", motion.id);
+    if (!resting) requestAnimationFrame(() => setTimeout(rest));
+    resting = true;
+}
+
+function rest() {
+    resting = false;
+    figures.motion(latest, omega());
+    const P = controls().find(({ name }) => ["P", "imbalance", "base"].includes(name));
+    drawing.show(latest, { damper: place.damper, P: P ? value(P) : 0 });
+    $("phase-2-figure").hidden = place.damper === "none";
+    points(latest.columns, latest);
 }
 
 function points(columns, motion = null) {
@@ -239,6 +246,7 @@ $("speed").addEventListener("change", ({ target }) => (drawing.speed = Number(ta
 paused();
 
 const restyle = () => {
+    forget();
     series.redraw();
     response.chart?.redraw(false, true);
     phases.forEach((phase) => phase.draw());

@@ -30,6 +30,7 @@ export class Response {
         const turn = 2 * Math.PI;
         const hertz = {
             side: 0,
+            scale: "x",
             grid: { show: false },
             splits: (u, _, from, to) => ticks([from / turn, to / turn], u.width / 90).map((hertz) => hertz * turn),
             values: (_, splits) => splits.map((omega) => String(Number((omega / turn).toPrecision(6)))),

@@ -3,9 +3,9 @@
 
 use crate::protocol::Answer;
 use crate::refused::Refused;
-use crate::thin::Thinning;
+use crate::thin::{Thin, Thinning};
 use retune_model::Coupled;
-use retune_solver::{Rows, Sample, Window, trajectory};
+use retune_solver::{Moment, Rows, Sample, Window, trajectory};
 use retune_study::{Study, rounded};
 use retune_workbench::simulate::{Simulation, simulate};
 use serde_json::{Value, json};
@@ -33,50 +33,16 @@ pub fn period(study: &Study) -> f64 {
 /// # Errors
 /// The run fails, with the time reached.
 pub fn look(study: &Study, span: Option<[f64; 2]>, columns: usize) -> Result<Answer, Refused> {
-    let refuse = |error: &dyn std::fmt::Display| Refused::whole(error);
-    let simulation = simulate(study, None).map_err(|error| refuse(&error))?;
     let Window { from: t0, to: end } = study.window.window();
-    let [from, to] = span.unwrap_or([t0, end]);
-    let [from, to] = [from.min(end), to.min(end)];
+    let [from, to] = span.unwrap_or([t0, end]).map(|t| t.min(end));
     let span = if from < to { [from, to] } else { [t0, end] };
-    let settings = study.solver.settings();
-    let run = |[from, to]: [f64; 2], rows: Rows, visit: &mut dyn FnMut(&Sample)| {
-        trajectory(&study.scene, Window { from, to }, &settings, rows, visit).map_err(|error| refuse(&error))
-    };
-
-    let period = period(study);
-    let interval = ((span[1] - span[0]) / (SHARP * columns as f64)).min(period / ROWS);
-    let mut series = Thinning::<5>::new(span, columns);
-    let mut contacts = Vec::new();
-    run(span, Rows { interval, events: true }, &mut |row: &Sample| {
-        let [x1, _, x2, _] = row.state;
-        series.push(row.t, [x1, x2 - x1, row.e1, row.forces[0], row.forces[1]]);
-        if row.moment == retune_solver::Moment::ForceMax {
-            contacts.extend([row.t, x2 - x1]);
-        }
-    })?;
-    let series = series.finish();
-
-    let last = [(end - DRAWN * period).max(0.0), end];
-    let mut drawn: [Vec<f64>; 5] = Default::default();
-    run(last, Rows::every(period / FINE), &mut |row: &Sample| {
-        let [x1, v1, x2, v2] = row.state;
-        drawn
-            .iter_mut()
-            .zip([row.t, x1, v1, x2 - x1, v2 - v1])
-            .for_each(|(column, value)| column.push(value));
-    })?;
-
-    // Crests of the force in the window: no period, no crests.
-    let mut crests: [Vec<f64>; 4] = Default::default();
-    let first = (t0 / period).ceil() * period;
-    if study.scene.forcing.frequency.get() > 0.0 && first < end {
-        run([first, end], Rows::every(period), &mut |row: &Sample| {
-            let [x1, v1, x2, v2] = row.state;
-            crests.iter_mut().zip([x1, v1, x2 - x1, v2 - v1]).for_each(|(column, value)| column.push(value));
-        })?;
-    }
-
+    // Each is a run of its own; two at a time, because a page waits for them.
+    let ((simulation, drawn), (series, crests)) = rayon::join(
+        || (simulate(study, None), drawn(study)),
+        || (series(study, span, columns), crests(study)),
+    );
+    let simulation = simulation.map_err(Refused::whole)?;
+    let (series, contacts) = series?;
     let mut answer = Answer::new("motion")
         .with("span", span)
         .with("window", [t0, end])
@@ -88,13 +54,68 @@ pub fn look(study: &Study, span: Option<[f64; 2]>, columns: usize) -> Result<Ans
     for (name, column) in ["x1", "gap", "E1", "FconL", "FconR"].into_iter().zip(&series.columns) {
         answer = answer.column(name, column);
     }
-    for (name, column) in ["drawn.t", "drawn.x1", "drawn.v1", "drawn.x", "drawn.v"].into_iter().zip(&drawn) {
+    for (name, column) in ["drawn.t", "drawn.x1", "drawn.v1", "drawn.x", "drawn.v"].into_iter().zip(&drawn?) {
         answer = answer.column(name, column);
     }
-    for (name, column) in CRESTS.into_iter().zip(&crests) {
+    for (name, column) in CRESTS.into_iter().zip(&crests?) {
         answer = answer.column(name, column);
     }
     Ok(answer.column("contacts", &contacts))
+}
+
+fn visit(
+    study: &Study,
+    [from, to]: [f64; 2],
+    rows: Rows,
+    visit: &mut dyn FnMut(&Sample),
+) -> Result<(), Refused> {
+    let settings = study.solver.settings();
+    trajectory(&study.scene, Window { from, to }, &settings, rows, visit).map_err(Refused::whole)
+}
+
+/// x1, x2 - x1, E1 and both contact forces over time, thinned to pixels; and where contacts are deepest, t and x2 - x1 in turn.
+///
+/// # Errors
+/// The run fails.
+pub fn series(study: &Study, span: [f64; 2], columns: usize) -> Result<(Thin<5>, Vec<f64>), Refused> {
+    let interval = ((span[1] - span[0]) / (SHARP * columns as f64)).min(period(study) / ROWS);
+    let (mut series, mut contacts) = (Thinning::new(span, columns), Vec::new());
+    visit(study, span, Rows { interval, events: true }, &mut |row: &Sample| {
+        let [x1, _, x2, _] = row.state;
+        series.push(row.t, [x1, x2 - x1, row.e1, row.forces[0], row.forces[1]]);
+        if row.moment == Moment::ForceMax {
+            contacts.extend([row.t, x2 - x1]);
+        }
+    })?;
+    Ok((series.finish(), contacts))
+}
+
+/// The last periods: t, x1, v1, x2 - x1, v2 - v1.
+fn drawn(study: &Study) -> Result<[Vec<f64>; 5], Refused> {
+    let (period, end) = (period(study), study.window.end.get());
+    let mut columns: [Vec<f64>; 5] = Default::default();
+    visit(study, [(end - DRAWN * period).max(0.0), end], Rows::every(period / FINE), &mut |row: &Sample| {
+        let [x1, v1, x2, v2] = row.state;
+        columns
+            .iter_mut()
+            .zip([row.t, x1, v1, x2 - x1, v2 - v1])
+            .for_each(|(column, value)| column.push(value));
+    })?;
+    Ok(columns)
+}
+
+/// The states at crests of the force in the window, as [`CRESTS`]; none without a period.
+fn crests(study: &Study) -> Result<[Vec<f64>; 4], Refused> {
+    let (period, end) = (period(study), study.window.end.get());
+    let mut columns: [Vec<f64>; 4] = Default::default();
+    let first = (study.window.t0.get() / period).ceil() * period;
+    if study.scene.forcing.frequency.get() > 0.0 && first < end {
+        visit(study, [first, end], Rows::every(period), &mut |row: &Sample| {
+            let [x1, v1, x2, v2] = row.state;
+            columns.iter_mut().zip([x1, v1, x2 - x1, v2 - v1]).for_each(|(column, value)| column.push(value));
+        })?;
+    }
+    Ok(columns)
 }
 
 /// The columns with the states at crests of the force.

@@ -12,6 +12,10 @@ use retune_study::Study;
 use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How long a slider rests before what takes longer is begun.
+const REST: Duration = Duration::from_millis(60);
 
 /// What a page asked to look at.
 struct Look {
@@ -220,6 +224,7 @@ impl Session<'_> {
         if known.response.as_ref() != Some(&design) {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
+        self.rest(is_stale)?;
         let irregular = match &known.kind {
             Some((of, irregular)) if *of == study => *irregular,
             _ => {
@@ -240,6 +245,14 @@ impl Session<'_> {
             known.spread = Some((study, span));
         }
         send(Answer::new("done"))
+    }
+
+    /// Waits a moment: while a hand still moves, the processors belong to what it sees move, not to work that the next place outdates.
+    fn rest(&self, is_stale: &dyn Fn() -> bool) -> Result<(), Stale> {
+        let (mail, end) = (self.mail(), Instant::now() + REST);
+        let moving = |_: &mut Mail| !is_stale() && Instant::now() < end;
+        drop(self.bell.wait_timeout_while(mail, REST, moving));
+        if is_stale() { Err(Stale) } else { Ok(()) }
     }
 
     fn pin(&self, slot: usize, place: &Place, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<(), Stale> {

@@ -2,10 +2,9 @@
 
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, bare};
-use crate::thin::Thinning;
 use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
-use retune_solver::{Rows, Sample, Window, trajectory};
+use retune_solver::Window;
 use retune_study::{Study, design_words, hertz_and_rpm};
 use retune_workbench::amount;
 use retune_workbench::summary::MadeBy;
@@ -21,15 +20,7 @@ const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
 /// The run fails.
 pub fn motion(study: &Study) -> Result<String, Refused> {
     let Window { from, to } = study.window.window();
-    let mut series = Thinning::<5>::new([from, to], COLUMNS);
-    let period = crate::motion::period(study);
-    let rows = Rows { interval: ((to - from) / (2 * COLUMNS) as f64).min(period / 48.0), events: true };
-    trajectory(&study.scene, Window { from, to }, &study.solver.settings(), rows, &mut |row: &Sample| {
-        let [x1, _, x2, _] = row.state;
-        series.push(row.t, [x1, x2 - x1, row.e1, row.forces[0], row.forces[1]]);
-    })
-    .map_err(Refused::whole)?;
-    let series = series.finish();
+    let (series, _) = crate::motion::series(study, [from, to], COLUMNS)?;
     let points = |column: usize| -> Vec<(f64, f64)> {
         series.t.iter().copied().zip(series.columns[column].iter().copied()).collect()
     };
