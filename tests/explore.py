@@ -348,11 +348,14 @@ def bench(program, seconds):
     page = Page(browser, explorer.address)
     loads = page.js("performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation')).map((e) => [e.name, e.decodedBodySize])")
     size = sum(count for _, count in loads)
-    print(f"`just bench-explore`: results/ssvi at 1280 px, headless Chromium and the server on {os.cpu_count()} cores\n")
+    print(
+        f"`just bench-explore`: results/ssvi at 1280 px, headless Chromium and the server on {os.cpu_count()} cores,"
+        f" priority {-os.getpriority(os.PRIO_PROCESS, 0)}; load of the machine before: {os.getloadavg()[0]:.1f}\n"
+    )
     print(f"page with all that it loads: {size / 1000:.0f} kB in {len(loads)} files (target 300 kB): {met(size <= LARGEST_PAGE)}")
     times = page.js(f"{DRAG}(20, 16)")
     p50, p95 = statistics.median(times), quantile(times, 0.95)
-    print(f"slider event to painted time series, {len(times)} events: median {p50:.1f} ms, p95 {p95:.1f} ms (target 33 ms): {met(p95 <= 33)}")
+    print(f"slider event to painted time series, {len(times)} events: median {p50:.1f} ms, p95 {p95:.1f} ms (target 33 ms): {met(p95 <= 33)}", flush=True)
     print(f"\n{seconds:.0f} s of dragging, memory of the server and of the page, MB:")
     rows = []
     steps = 10

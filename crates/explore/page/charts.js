@@ -42,16 +42,18 @@ export class Series {
         this.spread = null;
         this.charts = [];
         this.shown = "";
+        this.measure();
         new ResizeObserver(() => this.resize()).observe(into);
     }
 
-    width() {
-        return Math.max(200, this.into.clientWidth);
+    // Asking for the width costs a layout: it is asked for when it changes.
+    measure() {
+        this.wide = Math.max(200, this.into.clientWidth);
     }
 
     // Pixels that the curves themselves have.
     columns() {
-        return Math.min(2000, Math.round((this.width() - 70) * Math.min(2, devicePixelRatio)));
+        return Math.min(2000, Math.round((this.wide - 70) * Math.min(2, devicePixelRatio)));
     }
 
     build(kinds) {
@@ -65,7 +67,7 @@ export class Series {
             this.into.append(place);
             const chart = new uPlot(
                 {
-                    width: this.width(),
+                    width: this.wide,
                     height: this.height(last),
                     legend: { show: false },
                     cursor: { sync: { key: "time" }, drag: { setScale: false, x: true, y: false }, points: { show: false } },
@@ -98,7 +100,8 @@ export class Series {
     }
 
     resize() {
-        const width = this.width();
+        this.measure();
+        const width = this.wide;
         if (!this.charts.length || width === this.charts[0].width) return;
         this.charts.forEach((chart, i) => chart.setSize({ width, height: this.height(i === this.charts.length - 1) }));
     }

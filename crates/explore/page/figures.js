@@ -64,8 +64,8 @@ export class Figures {
             [worst?.reduction ? worst.reduction : "–", "", "times less than without a damper", worst?.none ? `which has ${worst.none} ${quantity.unit}` : ""],
             [kind?.label ?? "–", "", "kind of motion at this ω", kind?.words ?? ""],
         ];
-        this.heroes.replaceChildren(
-            ...heroes.map(([value, unit, words, more]) => {
+        update(this.heroes, JSON.stringify(heroes), () =>
+            heroes.map(([value, unit, words, more]) => {
                 const hero = element("div", "hero");
                 const number = element("p", "number", value);
                 if (unit) number.append(element("small", "", ` ${unit}`));
@@ -83,26 +83,17 @@ export class Figures {
         for (const whose of ["A", "B"]) {
             if (this.worst[whose]) columns.push([`${whose}, worst`, this.worst[whose].figures, whose.toLowerCase()]);
         }
-        const head = element("tr");
-        head.append(element("td"));
-        for (const [name, , whose] of columns) head.append(cell("th", whose, name, "col"));
-        const rows = ROWS.map(([name, unit, title]) => {
-            const row = element("tr");
-            const th = cell("th", "", unit ? `${NAMES[name]}, ${unit}` : NAMES[name], "row");
-            th.title = title;
-            row.append(th);
-            for (const [, figures, whose] of columns) row.append(cell("td", whose, worded(figures?.[name])));
-            return row;
-        });
-        const reduction = element("tr");
-        reduction.append(cell("th", "", "reduction", "row"), element("td", "", ""));
-        for (const whose of ["now", "A", "B"]) {
-            if (whose === "now" || this.worst[whose]) reduction.append(cell("td", whose === "now" ? "" : whose.toLowerCase(), this.worst[whose]?.reduction ? `${this.worst[whose].reduction}×` : "–"));
-        }
-        const motion = element("tr");
-        motion.append(cell("th", "", "motion", "row"), cell("td", "", kind?.label ?? "–"), element("td", "", ""));
-        for (const whose of ["A", "B"]) if (this.worst[whose]) motion.append(cell("td", whose.toLowerCase(), this.kinds[whose]?.label ?? "–"));
-        this.table.replaceChildren(head, ...rows, reduction, motion);
+        const pinned = columns.slice(2).map(([, , whose]) => whose.toUpperCase());
+        const times = (answer) => (answer?.reduction ? `${answer.reduction}×` : "–");
+        const rows = [
+            ["", ...columns.map(([name]) => name)],
+            ...ROWS.map(([name, unit]) => [unit ? `${NAMES[name]}, ${unit}` : NAMES[name], ...columns.map(([, figures]) => worded(figures?.[name]))]),
+            ["reduction", "", times(worst), ...pinned.map((whose) => times(this.worst[whose]))],
+            ["motion", kind?.label ?? "–", "", ...pinned.map((whose) => this.kinds[whose]?.label ?? "–")],
+        ];
+        // The cells stay while their numbers change: a table that is made anew at every step of a drag is laid out anew.
+        update(this.table, `pinned ${pinned}`, () => rows.map((row, i) => tableRow(row, i, columns)));
+        rows.forEach((row, i) => row.forEach((words, j) => write(this.table.children[i].children[j], words)));
     }
 
     // What a screen reader says once everything is known.
@@ -116,15 +107,32 @@ export class Figures {
 
 const worded = (value) => (Array.isArray(value) ? value.map((one) => one ?? "–").join(", ") : (value ?? "–"));
 
+function tableRow(row, i, columns) {
+    const made = element("tr");
+    made.append(
+        ...row.map((_, j) => {
+            const cell = element(j && i ? "td" : "th", j ? columns[j - 1][2] : "");
+            if (cell.tagName === "TH") cell.scope = j ? "col" : "row";
+            if (!j && ROWS[i - 1]) cell.title = ROWS[i - 1][2];
+            return cell;
+        }),
+    );
+    return made;
+}
+
+function write(cell, words) {
+    if (cell.textContent !== words) cell.textContent = words;
+}
+
+// Makes what is inside anew where its key has changed.
+function update(into, key, make) {
+    if (into.key !== key) into.replaceChildren(...make());
+    into.key = key;
+}
+
 function element(tag, kind = "", words = "") {
     const made = document.createElement(tag);
     if (kind) made.className = kind;
     if (words) made.textContent = words;
-    return made;
-}
-
-function cell(tag, kind, words, scope) {
-    const made = element(tag, kind, words);
-    if (scope) made.scope = scope;
     return made;
 }

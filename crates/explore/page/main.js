@@ -63,6 +63,7 @@ const answers = {
         dampers();
         build($("controls"), turned);
         SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
+        pressed(place.span ? null : "window");
         $("tune").hidden = !answer.tunes;
         turned();
     },
@@ -174,8 +175,12 @@ $("dampers").addEventListener("change", ({ target }) => {
 // Spans of time by name.
 function show(span, name) {
     place.span = span;
-    for (const button of document.querySelectorAll("[data-span]")) button.setAttribute("aria-pressed", String(button.dataset.span === name));
+    pressed(name);
     turned();
+}
+
+function pressed(name) {
+    for (const button of document.querySelectorAll("[data-span]")) button.setAttribute("aria-pressed", String(button.dataset.span === name));
 }
 
 for (const button of document.querySelectorAll("[data-span]")) {

@@ -37,10 +37,8 @@ pub fn look(study: &Study, span: Option<[f64; 2]>, columns: usize) -> Result<Ans
     let [from, to] = span.unwrap_or([t0, end]).map(|t| t.min(end));
     let span = if from < to { [from, to] } else { [t0, end] };
     // Each is a run of its own; two at a time, because a page waits for them.
-    let ((simulation, drawn), (series, crests)) = rayon::join(
-        || (simulate(study, None), drawn(study)),
-        || (series(study, span, columns), crests(study)),
-    );
+    let (series, (simulation, drawn, crests)) =
+        rayon::join(|| series(study, span, columns), || (simulate(study, None), drawn(study), crests(study)));
     let simulation = simulation.map_err(Refused::whole)?;
     let (series, contacts) = series?;
     let mut answer = Answer::new("motion")

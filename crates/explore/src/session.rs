@@ -12,10 +12,11 @@ use retune_study::Study;
 use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-/// How long a slider rests before what takes longer is begun.
-const REST: Duration = Duration::from_millis(60);
+/// How long the page is given to draw a motion before its response is computed, and how long a slider rests before what takes longer.
+const DRAWN: Duration = Duration::from_millis(12);
+const RESTED: Duration = Duration::from_millis(60);
 
 /// What a page asked to look at.
 struct Look {
@@ -214,6 +215,7 @@ impl Session<'_> {
             Ok(answer) => send(answer)?,
             Err(refused) => return send(refused.into()),
         }
+        self.rest(DRAWN, is_stale)?;
         let design = at_no_frequency(&study);
         let curve = Curve::of(&study);
         let without = at_no_frequency(&bare(&study));
@@ -224,7 +226,7 @@ impl Session<'_> {
         if known.response.as_ref() != Some(&design) {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
-        self.rest(is_stale)?;
+        self.rest(RESTED, is_stale)?;
         let irregular = match &known.kind {
             Some((of, irregular)) if *of == study => *irregular,
             _ => {
@@ -248,10 +250,8 @@ impl Session<'_> {
     }
 
     /// Waits a moment: while a hand still moves, the processors belong to what it sees move, not to work that the next place outdates.
-    fn rest(&self, is_stale: &dyn Fn() -> bool) -> Result<(), Stale> {
-        let (mail, end) = (self.mail(), Instant::now() + REST);
-        let moving = |_: &mut Mail| !is_stale() && Instant::now() < end;
-        drop(self.bell.wait_timeout_while(mail, REST, moving));
+    fn rest(&self, time: Duration, is_stale: &dyn Fn() -> bool) -> Result<(), Stale> {
+        drop(self.bell.wait_timeout_while(self.mail(), time, |_| !is_stale()));
         if is_stale() { Err(Stale) } else { Ok(()) }
     }
 
