@@ -361,7 +361,9 @@ def bench(program, seconds):
     steps = 10
     for step in range(steps + 1):
         if step:
-            page.js(f"{DRAG}({seconds / steps}, 4).then((times) => times.length)")
+            end = time.monotonic() + seconds / steps
+            while (left := end - time.monotonic()) > 0:
+                page.js(f"{DRAG}({min(left, 20)}, 4).then((times) => times.length)")
         page.ask("HeapProfiler.collectGarbage")
         heap = page.ask("Runtime.getHeapUsage")["usedSize"] / 1e6
         rows.append((step * seconds / steps, explorer.memory(), heap))

@@ -66,12 +66,10 @@ export class Phase {
         ctx.stroke();
         ctx.globalAlpha = 1;
         ctx.fillStyle = css("--ink");
-        const size = (this.points?.[0].length ?? 0) > 100 ? 1.6 : 2.4;
-        for (let i = 0; i < (this.points?.[0].length ?? 0); i++) {
-            ctx.beginPath();
-            ctx.arc(x(this.points[0][i]), y(this.points[1][i]), size, 0, 2 * Math.PI);
-            ctx.fill();
-        }
+        // Squares: many are drawn at every step of a drag.
+        const [across, along] = this.points ?? [[], []];
+        const size = across.length > 100 ? 2.4 : 4;
+        for (let i = 0; i < across.length; i++) ctx.fillRect(x(across[i]) - size / 2, y(along[i]) - size / 2, size, size);
     }
 }
 
