@@ -5,7 +5,7 @@ use crate::motion::figures;
 use crate::protocol::Answer;
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
-use retune_optim::{Band, Goal, Limits, Objective, worst_over};
+use retune_optim::{Band, Goal, Limits, Objective, Response, worst_over};
 use retune_study::{Study, rounded};
 use retune_workbench::simulate::simulate;
 
@@ -16,11 +16,13 @@ pub const CURVES: [usize; 2] = [31, 301];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stale;
 
-/// The first term of the study's objective at one frequency of the scene itself: no band, no other k1, no ensemble.
+/// The first term of the study's objective at one frequency of the scene itself: no band, no other k1, no ensemble. Coexisting motions,
+/// a hundred times the work, are left to `retune branches`: the page shows runs from rest.
 fn term(study: &Study) -> Objective {
     let objective = study.objective();
     let first = objective.terms().first().map(|(_, term)| (*term).clone()).unwrap_or_default();
-    Objective { omega: None, k1: None, ensemble: None, ..first }
+    let response = if first.response == Response::Motions { Response::Window } else { first.response };
+    Objective { omega: None, k1: None, ensemble: None, response, ..first }
 }
 
 /// The band of frequencies of the study; about the natural frequency if it has none.

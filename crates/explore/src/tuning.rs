@@ -5,7 +5,7 @@ use crate::protocol::{Answer, Place};
 use crate::refused::Refused;
 use crate::start::Start;
 use retune_model::Variable;
-use retune_optim::{Objective, PeakEnergy, Scale, Stiffnesses, Stop, energy, minimize};
+use retune_optim::{Objective, PeakEnergy, Response, Scale, Stiffnesses, Stop, energy, minimize};
 use retune_study::{Search, Study, rounded};
 use retune_workbench::tune::{log, objective::objective};
 use std::ops::ControlFlow;
@@ -83,17 +83,18 @@ fn refine(
     search: &Search,
     first: &[f64],
     send: &(dyn Fn(Answer) + Sync),
-    is_over: &dyn Fn() -> bool,
+    is_over: &(dyn Fn() -> bool + Sync),
 ) -> Result<retune_optim::Minimum, retune_optim::Error> {
     let mut options = search.options.clone();
     options.max_fun_evals =
         Some(options.max_fun_evals.map_or(MOST_EVALUATIONS, |most| most.min(MOST_EVALUATIONS)));
     // After it was stopped a search asks for no more runs; a value that was not computed is no better than any.
     let begun = std::cell::Cell::new(false);
-    let value = |design: &[f64], cutoff: f64| {
-        if begun.replace(true) && is_over() { f64::INFINITY } else { objective.value(design, cutoff) }
+    let value_at = |design: &[f64], cutoff: f64| {
+        let first = !begun.replace(true);
+        value(objective, design, cutoff, &|| first || !is_over())
     };
-    minimize(value, first, options, |row| {
+    minimize(value_at, first, options, |row| {
         if let Ok(damper) = objective.damper(&row.best) {
             let columns = Variable::columns(&search.variables);
             let values: Vec<f64> = columns.iter().map(|column| column.get(&damper)).collect();
@@ -105,6 +106,12 @@ fn refine(
     })
 }
 
+/// The value of a design, as searches see it; none better than any if it has none or is stopped.
+fn value(objective: &PeakEnergy, design: &[f64], cutoff: f64, goes_on: &(dyn Fn() -> bool + Sync)) -> f64 {
+    let found = objective.scene(design).and_then(|scene| objective.evaluate_while(&scene, cutoff, goes_on));
+    found.map_or(f64::INFINITY, |found| found.value)
+}
+
 /// Runs behind a value, without those that locate the maxima of a band.
 fn runs(objective: &Objective) -> usize {
     let term = |(_, term): (f64, &Objective)| {
@@ -114,7 +121,8 @@ fn runs(objective: &Objective) -> usize {
         });
         let omega = term.omega.map_or(1, |band| band.samples);
         let members = term.ensemble.map_or(1, |ensemble| ensemble.members as usize);
-        omega.saturating_mul(k1).saturating_mul(members)
+        let motions = if term.response == Response::Motions { 100 } else { 1 };
+        omega.saturating_mul(k1).saturating_mul(members).saturating_mul(motions)
     };
     objective.terms().into_iter().map(term).fold(0, usize::saturating_add)
 }
@@ -174,7 +182,7 @@ impl Map {
         objective: &PeakEnergy,
         first: &[f64],
         send: &(dyn Fn(Answer) + Sync),
-        is_stale: &dyn Fn() -> bool,
+        is_stale: &(dyn Fn() -> bool + Sync),
     ) {
         let [(i, x, _), (j, y, _)] = &self.axes;
         let mut design = first.to_vec();
@@ -185,7 +193,7 @@ impl Map {
                     return;
                 }
                 (design[*i], design[*j]) = (*x, *y);
-                values.push(energy(objective.value(&design, f64::INFINITY)));
+                values.push(energy(value(objective, &design, f64::INFINITY, &|| !is_stale())));
             }
             send(Answer::new("map").with("row", row).column("value", &values));
         }
