@@ -5,6 +5,7 @@
 use retune_explore::protocol::{Hung, Place};
 use retune_explore::start::Start;
 use retune_explore::{kind, motion, response};
+use retune_workbench::simulate::simulate;
 use std::time::Instant;
 
 /// Median of the times of some calls, ms.
@@ -38,5 +39,12 @@ fn main() {
     println!("response at 31 and at 301 frequencies: {:.1} ms and {:.1} ms", over(31), over(301));
     let look = median(|| drop(motion::look(&study, None, 900)));
     println!("run, time series and last periods: {look:.1} ms");
+    let (run, series) = (
+        median(|| drop(simulate(&study, None))),
+        median(|| drop(motion::series(&study, [50.0, 100.0], 900))),
+    );
+    println!(
+        "of which, side by side: the run's figures {run:.1} ms, its time series with located peaks {series:.1} ms"
+    );
     println!("kind of motion: {:.1} ms", median(|| drop(kind::kind(&study))));
 }

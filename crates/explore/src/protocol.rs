@@ -143,6 +143,15 @@ impl Answer {
         self.head.get(name)
     }
 
+    /// A column.
+    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let length = |of: &Value| of[1].as_u64().map_or(0, |count| count as usize);
+        let place = self.names.iter().position(|of| of[0] == name)?;
+        let before: usize = self.names[..place].iter().map(length).sum();
+        let bytes = self.numbers.chunks_exact(8).skip(before).take(length(&self.names[place]));
+        Some(bytes.filter_map(|bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?))).collect())
+    }
+
     /// The bytes of the message.
     pub fn bytes(mut self) -> Vec<u8> {
         self.head.insert("columns".to_owned(), Value::Array(self.names));

@@ -80,6 +80,21 @@ fn contract_figures_are_those_of_simulate() {
     assert_eq!(worst.get("words"), Some(&json!("225.8"))); // README: what `just optimize-ssvi` finds
 }
 
+/// The settled states come from the record of the regime, in other coordinates: they are where the run ends, too.
+#[test]
+fn reference_settled_crests_are_those_of_the_run() {
+    let set = [("k2", 583.9), ("c2", 94.97), ("D", 0.02885), ("C", 1.105), ("omega", 6.631)];
+    let found = answers(vec![look(1, &set)], |answer| kind(answer) == "done");
+    let last = |of: &str, column: &str| {
+        let answer = found.iter().find(|answer| kind(answer) == of).expect("an answer");
+        *answer.numbers(column).expect("a column").last().expect("a crest")
+    };
+    for (column, size) in [("crest.x1", 0.09), ("crest.v1", 0.6), ("crest.x", 0.5), ("crest.v", 1.5)] {
+        let [run, settled] = ["motion", "motion kind"].map(|of| last(of, column));
+        assert!((run - settled).abs() < 1e-3 * size, "{column}: {run} {settled}");
+    }
+}
+
 #[test]
 fn contract_a_curve_is_refined_and_kept_while_only_omega_changes() {
     let found = answers(vec![look(1, &[("k2", 300.0)])], |answer| kind(answer) == "done");
