@@ -5,6 +5,7 @@
 use retune_explore::protocol::{Hung, Place};
 use retune_explore::start::Start;
 use retune_explore::{kind, motion, response};
+use retune_solver::{Rows, Window, trajectory};
 use retune_workbench::simulate::simulate;
 use std::time::Instant;
 
@@ -43,8 +44,15 @@ fn main() {
         median(|| drop(simulate(&study, None))),
         median(|| drop(motion::series(&study, [50.0, 100.0], 900))),
     );
+    let rows = Rows::every((50.0 / 1800.0_f64).min(motion::period(&study) / 48.0));
+    let window = Window { from: 50.0, to: 100.0 };
+    let even = median(|| {
+        let mut count = 0;
+        trajectory(&study.scene, window, &study.solver.settings(), rows, &mut |_| count += 1).expect("a run");
+        assert!(count > 1800);
+    });
     println!(
-        "of which, side by side: the run's figures {run:.1} ms, its time series with located peaks {series:.1} ms"
+        "of which, side by side: the run's figures {run:.1} ms, its time series with located peaks {series:.1} ms (its rows without: {even:.1} ms)"
     );
     println!("kind of motion: {:.1} ms", median(|| drop(kind::kind(&study))));
 }
