@@ -76,6 +76,10 @@ simulate STUDY="studies/ssvi.json" *OPTIONS:
 sweep STUDY *OPTIONS:
     {{retune}} sweep "$@"
 
+# Explore a damper live in the browser: turn its parameters, and its motion and response follow, for instance `just explore results/ssvi`
+explore *OPTIONS:
+    {{retune}} explore "$@"
+
 # Follow every periodic motion along omega or (`--over k1`) another parameter: branches, bifurcations, what coexists, for instance `just branches results/ssvi`
 branches STUDY *OPTIONS:
     {{retune}} branches "$@"
@@ -132,6 +136,11 @@ test-kills KILLS="240":
 # Open the pages of results in a browser, narrow and wide, light and dark (needs python3 and chromium); for instance `just test-pages --shots target/pages`
 test-pages *OPTIONS:
     python3 tests/pages.py "$@" results/ssvi/report.html results/tmd/report.html results/paper/index.html results/retune/report.html results/fronts/report.html results/branches/isola/report.html
+
+# Drive the explorer in a browser: drag, type, pin, tune, stop, reload, save; its figures are those of `retune simulate` (needs python3 and chromium); for instance `just test-explore --shots target/pages`
+test-explore *OPTIONS:
+    cargo build --release --package retune
+    python3 tests/explore.py target/release/retune "$@"
 
 # Try the HyperQueue script for real, with two workers on this machine (needs python3; with `hq` on the path, too, one worker is killed): results/robustness/hyperqueue.txt
 test-hyperqueue:
@@ -225,6 +234,14 @@ bench-branches:
     cargo build --release --quiet --package retune
     time target/release/retune branches results/ssvi --out target/branches/tuned --threads 1 --replace --quiet
     time target/release/retune branches studies/ssvi.json --out target/branches/paper --threads 1 --replace --quiet
+
+# Measure the explorer in a browser: from a slider to the painted motion, a whole response, memory over SECONDS of dragging, size of the page: results/explore/bench.txt (needs python3 and chromium)
+bench-explore SECONDS="600":
+    cargo build --release --package retune
+    mkdir -p results/explore
+    python3 tests/explore.py target/release/retune --bench {{SECONDS}} > results/explore/bench.txt.tmp
+    cargo bench --quiet --package retune-explore --bench response >> results/explore/bench.txt.tmp
+    mv results/explore/bench.txt.tmp results/explore/bench.txt && cat results/explore/bench.txt
 
 # Count the instructions of a run (needs valgrind): the same on a busy machine as on a quiet one
 bench-instructions *OPTIONS:

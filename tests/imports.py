@@ -28,7 +28,8 @@ BELOW = {
     "tradeoff": "model optim study store figures workbench",
     "branches": "model dynamics study store figures workbench",
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
-    "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
+    "explore": "model solver optim dynamics study figures workbench",
+    "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches explore paper",
     "python": "solver optim dynamics study sweep store workbench tradeoff branches paper",
     "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
 }

@@ -51,6 +51,15 @@ pub fn coordinates(scene: &Scene, &[x1, v1, x2, v2]: &[f64; 4]) -> [f64; 4] {
     [a * x1, b * v1, c * (x2 - x1 - d), e * v2]
 }
 
+/// The state `[x1, v1, x2, v2]` (m, m/s) with these [`coordinates`]; its inverse. Not finite where the force has no frequency; x2 is that of
+/// a scene with a damper.
+pub fn state(scene: &Scene, &[q1, p1, q2, p2]: &[f64; 4]) -> [f64; 4] {
+    let d = scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
+    let [a, b, c, e] = weights(scene);
+    let x1 = q1 / a;
+    [x1, p1 / b, q2 / c + x1 + d, p2 / e]
+}
+
 /// `[ω√m1, √m1, ω√m2, √m2]`: the weights of positions (√J/m) and speeds (√J s/m) in the common unit.
 pub(crate) fn weights(scene: &Scene) -> [f64; 4] {
     let omega = scene.forcing.frequency.get();

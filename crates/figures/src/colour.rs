@@ -23,12 +23,12 @@ pub const YELLOW: Colour = "#F0E442";
 pub const GREY: Colour = "#999999";
 
 /// The paper.
-pub(crate) const PAPER: Colour = "#FFFFFF";
+pub const PAPER: Colour = "#FFFFFF";
 /// Where a map has no value.
 pub(crate) const NOTHING: &str = "#C8C8C8";
 
 /// What is drawn in another colour on a dark page. Blue and vermilion would be too dark there.
-const DARK: [(Colour, &str); 5] =
+pub const DARK: [(Colour, &str); 5] =
     [(BLACK, "#E8EAEE"), (PAPER, "#14161A"), (BLUE, "#4AA8E0"), (VERMILION, "#FF8A3D"), (GREEN, "#2FC79B")];
 
 /// The style sheet of a figure: other colours where the reader's pages are dark. It holds within elements of the class `figure` only, so
@@ -43,7 +43,7 @@ pub(crate) fn style() -> String {
 }
 
 /// Viridis (S. van der Walt and N. Smith, matplotlib, 2015, CC0) at eighths.
-const VIRIDIS: [[f64; 3]; 9] = [
+pub const VIRIDIS: [[f64; 3]; 9] = [
     [68.0, 1.0, 84.0],
     [71.0, 44.0, 122.0],
     [59.0, 81.0, 139.0],

@@ -22,12 +22,10 @@ use std::path::PathBuf;
 #[command(version, about, max_term_width = 110, subcommand_required = true, arg_required_else_help = true)]
 #[command(after_help = crate::exit::HELP)]
 pub struct Cli {
-    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Tune the damper of a study: a coarse grid (surf), then Nelder-Mead (fminsearch)
@@ -37,7 +35,6 @@ pub enum Command {
         /// Compute only share i of N of the grid, into DIR/parts; `merge` combines the shares
         #[arg(long, value_name = "i/N")]
         shard: Option<Shard>,
-        /// The options of the run.
         #[command(flatten)]
         running: Running,
     },
@@ -50,7 +47,6 @@ pub enum Command {
         study: PathBuf,
         /// The parts [default: all in DIR/parts]
         parts: Vec<PathBuf>,
-        /// The options of the run.
         #[command(flatten)]
         running: Running,
     },
@@ -76,6 +72,18 @@ pub enum Command {
     },
     /// Run one scene and print a summary of the motion
     Simulate(Simulate),
+    /// Explore a damper live in the browser: turn its parameters, and its motion and response follow; ends with Ctrl-C
+    Explore {
+        /// A study, or the directory of its results [default: the paper's SSVI NES]
+        #[arg(value_name = "STUDY|RESULTS")]
+        study: Option<PathBuf>,
+        /// Port of the loopback address [default: any that is free]
+        #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+        port: u16,
+        /// Print the address, and open no browser
+        #[arg(long)]
+        no_browser: bool,
+    },
     /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values; into results/sweep-<study>-<parameter>
     #[command(allow_negative_numbers = true)]
     Sweep(Sweep),
@@ -90,7 +98,6 @@ pub enum Command {
         /// The study file
         #[arg(default_value = "studies/table2.json")]
         study: PathBuf,
-        /// The options of the run.
         #[command(flatten)]
         running: Running,
     },
@@ -102,7 +109,6 @@ pub enum Command {
         /// The table that names the study of each damper; each is tuned for its own k1 as well
         #[arg(long, value_name = "FILE", default_value = "studies/retune.json")]
         study: PathBuf,
-        /// The options of the run.
         #[command(flatten)]
         running: Running,
     },
@@ -111,7 +117,6 @@ pub enum Command {
         /// The study file
         #[arg(default_value = "studies/fronts.json")]
         study: PathBuf,
-        /// The options of the run.
         #[command(flatten)]
         running: Running,
     },
@@ -122,7 +127,6 @@ pub enum Command {
         /// Its number in the paper
         #[arg(value_parser = clap::value_parser!(u8).range(2..=7))]
         number: u8,
-        /// The options of the run.
         #[command(flatten)]
         paper: Reproduce,
     },
@@ -131,7 +135,6 @@ pub enum Command {
         /// Its number in the paper
         #[arg(value_parser = clap::value_parser!(u8).range(1..=2))]
         number: u8,
-        /// The options of the run.
         #[command(flatten)]
         paper: Reproduce,
     },

@@ -48,6 +48,9 @@ pub fn run(command: Command) -> Result<(), Error> {
             certify::certify_file(&request, &screen)?.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
+        Command::Explore { study, port, no_browser } => {
+            retune_explore::explore(&retune_explore::Asked { study, port, browser: !no_browser }, &all)
+        }
         Command::Sweep(arguments) => sweep(arguments),
         Command::Branches(arguments) => branches(arguments),
         Command::Evaluate(arguments) => evaluate(&arguments),

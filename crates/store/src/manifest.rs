@@ -9,7 +9,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// Its name.
@@ -84,7 +84,15 @@ impl Manifest {
 /// It cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, Error> {
     let refuse = |source| Error::Input { path: path.to_owned(), source };
+    let mut file = BufReader::with_capacity(1 << 16, File::open(path).map_err(refuse)?);
     let mut hash = Sha256::new();
-    std::io::copy(&mut File::open(path).map_err(refuse)?, &mut hash).map_err(refuse)?;
-    Ok(hexadecimal(&hash.finalize()))
+    loop {
+        let part = file.fill_buf().map_err(refuse)?;
+        if part.is_empty() {
+            return Ok(hexadecimal(&hash.finalize()));
+        }
+        hash.update(part);
+        let read = part.len();
+        file.consume(read);
+    }
 }

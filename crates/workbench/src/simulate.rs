@@ -68,25 +68,36 @@ impl std::fmt::Display for Simulation {
     }
 }
 
-/// Writes the motion in the window: a row every `interval` seconds, and one for each event between them (column `moment`).
-/// The last column names the kind of row, so that `df[df.moment == "grid"]` are the equidistant ones.
+/// Writes the motion in the window into a file.
 fn write_trajectory(study: &Study, file: &Path, interval: f64) -> Result<(), Error> {
+    let mut csv = Pending::create(file)?;
+    write_rows(study, interval, &mut |row| Ok(csv.push(row)?))?;
+    Ok(csv.finish()?)
+}
+
+/// Passes on the motion in the window as CSV, line by line: a row every `interval` seconds, and one for each event between them (column
+/// `moment`). The last column names the kind of row, so that `df[df.moment == "grid"]` are the equidistant ones.
+///
+/// # Errors
+/// The interval is invalid, the run fails, or the first error of `push`.
+pub fn write_rows(
+    study: &Study,
+    interval: f64,
+    push: &mut dyn FnMut(&str) -> Result<(), Error>,
+) -> Result<(), Error> {
     let window = study.window.window();
     let rows = (window.to - window.from) / interval;
     if !(interval > 0.0 && rows <= f64::from(MOST_ROWS)) {
         return Err(Error::Interval { value: interval, most: MOST_ROWS });
     }
-    let mut csv = Pending::create(file)?;
-    csv.push("t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment\n")?;
-    let mut written = Ok(());
+    let mut written = push("t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment\n");
     let mut row = |sample: &Sample| {
         let Sample { t, state: [x1, v1, x2, v2], e1, e2, forces: [left, right], moment } = sample;
-        let text = format!("{t},{x1},{v1},{x2},{v2},{e1},{e2},{left},{right},{}\n", moment.name());
         if written.is_ok() {
-            written = csv.push(&text);
+            let moment = moment.name();
+            written = push(&format!("{t},{x1},{v1},{x2},{v2},{e1},{e2},{left},{right},{moment}\n"));
         }
     };
     trajectory(&study.scene, window, &study.solver.settings(), Rows { interval, events: true }, &mut row)?;
-    written?;
-    Ok(csv.finish()?)
+    written
 }

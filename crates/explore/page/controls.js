@@ -1,0 +1,75 @@
+// Sliders with editable numbers.
+
+import { controls, place, value } from "./place.js";
+
+const STEPS = 1000;
+
+const share = ({ range: [from, to], log }, number) =>
+    log ? Math.log(Math.max(number, 1e-300) / from) / Math.log(to / from) : (number - from) / (to - from);
+
+function number({ range: [from, to], log }, share) {
+    const exact = log ? from * (to / from) ** share : from + (to - from) * share;
+    // As many digits as a step of the slider tells apart, so that what is shown is what is run.
+    const step = log ? (exact * Math.log(to / from)) / STEPS : (to - from) / STEPS;
+    const digits = Math.max(0, Math.min(12, 1 - Math.floor(Math.log10(step))));
+    return Math.min(to, Math.max(from, Number(exact.toFixed(digits))));
+}
+
+export const shown = (number) => String(Number(number.toPrecision(6)));
+
+let rows = [];
+
+// Makes the controls of the present damper. `changed` is called with the name of what was turned.
+export function build(into, changed) {
+    into.replaceChildren();
+    rows = controls().map((control) => {
+        const row = document.createElement("div");
+        row.className = "control";
+        row.innerHTML = `<label><b></b> <span></span></label>
+            <input type="range" min="0" max="${STEPS}" step="1"><input type="text" inputmode="decimal" autocomplete="off" spellcheck="false"><span class="unit"></span>`;
+        const [slider, text] = row.querySelectorAll("input");
+        const symbol = control.name === "omega" ? "ω" : control.name;
+        row.querySelector("b").textContent = symbol;
+        row.querySelector("label span").textContent = control.words;
+        row.querySelector(".unit").textContent = control.unit;
+        slider.id = `slider-${control.name}`;
+        text.id = `number-${control.name}`;
+        row.querySelector("label").htmlFor = slider.id;
+        slider.setAttribute("aria-label", `${symbol}, ${control.words}`);
+        text.setAttribute("aria-label", `${symbol}, ${control.words}, in ${control.unit}`);
+        const put = (to) => {
+            if (to === control.value) delete place.set[control.name];
+            else place.set[control.name] = to;
+            refresh();
+            changed(control.name);
+        };
+        slider.addEventListener("input", () => put(number(control, slider.value / STEPS)));
+        slider.addEventListener("dblclick", () => put(control.value));
+        text.addEventListener("change", () => {
+            const typed = Number(text.value.replace(",", "."));
+            if (text.value.trim() && Number.isFinite(typed)) put(typed);
+            else refresh();
+        });
+        into.append(row);
+        return { control, slider, text, row };
+    });
+    refresh();
+}
+
+// Shows the numbers as they are.
+export function refresh() {
+    for (const { control, slider, text, row } of rows) {
+        const now = value(control);
+        const at = Math.round(STEPS * Math.min(1, Math.max(0, share(control, now))));
+        if (Number(slider.value) !== at) slider.value = at;
+        slider.setAttribute("aria-valuetext", `${shown(now)} ${control.unit}`);
+        if (document.activeElement !== text || Number(text.value) !== now) text.value = shown(now);
+        row.classList.toggle("changed", control.name in place.set);
+        row.title = control.name in place.set ? `the study has ${shown(control.value)} ${control.unit}` : "";
+    }
+}
+
+// Marks what the server refused; nothing with no name.
+export function mark(name) {
+    for (const { control, text } of rows) text.setAttribute("aria-invalid", String(control.name === name));
+}

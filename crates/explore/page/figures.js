@@ -1,0 +1,138 @@
+// The figures, with their units: what the page says in numbers. They come as text from the server, to the digits that are printed.
+
+const ROWS = [
+    ["E1max", "J", "largest energy of the structure"],
+    ["x1max", "m", "largest displacement of the structure"],
+    ["stroke", "m", "largest deflection of the damper's spring"],
+    ["force", "N", "largest contact force on the structure and on the obstacle"],
+    ["ground", "N", "largest force on the ground"],
+    ["impacts", "", "impacts in the window, on the structure and on the obstacle"],
+];
+const NAMES = { force: "wall forces", ground: "ground force", E1max: "E1max", x1max: "x1 max", stroke: "stroke", impacts: "impacts" };
+
+export class Figures {
+    constructor({ heroes, table, irregular, said, text }) {
+        Object.assign(this, { heroes, table, irregular, said, text });
+        this.now = {};
+        this.worst = {};
+        this.kinds = {};
+        this.spread = null;
+    }
+
+    begin({ quantity, band }) {
+        this.quantity = quantity;
+        this.band = band;
+    }
+
+    motion(answer, omega) {
+        this.now = answer.figures;
+        this.omega = omega;
+        this.text.textContent = answer.text;
+        this.show();
+    }
+
+    worse(answer) {
+        this.worst[answer.whose] = answer;
+        this.show();
+    }
+
+    kind(answer) {
+        this.kinds[answer.whose ?? "now"] = answer;
+        if (!answer.whose && !answer.irregular) this.spread = null;
+        this.show();
+    }
+
+    scatter(answer) {
+        this.spread = answer;
+        this.show();
+    }
+
+    unpin(whose) {
+        delete this.worst[whose];
+        delete this.kinds[whose];
+        this.show();
+    }
+
+    show() {
+        const { now, quantity, band } = this;
+        const worst = this.worst.now;
+        const kind = this.kinds.now;
+        const over = `${band.map((end) => Number(end.toPrecision(4))).join(" to ")} rad/s`;
+        const [value, unit] = worst?.words ? [worst.words, quantity.unit] : ["–", ""];
+        const heroes = [
+            [value, unit, `worst ${quantity.name} over ${over}`, worst?.words ? `at ω = ${Number(worst.omega.toPrecision(4))} rad/s` : (worst?.problem ?? "")],
+            [worst?.reduction ? worst.reduction : "–", "", "times less than without a damper", worst?.none ? `which has ${worst.none} ${quantity.unit}` : ""],
+            [kind?.label ?? "–", "", "kind of motion at this ω", kind?.words ?? ""],
+        ];
+        update(this.heroes, JSON.stringify(heroes), () =>
+            heroes.map(([value, unit, words, more]) => {
+                const hero = element("div", "hero");
+                const number = element("p", "number", value);
+                if (unit) number.append(element("small", "", ` ${unit}`));
+                hero.append(number, element("p", "", words), element("p", "more", more));
+                return hero;
+            }),
+        );
+        this.irregular.hidden = !kind?.irregular;
+        if (kind?.irregular) {
+            const ends = this.spread?.ends;
+            const among = ends ? ` ${this.spread.members} neighbours within 0.1 % have E1max from ${ends[0]} to ${ends[1]} J.` : "";
+            this.irregular.replaceChildren(element("b", "", "One realisation."), ` The motion is irregular: its E1max is one of many.${among}`);
+        }
+        const columns = [[`at ω = ${Number((this.omega ?? 0).toPrecision(5))}`, now, ""], ["worst of band", worst?.figures, ""]];
+        for (const whose of ["A", "B"]) {
+            if (this.worst[whose]) columns.push([`${whose}, worst`, this.worst[whose].figures, whose.toLowerCase()]);
+        }
+        const pinned = columns.slice(2).map(([, , whose]) => whose.toUpperCase());
+        const times = (answer) => (answer?.reduction ? `${answer.reduction}×` : "–");
+        const rows = [
+            ["", ...columns.map(([name]) => name)],
+            ...ROWS.map(([name, unit]) => [unit ? `${NAMES[name]}, ${unit}` : NAMES[name], ...columns.map(([, figures]) => worded(figures?.[name]))]),
+            ["reduction", "", times(worst), ...pinned.map((whose) => times(this.worst[whose]))],
+            ["motion", kind?.label ?? "–", "", ...pinned.map((whose) => this.kinds[whose]?.label ?? "–")],
+        ];
+        // The cells stay while their numbers change: a table that is made anew at every step of a drag is laid out anew.
+        update(this.table, `pinned ${pinned}`, () => rows.map((row, i) => tableRow(row, i, columns)));
+        rows.forEach((row, i) => row.forEach((words, j) => write(this.table.children[i].children[j], words)));
+    }
+
+    // What a screen reader says once everything is known.
+    say() {
+        const worst = this.worst.now;
+        const { quantity } = this;
+        const words = worst?.words ? `worst ${quantity.name} ${worst.words} ${quantity.unit}, ` : "";
+        this.said.textContent = `${words}at this frequency E1max ${this.now.E1max} J, ${this.kinds.now?.label ?? ""}`;
+    }
+}
+
+const worded = (value) => (Array.isArray(value) ? value.map((one) => one ?? "–").join(", ") : (value ?? "–"));
+
+function tableRow(row, i, columns) {
+    const made = element("tr");
+    made.append(
+        ...row.map((_, j) => {
+            const cell = element(j && i ? "td" : "th", j ? columns[j - 1][2] : "");
+            if (cell.tagName === "TH") cell.scope = j ? "col" : "row";
+            if (!j && ROWS[i - 1]) cell.title = ROWS[i - 1][2];
+            return cell;
+        }),
+    );
+    return made;
+}
+
+function write(cell, words) {
+    if (cell.textContent !== words) cell.textContent = words;
+}
+
+// Makes what is inside anew where its key has changed.
+function update(into, key, make) {
+    if (into.key !== key) into.replaceChildren(...make());
+    into.key = key;
+}
+
+function element(tag, kind = "", words = "") {
+    const made = document.createElement(tag);
+    if (kind) made.className = kind;
+    if (words) made.textContent = words;
+    return made;
+}

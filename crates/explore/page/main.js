@@ -1,0 +1,261 @@
+// The page: what is turned goes to the server, and what comes back is shown.
+
+import { Series, forget } from "./charts.js";
+import { build, mark, refresh } from "./controls.js";
+import { Drawing } from "./drawing.js";
+import { Figures } from "./figures.js";
+import { Link } from "./link.js";
+import { Phase } from "./phase.js";
+import { asked, begin, controls, copy, place, remember, value } from "./place.js";
+import { Response } from "./response.js";
+import { copyText, download } from "./save.js";
+import { Tuning } from "./tuning.js";
+
+const $ = (id) => document.getElementById(id);
+const SLOTS = ["A", "B"];
+
+let hello = null;
+let id = 0;
+let resting = false; // whether what does not move with the hand waits to be drawn
+let latest = null;
+let tuningHere = false;
+
+const series = new Series($("series"), (span) => show(span, null));
+const response = new Response($("response"), $("response-key"), (omega) => {
+    place.set.omega = omega;
+    refresh();
+    turned();
+});
+const drawing = new Drawing($("drawing"));
+const phases = [new Phase($("phase-1"), ["x1", "v1"], "--blue"), new Phase($("phase-2"), ["x", "v"], "--vermilion")];
+const figures = new Figures({ heroes: $("heroes"), table: $("figures"), irregular: $("irregular"), said: $("said"), text: $("text") });
+const tuning = new Tuning({ section: $("tuning"), canvas: $("map"), words: $("map-words"), log: $("log"), result: $("tuned") });
+
+const omega = () => value(hello.controls.find(({ name }) => name === "omega"));
+
+function problem(words, field = null) {
+    $("problem").hidden = !words;
+    $("problem").textContent = words ?? "";
+    mark(field);
+}
+
+// Tells whoever watches the page how far it is: tests and measurements do.
+const tell = (what, detail) => document.dispatchEvent(new CustomEvent(what, { detail }));
+
+// Asks for what the page should show now. The server drops what it was doing for an earlier place.
+function turned() {
+    id += 1;
+    tell("asked", id);
+    response.at(omega());
+    remember();
+    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns() } });
+}
+
+const answers = {
+    hello(answer) {
+        const first = !hello;
+        hello = answer;
+        if (first) begin(answer);
+        $("study").textContent = answer.study;
+        document.title = `${answer.study}: Retune explore`;
+        figures.begin(answer);
+        response.begin(answer);
+        dampers();
+        build($("controls"), turned);
+        SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
+        pressed(place.span ? null : "window");
+        $("tune").hidden = !answer.tunes;
+        turned();
+    },
+    motion(answer) {
+        if (answer.id !== id) return;
+        problem(null);
+        paint(answer);
+    },
+    response(answer) {
+        response.set(answer.whose, answer);
+    },
+    worst(answer) {
+        figures.worse(answer);
+    },
+    "motion kind"(answer) {
+        figures.kind(answer);
+        if (answer.whose) return;
+        if (!answer.irregular) series.scatter(null);
+        const { columns } = answer;
+        if (columns["crest.x1"]?.length) points(columns);
+    },
+    spread(answer) {
+        figures.scatter(answer);
+        series.scatter(answer);
+    },
+    done(answer) {
+        if (resting) rest();
+        figures.say();
+        tell("known", answer.id);
+    },
+    pinned(answer) {
+        if (answer.problem) problem(`${answer.whose}: ${answer.problem}`);
+    },
+    refused(answer) {
+        if (answer.tuning) running(false);
+        problem(answer.problem, answer.field);
+    },
+    tuning(answer) {
+        running(true);
+        tuning.begin(answer);
+    },
+    map: (answer) => tuning.map(answer),
+    row: (answer) => tuning.row(answer),
+    tuned(answer) {
+        running(false);
+        tuning.end(answer);
+        place.damper = tuningHere.damper;
+        place.set = { ...tuningHere.set, ...answer.design };
+        dampers();
+        build($("controls"), turned);
+        turned();
+    },
+    written(answer) {
+        if (answer.file) download(answer.file, answer.text);
+        else copyText($("copied"), answer.text);
+    },
+};
+
+const link = new Link(
+    (answer) => answers[answer.kind]?.(answer),
+    (open) => {
+        document.body.classList.toggle("lost", !open);
+        if (!open) running(false);
+        problem(open ? null : "The connection is lost: is `retune explore` still running? This page tries again.");
+    },
+);
+
+// What moves with the hand is drawn at once, so that the next frame has it; the rest after that frame.
+function paint(motion) {
+    latest = motion;
+    series.spread = null; // that of an earlier place
+    series.show(motion, place.damper);
+    tell("painted", motion.id);
+    if (!resting) requestAnimationFrame(() => setTimeout(rest));
+    resting = true;
+}
+
+function rest() {
+    resting = false;
+    figures.motion(latest, omega());
+    const P = controls().find(({ name }) => ["P", "imbalance", "base"].includes(name));
+    drawing.show(latest, { damper: place.damper, P: P ? value(P) : 0 });
+    $("phase-2-figure").hidden = place.damper === "none";
+    points(latest.columns, latest);
+}
+
+function points(columns, motion = null) {
+    const drawn = motion?.columns;
+    const walls = motion ? motion.walls : phases[1].walls;
+    phases.forEach((phase, i) => {
+        const [x, v] = phase.names;
+        const line = drawn ? [drawn[`drawn.${x}`], drawn[`drawn.${v}`]] : phase.line;
+        if (line) phase.show(line, [columns[`crest.${x}`], columns[`crest.${v}`]], i ? walls : null);
+    });
+}
+
+function dampers() {
+    for (const input of $("dampers").querySelectorAll("input")) input.checked = input.value === place.damper;
+    $("tune").disabled = place.damper === "none" || tuning.running;
+}
+
+$("dampers").addEventListener("change", ({ target }) => {
+    place.damper = target.value;
+    dampers();
+    build($("controls"), turned);
+    turned();
+});
+
+// Spans of time by name.
+function show(span, name) {
+    place.span = span;
+    pressed(name);
+    turned();
+}
+
+function pressed(name) {
+    for (const button of document.querySelectorAll("[data-span]")) button.setAttribute("aria-pressed", String(button.dataset.span === name));
+}
+
+for (const button of document.querySelectorAll("[data-span]")) {
+    button.addEventListener("click", () => {
+        const end = hello.window[1];
+        const periods = (12 * 2 * Math.PI) / Math.max(omega(), 1e-9);
+        const spans = { window: null, run: [0, end], start: [0, Math.min(end, periods)], end: [Math.max(0, end - periods), end] };
+        show(spans[button.dataset.span], button.dataset.span);
+    });
+}
+
+function pin(slot) {
+    const button = $(`pin-${SLOTS[slot]}`);
+    button.setAttribute("aria-pressed", "true");
+    button.textContent = `Unpin ${SLOTS[slot]}`;
+    link.send({ pin: { slot, place: asked(place.pins[slot]) } });
+}
+
+SLOTS.forEach((whose, slot) =>
+    $(`pin-${whose}`).addEventListener("click", () => {
+        if (place.pins[slot]) {
+            place.pins[slot] = null;
+            $(`pin-${whose}`).setAttribute("aria-pressed", "false");
+            $(`pin-${whose}`).textContent = `Pin ${whose}`;
+            response.set(whose, null);
+            figures.unpin(whose);
+        } else {
+            place.pins[slot] = copy();
+            pin(slot);
+        }
+        remember();
+    }),
+);
+
+function running(is) {
+    tuning.running = is;
+    $("stop").disabled = !is;
+    $("close").disabled = is;
+    dampers();
+}
+
+$("tune").addEventListener("click", () => {
+    tuningHere = copy();
+    link.send({ tune: { place: asked() } });
+});
+$("stop").addEventListener("click", () => link.send({ stop: {} }));
+$("close").addEventListener("click", () => ($("tuning").hidden = true));
+
+$("save").addEventListener("click", ({ target }) => {
+    const what = target.dataset.write;
+    if (!what) return;
+    $("save").open = false;
+    if (what === "curves") download(`${hello.study}-response.csv`, response.csv());
+    else link.send({ write: { place: asked(), what } });
+});
+document.addEventListener("click", ({ target }) => !$("save").contains(target) && ($("save").open = false));
+document.addEventListener("keydown", ({ key }) => key === "Escape" && ($("save").open = false));
+
+const paused = () => {
+    $("pause").setAttribute("aria-pressed", String(drawing.paused));
+    $("pause").textContent = drawing.paused ? "Play" : "Pause";
+};
+$("pause").addEventListener("click", () => {
+    drawing.pause(!drawing.paused);
+    paused();
+});
+$("speed").addEventListener("change", ({ target }) => (drawing.speed = Number(target.value)));
+paused();
+
+const restyle = () => {
+    forget();
+    series.redraw();
+    response.chart?.redraw(false, true);
+    phases.forEach((phase) => phase.draw());
+    tuning.draw();
+    drawing.draw();
+};
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle);

@@ -1,0 +1,60 @@
+// What the page shows: the damper, the numbers that differ from the study's, the span of time, and the pinned designs. The address
+// holds all of it, so that a reload or a copy of the address shows the same.
+
+export const place = { damper: "ssvi", set: {}, span: null, pins: [null, null] };
+
+let hello = null;
+let writing = 0;
+
+// The numbers that a damper has.
+export const controls = (damper = place.damper) => hello.controls.filter((control) => control.dampers.includes(damper));
+
+export const value = (control, of = place) => of.set[control.name] ?? control.value;
+
+// A design as the server reads it: only what its damper has.
+export function asked(of = place) {
+    const set = {};
+    for (const control of controls(of.damper)) {
+        if (control.name in of.set) set[control.name] = of.set[control.name];
+    }
+    return { damper: of.damper, set };
+}
+
+export const copy = (of = place) => ({ damper: of.damper, set: { ...of.set } });
+
+export function begin(said) {
+    hello = said;
+    place.damper = said.damper;
+    const words = new URLSearchParams(location.hash.slice(1));
+    Object.assign(place, design(words));
+    const span = (words.get("span") ?? "").split(",").map(Number);
+    place.span = span.length === 2 && span[0] >= 0 && span[1] > span[0] ? span : null;
+    place.pins = ["A", "B"].map((slot) => {
+        const text = words.get(slot);
+        return text ? design(new URLSearchParams(text.replaceAll(";", "&"))) : null;
+    });
+}
+
+function design(words) {
+    const damper = words.get("damper");
+    const set = {};
+    for (const { name } of hello.controls) {
+        const number = words.has(name) ? Number(words.get(name)) : NaN;
+        if (Number.isFinite(number)) set[name] = number;
+    }
+    return { damper: ["none", "tmd", "ssvi"].includes(damper) ? damper : hello.damper, set };
+}
+
+const written = ({ damper, set }, separator) =>
+    [`damper=${damper}`, ...Object.entries(set).map(([name, number]) => `${name}=${number}`)].join(separator);
+
+// Writes the address, not at every step of a drag: browsers limit how often it may change.
+export function remember() {
+    clearTimeout(writing);
+    writing = setTimeout(() => {
+        const words = [written(place, "&")];
+        if (place.span) words.push(`span=${place.span.map((t) => Number(t.toPrecision(7)))}`);
+        place.pins.forEach((pin, slot) => pin && words.push(`${"AB"[slot]}=${written(pin, ";")}`));
+        history.replaceState(null, "", `#${words.join("&")}`);
+    }, 150);
+}

@@ -1,0 +1,141 @@
+//! One run as the page shows it: the figures of `retune simulate`, time series for the screen, the last periods for the drawing and the
+//! phase portrait, and the state at each crest of the force.
+
+use crate::protocol::Answer;
+use crate::refused::Refused;
+use crate::thin::{Thin, Thinning};
+use retune_model::Coupled;
+use retune_solver::{Moment, Rows, Sample, Window, trajectory};
+use retune_study::{Study, rounded};
+use retune_workbench::simulate::{Simulation, simulate};
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+
+/// Periods that are drawn moving.
+const DRAWN: f64 = 12.0;
+/// Rows of a period of what is drawn moving.
+const FINE: f64 = 96.0;
+/// Rows of a period, at least, that time series are thinned from. Contacts and maxima of E1 are rows of their own.
+const ROWS: f64 = 48.0;
+/// Rows of a column of pixels.
+const SHARP: f64 = 2.0;
+
+/// A period of the force, s; of the structure alone where nothing periodic moves it.
+pub fn period(study: &Study) -> f64 {
+    let omega = study.scene.forcing.frequency.get();
+    let own = study.scene.primary.natural_frequency();
+    let fallback = if own > 0.0 { TAU / own } else { study.window.end.get() };
+    if omega > 0.0 { TAU / omega } else { fallback }
+}
+
+/// Runs the study; the time series are those of `span`, s, in `columns` pixels.
+///
+/// # Errors
+/// The run fails, with the time reached.
+pub fn look(study: &Study, span: Option<[f64; 2]>, columns: usize) -> Result<Answer, Refused> {
+    let Window { from: t0, to: end } = study.window.window();
+    let [from, to] = span.unwrap_or([t0, end]).map(|t| t.min(end));
+    let span = if from < to { [from, to] } else { [t0, end] };
+    // Each is a run of its own; two at a time, because a page waits for them.
+    let (series, (simulation, drawn, crests)) =
+        rayon::join(|| series(study, span, columns), || (simulate(study, None), drawn(study), crests(study)));
+    let simulation = simulation.map_err(Refused::whole)?;
+    let (series, contacts) = series?;
+    let mut answer = Answer::new("motion")
+        .with("span", span)
+        .with("window", [t0, end])
+        .with("walls", walls(study))
+        .with("figures", figures(&simulation))
+        .with("run", &simulation)
+        .with("text", simulation.to_string())
+        .column("t", &series.t);
+    for (name, column) in ["x1", "gap", "E1", "FconL", "FconR"].into_iter().zip(&series.columns) {
+        answer = answer.column(name, column);
+    }
+    for (name, column) in ["drawn.t", "drawn.x1", "drawn.v1", "drawn.x", "drawn.v"].into_iter().zip(&drawn?) {
+        answer = answer.column(name, column);
+    }
+    for (name, column) in CRESTS.into_iter().zip(&crests?) {
+        answer = answer.column(name, column);
+    }
+    Ok(answer.column("contacts", &contacts))
+}
+
+fn visit(
+    study: &Study,
+    [from, to]: [f64; 2],
+    rows: Rows,
+    visit: &mut dyn FnMut(&Sample),
+) -> Result<(), Refused> {
+    let settings = study.solver.settings();
+    trajectory(&study.scene, Window { from, to }, &settings, rows, visit).map_err(Refused::whole)
+}
+
+/// x1, x2 - x1, E1 and both contact forces over time, thinned to pixels; and where contacts are deepest, t and x2 - x1 in turn.
+///
+/// # Errors
+/// The run fails.
+pub fn series(study: &Study, span: [f64; 2], columns: usize) -> Result<(Thin<5>, Vec<f64>), Refused> {
+    let interval = ((span[1] - span[0]) / (SHARP * columns as f64)).min(period(study) / ROWS);
+    let (mut series, mut contacts) = (Thinning::new(span, columns), Vec::new());
+    visit(study, span, Rows { interval, events: true }, &mut |row: &Sample| {
+        let [x1, _, x2, _] = row.state;
+        series.push(row.t, [x1, x2 - x1, row.e1, row.forces[0], row.forces[1]]);
+        if row.moment == Moment::ForceMax {
+            contacts.extend([row.t, x2 - x1]);
+        }
+    })?;
+    Ok((series.finish(), contacts))
+}
+
+/// The last periods: t, x1, v1, x2 - x1, v2 - v1.
+fn drawn(study: &Study) -> Result<[Vec<f64>; 5], Refused> {
+    let (period, end) = (period(study), study.window.end.get());
+    let mut columns: [Vec<f64>; 5] = Default::default();
+    visit(study, [(end - DRAWN * period).max(0.0), end], Rows::every(period / FINE), &mut |row: &Sample| {
+        let [x1, v1, x2, v2] = row.state;
+        columns
+            .iter_mut()
+            .zip([row.t, x1, v1, x2 - x1, v2 - v1])
+            .for_each(|(column, value)| column.push(value));
+    })?;
+    Ok(columns)
+}
+
+/// The states at crests of the force in the window, as [`CRESTS`]; none without a period.
+fn crests(study: &Study) -> Result<[Vec<f64>; 4], Refused> {
+    let (period, end) = (period(study), study.window.end.get());
+    let mut columns: [Vec<f64>; 4] = Default::default();
+    let first = (study.window.t0.get() / period).ceil() * period;
+    if study.scene.forcing.frequency.get() > 0.0 && first < end {
+        visit(study, [first, end], Rows::every(period), &mut |row: &Sample| {
+            let [x1, v1, x2, v2] = row.state;
+            columns.iter_mut().zip([x1, v1, x2 - x1, v2 - v1]).for_each(|(column, value)| column.push(value));
+        })?;
+    }
+    Ok(columns)
+}
+
+/// The columns with the states at crests of the force.
+pub const CRESTS: [&str; 4] = ["crest.x1", "crest.v1", "crest.x", "crest.v"];
+
+/// Where x2 - x1 is when the damper touches the structure and the obstacle, m; none without walls.
+fn walls(study: &Study) -> Option<[f64; 2]> {
+    let damper = study.scene.damper.filter(|damper| damper.contact.is_some())?;
+    let system = Coupled::new(&study.scene.primary, &study.scene.forcing, &damper);
+    Some(retune_model::Side::BOTH.map(|side| system.wall(side)))
+}
+
+/// The figures of a run that are shown large, to four digits: what `retune simulate --json` prints in full.
+pub fn figures(simulation: &Simulation) -> Value {
+    let run = json!(simulation);
+    let of = |value: &Value| value.as_f64().map(|value| rounded(value, 4));
+    json!({
+        "E1max": of(&run["E1max"]),
+        "x1max": of(&run["x1max"]),
+        "stroke": of(&run["spring_deflection_max"]),
+        "force": [of(&run["force_max"]["primary"]), of(&run["force_max"]["obstacle"])],
+        "impacts": [run["impacts"]["primary"], run["impacts"]["obstacle"]],
+        "ground": of(&run["ground_force_max"]),
+    })
+}

@@ -1,0 +1,171 @@
+#![doc = include_str!("../PROTOCOL.md")]
+
+use crate::limits::{MOST_BYTES, MOST_COLUMNS};
+use crate::refused::Refused;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The kinds of damper that a page may hang on the structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Hung {
+    /// No damper.
+    None,
+    /// A damper without walls.
+    Tmd,
+    /// A damper between two walls.
+    Ssvi,
+}
+
+/// What a page looks at: the study of the session with another damper and other numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// The damper.
+    pub damper: Hung,
+    /// Numbers by the names of `--set`, SI units. What is left out is the study's.
+    pub set: BTreeMap<String, f64>,
+}
+
+/// A message of a page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum Message {
+    /// Show this place.
+    Look {
+        /// Returned with every answer.
+        id: u64,
+        /// What to show.
+        place: Place,
+        /// The time that is shown, s; the window of the study if left out.
+        span: Option<[f64; 2]>,
+        /// Pixels that the time series have.
+        columns: usize,
+    },
+    /// Keep this design for comparison.
+    Pin {
+        /// 0 for A, 1 for B.
+        slot: usize,
+        /// The design.
+        place: Place,
+    },
+    /// Tune from here.
+    Tune {
+        /// The start.
+        place: Place,
+    },
+    /// End the tuning and keep its best design.
+    Stop {},
+    /// Write this place down.
+    Write {
+        /// The place.
+        place: Place,
+        /// As what.
+        what: What,
+    },
+}
+
+/// Forms in which a place is written down. The page offers them as files; the server writes none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum What {
+    /// A study file.
+    Study,
+    /// The command line that makes the same run.
+    Command,
+    /// The lines of Python that do.
+    Python,
+    /// The motion as `retune simulate --trajectory` writes it.
+    Motion,
+    /// A figure of the motion.
+    Picture,
+    /// A figure of the response over frequency.
+    Response,
+}
+
+/// Reads a message.
+///
+/// # Errors
+/// It is too long, no message, or has a field that is out of range.
+pub fn read(text: &str) -> Result<Message, Refused> {
+    if text.len() > MOST_BYTES {
+        let length = text.len();
+        return Err(Refused::whole(format!("a message of {length} bytes: at most {MOST_BYTES} are read")));
+    }
+    let message: Message = serde_json::from_str(text).map_err(Refused::whole)?;
+    match &message {
+        Message::Look { columns, .. } if !(1..=MOST_COLUMNS).contains(columns) => {
+            Err(Refused::of("columns", format!("{columns} is not allowed here: 1 to {MOST_COLUMNS}")))
+        }
+        Message::Look { span: Some([from, to]), .. } if !(*from >= 0.0 && from < to) => {
+            Err(Refused::of("span", format!("{from} to {to} s is not a span of the run")))
+        }
+        Message::Pin { slot, .. } if *slot > 1 => {
+            Err(Refused::of("slot", format!("{slot} is not allowed here: 0 or 1")))
+        }
+        _ => Ok(message),
+    }
+}
+
+/// An answer: an object, and columns of numbers. See the layout above.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer {
+    head: serde_json::Map<String, Value>,
+    names: Vec<Value>,
+    numbers: Vec<u8>,
+}
+
+impl Answer {
+    /// An answer of a kind.
+    pub fn new(kind: &str) -> Self {
+        Self::default().with("kind", kind)
+    }
+
+    /// With a field.
+    #[must_use]
+    pub fn with(mut self, name: &str, value: impl Serialize) -> Self {
+        // What is not finite has no place in JSON and becomes null.
+        self.head.insert(name.to_owned(), serde_json::to_value(value).unwrap_or(Value::Null));
+        self
+    }
+
+    /// With a column of numbers.
+    #[must_use]
+    pub fn column(mut self, name: &str, values: &[f64]) -> Self {
+        self.names.push(serde_json::json!([name, values.len()]));
+        self.numbers.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        self
+    }
+
+    /// A field.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.head.get(name)
+    }
+
+    /// A column.
+    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let length = |of: &Value| of[1].as_u64().map_or(0, |count| count as usize);
+        let place = self.names.iter().position(|of| of[0] == name)?;
+        let before: usize = self.names[..place].iter().map(length).sum();
+        let bytes = self.numbers.chunks_exact(8).skip(before).take(length(&self.names[place]));
+        Some(bytes.filter_map(|bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?))).collect())
+    }
+
+    /// The bytes of the message.
+    pub fn bytes(mut self) -> Vec<u8> {
+        self.head.insert("columns".to_owned(), Value::Array(self.names));
+        let mut head = Value::Object(self.head).to_string().into_bytes();
+        head.resize(head.len().next_multiple_of(8) + 4, b' '); // so that the numbers begin at a multiple of eight
+        let mut bytes = (head.len() as u32).to_le_bytes().to_vec();
+        bytes.append(&mut head);
+        bytes.extend(self.numbers);
+        bytes
+    }
+}
+
+impl From<Refused> for Answer {
+    fn from(refused: Refused) -> Self {
+        Self::new("refused").with("field", refused.field).with("problem", refused.problem)
+    }
+}

@@ -1,0 +1,295 @@
+//! One page: its messages come in, answers go out. The latest message of a kind wins; work for an older one ends at its next run.
+
+use crate::kind::{kind, spread};
+use crate::motion::look;
+use crate::protocol::{Answer, Message, Place, read};
+use crate::refused::Refused;
+use crate::response::{CURVES, Curve, Stale, bare, worst};
+use crate::start::Start;
+use crate::{texts, tuning};
+use retune_model::NonNegative;
+use retune_study::Study;
+use serde_json::json;
+use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long the page is given to draw a motion before its response is computed, and how long a slider rests before what takes longer.
+const DRAWN: Duration = Duration::from_millis(12);
+const RESTED: Duration = Duration::from_millis(60);
+
+/// What a page asked to look at.
+struct Look {
+    id: u64,
+    place: Place,
+    span: Option<[f64; 2]>,
+    columns: usize,
+}
+
+/// What waits: at most one message of each kind.
+#[derive(Default)]
+struct Mail {
+    look: Option<Look>,
+    pins: [Option<Place>; 2],
+    tune: Option<Place>,
+    ended: bool,
+}
+
+/// A page.
+pub struct Session<'a> {
+    start: &'a Start,
+    send: &'a (dyn Fn(Answer) -> bool + Sync),
+    mail: Mutex<Mail>,
+    bell: Condvar,
+    /// Counts messages that outdate what is being shown, and those that outdate a tuning.
+    shown: AtomicU64,
+    tuned: AtomicU64,
+}
+
+/// What the page has been sent, and need not be sent again.
+#[derive(Default)]
+struct Known {
+    bare: Option<Study>,
+    response: Option<Study>,
+    kind: Option<(Study, bool)>,
+    spread: Option<(Study, [f64; 2])>,
+}
+
+/// Serves a page until `next` has no more messages. `send` is false once the page has gone.
+pub fn serve(
+    start: &Start,
+    send: &(dyn Fn(Answer) -> bool + Sync),
+    mut next: impl FnMut() -> Option<String>,
+) {
+    let (mail, bell, shown, tuned) = Default::default();
+    let session = Session { start, send, mail, bell, shown, tuned };
+    session.send(hello(start));
+    std::thread::scope(|scope| {
+        scope.spawn(|| session.shows());
+        scope.spawn(|| session.tunes());
+        while let Some(text) = next() {
+            match read(&text) {
+                Ok(message) => session.take(message),
+                Err(refused) => session.send(refused.into()),
+            }
+            if session.mail().ended {
+                break;
+            }
+        }
+        session.end();
+    });
+}
+
+/// What a page must know before it asks.
+fn hello(start: &Start) -> Answer {
+    let study = start.study();
+    let band = crate::response::band(study);
+    let quantity = study.quantity();
+    Answer::new("hello")
+        .with("version", env!("CARGO_PKG_VERSION"))
+        .with("study", study.name())
+        .with("damper", start.hung())
+        .with("controls", start.controls())
+        .with("band", [band.from, band.to])
+        .with("window", [study.window.t0.get(), study.window.end.get()])
+        .with(
+            "quantity",
+            json!({ "name": quantity.name(), "unit": quantity.unit(), "words": quantity.words() }),
+        )
+        .with("tunes", study.optimize.is_some())
+}
+
+impl Session<'_> {
+    fn mail(&self) -> MutexGuard<'_, Mail> {
+        self.mail.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn send(&self, answer: Answer) {
+        if !(self.send)(answer) {
+            self.end();
+        }
+    }
+
+    fn end(&self) {
+        self.mail().ended = true;
+        self.shown.fetch_add(1, SeqCst);
+        self.tuned.fetch_add(1, SeqCst);
+        self.bell.notify_all();
+    }
+
+    /// Puts a message in the place of an older one of its kind.
+    fn take(&self, message: Message) {
+        match message {
+            Message::Look { id, place, span, columns } => {
+                let mut mail = self.mail();
+                mail.look = Some(Look { id, place, span, columns });
+                self.shown.fetch_add(1, SeqCst);
+            }
+            Message::Pin { slot, place } => {
+                let mut mail = self.mail();
+                mail.pins[slot.min(1)] = Some(place);
+                self.shown.fetch_add(1, SeqCst);
+            }
+            Message::Tune { place } => {
+                let mut mail = self.mail();
+                mail.tune = Some(place);
+                self.tuned.fetch_add(1, SeqCst);
+            }
+            Message::Stop {} => {
+                self.tuned.fetch_add(1, SeqCst);
+            }
+            Message::Write { place, what } => match texts::written(self.start, &place, what) {
+                Ok(answer) => self.send(answer),
+                Err(refused) => self.send(refused.into()),
+            },
+        }
+        self.bell.notify_all();
+    }
+
+    /// Waits until `found` finds something in the mail; none at the end.
+    fn wait<T>(&self, found: impl Fn(&mut Mail) -> Option<T>) -> Option<T> {
+        let mut mail = self.mail();
+        loop {
+            if mail.ended {
+                return None;
+            }
+            if let Some(work) = found(&mut mail) {
+                return Some(work);
+            }
+            mail = self.bell.wait(mail).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn shows(&self) {
+        enum Work {
+            Look(Look),
+            Pin(usize, Place),
+        }
+        // Messages are counted while the mail is held, and so is the count read that tells whether there was another since.
+        let work = |mail: &mut Mail| {
+            let pin = |mail: &mut Mail| {
+                (0..2).find_map(|slot| mail.pins[slot].take().map(|place| Work::Pin(slot, place)))
+            };
+            let work = mail.look.take().map(Work::Look).or_else(|| pin(mail))?;
+            Some((work, self.shown.load(SeqCst)))
+        };
+        let mut known = Known::default();
+        loop {
+            let Some((work, count)) = self.wait(work) else { return };
+            let is_stale = || self.shown.load(SeqCst) != count;
+            match work {
+                Work::Look(look) => {
+                    if self.look(&look, &mut known, &is_stale).is_err() {
+                        self.mail().look.get_or_insert(look);
+                    }
+                }
+                Work::Pin(slot, place) => {
+                    if self.pin(slot, &place, &is_stale).is_err() {
+                        self.mail().pins[slot].get_or_insert(place);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The motion at once, then what takes longer.
+    fn look(
+        &self,
+        look: &Look,
+        known: &mut Known,
+        is_stale: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Stale> {
+        let Look { id, place, span, columns } = look;
+        let send = |answer: Answer| match is_stale() {
+            true => Err(Stale),
+            false => {
+                self.send(answer.with("id", id));
+                Ok(())
+            }
+        };
+        let study = match self.start.at(place) {
+            Ok(study) => study,
+            Err(refused) => return send(refused.into()),
+        };
+        match crate::motion::look(&study, *span, *columns) {
+            Ok(answer) => send(answer)?,
+            Err(refused) => return send(refused.into()),
+        }
+        self.rest(DRAWN, is_stale)?;
+        let design = at_no_frequency(&study);
+        let curve = Curve::of(&study);
+        let without = at_no_frequency(&bare(&study));
+        if known.bare.as_ref() != Some(&without) {
+            send(Curve::of(&without).answer("none", CURVES[1], is_stale)?)?;
+            known.bare = Some(without);
+        }
+        if known.response.as_ref() != Some(&design) {
+            send(curve.answer("now", CURVES[0], is_stale)?)?;
+        }
+        self.rest(RESTED, is_stale)?;
+        let irregular = match &known.kind {
+            Some((of, irregular)) if *of == study => *irregular,
+            _ => {
+                let (answer, irregular) = kind(&study);
+                send(answer)?;
+                known.kind = Some((study.clone(), irregular));
+                irregular
+            }
+        };
+        if known.response.as_ref() != Some(&design) {
+            send(worst(&study, "now", is_stale)?)?;
+            send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
+            known.response = Some(design);
+        }
+        let span = span.unwrap_or([study.window.t0.get(), study.window.end.get()]);
+        if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
+            send(spread(&study, span, *columns, is_stale)?)?;
+            known.spread = Some((study, span));
+        }
+        send(Answer::new("done"))
+    }
+
+    /// Waits a moment: while a hand still moves, the processors belong to what it sees move, not to work that the next place outdates.
+    fn rest(&self, time: Duration, is_stale: &dyn Fn() -> bool) -> Result<(), Stale> {
+        drop(self.bell.wait_timeout_while(self.mail(), time, |_| !is_stale()));
+        if is_stale() { Err(Stale) } else { Ok(()) }
+    }
+
+    fn pin(&self, slot: usize, place: &Place, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<(), Stale> {
+        let whose = ["A", "B"][slot];
+        let found = self.start.at(place).and_then(|study| Ok((look(&study, None, 1)?, study)));
+        let study = match found {
+            Ok((run, study)) => {
+                let answer = Answer::new("pinned").with("whose", whose);
+                self.send(answer.with("figures", run.get("figures")).with("text", run.get("text")));
+                study
+            }
+            Err(Refused { problem, .. }) => {
+                self.send(Answer::new("pinned").with("whose", whose).with("problem", problem));
+                return Ok(());
+            }
+        };
+        self.send(Curve::of(&study).answer(whose, CURVES[1], is_stale)?.with("fine", true));
+        self.send(kind(&study).0.with("whose", whose));
+        self.send(worst(&study, whose, is_stale)?);
+        Ok(())
+    }
+
+    fn tunes(&self) {
+        loop {
+            let tune = |mail: &mut Mail| Some((mail.tune.take()?, self.tuned.load(SeqCst)));
+            let Some((place, count)) = self.wait(tune) else { return };
+            let is_stale = || self.tuned.load(SeqCst) != count;
+            if let Err(refused) = tuning::tune(self.start, &place, &|answer| self.send(answer), &is_stale) {
+                self.send(Answer::from(refused).with("tuning", true));
+            }
+        }
+    }
+}
+
+/// The study with the frequency that its response does not depend on taken out.
+fn at_no_frequency(study: &Study) -> Study {
+    let mut study = study.clone();
+    study.scene.forcing.frequency = NonNegative::default();
+    study
+}

@@ -1,0 +1,103 @@
+//! Figures to take away: those of the page, drawn as the figures of all results are.
+
+use crate::refused::Refused;
+use crate::response::{CURVES, Curve, bare};
+use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};
+use retune_figures::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
+use retune_solver::Window;
+use retune_study::{Study, design_words, hertz_and_rpm};
+use retune_workbench::amount;
+use retune_workbench::summary::MadeBy;
+
+/// Columns that the curves of the motion are thinned to.
+const COLUMNS: usize = 900;
+const NOW: Stroke = Stroke::new(VERMILION, 1.2, Dash::Solid);
+const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
+
+/// The motion in the window: displacement, relative displacement with the walls, E1, contact forces.
+///
+/// # Errors
+/// The run fails.
+pub fn motion(study: &Study) -> Result<String, Refused> {
+    let Window { from, to } = study.window.window();
+    let (series, _) = crate::motion::series(study, [from, to], COLUMNS)?;
+    let points = |column: usize| -> Vec<(f64, f64)> {
+        series.t.iter().copied().zip(series.columns[column].iter().copied()).collect()
+    };
+    let line = |column, colour| Layer::Line {
+        points: points(column),
+        stroke: Stroke::new(colour, 0.8, Dash::Solid),
+    };
+    let chart = |label: &str, lines: &[(usize, &'static str)], height: f64| {
+        let values = lines.iter().flat_map(|(column, _)| series.columns[*column].iter().copied());
+        Chart {
+            title: String::new(),
+            x: Axis::linear("t, s", (from, to)),
+            y: Axis::around(label, Scale::Linear, values),
+            layers: lines.iter().map(|(column, colour)| line(*column, colour)).collect(),
+            height,
+        }
+    };
+    let mut charts = vec![chart("x1, m", &[(0, BLUE)], 90.0)];
+    if study.scene.damper.is_some() {
+        charts.push(chart("x2 - x1, m", &[(1, VERMILION)], 90.0));
+    }
+    charts.push(chart("E1, J", &[(2, BLUE)], 90.0));
+    if study.scene.damper.is_some_and(|damper| damper.contact.is_some()) {
+        charts.push(chart("contact force, N", &[(3, VERMILION), (4, GREY)], 115.0));
+    }
+    Ok(svg(&Sheet {
+        title: "Motion".to_owned(),
+        description: format!("Displacement, energy and contact forces over time. {}", words(study)),
+        width: Width::Page,
+        charts,
+        columns: 1,
+        stacked: true,
+        legend: Vec::new(),
+        caption: vec![words(study), MadeBy::new(study).to_string()],
+    }))
+}
+
+/// The response over the band, beside that without a damper.
+pub fn response(study: &Study) -> String {
+    let curve = |study: &Study| -> Vec<(f64, f64)> {
+        let found = Curve::of(study).over(CURVES[1], &|| false);
+        found.map_or_else(|_| Vec::new(), |[omega, values]| omega.into_iter().zip(values).collect())
+    };
+    let (now, none) = (curve(study), curve(&bare(study)));
+    let all = now.iter().chain(&none).map(|point| point.1).filter(|value| value.is_finite());
+    let top = all.fold(0.0, f64::max);
+    let band = crate::response::band(study);
+    let name = study.quantity().name();
+    svg(&Sheet {
+        title: format!("{name} over frequency"),
+        description: format!("{name} over the band, with the damper and without. {}", words(study)),
+        width: Width::Column,
+        charts: vec![Chart {
+            title: String::new(),
+            x: Axis::linear("ω, rad/s", (band.from, band.to))
+                .with_second("frequency, Hz", hertz_and_rpm(1.0)[0]),
+            y: Axis::linear(amount::label(study.quantity()), (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
+            layers: vec![
+                Layer::Line { points: none, stroke: NONE },
+                Layer::Line { points: now, stroke: NOW },
+                Layer::Upright {
+                    x: study.scene.forcing.frequency.get(),
+                    stroke: Stroke::new(GREY, 0.8, Dash::Dots),
+                },
+            ],
+            height: 180.0,
+        }],
+        columns: 1,
+        stacked: false,
+        legend: vec![(Key::Line(NONE), "no damper".to_owned()), (Key::Line(NOW), "this damper".to_owned())],
+        caption: vec![words(study), MadeBy::new(study).to_string()],
+    })
+}
+
+fn words(study: &Study) -> String {
+    match study.scene.damper {
+        None => "No damper.".to_owned(),
+        Some(damper) => format!("{}.", design_words(&retune_model::Design::of(&damper), 4)),
+    }
+}

@@ -1,0 +1,183 @@
+//! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
+
+use crate::limits::bounded;
+use crate::protocol::{Hung, Place};
+use crate::refused::Refused;
+use retune_model::{Damper, NonNegative, Variable};
+use retune_study::{PARAMETERS, Rule, Setting, Study, StudyError};
+use serde::Serialize;
+use std::path::Path;
+
+/// The study that is explored if none is named: a copy of `studies/ssvi.json`, which a test compares.
+const DEFAULT: &str = include_str!("study.json");
+
+/// The study of a session, and where it came from.
+#[derive(Clone, Debug)]
+pub struct Start {
+    study: Study,
+    /// What was named on the command line.
+    pub file: Option<String>,
+    damper: Damper,
+}
+
+/// A number that a page can turn.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Control {
+    /// Its name, that of `--set`.
+    pub name: &'static str,
+    /// What it is.
+    pub words: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The study's value.
+    pub value: f64,
+    /// The range of the slider.
+    pub range: [f64; 2],
+    /// Whether the slider is logarithmic.
+    pub log: bool,
+    /// The dampers that have it.
+    pub dampers: &'static [Hung],
+}
+
+const ANY: &[Hung] = &[Hung::None, Hung::Tmd, Hung::Ssvi];
+const DAMPED: &[Hung] = &[Hung::Tmd, Hung::Ssvi];
+const WALLED: &[Hung] = &[Hung::Ssvi];
+
+/// The numbers that a page can turn, in its order.
+const TURNED: [(&str, &str, &[Hung]); 11] = [
+    ("omega", "frequency of the force", ANY),
+    ("k2", "spring of the damper", DAMPED),
+    ("c2", "dashpot of the damper", DAMPED),
+    ("D", "gap to the structure", WALLED),
+    ("C", "gap to the obstacle", WALLED),
+    ("m2", "mass of the damper", DAMPED),
+    ("k1", "spring of the structure", ANY),
+    ("c1", "dashpot of the structure", ANY),
+    ("P", "amplitude of the force", ANY),
+    ("imbalance", "rotating imbalance", ANY),
+    ("base", "amplitude of the base", ANY),
+];
+
+impl Start {
+    /// From a study file or results; from the paper's SSVI NES if none are named.
+    ///
+    /// # Errors
+    /// The study is wrong.
+    pub fn read(path: Option<&Path>) -> Result<Self, StudyError> {
+        let default = retune_study::read::from_text(DEFAULT, "ssvi.json")?;
+        let study = path.map(retune_study::read).transpose()?;
+        let file = path.map(|path| path.display().to_string());
+        let none = || StudyError::Rule { file: "ssvi.json".to_owned(), rule: Rule::NoDamper };
+        let other = default.scene.damper.ok_or_else(none)?;
+        let study = study.unwrap_or(default);
+        // What the study's damper lacks is that of the paper's.
+        let own = study.scene.damper.unwrap_or(other);
+        let damper = if own.contact.is_some() {
+            own
+        } else {
+            let Damper { rest_distance, clearance, contact, .. } = other;
+            Damper { rest_distance, clearance, contact, ..own }
+        };
+        Ok(Self { study, file, damper })
+    }
+
+    /// The study as it was read.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// The damper that the study has.
+    pub fn hung(&self) -> Hung {
+        match &self.study.scene.damper {
+            None => Hung::None,
+            Some(damper) if damper.contact.is_some() => Hung::Ssvi,
+            Some(_) => Hung::Tmd,
+        }
+    }
+
+    /// The study at a place, by the rules of study files. Bounds of its search, which a hand may leave, are not checked.
+    ///
+    /// # Errors
+    /// A number that a study may not have.
+    pub fn at(&self, place: &Place) -> Result<Study, Refused> {
+        let settings = settings(place)?;
+        let study = Study { optimize: None, ..self.with(place.damper) };
+        let study = study.with(&settings)?;
+        bounded(Study { optimize: self.with(place.damper).optimize, ..study })
+    }
+
+    /// The study at a place, its search included, as a file would have it.
+    ///
+    /// # Errors
+    /// As [`Self::at`]; or a rule of the search, for instance a value out of its bounds.
+    pub fn file_at(&self, place: &Place) -> Result<Study, Refused> {
+        let mut study = self.with(place.damper);
+        if place.damper == Hung::None {
+            study.optimize = None;
+        }
+        Ok(study.with(&settings(place)?)?)
+    }
+
+    /// The study with another damper.
+    fn with(&self, hung: Hung) -> Study {
+        let mut study = self.study.clone();
+        let Damper { mass, stiffness, damping, .. } = self.damper;
+        let zero = NonNegative::default();
+        let open = Damper { mass, stiffness, damping, rest_distance: zero, clearance: zero, contact: None };
+        study.scene.damper = match hung {
+            Hung::None => None,
+            Hung::Tmd => Some(open),
+            Hung::Ssvi => Some(self.damper),
+        };
+        if let Some(optimize) = study.optimize.as_mut().filter(|_| hung == Hung::Tmd) {
+            // Without walls there are no gaps to tune.
+            for gap in [Variable::D, Variable::C] {
+                optimize.vary.retain(|variable| *variable != gap);
+                *optimize.bounds.get_mut(gap) = None;
+                optimize.surf.iter_mut().for_each(|axes| *axes.get_mut(gap) = None);
+                optimize.starts.iter_mut().for_each(|start| *start.get_mut(gap) = None);
+                optimize.global.iter_mut().for_each(|global| *global.sides.get_mut(gap) = None);
+            }
+        }
+        study
+    }
+
+    /// What a page can turn, whichever damper it hangs there.
+    pub fn controls(&self) -> Vec<Control> {
+        let walled = Study { optimize: None, ..self.with(Hung::Ssvi) };
+        let control = |&(name, words, dampers): &(&'static str, &'static str, &'static [Hung])| {
+            let value = walled.value_of(name)?;
+            let unit = PARAMETERS.iter().find(|(other, _)| *other == name)?.1;
+            let [from, to] = self.range(name, value);
+            let range = [from.min(value), to.max(value)];
+            let log = range[0] > 0.0 && range[1] >= 10.0 * range[0];
+            Some(Control { name, words, unit, value, range, log, dampers })
+        };
+        TURNED.iter().filter_map(control).collect()
+    }
+
+    /// The range of a slider: of the search's bounds or the band, else about the value.
+    fn range(&self, name: &str, value: f64) -> [f64; 2] {
+        if name == "omega" {
+            let band = crate::response::band(&self.study);
+            return [band.from, band.to];
+        }
+        let variable = Variable::ALL.into_iter().find(|variable| variable.to_string() == name);
+        let optimize = self.study.optimize.as_ref();
+        let bounds = variable.and_then(|variable| optimize?.bounds.get(variable));
+        match (bounds, name) {
+            (Some((lower, Some(upper))), _) => [lower, upper],
+            (_, "k1") => [0.4 * value, 2.5 * value],
+            (_, "m2") => [0.25 * value, 4.0 * value],
+            (_, "P" | "imbalance" | "base" | "D" | "C") => [0.0, if value > 0.0 { 4.0 * value } else { 1.0 }],
+            _ if value > 0.0 => [0.1 * value, 10.0 * value],
+            _ => [0.0, 1.0],
+        }
+    }
+}
+
+/// The numbers of a place as `--set` has them.
+pub fn settings(place: &Place) -> Result<Vec<Setting>, Refused> {
+    let setting = |(name, value): (&String, &f64)| Ok(format!("{name}={value}").parse::<Setting>()?);
+    place.set.iter().map(setting).collect()
+}

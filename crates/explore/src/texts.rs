@@ -1,0 +1,102 @@
+//! A place written down: as a study, a command line, lines of Python, a table, a figure. A page offers them; nothing is written here.
+
+use crate::protocol::{Answer, Place, What};
+use crate::refused::Refused;
+use crate::sheets;
+use crate::start::Start;
+use retune_study::Study;
+use retune_workbench::simulate::write_rows;
+
+/// Time between two rows of a motion, s, as `retune simulate --trajectory` has it.
+const INTERVAL: f64 = 0.005;
+/// Rows of a motion.
+const MOST_ROWS: f64 = 200_000.0;
+
+/// A place in a form.
+///
+/// # Errors
+/// A study file could not have these numbers, or the run fails.
+pub fn written(start: &Start, place: &Place, what: What) -> Result<Answer, Refused> {
+    let name = start.study().name();
+    let (file, text) = match what {
+        What::Study => (saved(name), study(&start.file_at(place)?)?),
+        What::Command => (String::new(), command(start, place)?),
+        What::Python => (String::new(), python(start, place)?),
+        What::Motion => (format!("{name}-motion.csv"), motion(&start.at(place)?)?),
+        What::Picture => (format!("{name}-motion.svg"), sheets::motion(&start.at(place)?)?),
+        What::Response => (format!("{name}-response.svg"), sheets::response(&start.at(place)?)),
+    };
+    Ok(Answer::new("written").with("what", what).with("file", file).with("text", text))
+}
+
+/// The file that a study is saved as.
+fn saved(name: &str) -> String {
+    format!("{name}-explored.json")
+}
+
+/// A study file, named by whoever saves it.
+fn study(study: &Study) -> Result<String, Refused> {
+    let study = Study { name: None, ..study.resolved() };
+    serde_json::to_string_pretty(&study).map(|text| text + "\n").map_err(Refused::whole)
+}
+
+/// The file that a command is given, the numbers that differ from it, and a note. Where no file has this damper, it is the one that the
+/// page saves.
+struct Named {
+    file: String,
+    set: Vec<String>,
+    note: &'static str,
+}
+
+fn named(start: &Start, place: &Place) -> Result<Named, Refused> {
+    start.file_at(place)?;
+    let differs = |(name, value): &(&String, &f64)| start.study().value_of(name) != Some(**value);
+    match &start.file {
+        Some(file) if start.hung() == place.damper => {
+            let set = place.set.iter().filter(differs).map(|(name, value)| format!("{name}={value}"));
+            Ok(Named { file: file.clone(), set: set.collect(), note: "" })
+        }
+        _ => {
+            let note = "  # the study, saved from this page";
+            Ok(Named { file: saved(start.study().name()), set: Vec::new(), note })
+        }
+    }
+}
+
+fn command(start: &Start, place: &Place) -> Result<String, Refused> {
+    let Named { file, set, note } = named(start, place)?;
+    let set: String = set.iter().map(|set| format!(" --set {set}")).collect();
+    Ok(format!("retune simulate {}{set}{note}", quoted(&file)))
+}
+
+fn python(start: &Start, place: &Place) -> Result<String, Refused> {
+    let Named { file, set, note } = named(start, place)?;
+    let at = if set.is_empty() { String::new() } else { format!(".at({})", set.join(", ")) };
+    let file = serde_json::to_string(&file).map_err(Refused::whole)?;
+    Ok(format!(
+        "import retune as rt\n\nproblem = rt.Problem.from_study({file}){at}{note}\nrun = problem.simulate()\nprint(run.maxima)"
+    ))
+}
+
+/// A word for a shell.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
+}
+
+fn motion(study: &Study) -> Result<String, Refused> {
+    let window = study.window.window();
+    let rows = (window.to - window.from) / INTERVAL;
+    if rows > MOST_ROWS {
+        let problem =
+            format!("{rows:.0} rows are too many for this page: `retune simulate --trajectory` writes them");
+        return Err(Refused::of("T", problem));
+    }
+    let mut text = String::new();
+    write_rows(study, INTERVAL, &mut |row| {
+        text.push_str(row);
+        Ok(())
+    })
+    .map_err(Refused::whole)?;
+    Ok(text)
+}

@@ -1,0 +1,395 @@
+"""Drives the page of `retune explore` in a browser without a window, as a person does.
+
+    python3 tests/explore.py RETUNE [--shots DIR]          what must hold
+    python3 tests/explore.py RETUNE --bench [SECONDS]      how fast it is: results/explore/bench.txt
+
+Needs chromium (or the browser named in $CHROMIUM). RETUNE is the program.
+"""
+
+import argparse
+import atexit
+import base64
+import json
+import os
+import re
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from pages import OVERFLOW, PATIENCE, Browser, said
+
+ROOT = Path(__file__).resolve().parent.parent
+RESULTS = "results/ssvi"
+WIDTHS = [390, 768, 1280, 1600]
+# The greatest size of the page, with all that it loads, bytes.
+LARGEST_PAGE = 300_000
+
+
+class Explorer:
+    """`retune explore`, running."""
+
+    def __init__(self, program, study=RESULTS):
+        command = [program, "explore", *([study] if study else []), "--no-browser"]
+        self.process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        atexit.register(self.process.kill)
+        self.address = self.process.stdout.readline().strip()
+
+    def memory(self):
+        """Its resident memory, MB."""
+        text = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+) kB", text).group(1)) / 1000
+
+    def close(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(PATIENCE)
+
+
+class Page:
+    """A page of it, open in the browser."""
+
+    def __init__(self, browser, address, width=1280, scheme="light", downloads=None):
+        self.browser = browser
+        self.target = browser.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = browser.ask("Target.attachToTarget", targetId=self.target, flatten=True)["sessionId"]
+        for domain in ["Page", "Runtime", "Log", "Network", "Accessibility"]:
+            self.ask(f"{domain}.enable")
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)
+        self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        if downloads:
+            browser.ask("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(downloads), eventsEnabled=True)
+        self.width, self.address, self.faults = width, address, []
+        self.ask("Page.addScriptToEvaluateOnNewDocument", source=LISTENER)
+        self.open(address)
+
+    def ask(self, method, **params):
+        return self.browser.ask(method, self.session, **params)
+
+    def open(self, address):
+        # By way of an empty page: an address that differs in its fragment alone is not loaded again.
+        for url in ["about:blank", address]:
+            self.faults += self.messages()
+            self.browser.events = [e for e in self.browser.events if e.get("sessionId") != self.session]
+            self.ask("Page.navigate", url=url)
+            self.browser.wait("Page.loadEventFired", self.session)
+        self.known()
+
+    def js(self, expression):
+        """The value of an expression, awaited."""
+        found = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in found:
+            sys.exit(f"{expression}: {found['exceptionDetails'].get('exception', {}).get('description', found)}")
+        return found["result"].get("value")
+
+    def until(self, expression, patience=PATIENCE):
+        """Waits until an expression is true, and gives its value."""
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            if value := self.js(expression):
+                return value
+            time.sleep(0.05)
+        sys.exit(f"this did not become true: {expression}")
+
+    def known(self):
+        """Waits until the page shows all there is to know about the place where it stands."""
+        self.until("window.heard && heard.known && heard.known === heard.asked")
+
+    def mouse(self, kind, x, y, buttons=1, clicks=1):
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=clicks)
+
+    def middle(self, selector):
+        return self.js(
+            f"(() => {{ const e = document.querySelector({json.dumps(selector)}); e.scrollIntoView({{ block: 'center' }});"
+            " const b = e.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2, b.left, b.width]; })()"
+        )
+
+    def click(self, selector, clicks=1):
+        x, y, *_ = self.middle(selector)
+        for count in range(1, clicks + 1):
+            self.mouse("mousePressed", x, y, clicks=count)
+            self.mouse("mouseReleased", x, y, 0, clicks=count)
+
+    def drag(self, selector, shares, share_now):
+        """Drags over an element from one share of its width to others."""
+        _, y, left, width = self.middle(selector)
+        self.mouse("mousePressed", left + share_now * width, y)
+        for share in shares:
+            self.mouse("mouseMoved", left + share * width, y)
+        self.mouse("mouseReleased", left + shares[-1] * width, y, 0)
+
+    def type(self, selector, text):
+        self.click(selector, clicks=3)
+        self.ask("Input.insertText", text=text)
+        self.key("Enter")
+
+    def key(self, key):
+        text = {"text": "\r"} if key == "Enter" else {}
+        code = {"Enter": 13, "ArrowRight": 39, "ArrowLeft": 37, "Tab": 9, "Escape": 27}[key]
+        self.ask("Input.dispatchKeyEvent", type="keyDown", key=key, code=key, windowsVirtualKeyCode=code, **text)
+        self.ask("Input.dispatchKeyEvent", type="keyUp", key=key, code=key, windowsVirtualKeyCode=code)
+
+    def value(self, name):
+        return float(self.js(f"document.getElementById('number-{name}').value"))
+
+    def text(self, selector):
+        return self.js(f"document.querySelector({json.dumps(selector)}).textContent")
+
+    def messages(self):
+        """What the page said that it should not."""
+        mine = [e for e in self.browser.events if e.get("sessionId") == self.session]
+        words = [w for e in mine if (w := said(e))]
+        own = tuple(f"request to {place}" for place in [self.address.split("#")[0], "about:"])
+        return self.faults + [w for w in words if not w.startswith(own)]
+
+    def shot(self, path):
+        height = self.js("document.documentElement.scrollHeight")
+        clip = {"x": 0, "y": 0, "width": self.width, "height": height, "scale": 1}
+        data = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)["data"]
+        path.write_bytes(base64.b64decode(data))
+
+    def close(self):
+        self.browser.ask("Target.closeTarget", targetId=self.target)
+
+
+LISTENER = """window.heard = { asked: 0, painted: 0, known: 0 };
+for (const name of ["asked", "painted", "known"]) document.addEventListener(name, ({ detail }) => { heard[name] = detail; });
+"""
+
+
+def opened():
+    """A browser that ends with this program, however that ends."""
+    browser = Browser()
+    atexit.register(browser.process.kill)
+    return browser
+
+
+class Checks:
+    def __init__(self):
+        self.count, self.bad = 0, 0
+
+    def that(self, what, holds, more=""):
+        self.count += 1
+        self.bad += not holds
+        print(f"{'holds' if holds else 'FAULT'}  {what}{'' if holds else f': {more}'}", flush=True)
+
+
+def simulated(program, words):
+    """What `retune simulate` prints for the command line that the page gives."""
+    command = words.split("  #")[0].split()
+    assert command[0] == "retune"
+    return subprocess.run([program, *command[1:]], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+
+
+def try_it(program, shots):
+    checks, browser, explorer = Checks(), opened(), Explorer(program)
+    downloads = Path(tempfile.mkdtemp())
+    page = Page(browser, explorer.address, downloads=downloads)
+
+    def written(what):
+        page.js("document.querySelector('dialog').close(); document.querySelector('dialog textarea').value = ''")
+        page.js(f"document.querySelector('[data-write={what}]').click()")
+        return page.until("document.querySelector('dialog textarea').value")
+
+    def same(name):
+        page.known()
+        words = written("command")
+        ours, theirs = page.text("#text").strip(), simulated(program, words).strip()
+        checks.that(f"{name}: the page's figures are those of `{words}`", ours == theirs, f"{ours}\n{theirs}")
+        page.js("document.querySelector('dialog').close()")
+
+    hero = lambda: page.text(".hero .number")
+    checks.that("the tuned damper's worst is that of its results", hero().startswith("225.8 J"), hero())
+    same("as opened")
+
+    share = "(s => s.value / s.max)(document.getElementById('slider-k2'))"
+    before = page.value("k2")
+    page.drag("#slider-k2", [0.8, 0.6, 0.5, 0.45], page.js(share))
+    checks.that("a dragged slider turns its number", page.value("k2") < before, page.value("k2"))
+    same("dragged")
+    page.drag("#response .u-over", [0.4, 0.3, 0.25], 0.5)
+    checks.that("the cursor of the response is dragged", abs(page.value("omega") - 5.75) < 0.05, page.value("omega"))
+    same("another frequency")
+    page.type("#number-c2", "120.5")
+    checks.that("a typed number is taken", page.value("c2") == 120.5)
+    same("typed")
+    address = page.js("(async () => { await new Promise((r) => setTimeout(r, 300)); return location.href; })()")
+    state = page.text("#text")
+    page.type("#number-D", "-1")
+    problem = page.until("!document.getElementById('problem').hidden && document.getElementById('problem').textContent")
+    checks.that("a number out of range is refused with its field", problem.startswith("D: -1 is not allowed here"), problem)
+    marked = page.js("document.getElementById('number-D').getAttribute('aria-invalid')")
+    checks.that("and marked", marked == "true", marked)
+    page.click("#slider-D", clicks=2)
+    page.until("document.getElementById('problem').hidden")
+    checks.that("a double click brings the study's value back", abs(page.value("D") - 0.02885) < 1e-4, page.value("D"))
+
+    page.open(address)
+    checks.that("a reload from the address shows the same", page.text("#text") == state)
+    page.js("document.getElementById('slider-k2').focus()")
+    page.key("ArrowRight")
+    page.known()
+    checks.that("the arrow keys turn a slider", page.text("#text") != state)
+
+    page.click("#pin-A")
+    page.until("!!document.querySelector('#figures th.a')")
+    page.click("#dampers label:nth-of-type(2)")
+    page.known()
+    checks.that("a TMD has no walls", not page.js("document.getElementById('number-D')"))
+    checks.that("a pinned design is beside it", "A, worst" in page.text("#figures"), page.text("#figures"))
+    checks.that("the pinned curve is drawn", " A " in page.text("#response-key"), page.text("#response-key"))
+    page.click("#dampers label:nth-of-type(1)")
+    page.known()
+    none = page.text(".hero .number")
+    checks.that("without a damper there is the structure alone", none.startswith("1568 J"), none)
+    page.click("#dampers label:nth-of-type(3)")
+    page.known()
+
+    for file, text in [("ssvi-explored.json", "study"), ("ssvi-response.csv", "curves"), ("ssvi-motion.csv", "motion")]:
+        page.js(f"document.querySelector('[data-write={text}]').click()")
+        end = time.monotonic() + PATIENCE
+        while not (downloads / file).is_file() and time.monotonic() < end:
+            browser.message(time.monotonic() + 0.1)
+        checks.that(f"{file} is saved", (downloads / file).is_file())
+    saved = subprocess.run([program, "simulate", downloads / "ssvi-explored.json"], capture_output=True, text=True, check=True).stdout
+    numbers = lambda text: text.strip().split("\n")[1:]  # the first line names the study
+    checks.that("the saved study gives the page's figures", numbers(saved) == numbers(page.text("#text")), saved)
+    trajectory = downloads / "check.csv"
+    subprocess.run([program, "simulate", downloads / "ssvi-explored.json", "--trajectory", trajectory], check=True, capture_output=True)
+    checks.that("the saved motion is that of `--trajectory`", trajectory.read_bytes() == (downloads / "ssvi-motion.csv").read_bytes())
+    for what, begin in [("picture", "ssvi-motion.svg"), ("response", "ssvi-response.svg")]:
+        page.js(f"document.querySelector('[data-write={what}]').click()")
+        end = time.monotonic() + PATIENCE
+        while not (downloads / begin).is_file() and time.monotonic() < end:
+            browser.message(time.monotonic() + 0.1)
+        checks.that(f"{begin} is a figure", (downloads / begin).is_file() and (downloads / begin).read_text().startswith("<svg"))
+    checks.that("the lines of Python are there", "rt.Problem.from_study(" in written("python"))
+    page.js("document.querySelector('dialog').close()")
+
+    page.click("#tune")
+    page.until("document.getElementById('log').textContent.split('\\n').length > 6")
+    page.click("#stop")
+    ended = page.until("document.getElementById('tuned').textContent")
+    page.known()
+    log = page.text("#log").strip().split("\n")
+    checks.that("a tuning stops when it is told to", ended.startswith("Stopped; the best design so far is kept: "), ended)
+    best = [float(re.findall(r"\d\.\d{6}E[+-]\d{3}", line)[-1]) for line in log[1:]]
+    kept = float(re.search(r": ([\d.]+) J", ended).group(1))
+    checks.that("and keeps the best of its log", abs(kept - min(best)) < 1e-3, f"{kept} {best}")
+    shown = float(hero().split()[0])
+    checks.that("and the page stands there", abs(shown - kept) < 0.06, f"{shown} {kept}")
+
+    other = Page(browser, explorer.address)
+    other.drag("#slider-k2", [0.9, 0.7], other.js(share))
+    other.known()
+    other.close()
+    page.type("#number-k2", "333")
+    page.known()
+    checks.that("two pages at once, one of which vanishes", page.value("k2") == 333 and "E1max" in page.text("#text"))
+    checks.that("no message on the console", not page.messages(), page.messages())
+    named = page.ask("Accessibility.getFullAXTree")["nodes"]
+    roles = {"button", "slider", "textbox", "radio", "combobox", "img", "image"}
+    nameless = [n["role"]["value"] for n in named if not n.get("ignored") and n["role"]["value"] in roles and not n.get("name", {}).get("value")]
+    count = sum(n.get("role", {}).get("value") == "slider" for n in named)
+    checks.that(f"every control has a name, {count} sliders", not nameless and count >= 10, nameless)
+    page.close()
+
+    for width in WIDTHS:
+        for scheme in ["light", "dark"]:
+            look = Page(browser, explorer.address, width, scheme)
+            look.click("#pin-A")
+            look.until("!!document.querySelector('#figures th.a')")
+            seen = look.js(OVERFLOW)
+            faults = look.messages() + seen["beyond"] + ([f"{seen['over']} px too wide"] if seen["over"] > 0 else [])
+            checks.that(f"{width} px, {scheme}: no message, nothing beyond the window", not faults, faults)
+            if shots:
+                look.shot(shots / f"explore-{width}-{scheme}.png")
+            look.close()
+    browser.close()
+    explorer.close()
+    checks.that("Ctrl-C ends it", explorer.process.returncode in (-signal.SIGINT, 130), explorer.process.returncode)
+    print(f"{checks.count} checks, {checks.bad} faults")
+    return 1 if checks.bad else 0
+
+
+# A slider that is turned again and again; the time from the event to the end of the frame that shows its time series.
+DRAG = """(async (seconds, pause) => {
+    const slider = document.getElementById("slider-c2");
+    const times = [];
+    let painted = null;
+    document.addEventListener("painted", () => painted?.());
+    const end = performance.now() + 1000 * seconds;
+    for (let i = 0; performance.now() < end; i++) {
+        await new Promise((r) => setTimeout(r, pause));
+        const begun = performance.now();
+        const seen = new Promise((r) => (painted = r));
+        slider.value = 300 + 400 * (0.5 + 0.5 * Math.sin(i / 40));
+        slider.dispatchEvent(new Event("input", { bubbles: true }));
+        await seen;
+        painted = null;
+        // After the next frame: the message is handled once what was drawn is on its way to the screen.
+        await new Promise(requestAnimationFrame);
+        await new Promise((r) => { const c = new MessageChannel(); c.port1.onmessage = r; c.port2.postMessage(0); });
+        times.push(performance.now() - begun);
+    }
+    return times;
+})"""
+
+
+def quantile(values, share):
+    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
+
+
+def bench(program, seconds):
+    """Prints what is measured; to be kept in results/explore/bench.txt."""
+    browser, explorer = opened(), Explorer(program)
+    page = Page(browser, explorer.address)
+    loads = page.js("performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation')).map((e) => [e.name, e.decodedBodySize])")
+    size = sum(count for _, count in loads)
+    print(
+        f"`just bench-explore`: results/ssvi at 1280 px, headless Chromium and the server on {os.cpu_count()} cores,"
+        f" priority {-os.getpriority(os.PRIO_PROCESS, 0)}; load of the machine before: {os.getloadavg()[0]:.1f}\n"
+    )
+    print(f"page with all that it loads: {size / 1000:.0f} kB in {len(loads)} files (target 300 kB): {met(size <= LARGEST_PAGE)}")
+    times = page.js(f"{DRAG}(20, 16)")
+    p50, p95 = statistics.median(times), quantile(times, 0.95)
+    print(f"slider event to painted time series, {len(times)} events: median {p50:.1f} ms, p95 {p95:.1f} ms (target 33 ms): {met(p95 <= 33)}", flush=True)
+    print(f"\n{seconds:.0f} s of dragging, memory of the server and of the page, MB:")
+    rows = []
+    steps = 10
+    for step in range(steps + 1):
+        if step:
+            end = time.monotonic() + seconds / steps
+            while (left := end - time.monotonic()) > 0:
+                page.js(f"{DRAG}({min(left, 20)}, 4).then((times) => times.length)")
+        page.ask("HeapProfiler.collectGarbage")
+        heap = page.ask("Runtime.getHeapUsage")["usedSize"] / 1e6
+        rows.append((step * seconds / steps, explorer.memory(), heap))
+        print(f"  {rows[-1][0]:5.0f} s   server {rows[-1][1]:6.1f}   page {rows[-1][2]:6.1f}", flush=True)
+    grown = [rows[-1][i] - rows[1][i] for i in (1, 2)]
+    print(f"  from the first to the last: server {grown[0]:+.1f}, page {grown[1]:+.1f} (target flat: within 5 MB): {met(max(grown) <= 5)}")
+    browser.close()
+    explorer.close()
+    return 0
+
+
+def met(holds):
+    return "met" if holds else "MISSED"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("retune", metavar="RETUNE", help="the program")
+    parser.add_argument("--shots", type=Path, metavar="DIR", help="where pictures of the page go")
+    parser.add_argument("--bench", type=float, nargs="?", const=600, metavar="SECONDS", help="measure, with so many seconds of dragging")
+    args = parser.parse_args()
+    program = str(Path(args.retune).resolve())
+    if args.shots:
+        args.shots.mkdir(parents=True, exist_ok=True)
+    return bench(program, args.bench) if args.bench else try_it(program, args.shots)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
