@@ -95,7 +95,8 @@ impl From<Unusable> for Fault {
             | Unusable::Stiffness(source)
             | Unusable::Member(source)
             | Unusable::Frequency(source) => Self::study(error.to_string(), Given::Number(source.value)),
-            Unusable::Touches { .. } | Unusable::Stopped => {
+            Unusable::Motions(retune_dynamics::Error::Run(error)) => Self::Solver(error),
+            Unusable::Touches { .. } | Unusable::Stopped | Unusable::Motions(_) | Unusable::NoDerivatives => {
                 Self::Study { message: error.to_string(), field: None, given: Given::Nothing }
             }
         }

@@ -85,13 +85,11 @@ pub fn run(command: Command) -> Result<(), Error> {
 }
 
 fn design(arguments: &cli::Design) -> Result<(), Error> {
-    let cli::Design { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error, running } = arguments;
+    let &cli::Design { m1, k1, c1, force, ref band, mass, stroke, k2_max, k1_error, ref running } = arguments;
     let out = running.out.clone().unwrap_or_else(|| "results/design".into());
     let (mut request, screen) = running.request(&out);
     request.out = Some(out);
     let band = [band.first(), band.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-    let (stroke, k2_max, k1_error) = (*stroke, *k2_max, *k1_error);
-    let (m1, k1, c1, force, mass) = (*m1, *k1, *c1, *force, *mass);
     let wishes = Wishes { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error };
     retune_workbench::design::design(&wishes, &request, &screen).map(drop)
 }
