@@ -17,9 +17,11 @@ const STEPS: [f64; 10] = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0];
 const BELOW: f64 = 0.995;
 const AGAIN: usize = 4;
 /// Motions of a branch from which the force is lowered first.
-const FIRST: usize = 12;
+const FIRST: usize = 40;
 /// A branch counts whose largest energy is by this factor above that of all motions that runs from rest lead to.
 const MUCH: f64 = 1.05;
+/// Motions as near as this share of the branch's range are at one frequency.
+const NEAR: f64 = 0.02;
 /// Golden sections about the least of them.
 const SECTIONS: usize = 30;
 
@@ -68,24 +70,27 @@ fn others(found: &Found) -> impl Iterator<Item = &Branch> {
 fn birth(branch: &Branch) -> Option<(f64, Orbit)> {
     let fold = |orbit: &Orbit| folds(branch, orbit, Parameter::P).and_then(|[below, _]| below);
     let every = branch.points.len().div_ceil(FIRST);
-    let some: Vec<(f64, Orbit)> = branch
-        .points
-        .iter()
-        .step_by(every)
-        .filter_map(|point| Some((fold(point)?.value, point.clone())))
-        .collect();
+    let some = branch.points.iter().step_by(every).filter_map(|point| Some((fold(point)?.value, point)));
+    let some: Vec<(f64, &Orbit)> = some.collect();
     let (_, least) = some.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let omegas = || branch.points.iter().map(|point| point.value);
-    let width = omegas().fold(f64::MIN, f64::max) - omegas().fold(f64::MAX, f64::min);
+    let [first, last] = [omegas().fold(f64::MAX, f64::min), omegas().fold(f64::MIN, f64::max)];
+    // The least lies between the motions beside it; those of the other side of the branch at nearly its own ω do not count.
+    let near = NEAR * (last - first);
+    let beside = |way: f64| {
+        let gaps = some.iter().map(|(_, point)| way * (point.value - least.value)).filter(|gap| *gap > near);
+        least.value + way * gaps.fold(f64::INFINITY, f64::min)
+    };
+    let [mut low, mut high] = [beside(-1.0).max(first), beside(1.0).min(last)];
     let at = |omega: f64| {
+        let distance = |point: &Orbit| (point.value - omega).abs();
+        let (_, guess) = some.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))?;
         let shooting = &branch.shooting;
-        let near = shooting.correct_at_value(&shooting.unknowns(&least.states, omega))?;
-        fold(&Orbit::of(shooting, &near).ok()?)
+        let motion = shooting.correct_at_value(&shooting.unknowns(&guess.states, omega))?;
+        fold(&Orbit::of(shooting, &motion).ok()?)
     };
     let value = |omega: f64| at(omega).map_or(f64::INFINITY, |birth| birth.value);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let reach = width / FIRST as f64;
-    let (mut low, mut high) = (least.value - reach, least.value + reach);
     for _ in 0..SECTIONS {
         let (a, b) = (high - golden * (high - low), low + golden * (high - low));
         if value(a) < value(b) { high = b } else { low = a }

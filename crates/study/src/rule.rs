@@ -157,7 +157,7 @@ pub enum Rule {
     },
     /// A sum together with fields that it replaces.
     #[error(
-        "{path}.sum: stands in the place of quantity, omega, k1, response, settle and ensemble: move them into its parts"
+        "{path}.sum: stands in the place of quantity, omega, k1, response, starts, settle and ensemble: move them into its parts"
     )]
     SumAndMore {
         /// The path of the objective.

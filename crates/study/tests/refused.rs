@@ -212,7 +212,7 @@ fn contract_invalid_bands_are_refused() {
     );
     refused(
         json!({ "omga": { "from": 5, "to": 8 } }),
-        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, response, settle, ensemble, sum",
+        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, response, starts, settle, ensemble, sum",
     );
     refused(
         json!({ "response": "stead" }),
@@ -310,7 +310,7 @@ fn contract_invalid_objectives_are_refused() {
         ),
         (
             json!({ "response": "steady", "sum": [{ "weight": 1, "objective": {} }] }),
-            "optimize.objective.sum: stands in the place of quantity, omega, k1, response, settle and ensemble",
+            "optimize.objective.sum: stands in the place of quantity, omega, k1, response, starts, settle and ensemble",
         ),
         (
             json!({ "quantity": "contact_force", "response": "steady" }),
