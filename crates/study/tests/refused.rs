@@ -216,7 +216,7 @@ fn contract_invalid_bands_are_refused() {
     );
     refused(
         json!({ "response": "stead" }),
-        "optimize.objective.response: \"stead\" is not allowed here; did you mean `steady`? allowed: window, steady, settled",
+        "optimize.objective.response: \"stead\" is not allowed here; did you mean `steady`? allowed: window, steady, settled, motions",
     );
 }
 
