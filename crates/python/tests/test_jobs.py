@@ -279,5 +279,5 @@ def test_contract_every_command_is_reachable(program: Path) -> None:
     assert functions <= set(dir(rt))
     # By another name: `problem.simulate`, `problem.batch`, `reproduce("figure3")`, `Problem.from_study`.
     elsewhere = {"simulate", "evaluate", "figure", "table", "check"}
-    # Of no use there: what editors and shells complete with.
-    assert set(commands) == functions | elsewhere | {"schema", "completions", "help"}
+    # Of no use there: a page for a person to look at, and what editors and shells complete with.
+    assert set(commands) == functions | elsewhere | {"explore", "schema", "completions", "help"}
