@@ -12,8 +12,9 @@ use crate::observe::quantity::{BareEnergy, PrimaryEnergy};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::structure::{Structure, StructureMotion};
 use crate::response::Extreme;
-use crate::run::{follow_bare, follow_coupled};
+use crate::run::follow_bare;
 use crate::settings::{Settings, Window};
+use crate::settle::follow_until_it_repeats;
 use crate::simulate::e1_max;
 use retune_model::{Bare, Coupled, Measure, Scene};
 
@@ -105,7 +106,8 @@ fn in_coupled(
 ) -> Result<Extremes, SolverError> {
     let mut before = ask.walls.map(|from| DisplacementRange::new(system, from, f64::INFINITY));
     let mut seen = maxima(system, ask);
-    follow_coupled(system, window, settings, &mut before, &mut seen)?;
+    let late = ask.walls.unwrap_or(0.0);
+    follow_until_it_repeats(system, window, late, settings, &mut before, &mut seen)?;
     let ([stroke, force], seen) = (stroke_and_force(before.as_ref()), read(&seen));
     Ok(Extremes { stroke: stroke.max(seen.stroke), force: force.max(seen.force), ..seen })
 }

@@ -12,6 +12,7 @@ use crate::observe::structure::{Structure, StructureMotion};
 use crate::response::{Extreme, Response, SceneKind, StructureMaxima};
 use crate::run::{follow_bare, follow_coupled};
 use crate::settings::{Method, Settings, Window};
+use crate::settle::follow_until_it_repeats;
 use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -59,7 +60,7 @@ fn largest_energy(
                     return free.e1_max(window, e1, system.steady(system.bare().frequency()).e1_max);
                 }
             }
-            follow_coupled(&system, window, settings, &mut Unobserved, &mut e1)?;
+            follow_until_it_repeats(&system, window, window.from, settings, &mut Unobserved, &mut e1)?;
             Ok(e1.record())
         }
     }

@@ -1,13 +1,15 @@
 //! Settled motions: a run is followed until its state returns after some periods of the force, with only a small drift left.
 //!
 //! Read [`settled`], then `blocks` (the run in blocks of some periods), `section` (its states once per period) and `recurrence`
-//! (whether they return).
+//! (whether they return); [`follow_until_it_repeats`] ends the runs of other questions.
 
 mod blocks;
 mod recurrence;
+mod repeats;
 mod section;
 
 pub use recurrence::Settle;
+pub(crate) use repeats::follow_until_it_repeats;
 
 use crate::energy_bound;
 use crate::error::SolverError;

@@ -35,6 +35,9 @@ impl Default for Settle {
     }
 }
 
+/// Returns over which a change is summed at most.
+const SLOWEST: f64 = 1e3;
+
 /// The test whether states return.
 pub struct Recurrence<'a> {
     system: &'a Coupled,
@@ -44,10 +47,14 @@ pub struct Recurrence<'a> {
 }
 
 impl<'a> Recurrence<'a> {
+    /// A test by `settle` of which changes are too small to be those of the solver's error.
+    pub fn to_the_end(system: &'a Coupled, settle: Settle) -> Self {
+        Self { system, settle, most_returns: SLOWEST }
+    }
+
     /// A test by `settle`. Changes below a thousandth of its tolerance, or below the solver's own error at these settings, are
     /// taken as zero.
     pub fn new(system: &'a Coupled, settle: Settle, settings: &Settings) -> Self {
-        const SLOWEST: f64 = 1e3;
         const NOISE: f64 = 100.0;
         let resolved = settle.tolerance / (NOISE * settings.rtol);
         Self { system, settle, most_returns: resolved.clamp(1.0, SLOWEST) }

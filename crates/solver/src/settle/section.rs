@@ -20,6 +20,17 @@ impl PoincareSection {
         Self { period, count: 0.0, most, states: VecDeque::new() }
     }
 
+    /// Periods that have passed.
+    pub fn count(&self) -> f64 {
+        self.count
+    }
+
+    /// Lets some periods pass and begins anew after them.
+    pub fn skip(&mut self, periods: f64) {
+        self.count += periods;
+        self.states.clear();
+    }
+
     /// The latest states.
     pub fn states(&mut self) -> &[[f64; 4]] {
         self.states.make_contiguous()
