@@ -172,6 +172,12 @@ hunt SCENES="150000":
     RETUNE_HUNT={{SCENES}} cargo test --package retune-solver --test hunt -- --nocapture --test-threads 1 | grep -E '^\|' > results/robustness/hunt.rows
     cat tests/hunt.md results/robustness/hunt.rows > results/robustness/hunt.md && rm results/robustness/hunt.rows && cat results/robustness/hunt.md
 
+# Compare runs that end when their motion repeats with the same runs to the end, SCENES scenes: results/robustness/repeats.md
+hunt-repeats SCENES="42000":
+    mkdir -p results/robustness
+    RETUNE_REPEATS={{SCENES}} cargo test --package retune-solver --test repeats -- --nocapture | grep -E '^\|' > results/robustness/repeats.rows
+    cat tests/repeats.md results/robustness/repeats.rows > results/robustness/repeats.md && rm results/robustness/repeats.rows && cat results/robustness/repeats.md
+
 # Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
 test-settled SCENES="4000":
     RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture

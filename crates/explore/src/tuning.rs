@@ -7,7 +7,7 @@ use crate::start::Start;
 use retune_model::Variable;
 use retune_optim::{Objective, PeakEnergy, Response, Scale, Stiffnesses, Stop, energy, minimize};
 use retune_study::{Search, Study, rounded};
-use retune_workbench::tune::{log, objective::objective};
+use retune_workbench::tune::{log, objective::searched};
 use std::ops::ControlFlow;
 
 /// Cells of the map along each of its sides.
@@ -32,7 +32,7 @@ pub fn tune(
             format!("{runs} runs behind each value are too many for this page: `retune optimize` makes them");
         return Err(Refused::of("optimize.objective", problem));
     }
-    let objective = objective(&study, &search, &search.variables);
+    let objective = searched(&study, &search, &search.variables);
     let first: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
     let map = Map::of(&search, &first);
     let quantity = study.quantity();

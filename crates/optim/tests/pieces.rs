@@ -64,7 +64,7 @@ fn regress_a_descent_ends_in_the_kink() {
     let side = |from, to| Side { from, to, scale: Scale::Linear };
     let space = Space(vec![side(10.0, 400.0), side(1.0, 1000.0), side(0.0, 1.0), side(0.0, 2.0)]);
     let start = [360.0, 165.0, 0.0, 1.1];
-    let (x, found) = minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, &start);
+    let (x, found) = minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, &start, 1e-8);
     assert!(found.worst < 434.97, "{found:?} at {x:?}");
     assert_eq!(x[0], 400.0);
 }

@@ -60,6 +60,11 @@ pub struct Solver {
     /// Relative tolerance of the local error of a step.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
     pub rtol: f64,
+    /// The same for the runs of a search (`surf`, `global`, `fminsearch`, and the descents of fronts), whose tables hold values of this
+    /// tolerance; the ends of refinements are compared, and all else is computed, by rtol. Default: rtol.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub search_rtol: Option<f64>,
     /// Absolute tolerance of the local error of a step, m and m/s (adaptive methods only, except the hybrid).
     #[schemars(range(min = 0.0))]
     pub atol: f64,
@@ -156,15 +161,20 @@ impl Span {
 impl Solver {
     /// The settings as solvers take them.
     pub fn settings(self) -> Settings {
-        let Self { method, contacts, rtol, atol, max_steps } = self;
+        let Self { method, contacts, rtol, atol, max_steps, .. } = self;
         Settings { method, contacts, rtol, atol, max_steps, ..Settings::default() }
+    }
+
+    /// The settings of the runs of a search.
+    pub fn searching(self) -> Settings {
+        Settings { rtol: self.search_rtol.unwrap_or(self.rtol), ..self.settings() }
     }
 }
 
 impl Default for Solver {
     fn default() -> Self {
         let Settings { method, contacts, rtol, atol, max_steps, .. } = Settings::default();
-        Self { method, contacts, rtol, atol, max_steps }
+        Self { method, contacts, rtol, search_rtol: None, atol, max_steps }
     }
 }
 

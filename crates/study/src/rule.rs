@@ -21,8 +21,10 @@ pub enum Rule {
         end: f64,
     },
     /// The relative tolerance is out of range.
-    #[error("solver.rtol: {value} is not allowed here: give a number above 0 and at most 0.1")]
+    #[error("solver.{field}: {value} is not allowed here: give a number above 0 and at most 0.1")]
     Rtol {
+        /// The field.
+        field: &'static str,
         /// The tolerance as given.
         value: f64,
     },

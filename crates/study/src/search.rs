@@ -43,8 +43,10 @@ impl Study {
         if t0 >= end {
             return Err(Rule::EmptyWindow { t0, end });
         }
-        if !(self.solver.rtol > 0.0 && self.solver.rtol <= 0.1) {
-            return Err(Rule::Rtol { value: self.solver.rtol });
+        for (field, rtol) in [("rtol", Some(self.solver.rtol)), ("search_rtol", self.solver.search_rtol)] {
+            if let Some(value) = rtol.filter(|rtol| !(*rtol > 0.0 && *rtol <= 0.1)) {
+                return Err(Rule::Rtol { field, value });
+            }
         }
         if !(self.solver.atol >= 0.0 && self.solver.atol.is_finite()) {
             return Err(Rule::Atol { value: self.solver.atol });

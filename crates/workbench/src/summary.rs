@@ -148,7 +148,8 @@ impl std::fmt::Display for MadeBy {
         if objective.is_steady() {
             return write!(f, "steady; Retune {retune}");
         }
-        write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {rtol:e}")
+        write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {rtol:e}")?;
+        solver.search_rtol.map_or(Ok(()), |search| write!(f, " (search {search:e})"))
     }
 }
 

@@ -167,7 +167,7 @@ fn search_and_write(
     }
 
     let design = refined.objective.scene(&refined.best().minimum.x)?;
-    let found = refined.objective.evaluate(&design, f64::INFINITY)?;
+    let found = refined.objective.goal().evaluate(&design, &study.solver.settings(), f64::INFINITY)?;
     let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);

@@ -21,12 +21,8 @@ pub struct Piece {
 
 /// Half of the side of the trust region at first, in coordinates of [`Space`].
 const FIRST: f64 = 0.03;
-/// Below it a search ends.
-const LEAST: f64 = 1e-6;
 /// Most steps that are tried.
 const STEPS: usize = 60;
-/// A search ends where the linear program promises less than this share.
-const GAIN: f64 = 1e-8;
 /// A step is taken if it brings this share of what was promised, and the region grows where it brings this share.
 const TAKEN: f64 = 0.1;
 const GOOD: f64 = 0.7;
@@ -59,12 +55,14 @@ impl Height {
 
 /// Goes down from `start` in a box, and ends at the best design on the way: of those that break limits by least, the lowest. `look(parameters, cutoff)` may stop as
 /// soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to find the functions of that design. A
-/// step is taken only where it pays, so that wrong derivatives cost time alone.
+/// step is taken only where it pays, so that wrong derivatives cost time alone. It ends where a step promises less than the share `gain` of the
+/// worst, or where the trust region has become so small that none can bring it.
 pub fn minimax<T>(
     look: impl Fn(&[f64], f64) -> (Height, T),
     pieces: impl Fn(&[f64], &T) -> Vec<Piece>,
     space: &Space,
     start: &[f64],
+    gain: f64,
 ) -> (Vec<f64>, Height) {
     let (mut height, seen) = look(start, f64::INFINITY);
     let mut best = (start.to_vec(), height);
@@ -74,7 +72,8 @@ pub fn minimax<T>(
     let (mut x, mut here) = (start.to_vec(), pieces(start, &seen));
     let (mut radius, mut tried) = (FIRST, 0);
     while let Some((to, promised)) = step(&here, height.worst, space, &x, radius).filter(|_| tried < STEPS) {
-        if promised < GAIN || radius < LEAST {
+        // Within the region the linear functions are wrong by its square.
+        if promised < gain || radius < 0.01 * gain.sqrt() {
             break;
         }
         tried += 1;
@@ -152,7 +151,7 @@ mod tests {
         let pieces = |x: &[f64], (): &()| {
             all(x).map(|(value, slope)| Piece { is_limit: false, value, slope }).to_vec()
         };
-        let (x, found) = minimax(look, pieces, &square(-3.0, 3.0), &[1.0, -0.1]);
+        let (x, found) = minimax(look, pieces, &square(-3.0, 3.0), &[1.0, -0.1], 1e-8);
         assert!((found.worst - 1.952_224_49).abs() < 1e-6, "{found:?}");
         assert!((x[0] - 1.139_038).abs() < 1e-3 && (x[1] - 0.899_560).abs() < 1e-3, "{x:?}");
     }
@@ -168,7 +167,7 @@ mod tests {
                 Piece { is_limit: true, value: broken(x), slope: vec![-x[1], -x[0]] },
             ]
         };
-        let (_, found) = minimax(look, pieces, &square(0.1, 4.0), &[0.5, 0.7]);
+        let (_, found) = minimax(look, pieces, &square(0.1, 4.0), &[0.5, 0.7], 1e-8);
         assert!(found.broken == 0.0 && (found.worst - 2.0).abs() < 1e-4, "{found:?}");
     }
 }

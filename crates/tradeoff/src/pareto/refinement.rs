@@ -5,7 +5,7 @@ use retune_optim::{Side, Space, minimax};
 use retune_store::Journal;
 use retune_study::{Optimize, PerVariable, Study, Sweep};
 use retune_workbench::Error;
-use retune_workbench::tune::objective::objective;
+use retune_workbench::tune::objective::searched;
 use std::cell::OnceCell;
 
 /// What is done under one bound.
@@ -19,6 +19,8 @@ pub(super) struct Under {
     pub bound: f64,
 }
 
+/// Share of E1max below which a step of a descent is not worth its runs.
+const EXACT: f64 = 1e-5;
 /// Where a side of the box ends that has no upper bound: so many times the start, or at one unit.
 const WIDE: f64 = 4.0;
 
@@ -46,10 +48,12 @@ pub(super) fn descend(
         Side::natural(bounds.lower.unwrap_or(0.0), bounds.upper.unwrap_or((WIDE * at).max(1.0)))
     };
     let space = Space(search.options.bounds.iter().zip(at).map(side).collect());
-    let of = objective(&study, &search, &search.variables);
+    let of = searched(&study, &search, &search.variables);
     let found = OnceCell::new();
     let go = || {
-        found.get_or_init(|| minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, at))
+        found.get_or_init(|| {
+            minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, at, EXACT)
+        })
     };
     let Under { damper, sweep, bound } = under;
     let end = (0..at.len()).map(|i| {

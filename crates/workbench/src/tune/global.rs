@@ -1,7 +1,7 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
 use super::log::worth;
-use super::objective::{kept, objective};
+use super::objective::{kept, searched};
 use super::refine::{Refined, Run, columns};
 use crate::Error;
 use crate::Observer;
@@ -41,7 +41,7 @@ pub(super) fn global(
     watch: &dyn Observer,
 ) -> Result<Option<Explored>, Error> {
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
-    let objective = objective(study, search, &search.variables);
+    let objective = searched(study, search, &search.variables);
     watch.log(&format!(
         "global: {} over the box of {}, then {} of at most {} each",
         counted(global.samples.into(), "design"),

@@ -24,3 +24,9 @@ pub fn kept<'a>(
 pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
     PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), study.solver.settings())
 }
+
+/// The same at the tolerance of searches.
+pub fn searched(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
+    let settings = study.solver.searching();
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
+}

@@ -1,7 +1,7 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
 use super::log;
-use super::objective::{kept, objective};
+use super::objective::{kept, searched};
 use crate::Error;
 use crate::Observer;
 use crate::summary::MadeBy;
@@ -47,7 +47,7 @@ pub(super) fn refine(
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Refined, Error> {
-    let objective = objective(study, search, &search.variables);
+    let objective = searched(study, search, &search.variables);
     let mut all = results.file("fminsearch-starts.csv")?;
     all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
     let mut runs: Vec<Run> = Vec::new();

@@ -1,7 +1,7 @@
 //! The coarse stage: the objective on a grid.
 
 use super::log::worth;
-use super::objective::objective;
+use super::objective::searched;
 use super::refine::columns;
 use crate::Error;
 use crate::Observer;
@@ -42,7 +42,7 @@ pub(super) fn surf(
     watch: &dyn Observer,
 ) -> Result<Option<Surf>, Error> {
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
-    let objective = objective(study, search, &variables);
+    let objective = searched(study, search, &variables);
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
     watch.log(&format!(
         "surf: {} = {} over {}",

@@ -8,11 +8,11 @@ use crate::artefact::{Artefact, Content};
 use crate::certify::certify;
 use crate::resolved;
 use crate::summary::Summary;
-use crate::tune::objective::objective;
+use crate::tune::objective::{objective, searched};
 use crate::tune::{self, OPTIMUM, band};
 use retune_model::{Design, NonNegative, Scene};
 use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
-use retune_study::{self as study, Study};
+use retune_study::{self as study, Search, Study};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ impl One {
     /// # Errors
     /// The file cannot be read, as of all checks.
     pub fn searched(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-        let (objective, sample) = (self.objective()?, Sample::read(&self.place.join(name), most)?);
+        let (objective, sample) = (self.objective(searched)?, Sample::read(&self.place.join(name), most)?);
         let checks: Vec<Check> = sample.rows().map(|row| value(&objective, &self.study, row)).collect();
         report.look(name, &sample.of(checks.len()), &checks)
     }
@@ -61,7 +61,7 @@ impl One {
     /// As [`Self::searched`].
     pub fn optimum(&self, name: &str, report: &mut Report<'_>) -> Result<(), Error> {
         let Some(tuned) = self.tuned()? else { return report.fail(name, "its design cannot be run") };
-        let objective = self.objective()?;
+        let objective = self.objective(objective)?;
         let optimum = json(&self.place, name)?;
         match objective.evaluate(&tuned, f64::INFINITY) {
             Err(error) => report.fail(name, &format!("its design cannot be run: {error}")),
@@ -106,9 +106,9 @@ impl One {
         files.any(|file| self.place.join(file.name).exists())
     }
 
-    fn objective(&self) -> Result<PeakEnergy, Error> {
+    fn objective(&self, of: fn(&Study, &Search, &[Variable]) -> PeakEnergy) -> Result<PeakEnergy, Error> {
         let refuse = |rule| Error::Rule { name: self.study.name().to_owned(), rule };
-        Ok(objective(&self.study, &self.study.search().map_err(refuse)?, &Variable::ALL))
+        Ok(of(&self.study, &self.study.search().map_err(refuse)?, &Variable::ALL))
     }
 }
 
