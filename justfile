@@ -254,6 +254,14 @@ bench-instructions *OPTIONS:
     # For a processor that valgrind knows: one with AVX2, without AVX-512.
     RUSTFLAGS="-C target-cpu=x86-64-v3" cargo bench --target-dir target/instructions --quiet --package retune-solver --bench instructions "$@"
 
+# Time values over a band and whole searches beside an earlier version, which it builds in target/bench-job (needs python3): results/speed/job.txt
+bench-job BASE="f3d2d61" *OPTIONS:
+    git worktree add --force target/bench-job {{BASE}} 2> /dev/null || git -C target/bench-job checkout --quiet {{BASE}}
+    cd target/bench-job && cargo build --release --quiet --package retune --target-dir target
+    cargo build --release --quiet --package retune
+    mkdir -p results/speed
+    python3 tests/job.py target/release/retune target/bench-job/target/release/retune {{OPTIONS}} | tee results/speed/job.txt
+
 # Measure time and memory of a surf of a million runs, and what a second core is worth
 bench-surf *OPTIONS:
     cargo bench --quiet --package retune-optim --bench surf "$@"

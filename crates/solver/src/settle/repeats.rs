@@ -5,7 +5,7 @@
 //! finds differs from what the whole run finds by no more than that tolerance allows the run itself (`just hunt-repeats` measures it).
 
 use super::recurrence::{Recurrence, Settle};
-use super::section::PoincareSection;
+use super::section::Periods;
 use crate::error::SolverError;
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
 use crate::linear::steps::Steps;
@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 /// The longest period of a motion that is seen to repeat, in periods of the force.
 const LONGEST: usize = 6;
 /// Blocks of periods in which states must return.
-const BLOCKS: u32 = 3;
+const BLOCKS: usize = 3;
 /// Share of a state by which it differs from an earlier one at most if the motion may soon repeat.
 const NEAR: f64 = 0.02;
 /// A motion that returns less closely than this may be irregular, whatever the tolerance of the run.
@@ -29,52 +29,50 @@ const LOOSEST: f64 = 1e-5;
 struct Repeats<'a> {
     system: &'a Coupled,
     tolerance: f64,
-    section: PoincareSection,
-    /// States that have been looked at.
-    seen: f64,
-    /// The state [`LONGEST`] periods ago, as long as the motion is far from repeating; every period is then not worth a look.
-    far: Option<[f64; 4]>,
+    passing: Periods,
+    /// The latest states at whole periods, and how many there are. (A run allocates nothing.)
+    states: [[f64; 4]; BLOCKS * LONGEST],
+    held: usize,
+    /// Whether the motion is far from repeating. Then only the state after every so many periods is worth a look.
+    far: bool,
     /// Periods after which it repeats.
     periods: Option<usize>,
 }
 
 impl<'a> Repeats<'a> {
     fn new(system: &'a Coupled, settings: &Settings) -> Self {
-        let section = PoincareSection::new(TAU / system.bare().frequency(), BLOCKS as usize * LONGEST);
-        let far = Some([f64::INFINITY; 4]);
-        Self { system, tolerance: settings.rtol.min(LOOSEST), section, seen: 0.0, far, periods: None }
+        let passing = Periods::of(TAU / system.bare().frequency());
+        let (tolerance, states) = (settings.rtol.min(LOOSEST), [[0.0; 4]; BLOCKS * LONGEST]);
+        Self { system, tolerance, passing, states, held: 0, far: true, periods: None }
     }
 
-    fn look(&mut self) {
-        if self.section.count() == self.seen || self.periods.is_some() {
-            return;
+    /// Keeps a state, and looks whether it is one of a motion that repeats.
+    fn look(&mut self, state: [f64; 4]) {
+        if self.held == self.states.len() {
+            self.states.rotate_left(1);
+            self.held -= 1;
         }
         let omega = self.system.bare().frequency();
-        let states = self.section.states();
-        let Some((&latest, earlier)) = states.split_last() else { return };
-        if let Some(before) = &mut self.far {
-            if is_near(&latest, before, omega, NEAR) {
-                self.far = None;
-            } else {
-                *before = latest;
-                self.section.skip((LONGEST - 1) as f64);
-            }
-        } else {
-            let nearest = |share: f64| {
-                earlier.iter().rev().take(LONGEST).position(|earlier| is_near(&latest, earlier, omega, share))
-            };
-            if let Some(back) = nearest(4.0 * self.tolerance) {
-                let periods = (back + 1).max(2);
-                let settle = Settle { periods: periods as u32, blocks: BLOCKS, tolerance: self.tolerance };
-                let latest = &states[states.len().saturating_sub(BLOCKS as usize * periods)..];
-                let test = Recurrence::to_the_end(self.system, settle);
-                self.periods = test.has_settled(latest).then_some(periods);
-            } else if earlier.len() >= LONGEST && nearest(NEAR).is_none() {
-                self.far = Some(latest);
-                self.section.skip((LONGEST - 1) as f64);
-            }
+        let latest = self.states[..self.held].iter().rev().take(if self.far { 1 } else { LONGEST });
+        let nearest = |share| latest.clone().position(|earlier| is_near(&state, earlier, omega, share));
+        let (near, back) = (nearest(NEAR).is_some(), nearest(4.0 * self.tolerance));
+        self.states[self.held] = state;
+        self.held += 1;
+        // A motion of several periods is not near to itself after one.
+        if self.far == near && (near || self.held > LONGEST) {
+            self.far = !near;
+            self.states[0] = state;
+            self.held = 1;
+        } else if let Some(back) = back.filter(|_| !self.far) {
+            let periods = (back + 1).max(2);
+            let settle = Settle { periods: periods as u32, blocks: BLOCKS as u32, tolerance: self.tolerance };
+            let latest = &self.states[self.held.saturating_sub(BLOCKS * periods)..self.held];
+            let test = Recurrence::to_the_end(self.system, settle);
+            self.periods = test.has_settled(latest).then_some(periods);
         }
-        self.seen = self.section.count();
+        if self.far {
+            self.passing.skip(LONGEST - 1);
+        }
     }
 }
 
@@ -86,14 +84,18 @@ fn is_near(a: &[f64; 4], b: &[f64; 4], omega: f64, share: f64) -> bool {
 
 impl Observer<4> for Repeats<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
-        self.section.segment(segment);
-        self.look();
+        let mut latest = None;
+        self.passing.states(segment, |state| latest = Some(state));
+        if let Some(state) = latest.filter(|_| self.periods.is_none()) {
+            self.look(state);
+        }
     }
     /// A moment within a contact of some milliseconds is put off to its end, period after period: it would cost more to look inside.
     fn path(&mut self, _path: &impl Path<4>) {}
     fn steps(&mut self, steps: &Steps<'_, 4>) {
-        self.section.steps(steps);
-        self.look();
+        if self.passing.pass_by(steps.time(steps.count())) {
+            (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
+        }
     }
     fn satisfied(&self) -> bool {
         self.periods.is_some()

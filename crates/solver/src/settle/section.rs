@@ -5,11 +5,51 @@ use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Path};
 use std::collections::VecDeque;
 
-/// The latest states at whole periods of the force.
-pub struct PoincareSection {
+/// Whole periods of the force, as they pass.
+pub struct Periods {
     period: f64,
     /// Periods that have passed.
     count: f64,
+}
+
+impl Periods {
+    /// Of this length, s.
+    pub fn of(period: f64) -> Self {
+        Self { period, count: 0.0 }
+    }
+
+    /// The next time at which one has passed, s.
+    fn next(&self) -> f64 {
+        (self.count + 1.0) * self.period
+    }
+
+    /// Whether one has passed at a time, s.
+    pub fn pass_by(&self, t: f64) -> bool {
+        self.next() <= t
+    }
+
+    /// Lets some pass unseen.
+    pub fn skip(&mut self, periods: usize) {
+        self.count += periods as f64;
+    }
+
+    /// The states at those that pass in a segment.
+    pub fn states(&mut self, segment: &impl Segment<4>, mut keep: impl FnMut([f64; 4])) {
+        let [begin, end] = segment.ends();
+        while self.next() <= end.t {
+            keep(match self.next() {
+                t if t == end.t => end.y,
+                t if t <= begin.t => begin.y, // between two pieces, by rounding
+                t => segment.at_time(t).y,
+            });
+            self.count += 1.0;
+        }
+    }
+}
+
+/// The latest states at whole periods of the force.
+pub struct PoincareSection {
+    periods: Periods,
     most: usize,
     states: VecDeque<[f64; 4]>,
 }
@@ -17,57 +57,35 @@ pub struct PoincareSection {
 impl PoincareSection {
     /// For a force of this period, s; the latest `most` states are kept.
     pub fn new(period: f64, most: usize) -> Self {
-        Self { period, count: 0.0, most, states: VecDeque::new() }
-    }
-
-    /// Periods that have passed.
-    pub fn count(&self) -> f64 {
-        self.count
-    }
-
-    /// Lets some periods pass and begins anew after them.
-    pub fn skip(&mut self, periods: f64) {
-        self.count += periods;
-        self.states.clear();
+        Self { periods: Periods::of(period), most, states: VecDeque::new() }
     }
 
     /// The latest states.
     pub fn states(&mut self) -> &[[f64; 4]] {
         self.states.make_contiguous()
     }
-
-    /// The next time at which a state is kept, s.
-    fn next(&self) -> f64 {
-        (self.count + 1.0) * self.period
-    }
 }
 
 impl Observer<4> for PoincareSection {
     fn segment(&mut self, segment: &impl Segment<4>) {
-        let [begin, end] = segment.ends();
-        while self.next() <= end.t {
-            let state = match self.next() {
-                t if t == end.t => end.y,
-                t if t <= begin.t => begin.y, // between two pieces, by rounding
-                t => segment.at_time(t).y,
-            };
-            self.count += 1.0;
-            if self.states.len() == self.most {
-                self.states.pop_front();
+        let Self { periods, most, states } = self;
+        periods.states(segment, |state| {
+            if states.len() == *most {
+                states.pop_front();
             }
-            self.states.push_back(state);
-        }
+            states.push_back(state);
+        });
     }
     fn path(&mut self, path: &impl Path<4>) {
         // A path does not say how long it is; its last piece does.
         let mut end = End(f64::NEG_INFINITY);
         path.show(path.pieces() - 1, &mut end);
-        if self.next() <= end.0 {
+        if self.periods.pass_by(end.0) {
             (0..path.pieces()).for_each(|piece| path.show(piece, self));
         }
     }
     fn steps(&mut self, steps: &Steps<'_, 4>) {
-        if self.next() <= steps.time(steps.count()) {
+        if self.periods.pass_by(steps.time(steps.count())) {
             (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
         }
     }
