@@ -9,7 +9,7 @@
 //! The value of a design that breaks a limit is its violation ([`ranked`](super::limits::ranked)), and so are its derivatives.
 
 use super::evaluation::{Evaluation, Place};
-use super::limits::{INFEASIBLE, Limit, Limits};
+use super::limits::{INFEASIBLE, Limit, Limits, widens};
 use super::peak_energy::PeakEnergy;
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
@@ -161,9 +161,4 @@ fn add(sum: &mut [f64], weight: f64, more: &[f64]) {
     for (sum, more) in sum.iter_mut().zip(more) {
         *sum += weight * more;
     }
-}
-
-/// The derivative of the cavity D + C.
-fn widens(by: Variable) -> f64 {
-    if matches!(by, Variable::D | Variable::C) { 1.0 } else { 0.0 }
 }

@@ -5,7 +5,7 @@
 //! breaks them by less in total is better. They are written as one number, [`ranked`], so that every search follows them
 //! without knowing of them.
 
-use retune_model::{NonNegative, Positive};
+use retune_model::{NonNegative, Positive, Variable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -151,4 +151,9 @@ pub fn ranked(energy: f64, violation: f64) -> f64 {
 /// The energy of a value made by [`ranked`]; NaN of one that is infeasible or has none.
 pub fn energy(value: f64) -> f64 {
     if value < INFEASIBLE { value } else { f64::NAN }
+}
+
+/// The derivative of the cavity D + C by a parameter.
+pub(super) fn widens(by: Variable) -> f64 {
+    if matches!(by, Variable::D | Variable::C) { 1.0 } else { 0.0 }
 }

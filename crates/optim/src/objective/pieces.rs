@@ -5,7 +5,7 @@
 //! those of the run at its frequency (the envelope theorem).
 
 use super::evaluation::{Place, Run};
-use super::limits::Limit;
+use super::limits::{Limit, widens};
 use super::spec::Goal;
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
@@ -57,12 +57,11 @@ impl Goal {
         };
         let mut pieces: Vec<Piece> = peaks.par_iter().flat_map_iter(piece).collect();
         if let (Some(most), Some(damper)) = (self.limits.get(Limit::Cavity), &scene.damper) {
-            let slope = |variable| f64::from(matches!(variable, Variable::D | Variable::C)) / most;
             let value = (damper.rest_distance.get() + damper.clearance.get()) / most - 1.0;
             pieces.push(Piece {
                 is_limit: true,
                 value,
-                slope: variables.iter().map(|&v| slope(v)).collect(),
+                slope: variables.iter().map(|&by| widens(by) / most).collect(),
             });
         }
         pieces
