@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{Numbers, SSVI, TMD};
 use nalgebra::{Complex, Vector4};
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::branches::Plan;
+use retune_dynamics::periodic::branches::{Plan, Watch};
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::shooting::Solution;
 use retune_dynamics::periodic::{End, EventKind, Orbit, Shooting, branches, largest};
@@ -47,7 +47,7 @@ fn plan(samples: usize, starts: usize) -> Plan {
 /// A damper that touches nothing: the branch is the steady response, its multipliers those of the linear flow.
 #[test]
 fn exact_the_branch_of_a_tmd() {
-    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), || ()).expect("branches");
+    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), Watch::default()).expect("branches");
     let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
     assert!(branch.events.is_empty() && branch.ends == [End::Range; 2]);
     assert_eq!([branch.points[0].value, branch.points[branch.points.len() - 1].value], [5.0, 8.0]);
@@ -137,7 +137,8 @@ fn reference_a_periodic_motion_repeats_by_another_method() {
 #[test]
 fn invariant_the_folds_of_the_isola_are_bracketed_by_runs() {
     let (own, solution) = on_isola(6.0).expect("the motion of two periods");
-    let branch = retune_dynamics::periodic::trace::trace(&own, &solution, [5.0, 8.0]).expect("a branch");
+    let branch =
+        retune_dynamics::periodic::trace::trace(&own, &solution, [5.0, 8.0], &|| true).expect("a branch");
     assert_eq!(branch.ends, [End::Closed; 2]);
     let folds: Vec<&Orbit> = branch
         .events
@@ -164,7 +165,8 @@ fn invariant_the_folds_of_the_isola_are_bracketed_by_runs() {
 /// At a period doubling a motion of twice the period begins that settles on the one side, the single one on the other.
 #[test]
 fn invariant_a_period_doubling_is_bracketed_by_runs() {
-    let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), || ()).expect("branches");
+    let found =
+        branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), Watch::default()).expect("branches");
     let main = found.branches.iter().find(|branch| branch.shooting.periods == 1).expect("the main branch");
     let event = main.events.iter().find(|event| event.kind == EventKind::PeriodDoubling).expect("one");
     assert!((event.orbit.multipliers[0] + 1.0).norm() < 1e-7, "{:?}", event.orbit.multipliers);

@@ -6,7 +6,7 @@ use crate::protocol::{Answer, Message, Place, read};
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, Stale, bare, worst};
 use crate::start::Start;
-use crate::{texts, tuning};
+use crate::{branches, texts, tuning};
 use retune_model::NonNegative;
 use retune_study::Study;
 use serde_json::json;
@@ -24,6 +24,7 @@ struct Look {
     place: Place,
     span: Option<[f64; 2]>,
     columns: usize,
+    branches: bool,
 }
 
 /// What waits: at most one message of each kind.
@@ -53,6 +54,7 @@ struct Known {
     response: Option<Study>,
     kind: Option<(Study, bool)>,
     spread: Option<(Study, [f64; 2])>,
+    branches: Option<Study>,
 }
 
 /// Serves a page until `next` has no more messages. `send` is false once the page has gone.
@@ -97,6 +99,7 @@ fn hello(start: &Start) -> Answer {
             json!({ "name": quantity.name(), "unit": quantity.unit(), "words": quantity.words() }),
         )
         .with("tunes", study.optimize.is_some())
+        .with("motions", crate::response::of_all_motions(study))
 }
 
 impl Session<'_> {
@@ -120,9 +123,9 @@ impl Session<'_> {
     /// Puts a message in the place of an older one of its kind.
     fn take(&self, message: Message) {
         match message {
-            Message::Look { id, place, span, columns } => {
+            Message::Look { id, place, span, columns, branches } => {
                 let mut mail = self.mail();
-                mail.look = Some(Look { id, place, span, columns });
+                mail.look = Some(Look { id, place, span, columns, branches });
                 self.shown.fetch_add(1, SeqCst);
             }
             Message::Pin { slot, place } => {
@@ -138,7 +141,7 @@ impl Session<'_> {
             Message::Stop {} => {
                 self.tuned.fetch_add(1, SeqCst);
             }
-            Message::Write { place, what } => match texts::written(self.start, &place, what) {
+            Message::Write { place, what, pins } => match texts::written(self.start, &place, what, &pins) {
                 Ok(answer) => self.send(answer),
                 Err(refused) => self.send(refused.into()),
             },
@@ -199,7 +202,7 @@ impl Session<'_> {
         known: &mut Known,
         is_stale: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Stale> {
-        let Look { id, place, span, columns } = look;
+        let Look { id, place, span, columns, branches: follows } = look;
         let send = |answer: Answer| match is_stale() {
             true => Err(Stale),
             false => {
@@ -215,15 +218,21 @@ impl Session<'_> {
             Ok(answer) => send(answer)?,
             Err(refused) => return send(refused.into()),
         }
-        self.rest(DRAWN, is_stale)?;
         let design = at_no_frequency(&study);
+        // What the page will be sent of this design replaces what it has of another, in part or as a whole.
+        known.response.take_if(|of| *of != design);
+        known.branches.take_if(|of| *of != design);
+        if *follows && known.branches.is_none() {
+            send(branches::progress(0))?;
+        }
+        self.rest(DRAWN, is_stale)?;
         let curve = Curve::of(&study);
         let without = at_no_frequency(&bare(&study));
         if known.bare.as_ref() != Some(&without) {
             send(Curve::of(&without).answer("none", CURVES[1], is_stale)?)?;
             known.bare = Some(without);
         }
-        if known.response.as_ref() != Some(&design) {
+        if known.response.is_none() {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
         self.rest(RESTED, is_stale)?;
@@ -236,17 +245,25 @@ impl Session<'_> {
                 irregular
             }
         };
-        if known.response.as_ref() != Some(&design) {
+        if known.response.is_none() {
             send(worst(&study, "now", is_stale)?)?;
             send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
-            known.response = Some(design);
+            known.response = Some(design.clone());
         }
         let span = span.unwrap_or([study.window.t0.get(), study.window.end.get()]);
         if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
             send(spread(&study, span, *columns, is_stale)?)?;
-            known.spread = Some((study, span));
+            known.spread = Some((study.clone(), span));
         }
-        send(Answer::new("done"))
+        send(Answer::new("done"))?;
+        if *follows && known.branches.is_none() {
+            let tell = |answer| {
+                let _ = send(answer); // a search that is stale ends by itself
+            };
+            send(branches::follow(&study, &tell, is_stale)?)?;
+            known.branches = Some(design);
+        }
+        Ok(())
     }
 
     /// Waits a moment: while a hand still moves, the processors belong to what it sees move, not to work that the next place outdates.
