@@ -83,19 +83,27 @@ export class Branches {
             const ended = found.ended ? " The search was ended at the most motions that a page may ask for: there may be more." : "";
             const kinds = Object.keys(MARKS).filter((kind) => found.events.some((event) => event[0] === kind));
             this.words.replaceChildren(
-                key("line branch", "stable motions"),
-                key("line unstable", "unstable"),
-                ...kinds.map((kind) => key(`mark ${kind.split(/[ -]/)[0]}`, kind)),
-                `${ended} \u201cretune branches\u201d writes all of it down.`,
+                ...key("line branch", "stable motions"),
+                ...key("line unstable", "unstable"),
+                ...kinds.flatMap((kind) => key(`mark ${kind.split(/[ -]/)[0]}`, kind)),
+                `${ended} All of it, as tables and a page: `,
+                code("retune branches"),
             );
         }
     }
 }
 
+function code(words) {
+    const made = document.createElement("code");
+    made.textContent = words;
+    return made;
+}
+
+// A mark with its words, which stay together, and a space after which a line may end.
 function key(kind, words) {
     const made = document.createElement("span");
     const mark = document.createElement("i");
     mark.className = kind;
-    made.append(mark, ` ${words} `);
-    return made;
+    made.append(mark, ` ${words}`);
+    return [made, " "];
 }

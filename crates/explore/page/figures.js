@@ -107,9 +107,9 @@ export class Figures {
     coexisting() {
         const { words, omega, rest, share, periods } = this.other;
         const starts = rest ? "from rest" : "from other starts";
-        const motion = periods ? "" : ", a motion that does not repeat";
-        const few = share ? `; at most ${Math.round(100 * share)} % of all starts end there` : "";
-        return [words, this.quantity.unit, "largest over all motions found", `at ω = ${Number(omega.toPrecision(4))} rad/s, ${starts}${motion}${few}`];
+        const motion = periods ? "" : "; it does not repeat";
+        const few = share && !rest ? `, of which at most ${Math.round(100 * share)} % end there` : "";
+        return [words, this.quantity.unit, "largest over all motions found", `at ω = ${Number(omega.toPrecision(4))} rad/s, ${starts}${few}${motion}`];
     }
 
     // What a screen reader says once everything is known.
