@@ -13,6 +13,7 @@ use retune_model::Coupled;
 use retune_solver::observe::Unobserved;
 use retune_solver::{Follower, Method, Motion, Phase, Settings};
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
 /// One of the designs with 225.8 J from rest: in the middle of the band a motion of two periods coexists.
 const WITH_ISOLA: Numbers = Numbers {
@@ -180,4 +181,24 @@ fn invariant_a_period_doubling_is_bracketed_by_runs() {
             Settled::Irregular(_) => panic!("irregular at {value}"),
         }
     }
+}
+
+/// A search that is ended makes no more runs and motions, says so, and has what it found by then.
+#[test]
+fn contract_a_search_that_is_ended_says_so() {
+    let search = |most: usize| {
+        let asked = AtomicUsize::new(0);
+        let goes_on = || asked.fetch_add(1, SeqCst) < most;
+        let watch = Watch { goes_on: &goes_on, ..Watch::default() };
+        let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), watch).expect("branches");
+        (found, asked.into_inner())
+    };
+    let (whole, all) = search(usize::MAX);
+    assert!(!whole.ended && all > 150, "{all}");
+    let (part, asked) = search(100);
+    assert!(part.ended && part.branches.len() < whole.branches.len());
+    assert!(asked < 110, "asked {asked} times");
+    assert!(part.branches.iter().any(|branch| branch.ends.contains(&End::Ended)));
+    let (none, _) = search(0);
+    assert!(none.ended && none.samples.is_empty() && none.branches.is_empty());
 }

@@ -9,7 +9,6 @@ use crate::start::Start;
 use crate::{branches, texts, tuning};
 use retune_model::NonNegative;
 use retune_study::Study;
-use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -65,7 +64,7 @@ pub fn serve(
 ) {
     let (mail, bell, shown, tuned) = Default::default();
     let session = Session { start, send, mail, bell, shown, tuned };
-    session.send(hello(start));
+    session.send(start.hello());
     std::thread::scope(|scope| {
         scope.spawn(|| session.shows());
         scope.spawn(|| session.tunes());
@@ -80,26 +79,6 @@ pub fn serve(
         }
         session.end();
     });
-}
-
-/// What a page must know before it asks.
-fn hello(start: &Start) -> Answer {
-    let study = start.study();
-    let band = crate::response::band(study);
-    let quantity = study.quantity();
-    Answer::new("hello")
-        .with("version", env!("CARGO_PKG_VERSION"))
-        .with("study", study.name())
-        .with("damper", start.hung())
-        .with("controls", start.controls())
-        .with("band", [band.from, band.to])
-        .with("window", [study.window.t0.get(), study.window.end.get()])
-        .with(
-            "quantity",
-            json!({ "name": quantity.name(), "unit": quantity.unit(), "words": quantity.words() }),
-        )
-        .with("tunes", study.optimize.is_some())
-        .with("motions", crate::response::of_all_motions(study))
 }
 
 impl Session<'_> {
