@@ -165,6 +165,8 @@ class Page:
 
 LISTENER = """window.heard = { asked: 0, painted: 0, known: 0, followed: 0 };
 for (const name of ["asked", "painted", "known", "followed"]) document.addEventListener(name, ({ detail }) => { heard[name] = detail; });
+window.sockets = [];
+window.WebSocket = class extends WebSocket { constructor(...words) { super(...words); sockets.push(this); } };
 """
 
 
@@ -453,6 +455,13 @@ def sleep(browser, explorer, checks):
     page.type("#number-k2", "323")
     page.known()
     checks.that("the page slept: it goes on", page.value("k2") == 323 and "E1max" in page.text("#text"))
+    before = page.text("#text")
+    page.js("sockets.at(-1).close()")
+    page.until("document.body.classList.contains('lost')")
+    page.until("sockets.length === 2 && !document.body.classList.contains('lost')")
+    page.type("#number-k2", "324")
+    page.known()
+    checks.that("a lost connection is found again", page.js("sockets.length") == 2 and page.text("#text") != before)
     checks.that("no message on the console after sleep", not page.messages(), page.messages())
     checks.that("no thread is left over", explorer.threads() <= threads, f"{threads} {explorer.threads()}")
     grown = explorer.memory() - memory
