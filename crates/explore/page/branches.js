@@ -80,13 +80,14 @@ export class Branches {
         } else if (found.problem) {
             this.words.textContent = `Branches: ${found.problem}.`;
         } else {
-            const ended = found.ended ? " The search was ended at the most motions that a page may ask for: there may be more." : "";
+            const ended = found.ended ? "The search was ended at the most motions that a page may ask for: there may be more. " : "";
             const kinds = Object.keys(MARKS).filter((kind) => found.events.some((event) => event[0] === kind));
             this.words.replaceChildren(
                 ...key("line branch", "stable motions"),
                 ...key("line unstable", "unstable"),
                 ...kinds.flatMap((kind) => key(`mark ${kind.split(/[ -]/)[0]}`, kind)),
-                `${ended} All of it, as tables and a page: `,
+                document.createElement("br"),
+                `${ended}All of it, as tables and a page: `,
                 code("retune branches"),
             );
         }
