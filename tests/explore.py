@@ -7,6 +7,7 @@ Needs chromium (or the browser named in $CHROMIUM). RETUNE is the program.
 """
 
 import argparse
+import ast
 import atexit
 import base64
 import json
@@ -24,6 +25,11 @@ from pages import OVERFLOW, PATIENCE, Browser, said
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = "results/ssvi"
+# 225.8 J from rest, and 735.6 J from other starts: what `retune branches` found of it.
+ISOLA = "studies/ssvi-isola.json"
+BRANCHES = "results/branches/isola/branches.json"
+# Where `just test-python` installs the package; or any other that has it.
+PYTHON = os.environ.get("RETUNE_PYTHON") or str(ROOT / "target/test-python/bin/python")
 WIDTHS = [390, 768, 1280, 1600]
 # The greatest size of the page, with all that it loads, bytes.
 LARGEST_PAGE = 300_000
@@ -42,6 +48,9 @@ class Explorer:
         """Its resident memory, MB."""
         text = Path(f"/proc/{self.process.pid}/status").read_text()
         return int(re.search(r"VmRSS:\s+(\d+) kB", text).group(1)) / 1000
+
+    def threads(self):
+        return len(os.listdir(f"/proc/{self.process.pid}/task"))
 
     def close(self):
         self.process.send_signal(signal.SIGINT)
@@ -154,8 +163,10 @@ class Page:
         self.browser.ask("Target.closeTarget", targetId=self.target)
 
 
-LISTENER = """window.heard = { asked: 0, painted: 0, known: 0 };
-for (const name of ["asked", "painted", "known"]) document.addEventListener(name, ({ detail }) => { heard[name] = detail; });
+LISTENER = """window.heard = { asked: 0, painted: 0, known: 0, followed: 0 };
+for (const name of ["asked", "painted", "known", "followed"]) document.addEventListener(name, ({ detail }) => { heard[name] = detail; });
+window.sockets = [];
+window.WebSocket = class extends WebSocket { constructor(...words) { super(...words); sockets.push(this); } };
 """
 
 
@@ -174,6 +185,38 @@ class Checks:
         self.count += 1
         self.bad += not holds
         print(f"{'holds' if holds else 'FAULT'}  {what}{'' if holds else f': {more}'}", flush=True)
+
+
+def family(pid):
+    """A process and all that it started."""
+    parents = {}
+    for place in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parents.setdefault(int(place.read_text().rpartition(")")[2].split()[1]), []).append(int(place.parent.name))
+        except OSError:
+            pass  # it has ended
+    found = [pid]
+    for one in found:
+        found += parents.get(one, [])
+    return found
+
+
+def asleep(pids, seconds):
+    """Stops processes for some time, as a laptop does whose lid is closed."""
+    for pid in pids:
+        os.kill(pid, signal.SIGSTOP)
+    time.sleep(seconds)
+    for pid in pids:
+        os.kill(pid, signal.SIGCONT)
+
+
+def python_command(lines):
+    """The command line that makes the run of some lines of Python: what they call, and with what."""
+    calls = {ast.unparse(call.func).split(".")[-1]: call for call in ast.walk(ast.parse(lines)) if isinstance(call, ast.Call)}
+    assert {"from_study", "simulate"} <= set(calls), lines
+    at = calls["at"].keywords if "at" in calls else []
+    turned = [f" --set {word.arg}={ast.literal_eval(word.value)}" for word in at]
+    return f"retune simulate {ast.literal_eval(calls['from_study'].args[0])}{''.join(turned)}"
 
 
 def simulated(program, words):
@@ -265,7 +308,15 @@ def try_it(program, shots):
         while not (downloads / begin).is_file() and time.monotonic() < end:
             browser.message(time.monotonic() + 0.1)
         checks.that(f"{begin} is a figure", (downloads / begin).is_file() and (downloads / begin).read_text().startswith("<svg"))
-    checks.that("the lines of Python are there", "rt.Problem.from_study(" in written("python"))
+    checks.that("that of the response has the pinned design", ">A<" in (downloads / "ssvi-response.svg").read_text())
+    lines = written("python")
+    ours, theirs = page.text("#text").strip(), simulated(program, python_command(lines)).strip()
+    checks.that("the lines of Python name the run that the page shows", ours == theirs, f"{lines}\n{theirs}")
+    if Path(PYTHON).exists():
+        run = subprocess.run([PYTHON, "-c", lines + '\nprint(run.maxima["E1max"])'], cwd=ROOT, capture_output=True, text=True)
+        expected = json.loads(simulated(program, python_command(lines) + " --json"))["E1max"]
+        made = run.returncode == 0 and float(run.stdout.strip().split("\n")[-1]) == expected
+        checks.that("and make it, to the last bit", made, f"{expected} {run.stdout}{run.stderr}")
     page.js("document.querySelector('dialog').close()")
 
     page.click("#tune")
@@ -307,11 +358,115 @@ def try_it(program, shots):
             if shots:
                 look.shot(shots / f"explore-{width}-{scheme}.png")
             look.close()
+    follow_motions(program, browser, checks, shots)
+    sleep(browser, explorer, checks)
     browser.close()
     explorer.close()
     checks.that("Ctrl-C ends it", explorer.process.returncode in (-signal.SIGINT, 130), explorer.process.returncode)
     print(f"{checks.count} checks, {checks.bad} faults")
     return 1 if checks.bad else 0
+
+
+def follow_motions(program, browser, checks, shots):
+    """The branches: found, drawn, kept while only the frequency is turned, given up when the design is."""
+    explorer = Explorer(program, ISOLA)
+    page = Page(browser, explorer.address)
+    heroes = "document.querySelectorAll('.hero')"
+    found = f"{heroes}.length > 3 && {heroes}[3].innerText"
+    checks.that("no other motions are looked for unasked", page.js(f"{heroes}.length") == 3)
+    page.click("#follow")
+    words = page.until(found)
+    motions = [branch["largest_stable"] for branch in json.loads((ROOT / BRANCHES).read_text())["branches"]]
+    most = max((motion for motion in motions if motion), key=lambda motion: motion["E1max"])
+    expected = [f"{most['E1max']:.4g} J", f"{most['value']:.4g} rad/s", "from other starts"]
+    checks.that("the largest of all motions is that of `retune branches`", all(word in words for word in expected), f"{expected} {words}")
+    checks.that("bifurcations are marked", "fold" in page.text("#following"), page.text("#following"))
+    # Pixels of the colour of branches well above the curve from rest: the isola.
+    purple = """(() => { const u = document.querySelector('#response canvas'), c = document.createElement('canvas'); [c.width, c.height] = [u.width, u.height];
+        const x = c.getContext('2d', { willReadFrequently: true }); x.drawImage(u, 0, 0); const b = x.getImageData(0, 0, u.width, u.height / 2).data;
+        const [r, g, l] = getComputedStyle(document.documentElement).getPropertyValue('--purple').match(/[0-9A-F]{2}/gi).map((x) => parseInt(x, 16));
+        let n = 0; for (let i = 0; i < b.length; i += 4) n += Math.abs(b[i] - r) + Math.abs(b[i + 1] - g) + Math.abs(b[i + 2] - l) < 12 && b[i + 3] > 200;
+        return n; })()"""
+    page.type("#number-P", "1000")  # so that the isola is high
+    page.known()
+    page.until(found)
+    drawn = page.js(purple)
+    checks.that("they are drawn", drawn > 20, drawn)
+    page.drag("#response .u-over", [0.4, 0.3], 0.5)
+    page.known()
+    checks.that("they stay while the frequency is turned", page.js(found), page.text("#following"))
+    seen = page.js(OVERFLOW)
+    checks.that("nothing of them is beyond the window", not seen["beyond"] and seen["over"] <= 0, seen)
+    line = page.js("(r => r.left + r.width / 2)(document.querySelector('.handle').getBoundingClientRect())")
+    place = page.js("(r => r.left + (r.width * (document.getElementById('number-omega').value - 5)) / 3)(document.querySelector('#response .u-over').getBoundingClientRect())")
+    checks.that("the cursor stands at the frequency", abs(line - place) < 2, f"{line} {place}")
+    if shots:
+        page.shot(shots / "explore-branches.png")
+    address = page.js("(async () => { await new Promise((r) => setTimeout(r, 300)); return location.href; })()")
+    page.click("#follow")
+    checks.that("they are hidden", page.js(f"{heroes}.length") == 3 and page.js(purple) == 0, page.js(purple))
+    page.open(address)
+    checks.that("a reload from the address has them", page.until(found))
+
+    # Another design while they are looked for: it is answered at once, and the search begins anew.
+    page.type("#number-k2", "400")
+    page.until("document.getElementById('following').textContent.startsWith('Looking')")
+    begun = time.monotonic()
+    page.drag("#slider-c2", [0.9, 0.8, 0.7], 0.6)
+    page.known()
+    took = time.monotonic() - begun
+    checks.that("a slider is answered at once while they are looked for", took < 3, f"{took:.1f} s")
+    words = page.until(found)
+    checks.that("and then they are found", page.js("heard.followed === heard.asked"), words)
+    checks.that("no message on the console, with branches", not page.messages(), page.messages())
+    checks.that("nothing is said of runs from rest", page.js("document.getElementById('from-rest').hidden"))
+    page.close()
+    explorer.close()
+
+    study = json.loads((ROOT / ISOLA).read_text())
+    study["optimize"]["objective"]["response"] = "motions"
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / "motions.json"
+        path.write_text(json.dumps({key: value for key, value in study.items() if key != "$schema"}))
+        explorer = Explorer(program, path)
+        page = Page(browser, explorer.address)
+        checks.that("a study of all motions is told that curves are from rest", not page.js("document.getElementById('from-rest').hidden"))
+        page.close()
+        explorer.close()
+
+
+def sleep(browser, explorer, checks):
+    """A laptop that sleeps: first the server alone, then the page, longer than the server waits for it."""
+    page = Page(browser, explorer.address)
+    page.click("#follow")
+    threads, memory = explorer.threads(), explorer.memory()
+    page.type("#number-k2", "320")
+    asleep([explorer.process.pid], 3)
+    page.type("#number-k2", "321")
+    page.known()
+    checks.that("the server slept: the page goes on", page.value("k2") == 321 and "E1max" in page.text("#text"))
+    page.click("#tune")
+    page.until("document.getElementById('log').textContent.split('\\n').length > 3")
+    asleep(family(browser.process.pid), 14)
+    page.type("#number-k2", "322")
+    page.until("heard.known === heard.asked && !document.body.classList.contains('lost')")
+    page.js("document.getElementById('stop').disabled || document.getElementById('stop').click()")
+    page.until("document.getElementById('stop').disabled")
+    page.type("#number-k2", "323")
+    page.known()
+    checks.that("the page slept: it goes on", page.value("k2") == 323 and "E1max" in page.text("#text"))
+    before = page.text("#text")
+    page.js("sockets.at(-1).close()")
+    page.until("document.body.classList.contains('lost')")
+    page.until("sockets.length === 2 && !document.body.classList.contains('lost')")
+    page.type("#number-k2", "324")
+    page.known()
+    checks.that("a lost connection is found again", page.js("sockets.length") == 2 and page.text("#text") != before)
+    checks.that("no message on the console after sleep", not page.messages(), page.messages())
+    checks.that("no thread is left over", explorer.threads() <= threads, f"{threads} {explorer.threads()}")
+    grown = explorer.memory() - memory
+    checks.that("no memory is left over", grown < 10, f"{grown:.1f} MB")
+    page.close()
 
 
 # A slider that is turned again and again; the time from the event to the end of the frame that shows its time series.

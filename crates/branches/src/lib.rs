@@ -19,7 +19,7 @@ pub use found::{Found, Margin};
 pub use tables::summary;
 
 use asked::plan_json;
-use retune_dynamics::periodic::branches as motions;
+use retune_dynamics::periodic::branches::{Watch, branches as motions};
 use retune_study::{found_in, read};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::job::{Done, Job, Made};
@@ -67,7 +67,12 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
     let job = Job::of_studies(&KIND, &request, said, studies.into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
-        let branches = motions(&study.scene, plan, &study.solver.settings(), || bar.inc(1))?;
+        let branches = motions(
+            &study.scene,
+            plan,
+            &study.solver.settings(),
+            Watch { done: &|| bar.inc(1), ..Watch::default() },
+        )?;
         bar.finish();
         let mut found = Found::new(study.clone(), branches);
         if asked.margin {

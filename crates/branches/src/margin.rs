@@ -6,7 +6,7 @@
 
 use crate::found::{Found, Margin};
 use crate::remedy::folds;
-use retune_dynamics::periodic::branches::branches;
+use retune_dynamics::periodic::branches::{Watch, branches};
 use retune_dynamics::periodic::{Branch, Orbit};
 use retune_model::Parameter;
 use retune_workbench::Error;
@@ -38,7 +38,7 @@ pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
     };
     let first_birth = |force: f64| -> Result<Option<(f64, Orbit)>, Error> {
         let scene = Parameter::P.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
-        let there = branches(&scene, plan, &found.study.solver.settings(), || ())?;
+        let there = branches(&scene, plan, &found.study.solver.settings(), Watch::default())?;
         let there = Found::new(found.study.clone(), there);
         Ok(others(&there).filter_map(birth).min_by(|a, b| a.1.value.total_cmp(&b.1.value)))
     };

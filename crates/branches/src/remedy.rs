@@ -36,7 +36,7 @@ pub fn folds(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<[Op
     let own = parameter.of(&branch.shooting.scene).filter(|own| *own > 0.0)?;
     let shooting = branch.shooting.along(orbit.value, parameter, own).ok()?;
     let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, own))?;
-    let along = trace(&shooting, &seed, REACH.map(|share| share * own))?;
+    let along = trace(&shooting, &seed, REACH.map(|share| share * own), &|| true)?;
     let seed = along.points.iter().position(|point| point.value == own)?;
     let folds = || along.events.iter().filter(|event| event.kind == EventKind::Fold);
     // Traced towards larger values first. A closed branch comes back from the other side.

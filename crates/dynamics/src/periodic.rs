@@ -5,11 +5,12 @@
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
 //! Read `shooting` (the equations and their solution), `orbit` (what a motion is like), `trace` (a branch), `events` (its bifurcations),
-//! `switch` (to the branch of twice the period), `settle` (what runs settle on), `largest`, then `branches`, which asks for all of them, and `worst`, the largest value over them.
+//! `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs from many starts do), `largest`, then `branches`, which asks for all of them, and `worst`, the largest value over them.
 
 pub mod branches;
 pub mod events;
 pub mod largest;
+pub mod look;
 mod node;
 pub mod orbit;
 pub mod settle;
@@ -18,9 +19,10 @@ pub mod switch;
 pub mod trace;
 pub mod worst;
 
-pub use branches::{Branches, Interval, Sample, branches};
+pub use branches::{Branches, Interval, Watch, branches};
 pub use events::{Event, EventKind};
 pub use largest::largest;
+pub use look::Sample;
 pub use orbit::Orbit;
 pub use shooting::Shooting;
 pub use trace::{Branch, End};

@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{Numbers, SSVI};
 use rayon::prelude::*;
 use retune_dynamics::periodic::branches;
-use retune_dynamics::periodic::branches::{Plan, equations};
+use retune_dynamics::periodic::branches::{Plan, Watch, equations};
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::{Parameter, Stretch, follow};
 use retune_solver::Settings;
@@ -37,7 +37,7 @@ fn invariant_what_settles_lies_on_a_branch() {
     for numbers in DAMPERS {
         let settings = Settings::default();
         let plan = Plan { parameter: Parameter::Omega, range: [5.0, 8.0], samples: 31, starts: 8, looks: 2 };
-        let found = branches(&numbers.scene(), plan, &settings, || ()).expect("branches");
+        let found = branches(&numbers.scene(), plan, &settings, Watch::default()).expect("branches");
         let shooting = equations(&numbers.scene(), &plan, &settings).expect("equations");
         let values = retune_dynamics::parameter::evenly(5.0, 8.0, count);
         let seen: Vec<(f64, Option<bool>)> = values

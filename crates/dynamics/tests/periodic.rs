@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{Numbers, SSVI, TMD};
 use nalgebra::{Complex, Vector4};
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::branches::Plan;
+use retune_dynamics::periodic::branches::{Plan, Watch};
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::shooting::Solution;
 use retune_dynamics::periodic::{End, EventKind, Orbit, Shooting, branches, largest};
@@ -13,6 +13,7 @@ use retune_model::Coupled;
 use retune_solver::observe::Unobserved;
 use retune_solver::{Follower, Method, Motion, Phase, Settings};
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
 /// One of the designs with 225.8 J from rest: in the middle of the band a motion of two periods coexists.
 const WITH_ISOLA: Numbers = Numbers {
@@ -47,7 +48,7 @@ fn plan(samples: usize, starts: usize) -> Plan {
 /// A damper that touches nothing: the branch is the steady response, its multipliers those of the linear flow.
 #[test]
 fn exact_the_branch_of_a_tmd() {
-    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), || ()).expect("branches");
+    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), Watch::default()).expect("branches");
     let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
     assert!(branch.events.is_empty() && branch.ends == [End::Range; 2]);
     assert_eq!([branch.points[0].value, branch.points[branch.points.len() - 1].value], [5.0, 8.0]);
@@ -137,7 +138,8 @@ fn reference_a_periodic_motion_repeats_by_another_method() {
 #[test]
 fn invariant_the_folds_of_the_isola_are_bracketed_by_runs() {
     let (own, solution) = on_isola(6.0).expect("the motion of two periods");
-    let branch = retune_dynamics::periodic::trace::trace(&own, &solution, [5.0, 8.0]).expect("a branch");
+    let branch =
+        retune_dynamics::periodic::trace::trace(&own, &solution, [5.0, 8.0], &|| true).expect("a branch");
     assert_eq!(branch.ends, [End::Closed; 2]);
     let folds: Vec<&Orbit> = branch
         .events
@@ -164,7 +166,8 @@ fn invariant_the_folds_of_the_isola_are_bracketed_by_runs() {
 /// At a period doubling a motion of twice the period begins that settles on the one side, the single one on the other.
 #[test]
 fn invariant_a_period_doubling_is_bracketed_by_runs() {
-    let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), || ()).expect("branches");
+    let found =
+        branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), Watch::default()).expect("branches");
     let main = found.branches.iter().find(|branch| branch.shooting.periods == 1).expect("the main branch");
     let event = main.events.iter().find(|event| event.kind == EventKind::PeriodDoubling).expect("one");
     assert!((event.orbit.multipliers[0] + 1.0).norm() < 1e-7, "{:?}", event.orbit.multipliers);
@@ -178,4 +181,24 @@ fn invariant_a_period_doubling_is_bracketed_by_runs() {
             Settled::Irregular(_) => panic!("irregular at {value}"),
         }
     }
+}
+
+/// A search that is ended makes no more runs and motions, says so, and has what it found by then.
+#[test]
+fn contract_a_search_that_is_ended_says_so() {
+    let search = |most: usize| {
+        let asked = AtomicUsize::new(0);
+        let goes_on = || asked.fetch_add(1, SeqCst) < most;
+        let watch = Watch { goes_on: &goes_on, ..Watch::default() };
+        let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), watch).expect("branches");
+        (found, asked.into_inner())
+    };
+    let (whole, all) = search(usize::MAX);
+    assert!(!whole.ended && all > 150, "{all}");
+    let (part, asked) = search(100);
+    assert!(part.ended && part.branches.len() < whole.branches.len());
+    assert!(asked < 110, "asked {asked} times");
+    assert!(part.branches.iter().any(|branch| branch.ends.contains(&End::Ended)));
+    let (none, _) = search(0);
+    assert!(none.ended && none.samples.is_empty() && none.branches.is_empty());
 }

@@ -17,6 +17,7 @@ export class Figures {
         this.worst = {};
         this.kinds = {};
         this.spread = null;
+        this.other = null;
     }
 
     begin({ quantity, band }) {
@@ -47,6 +48,12 @@ export class Figures {
         this.show();
     }
 
+    // The largest of all motions that were found; none where they are not looked for.
+    follow(largest) {
+        this.other = largest ?? null;
+        this.show();
+    }
+
     unpin(whose) {
         delete this.worst[whose];
         delete this.kinds[whose];
@@ -64,6 +71,7 @@ export class Figures {
             [worst?.reduction ? worst.reduction : "–", "", "times less than without a damper", worst?.none ? `which has ${worst.none} ${quantity.unit}` : ""],
             [kind?.label ?? "–", "", "kind of motion at this ω", kind?.words ?? ""],
         ];
+        if (this.other) heroes.push(this.coexisting());
         update(this.heroes, JSON.stringify(heroes), () =>
             heroes.map(([value, unit, words, more]) => {
                 const hero = element("div", "hero");
@@ -96,12 +104,21 @@ export class Figures {
         rows.forEach((row, i) => row.forEach((words, j) => write(this.table.children[i].children[j], words)));
     }
 
+    coexisting() {
+        const { words, omega, rest, share, periods } = this.other;
+        const starts = rest ? "from rest" : "from other starts";
+        const motion = periods ? "" : "; it does not repeat";
+        const few = share && !rest ? `, of which at most ${Math.round(100 * share)} % end there` : "";
+        return [words, this.quantity.unit, "largest over all motions found", `at ω = ${Number(omega.toPrecision(4))} rad/s, ${starts}${few}${motion}`];
+    }
+
     // What a screen reader says once everything is known.
     say() {
         const worst = this.worst.now;
         const { quantity } = this;
         const words = worst?.words ? `worst ${quantity.name} ${worst.words} ${quantity.unit}, ` : "";
-        this.said.textContent = `${words}at this frequency E1max ${this.now.E1max} J, ${this.kinds.now?.label ?? ""}`;
+        const others = this.other ? `over all motions found ${this.other.words} ${quantity.unit}, ` : "";
+        this.said.textContent = `${words}${others}at this frequency E1max ${this.now.E1max} J, ${this.kinds.now?.label ?? ""}`;
     }
 }
 

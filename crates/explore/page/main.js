@@ -1,5 +1,6 @@
 // The page: what is turned goes to the server, and what comes back is shown.
 
+import { Branches } from "./branches.js";
 import { Series, forget } from "./charts.js";
 import { build, mark, refresh } from "./controls.js";
 import { Drawing } from "./drawing.js";
@@ -28,6 +29,7 @@ const response = new Response($("response"), $("response-key"), (omega) => {
 });
 const drawing = new Drawing($("drawing"));
 const phases = [new Phase($("phase-1"), ["x1", "v1"], "--blue"), new Phase($("phase-2"), ["x", "v"], "--vermilion")];
+const branches = new Branches($("following"));
 const figures = new Figures({ heroes: $("heroes"), table: $("figures"), irregular: $("irregular"), said: $("said"), text: $("text") });
 const tuning = new Tuning({ section: $("tuning"), canvas: $("map"), words: $("map-words"), log: $("log"), result: $("tuned") });
 
@@ -48,7 +50,7 @@ function turned() {
     tell("asked", id);
     response.at(omega());
     remember();
-    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns() } });
+    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns(), branches: place.branches } });
 }
 
 const answers = {
@@ -60,6 +62,8 @@ const answers = {
         document.title = `${answer.study}: Retune explore`;
         figures.begin(answer);
         response.begin(answer);
+        $("from-rest").hidden = !answer.motions;
+        followed();
         dampers();
         build($("controls"), turned);
         SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
@@ -88,6 +92,16 @@ const answers = {
     spread(answer) {
         figures.scatter(answer);
         series.scatter(answer);
+    },
+    following(answer) {
+        branches.progress(answer);
+        followed();
+    },
+    branches(answer) {
+        branches.set(answer);
+        followed();
+        figures.say();
+        tell("followed", answer.id);
     },
     done(answer) {
         if (resting) rest();
@@ -159,6 +173,21 @@ function points(columns, motion = null) {
         if (line) phase.show(line, [columns[`crest.${x}`], columns[`crest.${v}`]], i ? walls : null);
     });
 }
+
+// Branches are kept while they are hidden: the server sends them once for a design.
+function followed() {
+    $("follow").checked = place.branches;
+    const shown = place.branches ? branches : null;
+    branches.describe(hello.quantity, place.branches);
+    response.follow(shown);
+    figures.follow(shown?.found?.largest);
+}
+
+$("follow").addEventListener("change", ({ target }) => {
+    place.branches = target.checked;
+    followed();
+    turned();
+});
 
 function dampers() {
     for (const input of $("dampers").querySelectorAll("input")) input.checked = input.value === place.damper;
@@ -234,7 +263,7 @@ $("save").addEventListener("click", ({ target }) => {
     if (!what) return;
     $("save").open = false;
     if (what === "curves") download(`${hello.study}-response.csv`, response.csv());
-    else link.send({ write: { place: asked(), what } });
+    else link.send({ write: { place: asked(), what, pins: place.pins.map((pin) => pin && asked(pin)) } });
 });
 document.addEventListener("click", ({ target }) => !$("save").contains(target) && ($("save").open = false));
 document.addEventListener("keydown", ({ key }) => key === "Escape" && ($("save").open = false));

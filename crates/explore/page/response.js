@@ -14,6 +14,7 @@ export class Response {
         this.curves = {};
         this.omega = 0;
         this.chart = null;
+        this.branches = null;
         new ResizeObserver(() => this.chart && this.into.clientWidth !== this.chart.width && this.chart.setSize(this.size())).observe(into);
     }
 
@@ -42,10 +43,10 @@ export class Response {
                 ...this.size(),
                 legend: { show: false },
                 cursor: { drag: { x: false, y: false }, points: { show: false }, y: false },
-                scales: { x: { time: false, range: () => this.band }, y: { range: (u, least, largest) => [0, 1.06 * (largest || 1)] } },
+                scales: { x: { time: false, range: () => this.band }, y: { range: (u, least, largest) => [0, 1.06 * (Math.max(largest, this.branches?.top ?? 0) || 1)] } },
                 series: [{}, ...series],
                 axes: [axis("ω, rad/s", 22), axis(`${quantity.name}, ${quantity.unit}`, 50, { values: worded, space: 32 }), axis("frequency, Hz", 20, hertz)],
-                hooks: { draw: [(u) => this.cursor(u)] },
+                hooks: { draw: [(u) => this.branches?.draw(u)] },
             },
             [[], ...WHOSE.map(() => [])],
             this.into,
@@ -97,6 +98,13 @@ export class Response {
         this.handle.hidden = omega < this.band[0] || omega > this.band[1];
     }
 
+    // The branches that are drawn over the curves; none to take them away.
+    follow(branches) {
+        this.branches = branches;
+        this.chart?.setData(this.table ?? this.chart.data, true);
+        this.at(this.omega);
+    }
+
     // A curve of a design; none to take it away.
     set(whose, answer) {
         if (answer) this.curves[whose] = answer.columns;
@@ -128,20 +136,6 @@ export class Response {
             }),
         );
         this.into.setAttribute("aria-label", `${this.quantity.words} over the frequency of the force, from ${this.band[0]} to ${this.band[1]} rad/s`);
-    }
-
-    cursor(u) {
-        if (this.omega < this.band[0] || this.omega > this.band[1]) return;
-        const { ctx, bbox } = u;
-        const x = u.valToPos(this.omega, "x", true);
-        ctx.save();
-        ctx.strokeStyle = css("--soft");
-        ctx.lineWidth = devicePixelRatio;
-        ctx.beginPath();
-        ctx.moveTo(x, bbox.top);
-        ctx.lineTo(x, bbox.top + bbox.height);
-        ctx.stroke();
-        ctx.restore();
     }
 
     // The curves as a table.

@@ -4,7 +4,8 @@
 //! rules of study files; what it shows of a run is what `retune simulate` prints. [`protocol`] has every message, [`limits`] what bounds
 //! the work of one. The latest message of a page wins: work for an older one is cancelled, and nothing is queued ([`session`]).
 //!
-//! Read [`protocol`] first, then [`session`], then what is computed: [`motion`], [`response`], [`kind`], [`tuning`].
+//! Read [`protocol`] first, then [`session`], then what is computed: [`motion`], [`response`], [`branches`], [`kind`],
+//! [`tuning`].
 //!
 //! ```
 //! use retune_explore::protocol::{Hung, Place};
@@ -24,6 +25,7 @@
 //! ```
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+pub mod branches;
 mod http;
 pub mod kind;
 pub mod limits;

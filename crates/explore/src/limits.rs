@@ -20,6 +20,8 @@ pub const MOST_STEPS: u64 = 1_000_000;
 pub const MOST_SAMPLES: usize = 601;
 /// Runs behind one value of an objective that is tuned from the page.
 pub const MOST_RUNS: usize = 20_000;
+/// Runs and motions of a search for branches.
+pub const MOST_MOTIONS: u64 = 20_000;
 /// Evaluations of a tuning.
 pub const MOST_EVALUATIONS: u64 = 20_000;
 

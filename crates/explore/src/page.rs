@@ -27,6 +27,7 @@ pub const FILES: &[File] = &[
     file!("controls.js", "text/javascript; charset=utf-8"),
     file!("charts.js", "text/javascript; charset=utf-8"),
     file!("response.js", "text/javascript; charset=utf-8"),
+    file!("branches.js", "text/javascript; charset=utf-8"),
     file!("drawing.js", "text/javascript; charset=utf-8"),
     file!("phase.js", "text/javascript; charset=utf-8"),
     file!("figures.js", "text/javascript; charset=utf-8"),

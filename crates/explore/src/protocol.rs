@@ -42,6 +42,9 @@ pub enum Message {
         span: Option<[f64; 2]>,
         /// Pixels that the time series have.
         columns: usize,
+        /// Whether to follow every motion over the band, too.
+        #[serde(default)]
+        branches: bool,
     },
     /// Keep this design for comparison.
     Pin {
@@ -63,6 +66,9 @@ pub enum Message {
         place: Place,
         /// As what.
         what: What,
+        /// The pinned designs A and B, for a figure that has them.
+        #[serde(default)]
+        pins: [Option<Place>; 2],
     },
 }
 

@@ -16,11 +16,20 @@ pub const CURVES: [usize; 2] = [31, 301];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stale;
 
-/// The first term of the study's objective at one frequency of the scene itself: no band, no other k1, no ensemble. Coexisting motions,
-/// a hundred times the work, are left to `retune branches`: the page shows runs from rest.
+/// The first term of the study's objective.
+fn first(study: &Study) -> Objective {
+    study.objective().terms().first().map(|(_, term)| (*term).clone()).unwrap_or_default()
+}
+
+/// Whether the study asks for the largest over all motions, where curves are of runs from rest.
+pub fn of_all_motions(study: &Study) -> bool {
+    first(study).response == Response::Motions
+}
+
+/// The first term at one frequency of the scene itself: no band, no other k1, no ensemble. Coexisting motions, a hundred times the work,
+/// are left to the branches: a curve is of runs from rest.
 fn term(study: &Study) -> Objective {
-    let objective = study.objective();
-    let first = objective.terms().first().map(|(_, term)| (*term).clone()).unwrap_or_default();
+    let first = first(study);
     let response = if first.response == Response::Motions { Response::Window } else { first.response };
     Objective { omega: None, k1: None, ensemble: None, response, ..first }
 }

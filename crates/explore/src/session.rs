@@ -6,10 +6,9 @@ use crate::protocol::{Answer, Message, Place, read};
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, Stale, bare, worst};
 use crate::start::Start;
-use crate::{texts, tuning};
+use crate::{branches, texts, tuning};
 use retune_model::NonNegative;
 use retune_study::Study;
-use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -24,6 +23,7 @@ struct Look {
     place: Place,
     span: Option<[f64; 2]>,
     columns: usize,
+    branches: bool,
 }
 
 /// What waits: at most one message of each kind.
@@ -53,6 +53,7 @@ struct Known {
     response: Option<Study>,
     kind: Option<(Study, bool)>,
     spread: Option<(Study, [f64; 2])>,
+    branches: Option<Study>,
 }
 
 /// Serves a page until `next` has no more messages. `send` is false once the page has gone.
@@ -63,7 +64,7 @@ pub fn serve(
 ) {
     let (mail, bell, shown, tuned) = Default::default();
     let session = Session { start, send, mail, bell, shown, tuned };
-    session.send(hello(start));
+    session.send(start.hello());
     std::thread::scope(|scope| {
         scope.spawn(|| session.shows());
         scope.spawn(|| session.tunes());
@@ -78,25 +79,6 @@ pub fn serve(
         }
         session.end();
     });
-}
-
-/// What a page must know before it asks.
-fn hello(start: &Start) -> Answer {
-    let study = start.study();
-    let band = crate::response::band(study);
-    let quantity = study.quantity();
-    Answer::new("hello")
-        .with("version", env!("CARGO_PKG_VERSION"))
-        .with("study", study.name())
-        .with("damper", start.hung())
-        .with("controls", start.controls())
-        .with("band", [band.from, band.to])
-        .with("window", [study.window.t0.get(), study.window.end.get()])
-        .with(
-            "quantity",
-            json!({ "name": quantity.name(), "unit": quantity.unit(), "words": quantity.words() }),
-        )
-        .with("tunes", study.optimize.is_some())
 }
 
 impl Session<'_> {
@@ -120,9 +102,9 @@ impl Session<'_> {
     /// Puts a message in the place of an older one of its kind.
     fn take(&self, message: Message) {
         match message {
-            Message::Look { id, place, span, columns } => {
+            Message::Look { id, place, span, columns, branches } => {
                 let mut mail = self.mail();
-                mail.look = Some(Look { id, place, span, columns });
+                mail.look = Some(Look { id, place, span, columns, branches });
                 self.shown.fetch_add(1, SeqCst);
             }
             Message::Pin { slot, place } => {
@@ -138,7 +120,7 @@ impl Session<'_> {
             Message::Stop {} => {
                 self.tuned.fetch_add(1, SeqCst);
             }
-            Message::Write { place, what } => match texts::written(self.start, &place, what) {
+            Message::Write { place, what, pins } => match texts::written(self.start, &place, what, &pins) {
                 Ok(answer) => self.send(answer),
                 Err(refused) => self.send(refused.into()),
             },
@@ -199,7 +181,7 @@ impl Session<'_> {
         known: &mut Known,
         is_stale: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Stale> {
-        let Look { id, place, span, columns } = look;
+        let Look { id, place, span, columns, branches: follows } = look;
         let send = |answer: Answer| match is_stale() {
             true => Err(Stale),
             false => {
@@ -215,15 +197,21 @@ impl Session<'_> {
             Ok(answer) => send(answer)?,
             Err(refused) => return send(refused.into()),
         }
-        self.rest(DRAWN, is_stale)?;
         let design = at_no_frequency(&study);
+        // What the page will be sent of this design replaces what it has of another, in part or as a whole.
+        known.response.take_if(|of| *of != design);
+        known.branches.take_if(|of| *of != design);
+        if *follows && known.branches.is_none() {
+            send(branches::progress(0))?;
+        }
+        self.rest(DRAWN, is_stale)?;
         let curve = Curve::of(&study);
         let without = at_no_frequency(&bare(&study));
         if known.bare.as_ref() != Some(&without) {
             send(Curve::of(&without).answer("none", CURVES[1], is_stale)?)?;
             known.bare = Some(without);
         }
-        if known.response.as_ref() != Some(&design) {
+        if known.response.is_none() {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
         self.rest(RESTED, is_stale)?;
@@ -236,17 +224,25 @@ impl Session<'_> {
                 irregular
             }
         };
-        if known.response.as_ref() != Some(&design) {
+        if known.response.is_none() {
             send(worst(&study, "now", is_stale)?)?;
             send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
-            known.response = Some(design);
+            known.response = Some(design.clone());
         }
         let span = span.unwrap_or([study.window.t0.get(), study.window.end.get()]);
         if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
             send(spread(&study, span, *columns, is_stale)?)?;
-            known.spread = Some((study, span));
+            known.spread = Some((study.clone(), span));
         }
-        send(Answer::new("done"))
+        send(Answer::new("done"))?;
+        if *follows && known.branches.is_none() {
+            let tell = |answer| {
+                let _ = send(answer); // a search that is stale ends by itself
+            };
+            send(branches::follow(&study, &tell, is_stale)?)?;
+            known.branches = Some(design);
+        }
+        Ok(())
     }
 
     /// Waits a moment: while a hand still moves, the processors belong to what it sees move, not to work that the next place outdates.

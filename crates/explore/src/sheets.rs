@@ -2,7 +2,7 @@
 
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, bare};
-use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};
+use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
 use retune_solver::Window;
 use retune_study::{Study, design_words, hertz_and_rpm};
@@ -13,6 +13,8 @@ use retune_workbench::summary::MadeBy;
 const COLUMNS: usize = 900;
 const NOW: Stroke = Stroke::new(VERMILION, 1.2, Dash::Solid);
 const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
+const PINNED: [(&str, Stroke); 2] =
+    [("A", Stroke::new(BLUE, 1.1, Dash::Solid)), ("B", Stroke::new(GREEN, 1.1, Dash::Solid))];
 
 /// The motion in the window: displacement, relative displacement with the walls, E1, contact forces.
 ///
@@ -58,17 +60,28 @@ pub fn motion(study: &Study) -> Result<String, Refused> {
     }))
 }
 
-/// The response over the band, beside that without a damper.
-pub fn response(study: &Study) -> String {
+/// The response over the band, beside that without a damper and those of the pinned designs A and B.
+pub fn response(study: &Study, pins: [Option<Study>; 2]) -> String {
+    let pins: Vec<((&str, Stroke), Study)> =
+        PINNED.into_iter().zip(pins).filter_map(|(name, pin)| Some((name, pin?))).collect();
+    let mut shown = vec![(NONE, "no damper".to_owned(), bare(study))];
+    shown.extend(pins.iter().map(|((name, stroke), pin)| (*stroke, (*name).to_owned(), pin.clone())));
+    shown.push((NOW, "this damper".to_owned(), study.clone()));
     let curve = |study: &Study| -> Vec<(f64, f64)> {
         let found = Curve::of(study).over(CURVES[1], &|| false);
         found.map_or_else(|_| Vec::new(), |[omega, values]| omega.into_iter().zip(values).collect())
     };
-    let (now, none) = (curve(study), curve(&bare(study)));
-    let all = now.iter().chain(&none).map(|point| point.1).filter(|value| value.is_finite());
-    let top = all.fold(0.0, f64::max);
+    let curves: Vec<Vec<(f64, f64)>> = shown.iter().map(|(_, _, study)| curve(study)).collect();
+    let top =
+        curves.iter().flatten().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let lines =
+        shown.iter().zip(curves).map(|((stroke, ..), points)| Layer::Line { points, stroke: *stroke });
+    let cursor =
+        Layer::Upright { x: study.scene.forcing.frequency.get(), stroke: Stroke::new(GREY, 0.8, Dash::Dots) };
     let band = crate::response::band(study);
     let name = study.quantity().name();
+    let designs = pins.iter().map(|((name, _), pin)| format!("{name}: {}", words(pin)));
+    let caption = [words(study)].into_iter().chain(designs).chain([MadeBy::new(study).to_string()]);
     svg(&Sheet {
         title: format!("{name} over frequency"),
         description: format!("{name} over the band, with the damper and without. {}", words(study)),
@@ -78,20 +91,13 @@ pub fn response(study: &Study) -> String {
             x: Axis::linear("ω, rad/s", (band.from, band.to))
                 .with_second("frequency, Hz", hertz_and_rpm(1.0)[0]),
             y: Axis::linear(amount::label(study.quantity()), (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
-            layers: vec![
-                Layer::Line { points: none, stroke: NONE },
-                Layer::Line { points: now, stroke: NOW },
-                Layer::Upright {
-                    x: study.scene.forcing.frequency.get(),
-                    stroke: Stroke::new(GREY, 0.8, Dash::Dots),
-                },
-            ],
+            layers: lines.chain([cursor]).collect(),
             height: 180.0,
         }],
         columns: 1,
         stacked: false,
-        legend: vec![(Key::Line(NONE), "no damper".to_owned()), (Key::Line(NOW), "this damper".to_owned())],
-        caption: vec![words(study), MadeBy::new(study).to_string()],
+        legend: shown.iter().map(|(stroke, words, _)| (Key::Line(*stroke), words.clone())).collect(),
+        caption: caption.collect(),
     })
 }
 

@@ -1,11 +1,13 @@
 //! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
 
 use crate::limits::bounded;
-use crate::protocol::{Hung, Place};
+use crate::protocol::{Answer, Hung, Place};
 use crate::refused::Refused;
+use crate::response::{band, of_all_motions};
 use retune_model::{Damper, NonNegative, Variable};
 use retune_study::{PARAMETERS, Rule, Setting, Study, StudyError};
 use serde::Serialize;
+use serde_json::json;
 use std::path::Path;
 
 /// The study that is explored if none is named: a copy of `studies/ssvi.json`, which a test compares.
@@ -86,6 +88,23 @@ impl Start {
         &self.study
     }
 
+    /// What a page must know before it asks.
+    pub fn hello(&self) -> Answer {
+        let study = &self.study;
+        let (band, quantity) = (band(study), study.quantity());
+        let of = json!({ "name": quantity.name(), "unit": quantity.unit(), "words": quantity.words() });
+        Answer::new("hello")
+            .with("version", env!("CARGO_PKG_VERSION"))
+            .with("study", study.name())
+            .with("damper", self.hung())
+            .with("controls", self.controls())
+            .with("band", [band.from, band.to])
+            .with("window", [study.window.t0.get(), study.window.end.get()])
+            .with("quantity", of)
+            .with("tunes", study.optimize.is_some())
+            .with("motions", of_all_motions(study))
+    }
+
     /// The damper that the study has.
     pub fn hung(&self) -> Hung {
         match &self.study.scene.damper {
@@ -159,7 +178,7 @@ impl Start {
     /// The range of a slider: of the search's bounds or the band, else about the value.
     fn range(&self, name: &str, value: f64) -> [f64; 2] {
         if name == "omega" {
-            let band = crate::response::band(&self.study);
+            let band = band(&self.study);
             return [band.from, band.to];
         }
         let variable = Variable::ALL.into_iter().find(|variable| variable.to_string() == name);

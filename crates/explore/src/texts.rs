@@ -12,11 +12,16 @@ const INTERVAL: f64 = 0.005;
 /// Rows of a motion.
 const MOST_ROWS: f64 = 200_000.0;
 
-/// A place in a form.
+/// A place in a form; of figures the response has the pinned designs, too.
 ///
 /// # Errors
 /// A study file could not have these numbers, or the run fails.
-pub fn written(start: &Start, place: &Place, what: What) -> Result<Answer, Refused> {
+pub fn written(
+    start: &Start,
+    place: &Place,
+    what: What,
+    pins: &[Option<Place>; 2],
+) -> Result<Answer, Refused> {
     let name = start.study().name();
     let (file, text) = match what {
         What::Study => (saved(name), study(&start.file_at(place)?)?),
@@ -24,7 +29,10 @@ pub fn written(start: &Start, place: &Place, what: What) -> Result<Answer, Refus
         What::Python => (String::new(), python(start, place)?),
         What::Motion => (format!("{name}-motion.csv"), motion(&start.at(place)?)?),
         What::Picture => (format!("{name}-motion.svg"), sheets::motion(&start.at(place)?)?),
-        What::Response => (format!("{name}-response.svg"), sheets::response(&start.at(place)?)),
+        What::Response => {
+            let [a, b] = pins.each_ref().map(|pin| pin.as_ref().map(|place| start.at(place)).transpose());
+            (format!("{name}-response.svg"), sheets::response(&start.at(place)?, [a?, b?]))
+        }
     };
     Ok(Answer::new("written").with("what", what).with("file", file).with("text", text))
 }

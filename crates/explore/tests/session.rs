@@ -23,7 +23,8 @@ fn place(damper: Hung, set: &[(&str, f64)]) -> Place {
 }
 
 fn look(id: u64, set: &[(&str, f64)]) -> String {
-    let message = Message::Look { id, place: place(Hung::Ssvi, set), span: None, columns: 400 };
+    let message =
+        Message::Look { id, place: place(Hung::Ssvi, set), span: None, columns: 400, branches: false };
     serde_json::to_string(&message).expect("a message")
 }
 
@@ -128,6 +129,37 @@ fn contract_a_curve_is_refined_and_kept_while_only_omega_changes() {
     assert_eq!(count.into_inner().expect("no panic"), 0);
 }
 
+/// Back before the curve of another design was whole: the page has a part of it, and is sent the first again.
+#[test]
+fn regress_a_curve_is_sent_again_after_part_of_another() {
+    let (sender, receiver) = channel();
+    let (sender, found) = (Mutex::new(sender), Mutex::new(Vec::new()));
+    let mut messages =
+        vec![look(1, &[("k2", 300.0)]), look(2, &[("k2", 301.0)]), look(3, &[("k2", 300.0)])].into_iter();
+    serve(
+        &start(),
+        &|answer| {
+            let begun = kind(&answer) == "response" && answer.get("id") == Some(&json!(2));
+            if kind(&answer) == "done" || begun {
+                let _ = sender.lock().expect("no panic").send(());
+            }
+            found.lock().expect("no panic").push(answer);
+            true
+        },
+        || {
+            if messages.len() < 3 {
+                receiver.recv_timeout(Duration::from_secs(60)).expect("an answer");
+            }
+            messages.next()
+        },
+    );
+    let found = found.into_inner().expect("no panic");
+    let fine = |id: u64| {
+        found.iter().any(|answer| answer.get("id") == Some(&json!(id)) && answer.get("fine").is_some())
+    };
+    assert_eq!([fine(1), fine(2), fine(3)], [true, false, true]);
+}
+
 /// A hundred positions in a row: the last is answered, hardly any other, in less time than all would take.
 #[test]
 fn contract_the_latest_position_wins() {
@@ -204,12 +236,12 @@ fn contract_a_saved_study_is_read_again() {
         (Hung::None, &[("P", 500.0)][..]),
     ] {
         let place = place(damper, set);
-        let written = texts::written(&start(), &place, What::Study).expect("written");
+        let written = texts::written(&start(), &place, What::Study, &[None, None]).expect("written");
         let text = written.get("text").and_then(Value::as_str).expect("text");
         let study = retune_study::read::from_text(text, "saved.json").expect("a study");
         assert_eq!(study.scene, start().at(&place).expect("a place").scene, "{damper:?}");
     }
-    let outside = texts::written(&start(), &place(Hung::Ssvi, &[("k2", -5.0)]), What::Study);
+    let outside = texts::written(&start(), &place(Hung::Ssvi, &[("k2", -5.0)]), What::Study, &[None, None]);
     assert_eq!(outside.expect_err("refused").field.as_deref(), Some("k2"));
 }
 
@@ -219,7 +251,7 @@ fn contract_the_command_line_says_what_differs() {
         Start::read(Some(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/study.json"))));
     let named = named.expect("a study");
     let text = |start: &Start, place: &Place, what| {
-        let written = texts::written(start, place, what).expect("written");
+        let written = texts::written(start, place, what, &[None, None]).expect("written");
         written.get("text").and_then(Value::as_str).expect("text").to_owned()
     };
     let here = place(Hung::Ssvi, &[("k2", 300.0), ("c2", 232.0)]);
@@ -231,6 +263,27 @@ fn contract_the_command_line_says_what_differs() {
     for what in [What::Picture, What::Response] {
         assert!(text(&start(), &here, what).starts_with("<svg "));
     }
+}
+
+/// A figure of the response has what the page has: each curve, and which design it is.
+#[test]
+fn contract_a_figure_has_the_pinned_designs() {
+    let pin = |k2: f64| Some(place(Hung::Ssvi, &[("k2", k2)]));
+    let text = |pins: [Option<Place>; 2]| {
+        let written =
+            texts::written(&start(), &place(Hung::Ssvi, &[]), What::Response, &pins).expect("written");
+        written.get("text").and_then(Value::as_str).expect("text").to_owned()
+    };
+    let lines = |text: &str| text.matches("<path").count();
+    let (alone, both) = (text([None, None]), text([pin(300.0), pin(450.0)]));
+    assert!(lines(&both) >= lines(&alone) + 2, "{} {}", lines(&alone), lines(&both));
+    for words in [" = 300 N/m", " = 450 N/m"] {
+        assert!(both.contains(words) && !alone.contains(words), "{words}");
+    }
+    let second = text([None, pin(450.0)]);
+    assert!(second.contains(">B<") && !second.contains(">A<"));
+    let wrong = texts::written(&start(), &place(Hung::Ssvi, &[]), What::Response, &[pin(-1.0), None]);
+    assert_eq!(wrong.expect_err("refused").field.as_deref(), Some("k2"));
 }
 
 /// The search starts from here, every iteration is logged, and after a stop the best design is kept.

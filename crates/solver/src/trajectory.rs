@@ -1,11 +1,14 @@
 //! A motion as rows: at equal intervals, and at the moments that lie between them.
 
+mod falls;
+
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Unobserved};
 use crate::run::{follow_bare, follow_coupled};
 use crate::settings::{Settings, Window};
+use falls::falls;
 use retune_model::{Bare, Coupled, Scene, Side};
 
 /// Why a moment of the motion is recorded.
@@ -178,9 +181,11 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
         });
         let mut moments = Vec::new();
         let mut maxima = |rate: &dyn Fn(&Knot<N>) -> f64, moment: Moment| {
+            let rates = knots.map(|knot| rate(&knot));
             for look in 0..LOOKS {
-                if rate(&knots[look]) > 0.0 && rate(&knots[look + 1]) <= 0.0 {
-                    let place = falls(|theta| rate(&segment.at(theta)), [looks[look], looks[look + 1]]);
+                let [from, to] = [look, look + 1].map(|look| (looks[look], rates[look]));
+                if from.1 > 0.0 && to.1 <= 0.0 {
+                    let place = falls(|theta| rate(&segment.at(theta)), from, to);
                     moments.push((segment.at(place), moment));
                 }
             }
@@ -209,18 +214,6 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
         moments.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
         moments
     }
-}
-
-/// Where a rate that is positive at the one end and not at the other falls through zero.
-fn falls(rate: impl Fn(f64) -> f64, [mut from, mut to]: [f64; 2]) -> f64 {
-    for _ in 0..64 {
-        let middle = 0.5 * (from + to);
-        if middle <= from || middle >= to {
-            break;
-        }
-        if rate(middle) > 0.0 { from = middle } else { to = middle }
-    }
-    to
 }
 
 impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {

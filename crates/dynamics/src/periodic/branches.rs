@@ -1,7 +1,8 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
-use super::orbit::{Orbit, Seen as Values};
-use super::settle::{self, MOST_PERIODS, Settled, is_same, settle};
+use super::look::{Sample, Seen, look};
+use super::orbit::Orbit;
+use super::settle::{MOST_PERIODS, is_same};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
 use super::trace::{Branch, trace};
@@ -9,6 +10,7 @@ use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
 use retune_model::{Bare, Parameter, Scene};
 use retune_solver::Settings;
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 /// How far apart runs are started in the gaps without a stable motion, again and again, as shares of the range; with this share of the
 /// starts, for runs that do not settle take longest.
@@ -36,34 +38,6 @@ pub struct Plan {
     pub looks: usize,
 }
 
-/// A motion on which runs settle, at one sample.
-#[derive(Clone, Debug)]
-pub struct Attractor {
-    /// The number of its branch; none if it could not be followed.
-    pub branch: Option<usize>,
-    /// The motion.
-    pub orbit: Orbit,
-    /// How many starts end on it.
-    pub starts: usize,
-    /// Whether the run from rest does.
-    pub from_rest: bool,
-}
-
-/// What runs settle on at one value of the parameter.
-#[derive(Clone, Debug)]
-pub struct Sample {
-    /// The value.
-    pub value: f64,
-    /// The periodic motions, the most frequent first.
-    pub attractors: Vec<Attractor>,
-    /// What the runs reach that settled on none; the first one that from rest, if it did not.
-    pub irregular: Vec<Values>,
-    /// Whether the run from rest settled on none.
-    pub rest_is_irregular: bool,
-    /// Number of starts, that from rest among them.
-    pub starts: usize,
-}
-
 /// Branches and samples.
 #[derive(Clone, Debug)]
 pub struct Branches {
@@ -73,45 +47,71 @@ pub struct Branches {
     pub branches: Vec<Branch>,
     /// The samples, in the order of their values.
     pub samples: Vec<Sample>,
+    /// Whether the search was ended before it had found all it could.
+    pub ended: bool,
+}
+
+/// Who follows a search, and may end it.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Called after each sample of the plan.
+    pub done: &'a (dyn Fn() + Sync),
+    /// Asked before each run and each motion of a branch: once it is false, no more are made.
+    pub goes_on: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Default for Watch<'_> {
+    fn default() -> Self {
+        Self { done: &|| (), goes_on: &|| true }
+    }
 }
 
 /// A range of the parameter.
 pub type Interval = [f64; 2];
 
-/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. `done` is called after each
-/// sample of the plan.
+/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
-pub fn branches(
-    scene: &Scene,
-    plan: Plan,
-    settings: &Settings,
-    done: impl Fn() + Sync,
-) -> Result<Branches, Error> {
+pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>) -> Result<Branches, Error> {
     let shooting = equations(scene, &plan, settings)?;
     let mut values = evenly(plan.range[0], plan.range[1], plan.samples);
-    let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new() };
+    let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new(), ended: false };
+    let ended = AtomicBool::new(false);
+    let goes_on = || {
+        (watch.goes_on)() || {
+            ended.store(true, SeqCst);
+            false
+        }
+    };
     let mut spacings = SPACINGS.iter().take(plan.looks);
     let mut starts = plan.starts;
     loop {
         let look = |&value: &f64| {
-            let seen = look(&shooting, value, starts);
+            let seen = look(&shooting, value, starts, &goes_on);
             if found.samples.is_empty() {
-                done();
+                (watch.done)();
             }
             seen
         };
         let seen: Vec<Result<Seen, Error>> = values.par_iter().map(look).collect();
         for seen in seen {
-            let sample = seen?.sample(&shooting, |own, solution| {
-                found.holds(own, solution).or_else(|| found.follow(own, solution))
+            let seen = seen?;
+            if seen.starts == 0 {
+                continue;
+            }
+            let sample = seen.sample(&shooting, |own, solution| {
+                found.holds(own, solution).or_else(|| found.follow(own, solution, &goes_on))
             })?;
             found.samples.push(sample);
+        }
+        if ended.load(SeqCst) {
+            break;
         }
         let Some(spacing) = spacings.next() else { break };
         (values, starts) = (found.unseen(*spacing), plan.starts.div_ceil(FEWER));
     }
+    found.ended = ended.into_inner();
     found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
 }
@@ -134,67 +134,7 @@ pub fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shoo
 /// A scene cannot be run.
 pub fn sample(scene: &Scene, plan: Plan, settings: &Settings, value: f64) -> Result<Sample, Error> {
     let shooting = equations(scene, &plan, settings)?;
-    look(&shooting, value, plan.starts)?.sample(&shooting, |_, _| None)
-}
-
-/// What runs settle on at a value of the parameter.
-struct Seen {
-    value: f64,
-    /// Periods, the motion, how many starts, whether from rest.
-    attractors: Vec<(usize, Solution, usize, bool)>,
-    irregular: Vec<Values>,
-    rest_is_irregular: bool,
-    starts: usize,
-}
-
-impl Seen {
-    /// As a sample, with the branch that each motion is on.
-    fn sample(
-        self,
-        shooting: &Shooting,
-        mut branch: impl FnMut(&Shooting, &Solution) -> Option<usize>,
-    ) -> Result<Sample, Error> {
-        let Self { value, irregular, rest_is_irregular, starts, .. } = self;
-        let mut attractors = Vec::new();
-        for (periods, solution, starts, from_rest) in self.attractors {
-            let own = shooting.of_periods(periods);
-            let branch = branch(&own, &solution);
-            attractors.push(Attractor { branch, orbit: Orbit::of(&own, &solution)?, starts, from_rest });
-        }
-        attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
-        Ok(Sample { value, attractors, irregular, rest_is_irregular, starts })
-    }
-}
-
-fn look(shooting: &Shooting, value: f64, starts: usize) -> Result<Seen, Error> {
-    let system = shooting.system(value)?;
-    let scene = shooting.scene_at(value)?;
-    let mut seen = Seen {
-        value,
-        attractors: Vec::new(),
-        irregular: Vec::new(),
-        rest_is_irregular: false,
-        starts: starts + 1,
-    };
-    let all = [system.rest()].into_iter().chain(settle::starts(&system, &scene, starts));
-    for (number, y) in all.enumerate() {
-        let from_rest = number == 0;
-        match settle(shooting, value, y)? {
-            Settled::Irregular(values) => {
-                seen.irregular.push(values);
-                seen.rest_is_irregular |= from_rest;
-            }
-            Settled::On(periods, solution) => {
-                let own = shooting.of_periods(periods);
-                let known = seen.attractors.iter_mut().find(|(_, known, ..)| is_same(&own, known, &solution));
-                match known {
-                    Some((_, _, starts, _)) => *starts += 1,
-                    None => seen.attractors.push((periods, solution, 1, from_rest)),
-                }
-            }
-        }
-    }
-    Ok(seen)
+    look(&shooting, value, plan.starts, &|| true)?.sample(&shooting, |_, _| None)
 }
 
 impl Branches {
@@ -235,12 +175,12 @@ impl Branches {
     }
 
     /// Follows the branch through a motion and those that branch off where it gains or loses stability; gives its number.
-    fn follow(&mut self, shooting: &Shooting, seed: &Solution) -> Option<usize> {
+    fn follow(&mut self, shooting: &Shooting, seed: &Solution, goes_on: &dyn Fn() -> bool) -> Option<usize> {
         if self.branches.len() >= MOST_BRANCHES {
             return None;
         }
         let number = self.branches.len();
-        self.branches.push(trace(shooting, seed, self.plan.range)?);
+        self.branches.push(trace(shooting, seed, self.plan.range, goes_on)?);
         let mut next = number;
         while next < self.branches.len() && self.branches.len() < MOST_BRANCHES {
             let branch = self.branches[next].clone();
@@ -255,7 +195,7 @@ impl Branches {
                 if stable(event.place.checked_sub(1)) == stable(Some(event.place + 1)) {
                     continue;
                 }
-                let Some(off) = doubled(&branch.shooting, event, self.plan.range) else { continue };
+                let Some(off) = doubled(&branch.shooting, event, self.plan.range, goes_on) else { continue };
                 let own = off.shooting.clone();
                 let known = off.points.get(off.points.len() / 2).and_then(|orbit| {
                     let start = own.unknowns(&orbit.states, orbit.value);

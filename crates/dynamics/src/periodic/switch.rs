@@ -10,7 +10,12 @@ use nalgebra::{DVector, Matrix4, Vector4};
 const STEPS: [f64; 3] = [4e-3, 1e-3, 1.6e-2];
 
 /// The branch that begins at a period doubling of another; none if it is not one, or no motion is found on it.
-pub fn doubled(shooting: &Shooting, event: &Event, range: [f64; 2]) -> Option<Branch> {
+pub fn doubled(
+    shooting: &Shooting,
+    event: &Event,
+    range: [f64; 2],
+    goes_on: &dyn Fn() -> bool,
+) -> Option<Branch> {
     if event.kind != EventKind::PeriodDoubling {
         return None;
     }
@@ -38,6 +43,6 @@ pub fn doubled(shooting: &Shooting, event: &Event, range: [f64; 2]) -> Option<Br
             return None; // back on the branch of half the period
         }
         let node = Node::new(&twice, solution, &direction)?;
-        Some(trace_from(&twice, &node, range))
+        Some(trace_from(&twice, &node, range, goes_on))
     })
 }

@@ -40,6 +40,8 @@ pub enum End {
     Steps,
     /// No solution was found a shortest step ahead.
     Lost,
+    /// Whoever watches ended the search.
+    Ended,
 }
 
 impl End {
@@ -53,6 +55,7 @@ impl End {
                 "was followed no farther after the most steps, or the most unstable motions in a row"
             }
             Self::Lost => "was lost: no motion was found a shortest step ahead",
+            Self::Ended => "was followed no farther, for the search was ended",
         }
     }
 }
@@ -91,24 +94,34 @@ impl Branch {
     }
 }
 
-/// The branch through a solution, to both sides.
-pub fn trace(shooting: &Shooting, seed: &Solution, [from, to]: [f64; 2]) -> Option<Branch> {
+/// The branch through a solution, to both sides, as long as it goes on.
+pub fn trace(
+    shooting: &Shooting,
+    seed: &Solution,
+    [from, to]: [f64; 2],
+    goes_on: &dyn Fn() -> bool,
+) -> Option<Branch> {
     let last = seed.x.len() - 1;
     let along = DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)));
     let start = Node::new(shooting, seed.clone(), &along)?;
-    let (after, end) = side(shooting, &start, [from, to]);
+    let (after, end) = side(shooting, &start, [from, to], goes_on);
     if end == End::Closed {
         return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));
     }
     let back = Node { direction: -&start.direction, ..start.clone() };
     let back = Node { tests: tests(&back.orbit, &back.direction), ..back };
-    let (before, begin) = side(shooting, &back, [from, to]);
+    let (before, begin) = side(shooting, &back, [from, to], goes_on);
     Some(joined(shooting, before, &start, after, [begin, end]))
 }
 
 /// The branch from a solution to one side alone.
-pub(super) fn trace_from(shooting: &Shooting, start: &Node, range: [f64; 2]) -> Branch {
-    let (after, end) = side(shooting, start, range);
+pub(super) fn trace_from(
+    shooting: &Shooting,
+    start: &Node,
+    range: [f64; 2],
+    goes_on: &dyn Fn() -> bool,
+) -> Branch {
+    let (after, end) = side(shooting, start, range, goes_on);
     joined(shooting, Vec::new(), start, after, [End::Halved, end])
 }
 
@@ -116,11 +129,19 @@ pub(super) fn trace_from(shooting: &Shooting, start: &Node, range: [f64; 2]) -> 
 type Found = (Orbit, Option<Event>);
 
 /// The motions to one side of a start.
-fn side(shooting: &Shooting, start: &Node, [from, to]: [f64; 2]) -> (Vec<Found>, End) {
+fn side(
+    shooting: &Shooting,
+    start: &Node,
+    [from, to]: [f64; 2],
+    goes_on: &dyn Fn() -> bool,
+) -> (Vec<Found>, End) {
     let mut found: Vec<Found> = Vec::new();
     let (mut now, mut step) = (start.clone(), FIRST);
     let (mut apart, mut unstable) = (0.0, 0);
     for _ in 0..MOST {
+        if !goes_on() {
+            return (found, End::Ended);
+        }
         let next = loop {
             let guess = &now.solution.x + &now.direction * step;
             let corrected = shooting.correct(&guess, &now.direction);

@@ -1,8 +1,9 @@
 //! The largest value of a quantity over all motions of a scene in a range of a parameter: exact on branches of stable periodic motions, and of
 //! runs where none is known.
 
-use super::branches::{Attractor, Branches, Interval, Plan, Sample, branches, sample};
+use super::branches::{Branches, Interval, Plan, Watch, branches, sample};
 use super::largest::largest;
+use super::look::{Attractor, Sample};
 use super::orbit::{Orbit, Seen};
 use crate::parameter::Error;
 use retune_model::{Measure, Scene};
@@ -68,7 +69,7 @@ pub fn motions(
         let irregular = runs.map(|runs| ([from, to], runs.value)).into_iter().collect();
         return Ok(Motions { largest, covered, irregular });
     }
-    let found = branches(scene, plan, settings, || ())?;
+    let found = branches(scene, plan, settings, Watch::default())?;
     let [stable, irregular] = found.stable_and_irregular();
     let covered = stable.iter().map(|[low, high]| high - low).sum::<f64>() / (to - from);
     let irregular = irregular.into_iter().filter(|[low, high]| high - low > NARROW * (to - from));
@@ -125,7 +126,7 @@ impl Branches {
     }
 
     /// The largest value of a quantity over the range.
-    fn largest(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
+    pub fn largest(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
         let on_branches = self.branches.iter().enumerate().filter_map(|(number, branch)| {
             let orbit = largest(branch, |orbit| quantity(&orbit.seen))?;
             let shares = self.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);

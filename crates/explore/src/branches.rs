@@ -1,0 +1,100 @@
+//! Every periodic motion over the band, stable or not, that runs from many starts lead to: what the curves of runs from rest do not show.
+
+use crate::limits::MOST_MOTIONS;
+use crate::protocol::Answer;
+use crate::response::{Stale, band};
+use retune_dynamics::periodic::branches::{Plan, SPACINGS};
+use retune_dynamics::periodic::worst::quantity;
+use retune_dynamics::periodic::{Branch, Branches, Event, EventKind, Largest, Orbit, Watch, branches};
+use retune_model::{Parameter, Source};
+use retune_study::{Study, rounded};
+use serde_json::{Value, json};
+use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
+
+/// Frequencies at which runs are started, and starts at each beside that from rest: as `retune branches` has them if not told otherwise.
+const SAMPLES: usize = 31;
+const STARTS: usize = 16;
+/// Most events of one kind that are marked on a branch: a cascade has any number of them.
+const MOST_EVENTS: usize = 40;
+const KINDS: [EventKind; 4] =
+    [EventKind::Fold, EventKind::PeriodDoubling, EventKind::NeimarkSacker, EventKind::Grazing];
+
+/// How far the search is.
+pub fn progress(done: u64) -> Answer {
+    Answer::new("following").with("done", done).with("of", SAMPLES)
+}
+
+/// The motions of a study over its band; `send` receives how far the search is.
+///
+/// # Errors
+/// The work has become stale.
+pub fn follow(
+    study: &Study,
+    send: &(dyn Fn(Answer) + Sync),
+    is_stale: &(dyn Fn() -> bool + Sync),
+) -> Result<Answer, Stale> {
+    let answer = Answer::new("branches");
+    let strikes = study.scene.damper.is_some_and(|damper| damper.contact.is_some());
+    if !strikes || matches!(study.scene.forcing.source, Source::Decay(_)) {
+        return Ok(answer.with("problem", "nothing is struck: there is one motion, the response"));
+    }
+    let Some(of) = quantity(study.quantity()) else {
+        let problem = format!("motions are not watched for {}", study.quantity().words());
+        return Ok(answer.with("problem", problem));
+    };
+    let band = band(study);
+    let range = [band.from, band.to];
+    let plan =
+        Plan { parameter: Parameter::Omega, range, samples: SAMPLES, starts: STARTS, looks: SPACINGS.len() };
+    let [done, made] = [AtomicU64::new(0), AtomicU64::new(0)];
+    let watch = Watch {
+        done: &|| send(progress(1 + done.fetch_add(1, SeqCst))),
+        goes_on: &|| !is_stale() && made.fetch_add(1, SeqCst) < MOST_MOTIONS,
+    };
+    let found = branches(&study.scene, plan, &study.solver.settings(), watch);
+    if is_stale() {
+        return Err(Stale);
+    }
+    Ok(match found {
+        Err(error) => answer.with("problem", error.to_string()),
+        Ok(found) => drawn(answer, &found, |orbit| of(&orbit.seen))
+            .with("largest", found.largest(of).as_ref().map(largest)),
+    })
+}
+
+/// The motions as curves, one after the other with a gap between them, and the events on them.
+fn drawn(answer: Answer, found: &Branches, value: impl Fn(&Orbit) -> f64) -> Answer {
+    let mut columns: [Vec<f64>; 3] = Default::default();
+    let mut push = |row: [f64; 3]| columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    for branch in &found.branches {
+        for (place, orbit) in branch.points.iter().enumerate() {
+            push([orbit.value, value(orbit), f64::from(u8::from(branch.is_stable_after(place)))]);
+        }
+        push([f64::NAN; 3]);
+    }
+    let events: Vec<Value> = found.branches.iter().flat_map(|branch| events(branch, &value)).collect();
+    let answer = answer.with("branches", found.branches.len()).with("ended", found.ended);
+    ["omega", "value", "stable"]
+        .into_iter()
+        .zip(&columns)
+        .fold(answer.with("events", events), |answer, (name, column)| answer.column(name, column))
+}
+
+/// The kind of each event, its frequency and the value there.
+fn events(branch: &Branch, value: impl Fn(&Orbit) -> f64) -> Vec<Value> {
+    let of = |kind: EventKind| branch.events.iter().filter(move |event| event.kind == kind).take(MOST_EVENTS);
+    let words = |event: &Event| json!([event.kind.name(), event.orbit.value, value(&event.orbit)]);
+    KINDS.into_iter().flat_map(of).map(words).collect()
+}
+
+fn largest(found: &Largest) -> Value {
+    json!({
+        "value": found.value,
+        "words": rounded(found.value, 4),
+        "omega": found.at,
+        "rest": found.from_rest,
+        "share": found.share,
+        "periods": found.orbit.as_ref().map(|orbit| orbit.periods),
+        "impacts": found.orbit.as_ref().map(|orbit| &orbit.seen.impacts),
+    })
+}
