@@ -101,7 +101,7 @@ def test_contract_ctrl_c_ends_a_search_and_resume_goes_on_to_the_same_bytes(tmp_
         process.send_signal(signal.SIGINT)
         begun = time.monotonic()
         process.communicate(timeout=60)
-        assert time.monotonic() - begun < 5, "Ctrl-C ends it soon"
+        assert time.monotonic() - begun < 20, "Ctrl-C ends it soon, on a busy machine too"
         stopped += process.returncode == 42
     assert stopped, "at least one was stopped on the way"
     problem = rt.Problem.from_study(slow)
