@@ -89,7 +89,7 @@ branches-all *OPTIONS:
     {{retune}} branches studies/ssvi.json --out results/branches/paper "$@"
     {{retune}} branches results/ssvi --margin --out results/branches/tuned "$@"
     {{retune}} branches results/ssvi-global --out results/branches/global "$@"
-    {{retune}} branches studies/ssvi-isola.json --starts 64 --out results/branches/isola "$@"
+    {{retune}} branches studies/ssvi-isola.json --starts 64 --basins 5.98 --out results/branches/isola "$@"
 
 # Answer designs on standard input with the value that a study makes small, for instance `echo 600 262 | just evaluate studies/tmd-free.json`
 evaluate STUDY *OPTIONS:
@@ -194,10 +194,10 @@ test-retention *OPTIONS:
 test-branches *OPTIONS:
     python3 tests/reference/orbits.py "$@"
 
-# Run four dampers from rest at FREQUENCIES frequencies: whatever settles must lie on a branch that was found: results/robustness/branches.md
+# Run four dampers from rest at FREQUENCIES frequencies: whatever settles must lie on a branch that was found; follow the branches of eight structures, which must keep their period: results/robustness/branches.md
 hunt-branches FREQUENCIES="3001":
     mkdir -p results/robustness
-    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture | grep -E '^\||^[0-9]+ settled' > results/robustness/branches.md.tmp
+    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture --test-threads 1 | grep -E '^\||^#|^[0-9]+ settled' | sed -E 's/^#.*/\n&\n/; s/^[0-9].*/\n&/' > results/robustness/branches.md.tmp
     mv results/robustness/branches.md.tmp results/robustness/branches.md && cat results/robustness/branches.md
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
@@ -235,11 +235,10 @@ package:
 bench *OPTIONS:
     cargo bench --bench runs "$@"
 
-# Time the branches of two dampers on one core
+# Time the branches of two dampers on one core, each beside runs from rest at 3001 frequencies, the most of E1max that each finds, and the ratio of the times
 bench-branches:
     cargo build --release --quiet --package retune
-    time target/release/retune branches results/ssvi --out target/branches/tuned --threads 1 --replace --quiet
-    time target/release/retune branches studies/ssvi.json --out target/branches/paper --threads 1 --replace --quiet
+    python3 tests/bench_branches.py target/release/retune
 
 # Measure the explorer in a browser: from a slider to the painted motion, a whole response, memory over SECONDS of dragging, size of the page: results/explore/bench.txt (needs python3 and chromium)
 bench-explore SECONDS="600":
@@ -254,9 +253,16 @@ bench-instructions *OPTIONS:
     # For a processor that valgrind knows: one with AVX2, without AVX-512.
     RUSTFLAGS="-C target-cpu=x86-64-v3" cargo bench --target-dir target/instructions --quiet --package retune-solver --bench instructions "$@"
 
+# Count the kinds of instructions of a run, and what lanes over runs could save at most (needs python3, valgrind and objdump): results/speed/lanes.txt
+count-lanes:
+    mkdir -p results/speed
+    python3 tests/lanes.py > results/speed/lanes.txt.tmp
+    mv results/speed/lanes.txt.tmp results/speed/lanes.txt && cat results/speed/lanes.txt
+
 # Time values over a band and whole searches beside an earlier version, which it builds in target/bench-job (needs python3): results/speed/job.txt
 bench-job BASE="f3d2d61" *OPTIONS:
-    git worktree add --force target/bench-job {{BASE}} 2> /dev/null || git -C target/bench-job checkout --quiet {{BASE}}
+    test -d target/bench-job || git clone --quiet --shared --no-checkout . target/bench-job
+    git -C target/bench-job checkout --quiet {{BASE}}
     cd target/bench-job && cargo build --release --quiet --package retune --target-dir target
     cargo build --release --quiet --package retune
     mkdir -p results/speed

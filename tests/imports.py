@@ -2,8 +2,8 @@
 
     python3 tests/imports.py            from the root of the repository; fails with every fault named
 
-A *circle* is a set of files of one crate each of which imports, directly or through others, something of every other. `tests/modules.py`
-defines what an import is.
+A *circle* is a set of files of one crate each of which imports, directly or through others, something of every other. A *room* is a file
+beside `lib.rs` with the folder of its name; rooms make no circles either. `tests/modules.py` defines what an import is.
 """
 
 import re
@@ -74,6 +74,19 @@ def shortest(edges, part):
     return [*best, best[0]]
 
 
+def rooms(crate, edges):
+    """Which rooms of a crate import which. Its `lib.rs` or `main.rs` is none: it names them all."""
+
+    def room(file):
+        first = file.relative_to(crate / "src").parts[0].removesuffix(".rs")
+        return None if first in ("lib", "main", "bin") else first
+
+    found = {}
+    for file, others in edges.items():
+        found.setdefault(room(file), set()).update(room(other) for other in others)
+    return {own: others - {own, None} for own, others in found.items() if own}
+
+
 def dependencies(manifest):
     """The dependencies of a crate, those of single targets included, those of tests and build scripts not."""
     names, section = set(), ""
@@ -95,10 +108,13 @@ def main():
     for crate in crates:
         sources = sorted((crate / "src").rglob("*.rs"))
         lines = {file: len(file.read_text(encoding="utf-8").splitlines()) for file in sources}
-        found = circles(modules.imports(crate))
+        edges = modules.imports(crate)
+        found = circles(edges)
         for part, circle in found:
             part, circle = ([str(file.relative_to(crate / "src")) for file in files] for files in (sorted(part), circle))
             faults.append(f"{crate.name}: a circle of {len(part)} files ({', '.join(part)}): {' → '.join(circle)}")
+        for part, circle in circles(rooms(crate, edges)):
+            faults.append(f"{crate.name}: a circle of {len(part)} rooms ({', '.join(sorted(part))}): {' → '.join(circle)}")
         used = {packages[name] for name in dependencies(crate / "Cargo.toml") if name in packages}
         if crate.name not in BELOW:
             faults.append(f"{crate.name}: a crate that tests/imports.py does not know: say in BELOW what it may depend on")

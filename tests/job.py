@@ -1,16 +1,21 @@
-"""Times what people wait for beside an earlier version: values over a band, and whole searches.
+"""Times what people wait for beside an earlier version: values over a band, a grid of runs, whole searches; and what a looser tolerance of a
+search changes of its result.
 
     python3 tests/job.py RETUNE BASE [--repeats N]
 
-RETUNE and BASE are the programs of two versions. Times are those of the processor, one thread, the least of N turns taken one after the other.
+RETUNE and BASE are the programs of two versions. Times are those of the processor, one thread; of values the least of N turns taken one after
+the other.
 """
 
 import argparse
+import csv
+import itertools
 import json
 import resource
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -18,6 +23,12 @@ ROOT = Path(__file__).resolve().parent.parent
 DESIGNS = {"regular": "583.92142 94.97052 0.02885 1.10454", "irregular": "215 232 0.06 0.36"}
 # Values in one process, so that its start counts for little.
 VALUES = 40
+# A coarse grid of designs, as a `surf` has, each one run at one frequency.
+GRID = itertools.product((50, 100, 200, 300, 400, 600, 800, 1200, 1600), (10, 30, 60, 90, 150, 250, 400),
+                         (0.02, 0.05, 0.08, 0.12, 0.16, 0.26), (0.06, 0.2, 0.35, 0.5, 0.65, 0.78))
+# Studies whose searches are made with and without a tolerance of their own.
+SEARCHES = ("ssvi", "ssvi-global", "ssvi-robust", "ssvi-resonance", "tmd-free", "tmd-resonance")
+SEARCH_RTOL = {"search_rtol": 1e-6}
 
 
 def seconds(command, text=None):
@@ -42,35 +53,103 @@ def study(name, directory, old, **solver):
     return file
 
 
-def rows(programs, directory, repeats):
-    """What is timed: a name, and the time of each version."""
+def values(name, designs, programs, directory, repeats, **solver):
+    """Time of a value, ms, by either version."""
+    files = [study(name, directory, old, **solver) for old in (False, True)]
+    text = "".join(f"{design}\n" for design in designs)
+
+    def turn(program, file):
+        return seconds([program, "evaluate", file, "--threads", "1"], text)[0]
+
+    turns = [[turn(*pair) for pair in zip(programs, files)] for _ in range(repeats)]
+    return [1e3 / len(designs) * min(times) for times in zip(*turns)]
+
+
+def search(program, name, directory, old=False, **solver):
+    """Time of a search, s, and the E1max that it ends with, J."""
+    out = Path(tempfile.mkdtemp(dir=directory)) / name
+    took, _ = seconds([program, "optimize", study(name, directory, old, **solver), "--out", out, "--threads", "1"])
+    return took, json.loads((out / "optimum.json").read_text())["E1max"]
+
+
+def compare(programs, directory, repeats):
+    """Both versions."""
+    print(f"{'':<56}{'today':>10}{'f3d2d61':>10}{'ratio':>8}")
+
+    def row(name, times):
+        print(f"{name:<56}{times[0]:>10.3f}{times[1]:>10.3f}{times[1] / times[0]:>8.2f}", flush=True)
+
     for motion, design in DESIGNS.items():
         for rtol in (1e-10, 1e-9, 1e-6, 1e-5):
-            files = [study("ssvi", directory, old, rtol=rtol) for old in (False, True)]
-            turn = lambda: [seconds([program, "evaluate", file, "--threads", "1"], f"{design}\n" * VALUES)
-                            for program, file in zip(programs, files)]
-            turns = [turn() for _ in range(repeats)]
-            yield f"worst over the band, {motion}, rtol {rtol:g}, ms", [1e3 / VALUES * min(t[i][0] for t in turns) for i in (0, 1)]
+            times = values("ssvi", [design] * VALUES, programs, directory, repeats, rtol=rtol)
+            row(f"worst over the band, {motion}, rtol {rtol:g}, ms", times)
+    grid = [" ".join(map(str, design)) for design in GRID]
+    for rtol in (1e-10, 1e-4):
+        times = values("ssvi-resonance", grid, programs, directory, repeats, rtol=rtol)
+        row(f"a run of a surf of {len(grid)}, rtol {rtol:g}, ms", times)
     for name in ("ssvi", "ssvi-global"):
-        for what, solver in (("as committed", {}), ("search_rtol 1e-6", {"search_rtol": 1e-6})):
-            times = []
-            for number, program in enumerate(programs):
-                file = study(name, directory, number == 1, **solver)
-                out = directory / f"{name}-{number}-{len(solver)}"
-                times.append(seconds([program, "optimize", file, "--out", out, "--threads", "1"])[0])
-            yield f"optimize {name}, {what}, s", times
+        base, _ = search(programs[1], name, directory, old=True)
+        row(f"optimize {name}, as committed, s", [search(programs[0], name, directory)[0], base])
+        row(f"optimize {name}, search_rtol 1e-6 today, s", [search(programs[0], name, directory, **SEARCH_RTOL)[0], base])
+
+
+def tolerances(program, directory):
+    """What a search finds at its own tolerance."""
+    print(f"\n{'search':<20}{'s':>8}{'E1max, J':>14}{'s, 1e-6':>10}{'E1max, 1e-6':>14}{'change':>10}")
+    for name in SEARCHES:
+        (first, e1), (second, loose) = (search(program, name, directory, **solver) for solver in ({}, SEARCH_RTOL))
+        print(f"{name:<20}{first:>8.2f}{e1:>14.6f}{second:>10.2f}{loose:>14.6f}{loose / e1 - 1:>+10.1e}", flush=True)
+
+
+def build(programs, directory):
+    """Wall clock of a build from clean: `cargo build --release --package retune` beside where each program was built."""
+    took = []
+    for number, program in enumerate(programs):
+        command = ["cargo", "build", "--release", "--quiet", "--package", "retune", "--target-dir", directory / f"build-{number}"]
+        begin = time.perf_counter()
+        subprocess.run(command, cwd=program.parents[2], check=True)
+        took.append(time.perf_counter() - begin)
+    print(f"\n{'a build from clean, s, two cores':<56}{took[0]:>10.0f}{took[1]:>10.0f}{took[1] / took[0]:>8.2f}")
+
+
+def peers():
+    """The time of a run to an error of E1max by the best of other programs, and by ours, of `results/accuracy`."""
+    errors = {}
+    with open(ROOT / "results/accuracy/runs.csv", newline="") as table:
+        for row in csv.DictReader(table):
+            if not row["failure"]:
+                key = (row["scene"], row["program"], row["method"], row["contacts"])
+                errors.setdefault(key, []).append((float(row["seconds"]), float(row["E1max_error"])))
+    print(f"\n{'a run, results/accuracy':<24}{'error':>7}{'ms':>9}{'best peer, ms':>15}{'ratio':>8}  which")
+    for scene in dict.fromkeys(scene for scene, *_ in errors):
+        for level in (1e-6, 1e-9):
+            best = {}
+            for (of, program, method, _), runs in errors.items():
+                # An error counts only if no tighter setting has a larger one.
+                sure = [time for i, (time, _) in enumerate(runs) if max(error for _, error in runs[i:]) <= level]
+                if of == scene and sure and (program != "retune" or method == "hybrid"):
+                    name = program if program == "retune" else f"{program} {method}"
+                    best[name] = min(min(sure), best.get(name, float("inf")))
+            own = best.pop("retune")
+            peer = min(best, key=best.get, default=None)
+            cells = f"{1e3 * best[peer]:>15.4f}{best[peer] / own:>8.1f}  {peer}" if peer else f"{'-':>15}{'-':>8}  none gets there"
+            print(f"{scene:<24}{level:>7.0e}{1e3 * own:>9.4f}{cells}")
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("programs", nargs=2, type=Path)
     parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--build", action="store_true", help="time builds of both from clean, too")
     given = parser.parse_args()
+    programs = [program.resolve() for program in given.programs]
     print("`just bench-job`: processor time on one thread, beside commit f3d2d61; the certificate of today follows other motions, too\n")
-    print(f"{'':<56}{'today':>10}{'f3d2d61':>10}{'ratio':>8}")
     with tempfile.TemporaryDirectory() as directory:
-        for name, (today, base) in rows([program.resolve() for program in given.programs], Path(directory), given.repeats):
-            print(f"{name:<56}{today:>10.2f}{base:>10.2f}{base / today:>8.2f}", flush=True)
+        compare(programs, Path(directory), given.repeats)
+        tolerances(programs[0], Path(directory))
+        if given.build:
+            build(programs, Path(directory))
+    peers()
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 //! `branches`, computed again: motions from their states, what runs settle on.
 
 use crate::asked::plan_of;
+use crate::basins::STARTS;
 use crate::tables::{ATTRACTORS, STATES};
+use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::branches::{Plan, sample};
-use retune_dynamics::periodic::orbit::seen;
-use retune_dynamics::periodic::shooting::settings_of;
+use retune_dynamics::periodic::forced::settings_of;
+use retune_dynamics::periodic::seen::seen;
 use retune_study::Study;
 use retune_workbench::Error;
 use retune_workbench::resolved::Resolved;
@@ -33,6 +35,15 @@ pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> 
     else {
         return report.fail(name, "is of no plan that can be read");
     };
+    let table = Sample::read(&place.join(name), most)?;
+    if name == STARTS {
+        let Some(value) = resolved.plan["basins"].as_f64() else {
+            return report.fail(name, "is of no value that can be read");
+        };
+        let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, None)?;
+        let checks: Vec<Check> = table.rows().map(|row| start(&plane, row)).collect();
+        return report.look(name, &table.of(checks.len()), &checks);
+    }
     let mut results = Results { study, plan, states: BTreeMap::new() };
     if name != ATTRACTORS {
         for row in Sample::read(&place.join(STATES), usize::MAX)?.rows() {
@@ -40,7 +51,6 @@ pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> 
             results.states.entry(motion(row)).or_default().push(state);
         }
     }
-    let table = Sample::read(&place.join(name), most)?;
     let checks: Vec<Check> = table
         .rows()
         .map(|row| match name {
@@ -50,6 +60,15 @@ pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> 
         .map(|check| check.unwrap_or_else(Check::never))
         .collect();
     report.look(name, &table.of(checks.len()), &checks)
+}
+
+/// The number of the motion on which a start of the plane ends; -1 of none.
+fn start<'a>(plane: &'a Plane, row: Row) -> Check<'a> {
+    let start = ["x1", "v1"].map(|name| row.number(name));
+    let number = |end: Option<usize>| end.map_or(-1.0, |number| number as f64);
+    let again = move || plane.end(start).map_or(f64::INFINITY, number);
+    let said = if row.text("motion").is_empty() { -1.0 } else { row.number("motion") };
+    Check { said, again: Box::new(again) }
 }
 
 fn motion(row: Row) -> Motion {

@@ -24,20 +24,30 @@ pub struct Asked {
     pub starts: usize,
     /// Whether to look for the force at which an isola begins.
     pub margin: bool,
+    /// The value of the parameter at which starts in a plane are followed; none unless asked for.
+    pub basins: Option<String>,
 }
 
 impl Default for Asked {
     fn default() -> Self {
-        Self { over: Parameter::Omega, from: None, to: None, samples: 31, starts: 16, margin: false }
+        Self {
+            over: Parameter::Omega,
+            from: None,
+            to: None,
+            samples: 31,
+            starts: 16,
+            margin: false,
+            basins: None,
+        }
     }
 }
 
 impl Asked {
-    /// The plan for a study.
+    /// The plan for a study, and the value at which basins are asked for.
     ///
     /// # Errors
     /// An end is no number or out of range, or there are too many runs.
-    pub(crate) fn plan(&self, study: &Study) -> Result<Plan, Error> {
+    pub(crate) fn plan(&self, study: &Study) -> Result<(Plan, Option<f64>), Error> {
         let Self { over, samples, starts, .. } = *self;
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
@@ -75,7 +85,8 @@ impl Asked {
             let problem = format!("give 2 to {MOST} samples, and at most {MOST} starts at each");
             return Err(Error::Asked { option: "--samples, --starts", problem });
         }
-        Ok(Plan { parameter: over, range, samples, starts, looks: SPACINGS.len() })
+        let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
+        Ok((Plan { parameter: over, range, samples, starts, looks: SPACINGS.len() }, basins))
     }
 }
 

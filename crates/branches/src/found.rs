@@ -1,6 +1,6 @@
 //! What `branches` finds.
 
-use retune_dynamics::periodic::{Branches, Orbit, largest};
+use retune_dynamics::periodic::{Basins, Branches, Orbit};
 use retune_study::Study;
 
 /// The motions of a study along a parameter.
@@ -14,13 +14,20 @@ pub struct Found {
     pub largest: Vec<Option<Orbit>>,
     /// How much more force it bears, where that was asked for.
     pub margin: Option<Margin>,
+    /// Where starts in a plane end, where that was asked for.
+    pub basins: Option<Basins>,
 }
 
 impl Found {
     /// Of the motions of a study.
     pub(crate) fn new(study: Study, branches: Branches) -> Self {
-        let largest = branches.branches.iter().map(|branch| largest(branch, |orbit| orbit.seen.e1_max));
-        Self { study, largest: largest.collect(), branches, margin: None }
+        Self {
+            study,
+            largest: branches.largest_of_each(|seen| seen.e1_max),
+            branches,
+            margin: None,
+            basins: None,
+        }
     }
 }
 

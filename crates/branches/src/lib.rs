@@ -1,24 +1,28 @@
 //! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
 //! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
 //!
-//! The motions are found by `retune_dynamics::periodic`. Read `asked` (what is asked for), `tables` (what is written), `draw`, `page`, and
+//! The motions are found by `retune_dynamics::periodic`. Read `asked` (what is asked for), `tables` (what is written), `draw`, `page`, `basins`, and
 //! `again`, which computes rows of the tables again.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod again;
 mod asked;
+mod basins;
 mod draw;
 mod found;
 mod margin;
 mod page;
 mod remedy;
 mod tables;
+mod words;
 
 pub use asked::Asked;
 pub use found::{Found, Margin};
 pub use tables::summary;
 
 use asked::plan_json;
+use retune_dynamics::periodic::Plane;
+use retune_dynamics::periodic::basins::SIDE;
 use retune_dynamics::periodic::branches::{Watch, branches as motions};
 use retune_study::{found_in, read};
 use retune_workbench::artefact::{Content, Kind, artefact};
@@ -37,8 +41,10 @@ pub static KIND: Kind = Kind {
         artefact(tables::BIFURCATIONS, Content::Own),
         artefact(tables::ATTRACTORS, Content::Own),
         artefact(tables::STATES, Content::Derived),
+        artefact(basins::STARTS, Content::Own),
         artefact("branches.json", Content::Derived),
         artefact("branches.svg", Content::Derived),
+        artefact("basins.svg", Content::Derived),
         artefact("README.md", Content::Derived),
         artefact("report.html", Content::Derived),
     ],
@@ -53,7 +59,7 @@ pub static OTHERS: &Others = &[(&KIND, again::again)];
 /// The study or what is asked for is wrong, a scene in the range cannot be run, or the results cannot be written.
 pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Result<Done<Found>, Error> {
     let study = read(&request.study)?;
-    let plan = asked.plan(&study)?;
+    let (plan, basins_at) = asked.plan(&study)?;
     let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
     let out = request.out.clone().unwrap_or_else(|| {
         Path::new("results").join(format!("branches-{}{tuned}-{}", study.name(), plan.parameter.symbol()))
@@ -63,6 +69,9 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
     let mut said = plan_json(&plan);
     if asked.margin {
         said["margin"] = true.into();
+    }
+    if let Some(value) = basins_at {
+        said["basins"] = value.into();
     }
     let job = Job::of_studies(&KIND, &request, said, studies.into_iter())?;
     job.run(&request, watch, |directory| {
@@ -77,6 +86,13 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
         let mut found = Found::new(study.clone(), branches);
         if asked.margin {
             found.margin = margin::margin(&found)?;
+        }
+        if let Some(value) = basins_at {
+            let bar = watch.progress("rows of starts in a plane", SIDE as u64);
+            let known = Some(&found.branches);
+            let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, known)?;
+            found.basins = Some(plane.basins(|| bar.inc(1))?);
+            bar.finish();
         }
         tables::write(&found, directory)?;
         page::write(&found, directory)?;

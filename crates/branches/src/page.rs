@@ -1,9 +1,11 @@
 //! The page of `branches`, and its answer in words. Every number on it is one of the tables beside it.
 
+use crate::basins;
 use crate::draw::draw;
 use crate::found::{Found, Margin};
 use crate::remedy::{Remedy, remedies};
 use crate::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
+use crate::words::{joule, kind};
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, Sample};
 use retune_store::Directory;
 use retune_study::{counted, rounded, short};
@@ -25,7 +27,7 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
     let caption = format!("E1max and stroke of the periodic motions against {symbol}");
     let files =
         [BRANCHES, BIFURCATIONS, ATTRACTORS, STATES, "branches.json", "resolved.json", "manifest.json"];
-    let sections = vec![
+    let mut sections = vec![
         (
             "motions",
             "Periodic motions",
@@ -35,6 +37,10 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
         ("coexisting", "What runs settle on", vec![Block::Words(starts(found)), attractors(found)]),
         ("data", "Data", vec![Block::Files(files.map(str::to_owned).to_vec())]),
     ];
+    if let Some(own) = &found.basins {
+        directory.write("basins.svg", &basins::draw(found, own))?;
+        sections.insert(3, ("basins", "Where starts end", basins::blocks(found, own)));
+    }
     let document = Document {
         title: format!("{}: periodic motions along {symbol}", found.study.name()),
         command: "retune branches",
@@ -162,15 +168,6 @@ fn span(branch: &Branch) -> [f64; 2] {
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The periods and impacts of a motion in words.
-fn kind(orbit: &Orbit) -> String {
-    let impacts = match orbit.seen.impacts.as_str() {
-        "" => "no impact".to_owned(),
-        impacts => format!("impacts {impacts}"),
-    };
-    format!("{}, {impacts}", counted(orbit.periods as u64, "period"))
-}
-
 /// The branches.
 fn branches(found: &Found) -> Block {
     let plan = &found.branches.plan;
@@ -291,8 +288,4 @@ fn attractors(found: &Found) -> Block {
         format!("Where starts end on more than one motion, or on none that repeats; {ATTRACTORS} has all.")
     };
     Block::Table(words, head.to_vec(), rows)
-}
-
-fn joule(value: f64) -> String {
-    rounded(value, 5)
 }

@@ -26,14 +26,14 @@ pub fn remedies(branch: &Branch, orbit: &Orbit) -> Vec<Remedy> {
 }
 
 fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<Remedy> {
-    let own = parameter.of(&branch.shooting.scene).filter(|own| *own > 0.0)?;
+    let own = parameter.of(&branch.shooting.forced.scene).filter(|own| *own > 0.0)?;
     let folds = folds(branch, orbit, parameter)?.map(|fold| fold.map(|orbit| orbit.value));
     folds.iter().any(Option::is_some).then_some(Remedy { parameter, own, folds })
 }
 
 /// The motions at the folds below and above a parameter's value in the scene at which a motion of a branch vanishes.
 pub fn folds(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<[Option<Orbit>; 2]> {
-    let own = parameter.of(&branch.shooting.scene).filter(|own| *own > 0.0)?;
+    let own = parameter.of(&branch.shooting.forced.scene).filter(|own| *own > 0.0)?;
     let shooting = branch.shooting.along(orbit.value, parameter, own).ok()?;
     let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, own))?;
     let along = trace(&shooting, &seed, REACH.map(|share| share * own), &|| true)?;

@@ -1,5 +1,6 @@
 //! The tables of `branches`.
 
+use crate::basins::STARTS;
 use crate::found::Found;
 use retune_dynamics::periodic::Orbit;
 use retune_store::Directory;
@@ -83,6 +84,9 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
     directory.write(STATES, &states)?;
     directory.write(BIFURCATIONS, &events)?;
     directory.write(ATTRACTORS, &attractors)?;
+    if let Some(basins) = &found.basins {
+        directory.write(STARTS, &crate::basins::table(basins))?;
+    }
     Ok(directory.write_json("branches.json", &summary(found))?)
 }
 

@@ -4,23 +4,30 @@
 //! closes the gaps between them all at once (multiple shooting), with exact derivatives of each (`retune_solver::Tangent`). A branch is
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
-//! Read `shooting` (the equations and their solution), `orbit` (what a motion is like), `trace` (a branch), `events` (its bifurcations),
-//! `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs from many starts do), `largest`, then `branches`, which asks for all of them, and `worst`, the largest value over them.
+//! Read `forced` (what it asks of a system), `shooting` (the equations and their solution), `orbit` (a motion, and `seen` of it), `trace` (a
+//! branch), `events` (its bifurcations), `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs
+//! from many starts do), `largest`, then `branches`, which asks for all of them, `worst`, the largest value over them, and `basins`, where
+//! starts end.
 
+pub mod basins;
 pub mod branches;
 pub mod events;
+pub mod forced;
 pub mod largest;
 pub mod look;
 mod node;
 pub mod orbit;
+pub mod seen;
 pub mod settle;
 pub mod shooting;
 pub mod switch;
 pub mod trace;
 pub mod worst;
 
+pub use basins::{Basins, Plane};
 pub use branches::{Branches, Interval, Watch, branches};
 pub use events::{Event, EventKind};
+pub use forced::Forced;
 pub use largest::largest;
 pub use look::Sample;
 pub use orbit::Orbit;

@@ -4,9 +4,9 @@ mod common;
 
 use common::scenes::{Numbers, SSVI};
 use rayon::prelude::*;
-use retune_dynamics::periodic::branches;
 use retune_dynamics::periodic::branches::{Plan, Watch, equations};
 use retune_dynamics::periodic::settle::{Settled, settle};
+use retune_dynamics::periodic::{End, Orbit, branches};
 use retune_dynamics::{Parameter, Stretch, follow};
 use retune_solver::Settings;
 
@@ -29,6 +29,7 @@ const DAMPERS: [Numbers; 4] = [
 #[test]
 fn invariant_what_settles_lies_on_a_branch() {
     let count = std::env::var("RETUNE_FREQUENCIES").map_or(41, |count| count.parse().expect("a number"));
+    println!("\n## Runs from rest at many frequencies of four dampers");
     println!(
         "| k2, N/m | c2, N·s/m | D, m | C, m | frequencies | on a branch | irregular | largest exponents of these, 1/s |"
     );
@@ -76,4 +77,39 @@ fn invariant_what_settles_lies_on_a_branch() {
     // Narrow stable windows inside chaos, and frequencies beside a bifurcation, where runs settle slowly: 18 of 12,004, of which 41
     // frequencies meet two.
     assert!(lost.len() <= 2 + count / 150, "{lost:?}");
+}
+
+/// Branches of several periods come close to those of one where walls are nearly hard and a motion grazes. None goes over to a motion of a shorter
+/// period, followed several times over.
+#[test]
+fn invariant_branches_keep_their_period() {
+    let all = [2e4, 2.5e4, 3e4, 3.5e4, 4.5e4, 5e4, 5.5e4, 6e4];
+    let structures = if std::env::var("RETUNE_FREQUENCIES").is_ok() { &all[..] } else { &all[4..5] };
+    println!(
+        "\n| k1, N/m | branches | motions | of a shorter period | ends where no motion is found ahead |"
+    );
+    println!("| ---: | ---: | ---: | ---: | ---: |");
+    for &k1 in structures {
+        let range = [0.8, 1.25].map(|share| share * f64::sqrt(k1 / 1000.0));
+        let plan = Plan { parameter: Parameter::Omega, range, samples: 31, starts: 16, looks: 2 };
+        let scene = Numbers { k1, ..SSVI }.scene();
+        let found = branches(&scene, plan, &Settings::default(), Watch::default()).expect("branches");
+        let orbits = || found.branches.iter().flat_map(|branch| &branch.points);
+        let shorter = orbits().filter(|orbit| repeats_sooner(orbit)).count();
+        let lost =
+            found.branches.iter().flat_map(|branch| branch.ends).filter(|end| *end == End::Lost).count();
+        println!("| {k1} | {} | {} | {shorter} | {lost} |", found.branches.len(), orbits().count());
+        assert_eq!(shorter, 0, "k1 = {k1}");
+    }
+}
+
+/// Whether a motion repeats after fewer periods than it counts, to a millionth of its size.
+fn repeats_sooner(Orbit { states, .. }: &Orbit) -> bool {
+    let n = states.len();
+    let size = states.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));
+    let gap = |m: usize| {
+        let pairs = states.iter().zip(states.iter().cycle().skip(m));
+        pairs.flat_map(|(a, b)| a.iter().zip(b)).fold(0.0_f64, |gap, (a, b)| gap.max((a - b).abs()))
+    };
+    (1..n).filter(|m| n.is_multiple_of(*m)).any(|m| gap(m) < 1e-6 * size)
 }

@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{Numbers, SSVI, TMD};
 use nalgebra::{Complex, Vector4};
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::branches::{Plan, Watch};
+use retune_dynamics::periodic::branches::{Plan, Watch, equations};
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::shooting::Solution;
 use retune_dynamics::periodic::{End, EventKind, Orbit, Shooting, branches, largest};
@@ -160,6 +160,25 @@ fn invariant_the_folds_of_the_isola_are_bracketed_by_runs() {
             };
             assert_eq!(stayed, stays, "{value}");
         }
+    }
+}
+
+/// A nearly hard wall, an isola of three periods that comes close to the motion without impact where it grazes: steps that were too long for it
+/// once left it there and went on along that motion, three times over, to the end of the range.
+#[test]
+fn regress_a_branch_is_not_left_at_a_grazing() {
+    let omega = 5.769_055_381_949_458_5;
+    let range = [0.8, 1.25].map(|share| share * 45_f64.sqrt());
+    let scene = Numbers { k1: 4.5e4, ..SSVI }.scene();
+    let single = equations(&scene, &Plan { range, ..plan(31, 16) }, &Settings::default()).expect("a scene");
+    let y = [0.06457168485968567, 0.12152383649913526, 0.07098478068946441, 0.28044859432927244];
+    let Settled::On(3, solution) = settle(&single, omega, y).expect("a run") else { panic!("three periods") };
+    let own = single.of_periods(3);
+    let branch = retune_dynamics::periodic::trace::trace(&own, &solution, range, &|| true).expect("a branch");
+    assert_eq!(branch.ends, [End::Closed; 2]);
+    for orbit in &branch.points {
+        let moved = (orbit.states[0][3] - orbit.states[1][3]).abs();
+        assert!(moved > 1e-6 && !orbit.seen.impacts.is_empty(), "{}: {:?}", orbit.value, orbit.seen);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Every table and figure of the paper, reproduced beside its statements, with a verdict on each.
 
+mod begins;
 mod cases;
 mod curves;
 mod describe;

@@ -3,7 +3,7 @@
 use super::item::{Grid, Item, Picture, Statement, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use retune_figures::Drawing;
-use retune_workbench::report::html::head;
+use retune_workbench::html::head;
 
 /// What this page has beside the style of all pages.
 const OWN: &str = include_str!("page.css");

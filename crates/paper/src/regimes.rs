@@ -1,5 +1,6 @@
 //! Figure 4: zones of impacts, and the motions in them.
 
+use super::begins::begins;
 use super::diagrams;
 use super::family::Family;
 use super::item::{Grid, Item, Verdict};
@@ -44,10 +45,12 @@ pub fn figure4(plan: &Plan) -> Result<Item, Error> {
     }
     item.grids.push(names(&families, &all));
     item.grids.push(coexisting(&families, &all));
+    item.grids.push(begins(plan, &families, &all)?);
     item.data.push(("figure4-regimes.csv".into(), regimes_csv(&families, &all)));
     item.data.push(("figure4-orbits.csv".into(), orbits_csv(&families, &all)));
     statements(&families, &all, &mut item);
     item.notes.push(about_coexisting(&families, &all));
+    item.notes.push("Where periodic motions begin and end: the branches of the motions that runs from rest and from four other starts lead to. At a fold the motion vanishes; at a period doubling one of twice the period takes its place; at a grazing an impact begins or ends, and another name goes on; \"the range\" is an end of the figure. Ranges narrower than a step of the figure are left out.".into());
     item.notes.push("How motions are named stands under Figure 7. The paper does not say which coordinate its bifurcation diagrams show; ours show x2. Its regime labels are in the picture only, so they cannot be compared one by one.".into());
     Ok(item)
 }

@@ -237,3 +237,20 @@ fn contract_wrong_plans_are_refused_with_the_field() {
         other => panic!("{other}"),
     }
 }
+
+/// The paper's damper begins to touch its wall at 5.265780 rad/s (`results/branches/paper`), 1.5e-4 rad/s before the period doubling of that
+/// motion, and its motion of two periods begins at a period doubling. A motion that is followed three times over has no name of its own.
+#[test]
+fn exact_regimes_of_figure_4_end_at_the_events_of_their_branches() {
+    let desk = small();
+    let mut plan: Value = desk.read_json("paper.json");
+    plan["motions"] = json!({ "from": 0.8, "to": 0.86, "points": 13 });
+    desk.write_json("paper.json", &plan);
+    good(reproduce(&request(&desk, "out"), Some("figure4"), &Silent));
+    let table = desk.read("out/figure4-table-3.csv");
+    let begins = "3.95e4,\"2T, 1, 0\",5.364462,5.405016,period doubling,the range,yes\n";
+    for part in [",5.265780,the range,grazing,yes\n", begins] {
+        assert!(table.contains(part), "{part} in {table}");
+    }
+    assert!(!table.contains("\"3T, 0, 0"), "{table}");
+}

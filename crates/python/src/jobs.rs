@@ -153,7 +153,8 @@ pub fn branches(
     let request = asked.request(study)?;
     let Along { over, from, to, samples, starts } = along;
     let over = over.parse().map_err(Fault::Other)?;
-    let asked = retune_branches::Asked { over, from, to, samples, starts, margin: false };
+    let asked =
+        retune_branches::Asked { over, from, to, samples, starts, ..retune_branches::Asked::default() };
     watched(py, tell.as_ref(), |watch| match retune_branches::branches(&request, &asked, watch)? {
         Done::Made(found) => json(&retune_branches::summary(&found)),
         Done::FinishedBefore => {

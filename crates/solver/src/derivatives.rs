@@ -7,9 +7,10 @@
 
 use crate::error::SolverError;
 use crate::extremes::{Ask, extremes};
+use crate::recurrence::test::Settle;
 use crate::response::Extreme;
 use crate::settings::{Method, Settings, Window};
-use crate::settle::{Settle, in_closed_form, settled};
+use crate::settle::{in_closed_form, settled};
 use crate::tangent::{Tangent, gradient_at};
 use retune_model::{Coupled, Parameter, Scene, Variable};
 
@@ -25,8 +26,7 @@ pub fn extremes_by(
     ask: Ask,
     variables: &[Variable],
 ) -> Result<Vec<f64>, SolverError> {
-    let Some(system) = system(scene, ask) else { return Ok(vec![0.0; variables.len()]) };
-    let settings = Settings { method: Method::Hybrid, ..*settings };
+    let Some((system, settings)) = exact(scene, settings, ask) else { return Ok(vec![0.0; variables.len()]) };
     let ask = Ask { walls: None, cutoff: f64::INFINITY, ..ask };
     let at = extremes(scene, window, &settings, ask)?.largest;
     by(&system, window, &settings, ask, at, variables)
@@ -45,8 +45,7 @@ pub fn settled_by(
     ask: Ask,
     variables: &[Variable],
 ) -> Result<Vec<f64>, SolverError> {
-    let Some(system) = system(scene, ask) else { return Ok(vec![0.0; variables.len()]) };
-    let settings = Settings { method: Method::Hybrid, ..*settings };
+    let Some((system, settings)) = exact(scene, settings, ask) else { return Ok(vec![0.0; variables.len()]) };
     if in_closed_form(&system, window, &settings).is_some() {
         let omega = scene.forcing.frequency.get();
         return Ok(variables.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
@@ -55,9 +54,11 @@ pub fn settled_by(
     by(&system, window, &settings, ask, at, variables)
 }
 
-fn system(scene: &Scene, ask: Ask) -> Option<Coupled> {
+/// The system, and the settings by the exact method; none without a damper.
+fn exact(scene: &Scene, settings: &Settings, ask: Ask) -> Option<(Coupled, Settings)> {
     let damper = scene.damper.as_ref()?;
-    Some(Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase))
+    let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
+    Some((system, Settings { method: Method::Hybrid, ..*settings }))
 }
 
 fn by(

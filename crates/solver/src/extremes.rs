@@ -11,10 +11,10 @@ use crate::observe::observer::{Observer, Path, Unobserved};
 use crate::observe::quantity::{BareEnergy, PrimaryEnergy};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::structure::{Structure, StructureMotion};
+use crate::recurrence::repeats::follow_until_it_repeats;
 use crate::response::Extreme;
 use crate::run::follow_bare;
 use crate::settings::{Settings, Window};
-use crate::settle::follow_until_it_repeats;
 use crate::simulate::e1_max;
 use retune_model::{Bare, Coupled, Measure, Scene};
 

@@ -9,10 +9,10 @@ use crate::observe::observer::Unobserved;
 use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, RelativePosition};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::structure::{Structure, StructureMotion};
+use crate::recurrence::repeats::follow_until_it_repeats;
 use crate::response::{Extreme, Response, SceneKind, StructureMaxima};
 use crate::run::{follow_bare, follow_coupled};
 use crate::settings::{Method, Settings, Window};
-use crate::settle::follow_until_it_repeats;
 use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.

@@ -1,6 +1,6 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
-use crate::report::html::{Section, Table, figure, head, link};
+use crate::html::{Section, Table, figure, head, link};
 use maud::{DOCTYPE, Markup, html};
 use retune_figures::Drawing;
 

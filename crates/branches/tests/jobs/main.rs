@@ -13,9 +13,10 @@ use observers::{good, refused};
 use retune_branches::{Asked, OTHERS, branches};
 use retune_dynamics::Parameter;
 use retune_dynamics::periodic::EventKind;
+use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_workbench::{Done, Error, Request, Silent};
 use serde_json::Value;
-use verified::a_changed_digit_is_found;
+use verified::{End, a_changed_digit_is_found, holds, look};
 
 /// The paper's damper of Table 2, about its first period doubling.
 fn desk() -> Desk {
@@ -113,4 +114,43 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
     let wrong = Asked { over: Parameter::K1, margin: true, ..Asked::default() };
     let error = refused(branches(&request(&desk, 1), &wrong, &Silent));
     assert!(error.to_string().contains("--margin"), "{error}");
+}
+
+/// The damper with an isola, where both motions are: a start of the plane ends on the motion that a run from it settles on, the one in the middle
+/// where the run from rest does; the table is the same for any number of threads, and is verified.
+#[test]
+fn exact_starts_of_a_plane_end_where_their_runs_settle() {
+    let desk = Desk::with(&committed("ssvi-isola.json"));
+    let [from, to] = ["5.97", "5.99"].map(|end| Some(end.to_owned()));
+    let asked =
+        Asked { from, to, samples: 3, starts: 16, basins: Some("5.98".to_owned()), ..Asked::default() };
+    let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("not made") };
+    good(branches(&request(&desk, 1), &asked, &Silent));
+    for name in ["starts.csv", "basins.svg", "README.md"] {
+        assert_eq!(desk.read(&format!("out1/{name}")), desk.read(&format!("out2/{name}")), "{name}");
+    }
+    assert!(holds(&desk, "out2", 20, OTHERS).contains("starts.csv             20 of 6561 rows run again"));
+    let whole = desk.read("out2/starts.csv");
+    let last = whole.trim_end().len() - 1;
+    let other = if whole[last..].starts_with('0') { "1" } else { "0" };
+    desk.write("out2/starts.csv", [&whole[..last], other, "\n"].concat());
+    let End::Not(problem) = look(&desk, "out2", 100, 0.0, OTHERS).1 else { panic!("it holds") };
+    assert!(problem.contains("starts.csv, 1 differs"), "{problem}");
+    let basins = found.basins.expect("asked for");
+    let attractors = &basins.sample.attractors;
+    assert!(attractors.iter().all(|one| one.branch.is_some()) && attractors.len() == 2, "{attractors:?}");
+    let rest = attractors.iter().position(|one| one.from_rest);
+    let middle = basins.starts().nth(basins.ends.len() / 2).expect("a start");
+    assert_eq!(middle, ([0.0; 2], rest));
+    let shooting = &found.branches.branches[0].shooting;
+    let d = found.study.scene.damper.expect("a damper").rest_distance.get();
+    let mut met = [0; 2];
+    for ([x1, v1], end) in basins.starts().step_by(311) {
+        let settled = settle(shooting, 5.98, [x1, v1, x1 + d, v1]).expect("a run");
+        let Settled::On(periods, _) = settled else { panic!("a run that does not settle from {x1}, {v1}") };
+        let end = end.expect("a motion");
+        assert_eq!(attractors[end].orbit.periods, periods, "from {x1}, {v1}");
+        met[end] += 1;
+    }
+    assert!(met[0] > 3 && met[1] > 3, "{met:?}");
 }

@@ -1,6 +1,6 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
-use super::look::{Sample, Seen, look};
+use super::look::{Reached, Sample, look};
 use super::orbit::Orbit;
 use super::settle::{MOST_PERIODS, is_same};
 use super::shooting::{Shooting, Solution};
@@ -94,7 +94,7 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
             }
             seen
         };
-        let seen: Vec<Result<Seen, Error>> = values.par_iter().map(look).collect();
+        let seen: Vec<Result<Reached, Error>> = values.par_iter().map(look).collect();
         for seen in seen {
             let seen = seen?;
             if seen.starts == 0 {

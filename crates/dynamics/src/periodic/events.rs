@@ -1,5 +1,6 @@
 //! What happens along a branch: folds, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
 
+use super::forced::Forced;
 use super::node::{Node, between};
 use super::orbit::Orbit;
 use super::shooting::{Linearised, Shooting};
@@ -11,6 +12,8 @@ const EVALUATIONS: usize = 80;
 const PLACED: f64 = 1e-10;
 /// Most grazings in one step.
 const GRAZINGS: usize = 6;
+/// What is left, as a share of the step, of a difference that goes to zero as its ends come together. Where more is left, it jumps.
+const CONTINUOUS: f64 = 1e-3;
 
 /// A kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,30 +53,33 @@ pub struct Event {
     pub place: usize,
 }
 
-/// The events between two motions, in their order.
-pub(super) fn located(shooting: &Shooting, now: &Node, next: &Node) -> Vec<Event> {
+/// The events between two motions, in their order; none if the motions between them are not one branch. At a wall that is nearly hard many
+/// branches come close together at a grazing, and turn back within a part of a step.
+pub(super) fn located(shooting: &Shooting<impl Forced>, now: &Node, next: &Node) -> Option<Vec<Event>> {
     let mut found: Vec<(f64, Event)> = Vec::new();
     let kinds = [EventKind::Fold, EventKind::PeriodDoubling, EventKind::NeimarkSacker];
     for (number, kind) in kinds.into_iter().enumerate() {
         let ends = [now.tests[number], next.tests[number]];
-        if ends[0] * ends[1] < 0.0
-            && let Some((share, node)) = root(shooting, [now, next], |node| node.tests[number], ends)
-            && (kind != EventKind::NeimarkSacker || is_complex(&node.orbit))
-        {
-            found.push((share, event(kind, node)));
+        if ends[0] * ends[1] < 0.0 {
+            let (share, node) = root(shooting, [now, next], |node| node.tests[number], ends)?;
+            if kind != EventKind::NeimarkSacker || is_complex(&node.orbit) {
+                found.push((share, event(kind, node)));
+            }
         }
     }
-    let (mut from, mut label) = (0.0, now.orbit.seen.impacts.clone());
+    let mut last = (0.0, now.clone());
     for _ in 0..GRAZINGS {
-        if label == next.orbit.seen.impacts {
+        if last.1.orbit.seen.impacts == next.orbit.seen.impacts {
             break;
         }
-        let Some((share, node, after)) = change(shooting, [now, next], from, &label) else { break };
-        found.push((share, event(EventKind::Grazing, node)));
-        (from, label) = (share, after);
+        last = change(shooting, [now, next], last)?;
+        found.push((last.0, event(EventKind::Grazing, last.1.clone())));
+    }
+    if last.1.orbit.seen.impacts != next.orbit.seen.impacts {
+        return None;
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, event)| event).collect()
+    Some(found.into_iter().map(|(_, event)| event).collect())
 }
 
 fn event(kind: EventKind, node: Node) -> Event {
@@ -87,14 +93,16 @@ fn is_complex(orbit: &Orbit) -> bool {
     orbit.multipliers.iter().min_by(nearest).is_some_and(|multiplier| multiplier.im.abs() > 1e-6)
 }
 
-/// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that stays).
+/// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that stays); none if
+/// the test jumps.
 fn root(
-    shooting: &Shooting,
+    shooting: &Shooting<impl Forced>,
     ends: [&Node; 2],
     test: impl Fn(&Node) -> f64,
     mut values: [f64; 2],
 ) -> Option<(f64, Node)> {
     let (mut shares, mut best, mut stayed) = ([0.0, 1.0], None, 2);
+    let most = CONTINUOUS * values[0].abs().max(values[1].abs());
     for _ in 0..EVALUATIONS {
         let share = (shares[0] * values[1] - shares[1] * values[0]) / (values[1] - values[0]);
         let node = between(shooting, ends, share)?;
@@ -106,7 +114,7 @@ fn root(
         stayed = end;
         let moved = (shares[end] - share).abs();
         (shares[end], values[end]) = (share, value);
-        best = Some((share, node));
+        best = (value.abs() <= most).then_some((share, node));
         if value == 0.0 || moved < PLACED || shares[1] - shares[0] < PLACED {
             break;
         }
@@ -114,23 +122,16 @@ fn root(
     best
 }
 
-/// The first place after `from` at which the impacts are others than `label`, the motion there, and the impacts beyond.
-fn change(shooting: &Shooting, ends: [&Node; 2], from: f64, label: &str) -> Option<(f64, Node, String)> {
-    let (mut low, mut high) = (from, 1.0);
-    let (mut best, mut after) = (None, ends[1].orbit.seen.impacts.clone());
-    for _ in 0..EVALUATIONS {
-        let share = 0.5 * (low + high);
+/// The first place after `low` at which the impacts are others, and the motion beyond it; none if the motion jumps there.
+fn change(shooting: &Shooting<impl Forced>, ends: [&Node; 2], mut low: (f64, Node)) -> Option<(f64, Node)> {
+    let label = low.1.orbit.seen.impacts.clone();
+    let mut high = (1.0, ends[1].clone());
+    while high.0 - low.0 >= PLACED {
+        let share = f64::midpoint(low.0, high.0);
         let node = between(shooting, ends, share)?;
-        let placed = (high - low) < PLACED;
-        if node.orbit.seen.impacts == label {
-            low = share;
-        } else {
-            (high, after) = (share, node.orbit.seen.impacts.clone());
-        }
-        best = Some(node);
-        if placed {
-            break;
-        }
+        let side = if node.orbit.seen.impacts == label { &mut low } else { &mut high };
+        *side = (share, node);
     }
-    best.map(|node| (high, node, after))
+    let distance = |a: &Node, b: &Node| shooting.norm(&(&a.solution.x - &b.solution.x));
+    (distance(&low.1, &high.1) <= CONTINUOUS * distance(ends[0], ends[1])).then_some(high)
 }

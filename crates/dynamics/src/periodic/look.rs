@@ -1,6 +1,7 @@
 //! What runs settle on at one value of the parameter.
 
-use super::orbit::{Orbit, Seen as Values};
+use super::orbit::Orbit;
+use super::seen::Seen;
 use super::settle::{self, Settled, is_same, settle};
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
@@ -26,7 +27,7 @@ pub struct Sample {
     /// The periodic motions, the most frequent first.
     pub attractors: Vec<Attractor>,
     /// What the runs reach that settled on none; the first one that from rest, if it did not.
-    pub irregular: Vec<Values>,
+    pub irregular: Vec<Seen>,
     /// Whether the run from rest settled on none.
     pub rest_is_irregular: bool,
     /// Number of starts, that from rest among them.
@@ -34,17 +35,17 @@ pub struct Sample {
 }
 
 /// What runs settle on at a value of the parameter.
-pub(super) struct Seen {
+pub(super) struct Reached {
     value: f64,
     /// Periods, the motion, how many starts, whether from rest.
     attractors: Vec<(usize, Solution, usize, bool)>,
-    irregular: Vec<Values>,
+    irregular: Vec<Seen>,
     rest_is_irregular: bool,
     /// Starts that were made.
     pub starts: usize,
 }
 
-impl Seen {
+impl Reached {
     /// As a sample, with the branch that each motion is on.
     ///
     /// # Errors
@@ -75,11 +76,11 @@ pub(super) fn look(
     value: f64,
     starts: usize,
     goes_on: &dyn Fn() -> bool,
-) -> Result<Seen, Error> {
+) -> Result<Reached, Error> {
     let system = shooting.system(value)?;
     let scene = shooting.scene_at(value)?;
     let mut seen =
-        Seen { value, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false, starts: 0 };
+        Reached { value, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false, starts: 0 };
     let all = [system.rest()].into_iter().chain(settle::starts(&system, &scene, starts));
     for (number, y) in all.enumerate() {
         if !goes_on() {

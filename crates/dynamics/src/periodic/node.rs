@@ -1,5 +1,6 @@
 //! A motion on a branch, with the direction of the branch and what changes sign at bifurcations.
 
+use super::forced::Forced;
 use super::orbit::Orbit;
 use super::shooting::{Shooting, Solution};
 use nalgebra::{Complex, DVector};
@@ -14,7 +15,11 @@ pub(super) struct Node {
 }
 
 impl Node {
-    pub(super) fn new(shooting: &Shooting, solution: Solution, before: &DVector<f64>) -> Option<Self> {
+    pub(super) fn new(
+        shooting: &Shooting<impl Forced>,
+        solution: Solution,
+        before: &DVector<f64>,
+    ) -> Option<Self> {
         let direction = shooting.tangent(&solution.at, before)?;
         let orbit = Orbit::of(shooting, &solution).ok()?;
         let tests = tests(&orbit, &direction);
@@ -33,7 +38,7 @@ pub(super) fn tests(orbit: &Orbit, direction: &DVector<f64>) -> [f64; 3] {
 }
 
 /// The motion at a share of the way between two.
-pub(super) fn between(shooting: &Shooting, [now, next]: [&Node; 2], share: f64) -> Option<Node> {
+pub(super) fn between(shooting: &Shooting<impl Forced>, [now, next]: [&Node; 2], share: f64) -> Option<Node> {
     let way = &next.solution.x - &now.solution.x;
     let solution = shooting.correct(&(&now.solution.x + &way * share), &way)?;
     Node::new(shooting, solution, &now.direction)

@@ -1,15 +1,10 @@
 //! What a periodic motion is like: its largest values, its impacts, its stability.
 
+use super::forced::Forced;
+use super::seen::Seen;
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
-use crate::poincare::coupled;
 use nalgebra::{Complex, Matrix4};
-use retune_model::{Scene, Side};
-use retune_solver::observe::{
-    DisplacementRange, Magnitude, PrimaryEnergy, RunningMaximum, StructureMotion, TouchDownTimes,
-};
-use retune_solver::{Follower, Motion, Phase, Settings};
-use std::f64::consts::TAU;
 
 /// A periodic motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,57 +21,14 @@ pub struct Orbit {
     pub seen: Seen,
 }
 
-/// The largest values and the impacts of a periodic motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
-    /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
-    /// empty if none.
-    pub impacts: String,
-    /// Largest energy of the structure, J.
-    pub e1_max: f64,
-    /// Largest displacement of the structure, m.
-    pub displacement: f64,
-    /// The stroke, m.
-    pub stroke: f64,
-    /// Largest contact force, N.
-    pub force: f64,
-}
-
-/// Follows a motion of so many periods from its states at the beginnings of equal segments: each segment from its own, so that an
-/// unstable motion is not left.
-///
-/// # Errors
-/// The scene cannot be run.
-pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 4]]) -> Result<Seen, Error> {
-    let system = coupled(scene)?;
-    let share = periods as f64 * TAU / system.bare().frequency() / states.len() as f64;
-    let mut follower = Follower::new(&system, settings, share);
-    let energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
-    let size = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
-    let range = DisplacementRange::new(&system, 0.0, f64::INFINITY);
-    let mut all = ((energy, size), (range, TouchDownTimes::default()));
-    for (k, &y) in states.iter().enumerate() {
-        let start = Motion { t: k as f64 * share, y, phase: Phase::of(&system, &y) };
-        follower.propagate(start, (k + 1) as f64 * share, &mut all)?;
-    }
-    let ((energy, size), (range, touches)) = all;
-    Ok(Seen {
-        impacts: turned(touches.0.iter().map(|(_, side)| *side)),
-        e1_max: energy.record().value,
-        displacement: size.record().value,
-        stroke: range.stroke().value.max(0.0),
-        force: range.force().value.max(0.0),
-    })
-}
-
 impl Orbit {
     /// What a solution is like.
     ///
     /// # Errors
-    /// The scene cannot be run there.
-    pub fn of(shooting: &Shooting, solution: &Solution) -> Result<Self, Error> {
+    /// The system cannot be run there.
+    pub fn of(shooting: &Shooting<impl Forced>, solution: &Solution) -> Result<Self, Error> {
         let (value, states) = (shooting.value(&solution.x), shooting.states(&solution.x));
-        let seen = seen(&shooting.scene_at(value)?, shooting.settings(), shooting.periods, &states)?;
+        let seen = shooting.forced.seen(value, shooting.periods, &states)?;
         let multipliers = multipliers(&solution.at.monodromy());
         Ok(Self { value, periods: shooting.periods, states, multipliers, seen })
     }
@@ -92,12 +44,4 @@ pub fn multipliers(monodromy: &Matrix4<f64>) -> [Complex<f64>; 4] {
     let mut all: [Complex<f64>; 4] = monodromy.complex_eigenvalues().into();
     all.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
     all
-}
-
-/// The impacts in turn, from where they read first in the alphabet.
-fn turned(sides: impl Iterator<Item = Side>) -> String {
-    let letter = |side: Side| if side == Side::Primary { 'S' } else { 'O' };
-    let word: Vec<char> = sides.map(letter).collect();
-    let turns = (0..word.len()).map(|from| [&word[from..], &word[..from]].concat());
-    turns.min().unwrap_or_default().into_iter().collect()
 }

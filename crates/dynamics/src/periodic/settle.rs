@@ -1,22 +1,24 @@
 //! What runs settle on: periodic motions from many starts, and how many of the starts end there.
 
-use super::orbit::{Seen, seen};
+use super::forced::Forced;
+use super::seen::{Seen, seen};
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
 use crate::poincare::PoincareMap;
 use crate::record::{coordinates, distance};
+use nalgebra::DVector;
 use retune_model::{Bare, Coupled, Scene};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings};
 
 /// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
-const LOOKS: [usize; 4] = [60, 120, 240, 480];
+pub(super) const LOOKS: [usize; 4] = [60, 120, 240, 480];
 /// Most periods after which a motion may repeat.
 pub const MOST_PERIODS: usize = 12;
 /// A run that repeats to this share of its size is near enough for Newton's iteration.
-const NEAR: f64 = 1e-4;
+pub(super) const NEAR: f64 = 1e-4;
 /// Two motions nearer than this share of their size are one.
-pub const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 /// Periods over which an irregular motion's largest values are taken.
 const WATCHED: usize = 100;
 
@@ -81,30 +83,36 @@ pub fn is_same(shooting: &Shooting, a: &Solution, b: &Solution) -> bool {
     a.x.len() == b.x.len() && shooting.nearest(&a.x, &b.x).1 < SAME
 }
 
+/// The least number of periods after which a motion repeats.
+pub(super) fn least_periods(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> usize {
+    let (n, share) = (shooting.periods, shooting.segments / shooting.periods);
+    let repeats = |periods: &usize| (shooting.moved_on(x, periods * share) - x).amax() < SAME;
+    let mut shares = (1..n).filter(|periods| n.is_multiple_of(*periods));
+    if n * share == shooting.segments { shares.find(repeats).unwrap_or(n) } else { n }
+}
+
 /// A motion by the least number of periods after which it repeats.
 fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)> {
-    let states = shooting.states(&solution.x);
-    let n = shooting.periods;
-    let repeats = |periods: &usize| {
-        let moved = shooting.moved_on(&solution.x, *periods);
-        (&moved - &solution.x).amax() < SAME
-    };
-    match (1..n).filter(|periods| n.is_multiple_of(*periods)).find(repeats) {
-        None => Some((n, solution)),
-        Some(periods) => {
-            let own = shooting.of_periods(periods);
-            let start = own.unknowns(&states[..periods], shooting.value(&solution.x));
-            Some((periods, own.correct_at_value(&start)?))
-        }
+    let periods = least_periods(shooting, &solution.x);
+    if periods == shooting.periods {
+        return Some((periods, solution));
     }
+    let own = shooting.of_periods(periods);
+    let start = own.unknowns(&shooting.states(&solution.x)[..periods], shooting.value(&solution.x));
+    Some((periods, own.correct_at_value(&start)?))
+}
+
+/// The speed that the structure reaches without damper at this frequency, or with what the force would hold, m/s.
+pub fn fastest(scene: &Scene) -> f64 {
+    let bare = Bare::new(&scene.primary, &scene.forcing);
+    (2.0 * bare.steady(scene.forcing.frequency.get()).e1_max / scene.primary.mass.get()).sqrt()
 }
 
 /// A start for each of `count` numbers of a Sobol sequence, over the states that the force can reach: the structure within what it does
-/// without damper at this frequency or what the force would hold, the damper between its walls.
+/// without damper ([`fastest`]), the damper between its walls.
 pub fn starts(system: &Coupled, scene: &Scene, count: usize) -> Vec<[f64; 4]> {
+    let reach = fastest(scene);
     let omega = scene.forcing.frequency.get();
-    let bare = Bare::new(&scene.primary, &scene.forcing);
-    let reach = (2.0 * bare.steady(omega).e1_max / scene.primary.mass.get()).sqrt(); // a speed, m/s
     let [near, far] = [system.wall(retune_model::Side::Primary), system.wall(retune_model::Side::Obstacle)];
     let (near, far) = if system.has_walls() {
         (near, far.min(near + 10.0 * reach / omega))

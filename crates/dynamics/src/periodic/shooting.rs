@@ -1,13 +1,11 @@
 //! The equations of a periodic motion, by multiple shooting, and their solution by Newton's iteration.
 
+use super::forced::{Damped, Flow, Forced, settings_of};
 use crate::parameter::Error;
-use crate::poincare::coupled;
 use crate::record::weights;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use retune_model::{Coupled, Parameter, Scene};
-use retune_solver::observe::Unobserved;
-use retune_solver::{Motion, Phase, Settings, Tangent};
-use std::f64::consts::TAU;
+use retune_solver::Settings;
 
 /// Largest gap between segments of a solution, relative to the size of the motion.
 const CLOSED: f64 = 2e-11;
@@ -15,28 +13,21 @@ const CLOSED: f64 = 2e-11;
 const ITERATIONS: usize = 9;
 /// A change larger than this share of the motion leaves the neighbourhood in which the iteration can be trusted.
 const FAR: f64 = 0.5;
-/// Largest tolerance of the contacts.
-const TOLERANCE: f64 = 1e-10;
-
 /// The equations of motions with a number of periods of the force, along a parameter.
 ///
 /// Their unknowns are the states at the beginnings of the segments, in units of the motion's size, and the parameter in units of `span`.
 #[derive(Clone, Debug)]
-pub struct Shooting {
-    /// The scene, but for the parameter.
-    pub scene: Scene,
-    /// The parameter.
-    pub parameter: Parameter,
+pub struct Shooting<S = Damped> {
+    /// The system and the parameter.
+    pub forced: S,
     /// Periods of the force.
     pub periods: usize,
     /// Number of segments.
     pub segments: usize,
     /// The unit of the parameter.
     pub span: f64,
-    /// How the segments are run.
-    settings: Settings,
-    /// Units of the state.
-    scale: Vector4<f64>,
+    /// Units of the state: what it is multiplied by.
+    pub scale: Vector4<f64>,
 }
 
 /// The equations at some unknowns.
@@ -61,13 +52,8 @@ pub struct Solution {
     pub iterations: usize,
 }
 
-/// The settings of the segments, of those of a study.
-pub fn settings_of(settings: &Settings) -> Settings {
-    Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings }
-}
-
 impl Shooting {
-    /// The equations of motions of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period.
+    /// The equations of motions of a damper of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period.
     pub fn new(
         scene: Scene,
         parameter: Parameter,
@@ -75,15 +61,9 @@ impl Shooting {
         (span, size): (f64, f64),
         settings: &Settings,
     ) -> Self {
-        let settings = settings_of(settings);
         let scale = Vector4::from(weights(&scene)) / size;
-        Self { scene, parameter, periods, segments: periods, span, settings, scale }
-    }
-
-    /// The same for another number of periods, with as many segments.
-    #[must_use]
-    pub fn of_periods(&self, periods: usize) -> Self {
-        Self { periods, segments: periods, ..self.clone() }
+        let forced = Damped { scene, parameter, settings: settings_of(settings) };
+        Self { forced, periods, segments: periods, span, scale }
     }
 
     /// The same along another parameter from a value of this one on.
@@ -91,7 +71,37 @@ impl Shooting {
     /// # Errors
     /// The value is out of range.
     pub fn along(&self, value: f64, parameter: Parameter, span: f64) -> Result<Self, Error> {
-        Ok(Self { scene: self.scene_at(value)?, parameter, span, ..self.clone() })
+        let forced = Damped { scene: self.scene_at(value)?, parameter, ..self.forced };
+        Ok(Self { forced, span, ..self.clone() })
+    }
+
+    /// The scene at a value of the parameter.
+    ///
+    /// # Errors
+    /// See [`Error`].
+    pub fn scene_at(&self, value: f64) -> Result<Scene, Error> {
+        self.forced.scene_at(value)
+    }
+
+    /// The system at a value of the parameter.
+    ///
+    /// # Errors
+    /// See [`Error`].
+    pub fn system(&self, value: f64) -> Result<Coupled, Error> {
+        self.forced.system(value)
+    }
+
+    /// The settings of the runs.
+    pub fn settings(&self) -> &Settings {
+        &self.forced.settings
+    }
+}
+
+impl<S: Forced> Shooting<S> {
+    /// The same for another number of periods, with as many segments.
+    #[must_use]
+    pub fn of_periods(&self, periods: usize) -> Self {
+        Self { periods, segments: periods, ..self.clone() }
     }
 
     /// The same in so many segments.
@@ -114,19 +124,6 @@ impl Shooting {
     /// The states in unknowns.
     pub fn states(&self, x: &DVector<f64>) -> Vec<[f64; 4]> {
         (0..self.segments).map(|k| std::array::from_fn(|i| x[4 * k + i] / self.scale[i])).collect()
-    }
-
-    /// The scene at a value of the parameter.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn scene_at(&self, value: f64) -> Result<Scene, Error> {
-        Ok(self.parameter.at(self.scene, value)?)
-    }
-
-    /// The settings of the runs.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
     }
 
     /// The distance of two vectors of unknowns: a root mean square over the segments.
@@ -161,33 +158,19 @@ impl Shooting {
     /// The equations and their derivatives.
     ///
     /// # Errors
-    /// The scene cannot be run there.
+    /// The system cannot be run there.
     pub fn linearised(&self, x: &DVector<f64>) -> Result<Linearised, Error> {
-        let (m, value) = (self.segments, self.value(x));
-        let system = coupled(&self.scene_at(value)?)?;
-        let omega = system.bare().frequency();
-        let share = self.periods as f64 * TAU / omega / m as f64;
-        let mut tangent = Tangent::new(&system, &self.settings, share, &[self.parameter]);
-        let states = self.states(x);
+        let (m, states) = (self.segments, self.states(x));
         let mut gaps = DVector::zeros(4 * m);
         let mut jacobian = DMatrix::zeros(4 * m, 4 * m + 1);
         let mut transitions = Vec::with_capacity(m);
-        for k in 0..m {
-            let [from, to] = [k as f64 * share, (k + 1) as f64 * share];
-            let start = Motion { t: from, y: states[k], phase: Phase::of(&system, &states[k]) };
-            let found = tangent.propagate(start, to, &mut Unobserved)?;
-            let by_state = Matrix4::from_fn(|i, j| found.by_state[j][i]);
-            let mut by = Vector4::from(found.by[0]);
-            if self.parameter == Parameter::Omega {
-                // The ends of the segments move with the period.
-                let rate = |t: f64, y: &[f64; 4]| Vector4::from(system.derivative(system.excitation(t), y));
-                by += (by_state * rate(from, &states[k]) * from - rate(to, &found.end.y) * to) / omega;
-            }
+        let flows = self.forced.flows(self.value(x), self.periods, &states)?;
+        for (k, Flow { end, by_state, by_value }) in flows.into_iter().enumerate() {
             let next = (k + 1) % m;
             let transition = Matrix4::from_fn(|i, j| by_state[(i, j)] * self.scale[i] / self.scale[j]);
             for i in 0..4 {
-                gaps[4 * k + i] = (found.end.y[i] - states[next][i]) * self.scale[i];
-                jacobian[(4 * k + i, 4 * m)] = by[i] * self.scale[i] * self.span;
+                gaps[4 * k + i] = (end[i] - states[next][i]) * self.scale[i];
+                jacobian[(4 * k + i, 4 * m)] = by_value[i] * self.scale[i] * self.span;
                 jacobian[(4 * k + i, 4 * next + i)] -= 1.0;
                 for j in 0..4 {
                     jacobian[(4 * k + i, 4 * k + j)] += transition[(i, j)];
@@ -243,14 +226,6 @@ impl Shooting {
         let last = 4 * self.segments;
         let row = |j: usize| if j < last { normal[j] / self.segments as f64 } else { normal[j] };
         DMatrix::from_fn(last + 1, last + 1, |i, j| if i < last { jacobian[(i, j)] } else { row(j) })
-    }
-
-    /// The system at a value of the parameter.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn system(&self, value: f64) -> Result<Coupled, Error> {
-        coupled(&self.scene_at(value)?)
     }
 }
 

@@ -1,21 +1,22 @@
 //! From a period doubling to the branch of twice the period.
 
 use super::events::{Event, EventKind};
+use super::forced::Forced;
 use super::node::Node;
 use super::shooting::Shooting;
-use super::trace::{Branch, trace_from};
+use super::trace::{Branch, End, trace_from};
 use nalgebra::{DVector, Matrix4, Vector4};
 
 /// The first steps onto the new branch that are tried, in units of the motion's size.
-const STEPS: [f64; 3] = [4e-3, 1e-3, 1.6e-2];
+const STEPS: [f64; 4] = [4e-3, 1e-3, 2.5e-4, 1.6e-2];
 
 /// The branch that begins at a period doubling of another; none if it is not one, or no motion is found on it.
-pub fn doubled(
-    shooting: &Shooting,
+pub fn doubled<S: Forced>(
+    shooting: &Shooting<S>,
     event: &Event,
     range: [f64; 2],
     goes_on: &dyn Fn() -> bool,
-) -> Option<Branch> {
+) -> Option<Branch<S>> {
     if event.kind != EventKind::PeriodDoubling {
         return None;
     }
@@ -43,6 +44,8 @@ pub fn doubled(
             return None; // back on the branch of half the period
         }
         let node = Node::new(&twice, solution, &direction)?;
-        Some(trace_from(&twice, &node, range, goes_on))
+        let branch = trace_from(&twice, &node, range, goes_on);
+        // One that is closed does not begin at the period doubling: the step has missed.
+        (branch.ends[1] != End::Closed).then_some(branch)
     })
 }

@@ -1,12 +1,15 @@
 //! A branch of periodic motions along a parameter, by pseudo-arclength continuation.
 //!
 //! From a motion, a step along the branch's direction, then Newton's iteration in the plane across it. A step is taken again, half as
-//! long, where the iteration needs many rounds, ends far from the prediction, or the direction turns by more than [`TURN`]: so it
-//! neither jumps to another branch nor cuts a fold short.
+//! long, where the iteration needs many rounds, ends far from the prediction or on a motion of a shorter period, the direction turns by more
+//! than [`TURN`], or what happens on the way cannot be located, because the motions there are not one branch: so it neither jumps to another
+//! branch nor cuts a fold short.
 
 use super::events::{Event, EventKind, located};
+use super::forced::{Damped, Forced};
 use super::node::{Node, tests};
 use super::orbit::Orbit;
+use super::settle::least_periods;
 use super::shooting::{Shooting, Solution};
 use nalgebra::DVector;
 
@@ -23,6 +26,8 @@ const TURN: f64 = 0.95;
 const STRAIGHT: f64 = 0.995;
 /// How far from the prediction a solution may be, as a share of the step.
 const ASTRAY: f64 = 0.3;
+/// Halves of a motion nearer than this share of its size are at a period doubling, where two branches meet and Newton's iteration finds either.
+const JOINED: f64 = 1e-4;
 
 /// Two events of a closed branch as near as this share of the range are one.
 const AGAIN: f64 = 1e-8;
@@ -62,9 +67,9 @@ impl End {
 
 /// A branch: its motions in their order, with what happens between them.
 #[derive(Clone, Debug)]
-pub struct Branch {
+pub struct Branch<S = Damped> {
     /// The equations of its motions.
-    pub shooting: Shooting,
+    pub shooting: Shooting<S>,
     /// Its motions. Those at events are among them.
     pub points: Vec<Orbit>,
     /// What happens along it, in this order.
@@ -73,7 +78,7 @@ pub struct Branch {
     pub ends: [End; 2],
 }
 
-impl Branch {
+impl<S> Branch<S> {
     /// Whether the motions between point `i` and the next are stable. At a bifurcation itself a multiplier is on the unit circle, and
     /// rounding decides on which side: the other point counts.
     pub fn is_stable_after(&self, i: usize) -> bool {
@@ -95,12 +100,12 @@ impl Branch {
 }
 
 /// The branch through a solution, to both sides, as long as it goes on.
-pub fn trace(
-    shooting: &Shooting,
+pub fn trace<S: Forced>(
+    shooting: &Shooting<S>,
     seed: &Solution,
     [from, to]: [f64; 2],
     goes_on: &dyn Fn() -> bool,
-) -> Option<Branch> {
+) -> Option<Branch<S>> {
     let last = seed.x.len() - 1;
     let along = DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)));
     let start = Node::new(shooting, seed.clone(), &along)?;
@@ -115,12 +120,12 @@ pub fn trace(
 }
 
 /// The branch from a solution to one side alone.
-pub(super) fn trace_from(
-    shooting: &Shooting,
+pub(super) fn trace_from<S: Forced>(
+    shooting: &Shooting<S>,
     start: &Node,
     range: [f64; 2],
     goes_on: &dyn Fn() -> bool,
-) -> Branch {
+) -> Branch<S> {
     let (after, end) = side(shooting, start, range, goes_on);
     joined(shooting, Vec::new(), start, after, [End::Halved, end])
 }
@@ -130,7 +135,7 @@ type Found = (Orbit, Option<Event>);
 
 /// The motions to one side of a start.
 fn side(
-    shooting: &Shooting,
+    shooting: &Shooting<impl Forced>,
     start: &Node,
     [from, to]: [f64; 2],
     goes_on: &dyn Fn() -> bool,
@@ -142,17 +147,24 @@ fn side(
         if !goes_on() {
             return (found, End::Ended);
         }
-        let next = loop {
+        let (next, events) = loop {
             let guess = &now.solution.x + &now.direction * step;
             let corrected = shooting.correct(&guess, &now.direction);
             let next = corrected.and_then(|solution| {
                 let astray = shooting.norm(&(&solution.x - &guess)) > ASTRAY * step;
-                let node = if astray { None } else { Node::new(shooting, solution, &now.direction) };
-                node.filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)
+                if astray || least_periods(shooting, &solution.x) < shooting.periods {
+                    return None;
+                }
+                let next = Node::new(shooting, solution, &now.direction)
+                    .filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)?;
+                located(shooting, &now, &next).map(|events| (next, events))
             });
             match next {
                 Some(next) => break next,
-                None if step < 2.0 * SHORTEST => return (found, End::Lost),
+                None if step < 2.0 * SHORTEST => {
+                    let gap = halves(shooting, &now.solution.x).map_or(f64::INFINITY, |gap| gap.amax());
+                    return (found, if gap < JOINED { End::Halved } else { End::Lost });
+                }
                 None => step *= 0.5,
             }
         };
@@ -160,9 +172,7 @@ fn side(
         if straight && next.solution.iterations <= 4 {
             step = (1.6 * step).min(LONGEST);
         }
-        for event in located(shooting, &now, &next) {
-            found.push((event.orbit.clone(), Some(event)));
-        }
+        found.extend(events.into_iter().map(|event| (event.orbit.clone(), Some(event))));
         let value = next.orbit.value;
         if value < from || value > to {
             let end = at_end(shooting, &now, &next, if value < from { from } else { to });
@@ -174,13 +184,14 @@ fn side(
         if joins_half(shooting, &now, &next) {
             return (found, End::Halved);
         }
-        // Back at the start: near it, past it, and in the same direction.
+        // Back at the start: nearer than a step, after it was farther away, and in the same direction. Before the branch has turned all the way
+        // round, it is away by more than its last step. A thin isola is not much longer than a step.
         let (shift, _) = shooting.nearest(&start.solution.x, &next.solution.x);
         let moved = |x: &DVector<f64>| shooting.moved_on(x, shift);
         let away = shooting.norm(&(moved(&next.solution.x) - &start.solution.x));
         let came = shooting.norm(&(&next.solution.x - &now.solution.x));
         let alike = shooting.inner(&moved(&next.direction), &start.direction) > TURN;
-        if apart > 4.0 * came && away < came && alike {
+        if apart > came && away < came && alike {
             // What lies beyond the start has been found before.
             let known = |event: &Event| {
                 let same = |(_, other): &&Found| {
@@ -211,7 +222,7 @@ fn side(
 }
 
 /// The motion at the end of the range.
-fn at_end(shooting: &Shooting, now: &Node, next: &Node, value: f64) -> Option<Orbit> {
+fn at_end(shooting: &Shooting<impl Forced>, now: &Node, next: &Node, value: f64) -> Option<Orbit> {
     let [a, b] = [now.orbit.value, next.orbit.value];
     let share = (value - a) / (b - a);
     let mut guess = &now.solution.x + (&next.solution.x - &now.solution.x) * share;
@@ -222,25 +233,27 @@ fn at_end(shooting: &Shooting, now: &Node, next: &Node, value: f64) -> Option<Or
     Some(orbit)
 }
 
-/// Whether a branch of an even number of periods has passed a motion of half of them: the difference of its halves changes sign there.
-fn joins_half(shooting: &Shooting, now: &Node, next: &Node) -> bool {
-    if shooting.periods % 2 == 1 || shooting.segments % 2 == 1 {
-        return false;
-    }
+/// The difference of the halves of a motion of an even number of periods.
+fn halves(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> Option<DVector<f64>> {
     let half = 2 * shooting.segments;
-    let halves = |x: &DVector<f64>| (0..half).map(|i| x[i] - x[half + i]).collect::<Vec<f64>>();
-    let (a, b) = (halves(&now.solution.x), halves(&next.solution.x));
-    a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>() < 0.0
+    let even = shooting.periods.is_multiple_of(2) && shooting.segments.is_multiple_of(2);
+    even.then(|| x.rows(0, half) - x.rows(half, half))
+}
+
+/// Whether a branch has passed a motion of half its periods: the difference of its halves changes sign there.
+fn joins_half(shooting: &Shooting<impl Forced>, now: &Node, next: &Node) -> bool {
+    let [now, next] = [now, next].map(|node| halves(shooting, &node.solution.x));
+    now.zip(next).is_some_and(|(now, next)| now.dot(&next) < 0.0)
 }
 
 /// Both sides as one branch.
-fn joined(
-    shooting: &Shooting,
+fn joined<S: Forced>(
+    shooting: &Shooting<S>,
     before: Vec<Found>,
     start: &Node,
     after: Vec<Found>,
     ends: [End; 2],
-) -> Branch {
+) -> Branch<S> {
     let middle = (start.orbit.clone(), None);
     let all = before.into_iter().rev().chain([middle]).chain(after);
     let (mut points, mut events) = (Vec::new(), Vec::new());

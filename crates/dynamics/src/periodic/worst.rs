@@ -4,7 +4,8 @@
 use super::branches::{Branches, Interval, Plan, Watch, branches, sample};
 use super::largest::largest;
 use super::look::{Attractor, Sample};
-use super::orbit::{Orbit, Seen};
+use super::orbit::Orbit;
+use super::seen::Seen;
 use crate::parameter::Error;
 use retune_model::{Measure, Scene};
 use retune_solver::Settings;
@@ -125,10 +126,16 @@ impl Branches {
         self.on(number).any(|(_, one)| one.from_rest)
     }
 
+    /// The stable motion with the largest value of a quantity on each branch; none of a branch without stable motions.
+    pub fn largest_of_each(&self, quantity: fn(&Seen) -> f64) -> Vec<Option<Orbit>> {
+        self.branches.iter().map(|branch| largest(branch, |orbit| quantity(&orbit.seen))).collect()
+    }
+
     /// The largest value of a quantity over the range.
     pub fn largest(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
-        let on_branches = self.branches.iter().enumerate().filter_map(|(number, branch)| {
-            let orbit = largest(branch, |orbit| quantity(&orbit.seen))?;
+        let all = self.largest_of_each(quantity).into_iter().enumerate();
+        let on_branches = all.filter_map(|(number, orbit)| {
+            let orbit = orbit?;
             let shares = self.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
             Some(Largest {
                 value: quantity(&orbit.seen),

@@ -23,6 +23,9 @@ pub struct Piece {
 const FIRST: f64 = 0.03;
 /// Most steps that are tried.
 const STEPS: usize = 60;
+/// Where a step promises a gain of nothing but the curvature of the functions, the region is about the root of that gain; below this share of
+/// it no step can bring the gain.
+const SMALL: f64 = 0.01;
 /// A step is taken if it brings this share of what was promised, and the region grows where it brings this share.
 const TAKEN: f64 = 0.1;
 const GOOD: f64 = 0.7;
@@ -53,10 +56,11 @@ impl Height {
     }
 }
 
-/// Goes down from `start` in a box, and ends at the best design on the way: of those that break limits by least, the lowest. `look(parameters, cutoff)` may stop as
-/// soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to find the functions of that design. A
-/// step is taken only where it pays, so that wrong derivatives cost time alone. It ends where a step promises less than the share `gain` of the
-/// worst, or where the trust region has become so small that none can bring it.
+/// Goes down from `start` in a box, and ends at the best design on the way: of those that break limits by least, the lowest.
+///
+/// `look(parameters, cutoff)` may stop as soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to
+/// find the functions of that design. A step is taken only where it pays, so that wrong derivatives cost time alone. The search ends where a
+/// step promises to lower the worst by less than the share `gain` of it, or where the trust region is too small for any that could.
 pub fn minimax<T>(
     look: impl Fn(&[f64], f64) -> (Height, T),
     pieces: impl Fn(&[f64], &T) -> Vec<Piece>,
@@ -73,7 +77,7 @@ pub fn minimax<T>(
     let (mut radius, mut tried) = (FIRST, 0);
     while let Some((to, promised)) = step(&here, height.worst, space, &x, radius).filter(|_| tried < STEPS) {
         // Within the region the linear functions are wrong by its square.
-        if promised < gain || radius < 0.01 * gain.sqrt() {
+        if promised < gain || radius < SMALL * gain.sqrt() {
             break;
         }
         tried += 1;

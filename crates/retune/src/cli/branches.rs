@@ -29,6 +29,9 @@ pub struct Branches {
     /// Look for the force at which an isola begins, up to twice the study's
     #[arg(long)]
     pub margin: bool,
+    /// Picture where starts in a plane end at this value of the parameter: the structure displaced and moving, the damper at rest in it
+    #[arg(long, value_name = "X")]
+    pub basins: Option<String>,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub json: bool,

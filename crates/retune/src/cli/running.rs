@@ -40,14 +40,8 @@ impl Running {
             (false, true) => Begin::Restart,
             (false, false) => Begin::New,
         };
-        let Self { out, threads, replace, quiet, verbose, .. } = self;
-        let request = Request {
-            study: study.to_owned(),
-            out: out.clone(),
-            threads: *threads,
-            begin,
-            replace: *replace,
-        };
-        (request, Screen::new(*quiet, *verbose))
+        let &Self { ref out, threads, replace, quiet, verbose, .. } = self;
+        let request = Request { study: study.to_owned(), out: out.clone(), threads, begin, replace };
+        (request, Screen::new(quiet, verbose))
     }
 }

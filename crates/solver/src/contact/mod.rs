@@ -5,5 +5,4 @@
 //! `regularised` for the others.
 
 pub mod collocation;
-pub mod linearised;
 pub mod regularised;

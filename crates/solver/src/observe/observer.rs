@@ -1,8 +1,8 @@
 //! Observers: a method hands over its motion segment by segment, and each observer keeps its own result.
 
-use crate::contact::linearised::LinearContact;
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
+use crate::motion::linearised::LinearContact;
 use crate::motion::segment::Segment;
 use retune_model::Side;
 

@@ -1,11 +1,11 @@
 //! A run in blocks of some periods of the force.
 
-use super::recurrence::{Recurrence, Settle};
-use super::section::PoincareSection;
 use crate::extremes::{Ask, Extremes, Maxima, maxima, read};
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Path};
+use crate::recurrence::section::PoincareSection;
+use crate::recurrence::test::{Recurrence, Settle};
 use crate::settings::Settings;
 use retune_model::Coupled;
 use std::f64::consts::TAU;

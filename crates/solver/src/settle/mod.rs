@@ -1,15 +1,8 @@
 //! Settled motions: a run is followed until its state returns after some periods of the force, with only a small drift left.
 //!
-//! Read [`settled`], then `blocks` (the run in blocks of some periods), `section` (its states once per period) and `recurrence`
-//! (whether they return); [`follow_until_it_repeats`] ends the runs of other questions.
+//! Read [`settled`], then `blocks`: the run in blocks of some periods. `crate::recurrence` says whether its states return.
 
 mod blocks;
-mod recurrence;
-mod repeats;
-mod section;
-
-pub use recurrence::Settle;
-pub(crate) use repeats::follow_until_it_repeats;
 
 use crate::energy_bound;
 use crate::error::SolverError;
@@ -17,6 +10,7 @@ use crate::extremes::{Ask, Extremes};
 use crate::hybrid::contact_free::ContactFree;
 use crate::observe::displacement_range::DisplacementRange;
 use crate::observe::observer::Unobserved;
+use crate::recurrence::test::Settle;
 use crate::response::Extreme;
 use crate::run::follow_coupled;
 use crate::settings::{Method, Settings, Window};

@@ -6,12 +6,13 @@
 //! computed, and as accurate. Wanted are four numbers of each solution, the change of the state after the contact: four solutions of the
 //! transposed equations give them for any number of changes.
 
-use super::flight::{Flight, MOST};
-use super::series::{BRIEF, Moment, Series, applied, sum};
-use crate::contact::collocation::nodes::MOMENTS;
-use crate::contact::linearised::LinearContact;
+use super::flight::Flight;
+use super::rows::{Along, Row, applied, identity};
+use super::series::{BRIEF, Moment};
+use crate::motion::linearised::{LinearContact, MOMENTS};
 use nalgebra::DMatrix;
 use retune_model::{Coupled, Parameter, Side};
+use wide::f64x4;
 
 /// The derivatives of `A^k b` of a contact with a wall by each parameter.
 pub(super) struct Kicks {
@@ -57,17 +58,17 @@ pub(super) struct Crossing<'a> {
     flight: &'a Flight,
     kicks: &'a Kicks,
     contact: LinearContact,
-    /// The motion without contact from touch-down on.
-    free: Series,
-    /// By how much the state after the contact changes, for a unit change of each coefficient of the free motion's series, of the wall's
+    /// By how much the state after the contact changes, for a unit change of the state and the force at touch-down, of the wall's
     /// position, and of the time of touch-down.
-    rows: [[[f64; 6]; 4]; MOST],
-    by_wall: [f64; 4],
-    by_delay: [f64; 4],
+    row: Row,
+    /// What changes of the equations do to it, along the motion without contact from touch-down on.
+    along: Along,
+    by_wall: f64x4,
+    by_delay: f64x4,
     /// `d(x2 - x1)/dt` at touch-down.
     closing: f64,
     /// What a change of the push of each order does to it by the indentation.
-    pushes: [[f64; MOMENTS]; 4],
+    pushes: [f64x4; MOMENTS],
 }
 
 impl<'a> Crossing<'a> {
@@ -104,34 +105,34 @@ impl<'a> Crossing<'a> {
             _ => 1.5 * contact.roots[j] * contact.additions[j][c],
         });
         matrix.lu().solve_mut(&mut weights);
-        let (mut powers, mut pushes) = ([[0.0; BRIEF]; 4], [[0.0; MOMENTS]; 4]);
-        for c in 0..4 {
-            for i in 0..=n {
-                let time = contact.times[i] * duration;
-                let mut power = sign * weights[(i, c)];
-                for k in 0..contact.terms {
-                    pushes[c][k] += power * contact.impulses[i][k];
-                }
-                for term in &mut powers[c] {
-                    *term += power;
-                    power *= time;
-                }
+        let (mut powers, mut pushes) = ([f64x4::ZERO; BRIEF], [f64x4::ZERO; MOMENTS]);
+        for i in 0..=n {
+            let time = contact.times[i] * duration;
+            let mut power = f64x4::from(std::array::from_fn(|c| sign * weights[(i, c)]));
+            for k in 0..contact.terms {
+                pushes[k] += power * contact.impulses[i][k];
+            }
+            for term in &mut powers {
+                *term += power;
+                power *= time;
             }
         }
         let mut passed = [1.0; BRIEF];
         for k in 1..BRIEF {
             passed[k] = passed[k - 1] * duration;
         }
-        let rows = flight.functionals(free.terms().len(), 1.0, |k, c| {
-            let mut row = [-powers[c][k], 0.0, powers[c][k], 0.0, 0.0, 0.0];
-            row[c] += passed[k];
+        let rows = flight.functionals(free.terms().len(), 1.0, |k| {
+            let mut row = identity(passed[k]);
+            row[0] -= powers[k];
+            row[2] += powers[k];
             row
         });
         let rate = system.derivative_under(touch.excitation, &touch.y, 0.0);
         let begin = Moment { y: rate, force: flight.turn(touch.excitation) };
-        let by_delay = std::array::from_fn(|c| applied(&rows[0][c], &begin) - after[c]);
-        let (by_wall, closing) = (powers.map(|powers| -powers[0]), rate[2] - rate[0]);
-        Self { flight, kicks, contact, free, rows, by_wall, by_delay, closing, pushes }
+        let by_delay = applied(&rows[0], &begin) - f64x4::from(after);
+        let (by_wall, closing) = (-powers[0], rate[2] - rate[0]);
+        let along = Along::new(free.terms(), &rows, 1.0, 1.0);
+        Self { flight, kicks, contact, row: rows[0], along, by_wall, by_delay, closing, pushes }
     }
 
     /// The change of the state at the time of lift-off.
@@ -139,19 +140,15 @@ impl<'a> Crossing<'a> {
         let Change { at, parameter, wall } = change;
         // Touch-down moves to where the gap closes; up to there the motion is that without contact.
         let later = (wall - (at.y[2] - at.y[0])) / self.closing;
-        let mut end: [f64; 4] = std::array::from_fn(|c| {
-            applied(&self.rows[0][c], at) + self.by_delay[c] * later + self.by_wall[c] * wall
-        });
+        let mut end = applied(&self.row, at) + self.by_delay * later + self.by_wall * *wall;
         if let Some(number) = parameter {
-            end = sum(end, self.flight.forced(*number, self.free.terms(), &self.rows, 1.0, 1.0));
+            end += self.flight.forced(*number, &self.along);
             let last = &self.contact.impulses[self.contact.roots.len()];
-            let pushed = self.kicks.by[*number].iter().zip(last).enumerate().take(self.contact.terms);
-            for (k, (kick, impulse)) in pushed {
-                for c in 0..4 {
-                    end[c] += impulse * kick[c] + self.pushes[c][k] * (kick[2] - kick[0]);
-                }
+            let pushed = self.kicks.by[*number].iter().zip(last).zip(&self.pushes).take(self.contact.terms);
+            for ((kick, impulse), push) in pushed {
+                end += f64x4::from(*kick) * *impulse + *push * (kick[2] - kick[0]);
             }
         }
-        end
+        end.to_array()
     }
 }

@@ -1,7 +1,9 @@
 //! Derivatives in flight: Taylor series over whole steps, kept as matrices, and over the rest of the flight.
 
-use super::series::{BRIEF, Moment, Series, applied, dot, sum};
+use super::rows::{Along, Row, applied, identity};
+use super::series::{BRIEF, Moment, Series, dot, sum};
 use retune_model::{Coupled, Excitation, Parameter};
+use wide::f64x4;
 
 /// Length of a whole step times the rate of the flow, and the terms after which the series has converged (`1.25²⁰/20! = 4e-17`).
 const STEP: f64 = 1.25;
@@ -128,74 +130,52 @@ impl Flight {
             terms[count] = self.derivative(&terms[count - 1], constant).times(share);
             count += 1;
         }
-        let rows = self.functionals(count, h, |_, c| std::array::from_fn(|i| f64::from(u8::from(i == c))));
+        let rows = self.functionals(count, h, |_| identity(1.0));
         for column in by_state {
-            *column = rows[0].map(|row| dot(&row[..4], column));
+            *column = applied(&rows[0], &Moment { y: *column, force: [0.0; 2] }).to_array();
         }
-        for (number, by) in by.iter_mut().enumerate() {
-            let own = rows[0].map(|row| applied(&row, by));
-            by.y = sum(own, self.forced(number, &terms[..count], &rows, h, constant));
+        let along = if by.is_empty() { None } else { Some(Along::new(&terms[..count], &rows, h, constant)) };
+        for ((number, by), along) in by.iter_mut().enumerate().zip(along.iter().cycle()) {
+            by.y = (applied(&rows[0], by) + self.forced(number, along)).to_array();
         }
         for term in &terms[1..count] {
             from.y = sum(from.y, term.y);
         }
     }
 
-    /// What a change of each coefficient of a Taylor series does to four numbers, where `own(k, c)` is what the coefficient of order `k`
-    /// itself does to number `c`: a change also goes on into all later coefficients. Of `(y, force)`, in steps of `h`.
-    pub(super) fn functionals(
-        &self,
-        count: usize,
-        h: f64,
-        own: impl Fn(usize, usize) -> [f64; 6],
-    ) -> [[[f64; 6]; 4]; MOST] {
-        let mut rows = [[[0.0; 6]; 4]; MOST];
+    /// What a change of each coefficient of a Taylor series does to four numbers, where `own(k)` is what the coefficient of order `k` itself does to
+    /// them: a change also goes on into all later coefficients. Of `(y, force)`, in steps of `h`.
+    pub(super) fn functionals(&self, count: usize, h: f64, own: impl Fn(usize) -> Row) -> [Row; MOST] {
+        let mut rows = [[f64x4::ZERO; 6]; MOST];
         for k in (0..count).rev() {
-            for c in 0..4 {
-                let mut row = own(k, c);
-                if k + 1 < count {
-                    let share = h / (k + 1) as f64;
-                    let later = self.transposed(&rows[k + 1][c]);
-                    for i in 0..6 {
-                        row[i] += share * later[i];
-                    }
+            let mut row = own(k);
+            if k + 1 < count {
+                let share = h / (k + 1) as f64;
+                for (own, later) in row.iter_mut().zip(self.transposed(&rows[k + 1])) {
+                    *own += later * share;
                 }
-                rows[k][c] = row;
             }
+            rows[k] = row;
         }
         rows
     }
 
-    /// What the change of the equations by the parameter of this number does to the four numbers, along a motion with these terms.
-    pub(super) fn forced(
-        &self,
-        number: usize,
-        terms: &[Moment],
-        rows: &[[[f64; 6]; 4]; MOST],
-        h: f64,
-        constant: f64,
-    ) -> [f64; 4] {
-        let mut sum = [0.0; 4];
-        for k in 1..terms.len() {
-            let Moment { y: [_, a1, _, a2], force: [c, s] } =
-                self.more(number, &terms[k - 1], if k == 1 { constant } else { 0.0 });
-            let share = h / k as f64;
-            for (sum, row) in sum.iter_mut().zip(&rows[k]) {
-                let mut along = row[1] * a1 + row[3] * a2;
-                if self.turning[number] {
-                    along += row[4] * c + row[5] * s;
-                }
-                *sum += share * along;
+    /// What the change of the equations by the parameter of this number does to the four numbers, along a motion.
+    pub(super) fn forced(&self, number: usize, along: &Along) -> f64x4 {
+        let mut sum = if self.turning[number] { along.turned } else { f64x4::ZERO };
+        for (by, rows) in along.by.iter().zip(&self.rows_by[number]) {
+            for (by, row) in by.iter().zip(rows) {
+                sum += *by * *row;
             }
         }
         sum
     }
 
     /// The transposed equations of a flight.
-    fn transposed(&self, &[x1, v1, x2, v2, c, s]: &[f64; 6]) -> [f64; 6] {
+    fn transposed(&self, &[x1, v1, x2, v2, c, s]: &Row) -> Row {
         let [first, second] = &self.rows;
         let own = |j: usize| v1 * first[j] + v2 * second[j];
-        [own(0), x1 + own(1), own(2), x2 + own(3), own(4) + self.omega * s, -self.omega * c]
+        [own(0), x1 + own(1), own(2), x2 + own(3), own(4) + s * self.omega, c * -self.omega]
     }
 
     /// The series of the motion from a moment on, for `seconds` of a brief contact.

@@ -59,8 +59,3 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub(super) fn sum(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|i| a[i] + b[i])
 }
-
-/// A row times a state and its force.
-pub(super) fn applied(row: &[f64; 6], moment: &Moment) -> f64 {
-    dot(&row[..4], &moment.y) + row[4] * moment.force[0] + row[5] * moment.force[1]
-}

@@ -3,12 +3,12 @@
 //! A search that looks at few frequencies finds designs that are good at those alone, and a simplex stops short of a kink, where several
 //! peaks are equally high. So the slope is followed down on finer samples ([`retune_optim::minimax`]), and every end is looked at on the
 //! samples of the study of fronts. The best under a bound is then a start under the bounds beside it; when that brings nothing more, the best
-//! are followed down once more from places about them, on the finer samples; and all this as long as it brings anything anywhere. The descents
-//! of a round are independent of each other, so that every thread has work.
+//! are followed down once more from places about them, on the finer samples, and places scattered about them and on sides of the box are looked
+//! at; and all this as long as it brings anything anywhere. The tasks of a round are independent of each other, so that every thread has work.
 
 use super::candidate::{CONTINUED, Candidate, by_excess};
 use super::fronts::Fronts;
-use super::refinement::{Under, about, descend, set_samples, starts};
+use super::refinement::{Under, about, descend, on_sides, scattered, screen, set_samples, starts};
 use rayon::prelude::*;
 use retune_model::{Design, Variable};
 use retune_study::{PerVariable, Sweep, counted};
@@ -24,12 +24,14 @@ const GAIN: f64 = 1e-3;
 /// Most rounds of descents.
 const ROUNDS: usize = 24;
 
-/// A descent that is to be made.
+/// A descent that is to be made, or a design that is to be looked at.
 #[derive(Clone, PartialEq)]
 pub(super) struct Task {
     under: Under,
     start: PerVariable<f64>,
     samples: usize,
+    /// The design itself is kept if it has no more than this, J; there is no descent.
+    most: Option<f64>,
 }
 
 impl Fronts {
@@ -53,7 +55,7 @@ impl Fronts {
                 for (under, followed) in bounds.iter().zip(&mut followed) {
                     let Some(best) = self.best(*under) else { continue };
                     if gains(&best, followed.as_ref(), *under) {
-                        tasks.extend(self.once_more(&best, *under));
+                        tasks.extend(self.once_more(&best, *under, followed.is_none()));
                         *followed = Some(best);
                     }
                 }
@@ -93,10 +95,14 @@ impl Fronts {
         watch: &dyn Observer,
     ) -> Result<Vec<Candidate>, Error> {
         let bar = watch.progress("descents", tasks.len() as u64);
-        let end = |Task { under, start, samples }: &Task| -> Result<Option<Candidate>, Error> {
+        let end = |Task { under, start, samples, most }: &Task| -> Result<Option<Candidate>, Error> {
             let mut study = self.under(*under, Vec::new())?;
             set_samples(&mut study, *samples);
-            let end = descend(&study, start, *under, searches.journal())?;
+            let journal = searches.journal();
+            let end = match *most {
+                None => descend(&study, start, *under, journal)?,
+                Some(most) => screen(&study, start, most, *under, journal)?,
+            };
             bar.inc(1);
             Ok(end.and_then(|at| self.look(under.damper, at, CONTINUED)))
         };
@@ -111,19 +117,30 @@ impl Fronts {
         let study = self.under(under, Vec::new()).ok();
         let Some(optimize) = study.and_then(|study| study.optimize) else { return Vec::new() };
         let samples = optimize.objective.omega.map_or(1, |band| FINER * (band.samples - 1) + 1);
-        starts(at, &optimize).into_iter().map(|start| Task { under, start, samples }).collect()
+        starts(at, &optimize).into_iter().map(|start| Task { under, start, samples, most: None }).collect()
     }
 
-    /// The descents from the best design under a bound on the samples of the study of fronts, and from places about it.
-    fn once_more(&self, best: &Candidate, under: Under) -> Vec<Task> {
+    /// The descents from the best design under a bound on the samples of the study of fronts, and places scattered about it; the first time also
+    /// the descents from places about it, and places on sides of the box.
+    fn once_more(&self, best: &Candidate, under: Under, first: bool) -> Vec<Task> {
         let study = self.under(under, Vec::new()).ok();
         let Some(optimize) = study.and_then(|study| study.optimize).filter(|_| !self.is_steady(under.damper))
         else {
             return Vec::new();
         };
-        let fine = self.descents(&best.at, under).into_iter();
-        let fine = fine.map(|task| Task { samples: self.plan.said.samples, ..task });
-        fine.chain(about(&best.at, &optimize).iter().flat_map(|at| self.descents(at, under))).collect()
+        let samples = self.plan.said.samples;
+        let fine = self.descents(&best.at, under).into_iter().map(|task| Task { samples, ..task });
+        let mut tasks: Vec<Task> = fine.collect();
+        let mut places = scattered(&best.at, &optimize);
+        if first {
+            tasks.extend(about(&best.at, &optimize).iter().flat_map(|at| self.descents(at, under)));
+            if under.sweep == Sweep::K2 {
+                places.extend(on_sides(&best.at, &optimize));
+            }
+        }
+        let most = Some(best.e1_max);
+        tasks.extend(places.into_iter().map(|start| Task { under, start, samples, most }));
+        tasks
     }
 
     /// The descents from the best design under a bound under the bounds beside it.

@@ -1,4 +1,5 @@
-//! The last choice among the ends of refinements: of designs that are as good, one that keeps its value where others do not: off by a little, or from other starts than rest.
+//! The last choice among the ends of refinements: of designs that are as good, one that keeps its value where others do not: off by a
+//! little, or from other starts than rest.
 
 use super::refine::{Refined, Run};
 use crate::Error;
@@ -31,9 +32,19 @@ impl PassedOver {
     }
 }
 
-/// Chooses, of the ends of the refinements within 1 % of the best, the best that is robust; if none is, the best that no other motion makes
-/// much worse; else the best. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever
-/// that of its search.
+/// The place of the choice among designs in the order of their values: the first that is robust; else the first of which no other motion is much
+/// worse than that from rest; else the first.
+fn place(verdicts: &[Option<Verdict>]) -> usize {
+    let rank = |verdict: Option<Verdict>| match verdict {
+        Some(Verdict::Robust) => 0,
+        Some(Verdict::FromRest) => 2,
+        _ => 1,
+    };
+    (0..verdicts.len()).min_by_key(|&i| rank(verdicts[i])).unwrap_or(0)
+}
+
+/// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, and of those the best. The certificate of the
+/// choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
 ///
 /// # Errors
 /// As [`certify`].
@@ -59,14 +70,15 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     let mut seen: Vec<(usize, Certificate)> = Vec::new();
     for number in order {
         let scene = refined.objective.scene(&refined.runs[number].minimum.x)?;
-        seen.push((number, certify(&Study { scene, ..study.clone() })?));
-        if seen.last().is_some_and(|(_, certificate)| certificate.verdict == Some(Verdict::Robust)) {
+        let certificate = certify(&Study { scene, ..study.clone() })?;
+        let is_robust = certificate.verdict == Some(Verdict::Robust);
+        seen.push((number, certificate));
+        if is_robust {
             break;
         }
     }
-    let safe = |(_, certificate): &(usize, Certificate)| certificate.verdict != Some(Verdict::FromRest);
-    let robust = seen.iter().position(|(_, certificate)| certificate.verdict == Some(Verdict::Robust));
-    let chosen = robust.or_else(|| seen.iter().position(safe)).unwrap_or(0);
+    let verdicts: Vec<Option<Verdict>> = seen.iter().map(|(_, certificate)| certificate.verdict).collect();
+    let chosen = place(&verdicts);
     let passed = seen.iter().take(chosen).map(|(number, certificate)| PassedOver {
         start: number + 1,
         design: PerVariable::of(refined.objective.variables(), &refined.runs[*number].minimum.x),
@@ -77,4 +89,20 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     let (number, certificate) = seen.swap_remove(chosen);
     refined.winner = number;
     Ok((certificate, passed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_the_best_robust_design_is_chosen() {
+        use Verdict::{FromRest, Robust, Sensitive};
+        let choice = |verdicts: &[Verdict]| place(&verdicts.iter().copied().map(Some).collect::<Vec<_>>());
+        assert_eq!(choice(&[Sensitive, FromRest, Robust]), 2);
+        assert_eq!(choice(&[FromRest, Sensitive, Sensitive]), 1);
+        assert_eq!(choice(&[FromRest, FromRest]), 0);
+        assert_eq!(choice(&[Robust]), 0);
+        assert_eq!(place(&[Some(FromRest), None]), 1);
+    }
 }

@@ -43,9 +43,6 @@ pub struct Optimum {
     /// The state of the study's limits, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limits: Option<LimitNote>,
-    /// The tolerance of the runs of the search, if it is not that of the results.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    search_rtol: Option<f64>,
     surf: Option<GridBest>,
     /// The result of the global search, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -157,7 +154,6 @@ impl Optimum {
             on_bound: notes::on_bound(search, best),
             on_edge: surf.map(|surf| notes::on_edge(search, surf)).unwrap_or_default(),
             limits: LimitNote::new(study, &evaluation, surf, explored, refined),
-            search_rtol: study.solver.search_rtol,
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
                 best: PerVariable::of(&surf.variables, &surf.point(surf.best)),

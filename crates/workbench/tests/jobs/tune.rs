@@ -2,7 +2,9 @@
 
 use crate::desk::{Desk, RESULTS, flat, global, number, tiny};
 use crate::observers::{Record, good};
-use crate::{found, request, search};
+use crate::verified;
+use crate::{found, read, request, search};
+use retune_study::Setting;
 use retune_workbench::Request;
 use retune_workbench::tune::tune;
 use serde_json::json;
@@ -174,4 +176,32 @@ fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
     let k1 = number(&optimum, "/objective/worst_k1");
     assert!((k1 / 3.9e4 - 1.0).abs() < 1e-3 || (k1 / 4.2e4 - 1.0).abs() < 1e-3, "{k1}");
     assert!(number(&optimum, "/objective/runs") >= 8.0);
+}
+
+/// The search at its own tolerance; what it finds, at that of the results.
+#[test]
+fn contract_a_search_has_a_tolerance_of_its_own() {
+    let mut study = tiny();
+    study["solver"] = json!({ "rtol": 1e-9, "search_rtol": 1e-3 });
+    let desk = Desk::with(&study);
+    search(&desk, "study.json", "out");
+    let optimum = desk.read_json("out/optimum.json");
+    assert_eq!(number(&optimum, "/simulation/solver/search_rtol"), 1e-3);
+    let value = |row: &[String], rtol: f64| {
+        let settings = ["k2", "c2", "D", "C"].into_iter().zip(row);
+        let settings: Vec<Setting> =
+            settings.map(|(name, value)| Setting::new(name, value.parse().expect("a number"))).collect();
+        let mut study = read(&desk, "study.json").with(&settings).expect("a study");
+        (study.solver.rtol, study.solver.search_rtol) = (rtol, None);
+        study.energy(&study.scene).expect("a value")
+    };
+    let said = |field: &String| field.parse::<f64>().expect("a number");
+    let surf = desk.rows("out/surf.csv");
+    let values = |rtol: f64| surf[1..].iter().all(|row| value(&row[..4], rtol) == said(&row[4]));
+    assert!(values(1e-3) && !values(1e-9));
+    let log = desk.rows("out/fminsearch.csv");
+    let last = &log.last().expect("a row")[3..];
+    assert_eq!(value(&last[..4], 1e-3), said(&last[4]));
+    assert_eq!(value(&last[..4], 1e-9), number(&optimum, "/E1max"));
+    verified::holds(&desk, "out", 7, &[]);
 }

@@ -1,14 +1,14 @@
 //! The motion during a contact that was computed at once.
 
-use super::nodes::{MOMENTS, Nodes, at_nodes, dot, node};
+use super::nodes::{Nodes, at_nodes, dot, node};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
-use crate::contact::linearised::LinearContact;
 use crate::contact::regularised::piece::Piece;
 use crate::linear::flow::{Expansion, Flow};
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::each;
+use crate::motion::linearised::{LinearContact, MOMENTS};
 use crate::observe::observer::{Observer, Path};
 use nalgebra::DMatrix;
 use retune_model::Growth;

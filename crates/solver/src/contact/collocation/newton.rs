@@ -10,8 +10,9 @@
 //! and the first change of the iteration gives the amount of each. Their second-order correction is then added to that change, and
 //! the inverse Jacobian corrected for them to first order: instead of one and a half digits an iteration gains three.
 
-use super::nodes::{MOMENTS, Nodes, dot, packed, product};
+use super::nodes::{Nodes, dot, packed, product};
 use super::undisturbed::{DURATION, STIFFNESS};
+use crate::motion::linearised::MOMENTS;
 use nalgebra::{DMatrix, DVector};
 use wide::f64x4;
 

@@ -3,9 +3,6 @@
 use crate::motion::polynomial::Polynomial;
 use wide::f64x4;
 
-/// Orders of the moments that are kept.
-pub const MOMENTS: usize = 10;
-
 /// A number for each of `4 M` nodes.
 pub type Nodes<const M: usize> = [f64x4; M];
 

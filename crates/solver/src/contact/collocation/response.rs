@@ -1,7 +1,7 @@
 //! How the force of a contact moves the linear system: `A^k b` and `g_k`, and for how long few terms suffice.
 
-use super::nodes::MOMENTS;
 use crate::linear::flow::Flow;
+use crate::motion::linearised::MOMENTS;
 use retune_model::{Coupled, RegularisedContact, Side};
 
 /// The numbers of all contacts with one wall.

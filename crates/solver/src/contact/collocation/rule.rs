@@ -9,9 +9,10 @@
 //! that weight.
 
 use super::newton::Newton;
-use super::nodes::{MOMENTS, Nodes, dot, packed, product};
+use super::nodes::{Nodes, dot, packed, product};
 use super::quadrature::{gauss, legendre};
 use super::undisturbed::{clock, undisturbed_force};
+use crate::motion::linearised::MOMENTS;
 use nalgebra::DMatrix;
 /// Quadrature for forces `f(τ)` on a contact of unit duration, on `N = 4 M` nodes.
 pub struct Rule<const N: usize, const M: usize> {

@@ -1,9 +1,11 @@
 //! A contact that was computed at once, as linear equations for small changes.
 
-use crate::contact::collocation::nodes::MOMENTS;
-use crate::motion::knot::Knot;
+use super::knot::Knot;
 use nalgebra::DMatrix;
 use retune_model::Side;
+
+/// Orders of the integrals that are kept.
+pub const MOMENTS: usize = 10;
 
 /// A contact at the nodes of its rule. A force `K f(t)` on the damper moves the state by `Σ_k A^k b ∫ (t - s)^k / k! f(s) ds`, with `b` what
 /// `K` alone does to its rate; these integrals are sums over the nodes.

@@ -2,7 +2,7 @@
 
 use super::answer::objective;
 use super::findings::Findings;
-use super::html::{Section, Table, link};
+use crate::html::{Section, Table, link};
 use crate::resolved;
 use maud::html;
 use retune_store::{Identity, manifest};

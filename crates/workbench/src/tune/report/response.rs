@@ -2,9 +2,9 @@
 
 use super::curves::{ABOUT, Curves};
 use super::findings::{Compared, Findings};
-use super::html::{Section, figure, link};
 use super::numbers::{HERTZ, amount, four, frequency};
 use crate::amount::label;
+use crate::html::{Section, figure, link};
 use crate::summary::whose;
 use maud::{Markup, html};
 use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};

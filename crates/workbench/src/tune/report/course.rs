@@ -1,9 +1,9 @@
 //! How the search went: its stages, where each refinement began and ended, and why it stopped.
 
 use super::findings::Findings;
-use super::html::{Section, Table, figure, link};
 use super::numbers::four;
 use crate::amount::label;
+use crate::html::{Section, Table, figure, link};
 use crate::tune::log::worth;
 use crate::tune::optimum::stop_words;
 use maud::html;

@@ -1,10 +1,10 @@
 //! The motion at the worst frequency: the last periods of the window.
 
 use super::findings::Findings;
-use super::html::{Section, Table, figure};
 use super::numbers::{digits, four, frequency, millimetres};
 use crate::Error;
 use crate::amount::label;
+use crate::html::{Section, Table, figure};
 use maud::html;
 use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Scale, Sheet, Stroke, Width, drawing};

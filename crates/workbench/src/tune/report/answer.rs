@@ -2,8 +2,8 @@
 
 use super::findings::{Compared, Findings};
 use super::flags::Flag;
-use super::html::{Section, Table};
 use super::numbers::{amount, compared, digits, four, frequency, millimetres};
+use crate::html::{Section, Table};
 use crate::summary::whose;
 use maud::{Markup, html};
 use retune_model::{Damper, Variable};

@@ -1,8 +1,8 @@
 //! Where the design lies: in the grid, and within its bounds.
 
 use super::findings::Findings;
-use super::html::{Section, Table, figure, link};
 use super::numbers::{amount, digits, four};
+use crate::html::{Section, Table, figure, link};
 use maud::{Markup, html};
 use retune_optim::{Bounds, energy};
 use retune_store::Directory;

@@ -4,8 +4,8 @@
 //! from how these changes fall, is below the tolerance of the run. So a run is not longer than its transient and a few periods, and what it
 //! finds differs from what the whole run finds by no more than that tolerance allows the run itself (`just hunt-repeats` measures it).
 
-use super::recurrence::{Recurrence, Settle};
 use super::section::Periods;
+use super::test::{Recurrence, Settle};
 use crate::error::SolverError;
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
 use crate::linear::steps::Steps;

@@ -2,14 +2,13 @@
 //! and no script. Every number on it is computed or read from what the search has found; nothing is stated that was not.
 //!
 //! Read `findings` (what a page is made of), `answer` and `flags`, then the sections in their order on the page: `response`,
-//! `motion`, `sensitivity`, `place`, `course`, `origin`. `html` has the elements, `numbers` how numbers are written.
+//! `motion`, `sensitivity`, `place`, `course`, `origin`. `numbers` has how numbers are written, `crate::html` the elements.
 
 mod answer;
 mod course;
 mod curves;
 mod findings;
 mod flags;
-pub mod html;
 mod motion;
 mod numbers;
 mod origin;
@@ -20,6 +19,7 @@ mod sensitivity;
 pub(crate) use findings::Findings;
 
 use crate::Error;
+use crate::html;
 use crate::resolved::study_text;
 use maud::{DOCTYPE, Markup, html};
 use retune_store::Directory;

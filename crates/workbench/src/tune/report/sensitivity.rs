@@ -1,9 +1,9 @@
 //! The sensitivity of the value to small errors, from the certificate.
 
 use super::findings::Findings;
-use super::html::{Section, Table, figure, link};
 use super::numbers::{amount, digits, four};
 use crate::amount::label;
+use crate::html::{Section, Table, figure, link};
 use maud::html;
 use retune_figures::colour::{BLACK, BLUE, SKY, VERMILION};
 use retune_figures::{

@@ -47,7 +47,7 @@ pub struct Recurrence<'a> {
 }
 
 impl<'a> Recurrence<'a> {
-    /// A test by `settle` of which changes are too small to be those of the solver's error.
+    /// A test by `settle` that sums all changes to come, however small they are: for tolerances as tight as the solver's own.
     pub fn to_the_end(system: &'a Coupled, settle: Settle) -> Self {
         Self { system, settle, most_returns: SLOWEST }
     }
