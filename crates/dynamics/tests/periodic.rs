@@ -221,3 +221,24 @@ fn contract_a_search_that_is_ended_says_so() {
     let (none, _) = search(0);
     assert!(none.ended && none.samples.is_empty() && none.branches.is_empty());
 }
+
+/// Without damping the structure has no steady motion at its natural frequency: starts were infinite, and certificates went on for ever.
+#[test]
+fn regress_starts_at_the_resonance_of_an_undamped_structure_settle() {
+    let numbers = Numbers { c1: 0.0, k2: 2100.0, c2: 112.0, ..TMD };
+    let natural = (numbers.k1 / numbers.m1).sqrt();
+    let found = branches(
+        &numbers.scene(),
+        Plan { range: [natural, 1.0001 * natural], ..plan(2, 8) },
+        &Settings::default(),
+        Watch::default(),
+    )
+    .expect("branches");
+    for sample in &found.samples {
+        assert_eq!(
+            sample.attractors.iter().map(|attractor| attractor.starts).sum::<usize>(),
+            9,
+            "{sample:?}"
+        );
+    }
+}

@@ -7,6 +7,7 @@ use anything::{Anything, DRAWS};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
+use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
 use retune_solver::{Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 
@@ -160,28 +161,30 @@ fn reference_contacts_that_other_forces_rule_agree_with_dop853() {
 fn reference_any_scene_that_touches_a_wall_agrees_with_dop853() {
     let drawn = std::env::var("RETUNE_SCENES").map_or(1500, |count| count.parse().expect("a number"));
     let mut runner = TestRunner::new(config(1));
-    let mut seen = 0;
-    for width in [0.4, 0.7, 1.0] {
-        for _ in 0..drawn / 3 {
-            let mut draws = draws(width).new_tree(&mut runner).expect("draws").current();
-            draws[26] = 0.9; // with a damper
-            let scene = Anything::new(&draws).scene;
-            let [own, other] = both(&scene, 1.0, 1e-9, 3_000);
-            let Ok(other) = other else { continue };
-            let own = match own {
-                Err(SolverError::TooManySteps { .. } | SolverError::TooSlow { .. }) => continue,
-                own => own.unwrap_or_else(|error| panic!("{error}, where DOP853 has {other:?}, {scene:?}")),
-            };
-            if other.scene == SceneKind::Contact && other.impacts[0] + other.impacts[1] <= 4 {
-                let [energy, force] = [
-                    apart(own.e1_max.value, other.e1_max.value),
-                    apart(own.force_max[0].max(own.force_max[1]), other.force_max[0].max(other.force_max[1])),
-                ];
-                assert!(energy < 1e-6 && force < 1e-3, "{energy:e} {force:e}, {own:?}, {other:?}, {scene:?}");
-                seen += 1;
-            }
+    let mut drawn_scene = |width: f64| {
+        let mut draws = draws(width).new_tree(&mut runner).expect("draws").current();
+        draws[26] = 0.9; // with a damper
+        Anything::new(&draws).scene
+    };
+    let widths = [0.4, 0.7, 1.0].into_iter().flat_map(|width| std::iter::repeat_n(width, drawn / 3));
+    let scenes: Vec<Scene> = widths.map(&mut drawn_scene).collect();
+    let touches = |scene: &&Scene| {
+        let [own, other] = both(scene, 1.0, 1e-9, 3_000);
+        let Ok(other) = other else { return false };
+        let own = match own {
+            Err(SolverError::TooManySteps { .. } | SolverError::TooSlow { .. }) => return false,
+            own => own.unwrap_or_else(|error| panic!("{error}, where DOP853 has {other:?}, {scene:?}")),
+        };
+        if other.scene != SceneKind::Contact || other.impacts[0] + other.impacts[1] > 4 {
+            return false;
         }
-    }
+        let force = |found: &Response| found.force_max[0].max(found.force_max[1]);
+        let energy = apart(own.e1_max.value, other.e1_max.value);
+        let force = apart(force(&own), force(&other));
+        assert!(energy < 1e-6 && force < 1e-3, "{energy:e} {force:e}, {own:?}, {other:?}, {scene:?}");
+        true
+    };
+    let seen = scenes.par_iter().filter(touches).count();
     assert!(seen > drawn / 50, "{seen}");
     eprintln!("{seen} of {drawn} scenes touched a wall a few times, and agree with DOP853");
 }

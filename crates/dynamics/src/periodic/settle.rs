@@ -10,6 +10,7 @@ use nalgebra::DVector;
 use retune_model::{Bare, Coupled, Scene};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings};
+use std::f64::consts::TAU;
 
 /// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
 pub(super) const LOOKS: [usize; 4] = [60, 120, 240, 480];
@@ -102,10 +103,14 @@ fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)
     Some((periods, own.correct_at_value(&start)?))
 }
 
-/// The speed that the structure reaches without damper at this frequency, or with what the force would hold, m/s.
+/// The speed that the structure reaches without damper, m/s: in its steady motion, or, where that takes longer, at resonance from rest within
+/// the periods before the first look, by P t / (2 m1). Without damping there is no steady motion at resonance.
 pub fn fastest(scene: &Scene) -> f64 {
     let bare = Bare::new(&scene.primary, &scene.forcing);
-    (2.0 * bare.steady(scene.forcing.frequency.get()).e1_max / scene.primary.mass.get()).sqrt()
+    let (mass, omega) = (bare.mass(), bare.frequency());
+    let [cos, sin] = bare.excitation(0.0);
+    let time = LOOKS[0] as f64 * TAU / omega;
+    (2.0 * bare.steady(omega).e1_max / mass).sqrt().min(cos.hypot(sin) * time / (2.0 * mass))
 }
 
 /// A start for each of `count` numbers of a Sobol sequence, over the states that the force can reach: the structure within what it does

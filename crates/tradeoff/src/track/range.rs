@@ -87,7 +87,7 @@ impl Threshold {
     /// The range of a design: outwards from the nominal stiffness as far as E1max, J, `energy(k1, cutoff)` is at most the threshold; it
     /// may be any larger number once it is above the cutoff. None where it is not even at the nominal stiffness. A gap that is narrower
     /// than a step can be missed.
-    pub fn range(&self, care: Care, energy: impl Fn(f64, f64) -> f64) -> Option<Range> {
+    pub fn range(&self, care: Care, energy: impl Fn(f64, f64) -> f64 + Sync) -> Option<Range> {
         let works = |k1: f64| {
             let most = self.at(k1);
             energy(k1, most) <= most
@@ -112,7 +112,7 @@ impl Threshold {
             }
             (good, true)
         };
-        let [(from, low), (to, high)] = [1.0 / STEP, STEP].map(end);
+        let ((from, low), (to, high)) = rayon::join(|| end(1.0 / STEP), || end(STEP));
         Some(Range { nominal: self.nominal, from, to, open: [low, high] })
     }
 }

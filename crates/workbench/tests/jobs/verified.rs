@@ -45,7 +45,7 @@ pub fn desk() -> Desk {
     study["optimize"]["surf"] = json!(null);
     study["optimize"]["vary"] = json!(["k2", "c2"]);
     study["optimize"]["refine"] = json!({ "MaxFunEvals": 8 });
-    study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 2 } });
+    study["optimize"]["objective"] = json!({ "omega": { "from": 7.5, "to": 7.8, "samples": 2 } });
     let desk = Desk::with(&study);
     let damper = json!({ "damper": "NES, \"single-sided\"", "study": "study.json" });
     let mut row = damper.clone();
