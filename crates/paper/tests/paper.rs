@@ -22,7 +22,7 @@ fn small() -> Desk {
     plan["omega"] = json!({ "from": 4, "to": 9, "points": 31 });
     plan["k1_range"] = json!({ "from": 2.0e4, "to": 6.0e4, "points": 3 });
     plan["ladder"] = json!([5, 9]);
-    plan["motions"] = json!({ "from": 0.99, "to": 1.01, "points": 4 });
+    plan["motions"] = json!({ "from": 0.998, "to": 1.002, "points": 4 });
     desk.write_json("paper.json", &plan);
     desk
 }

@@ -282,7 +282,7 @@ fn invariant_no_search_misses_what_a_look_at_everything_finds() {
 
 #[test]
 fn invariant_nor_where_two_maxima_in_a_step_are_common() {
-    hunt("the same where two maxima in a step are common", dense, scenes(5000));
+    hunt("the same where two maxima in a step are common", dense, scenes(2500));
 }
 
 #[test]
