@@ -1,6 +1,6 @@
 //! Motions beside those from rest: what certificates and searches make of them.
 
-use crate::desk::{Desk, committed, number, studies};
+use crate::desk::{Desk, committed, number, studies, tiny};
 use crate::observers::good;
 use crate::{found, request};
 use retune_study::{Setting, Study};
@@ -32,6 +32,20 @@ fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
     let safe = isola().with(&[Setting::new("D", 0.607_212_882_590_035_9 + 0.04)]).expect("a study");
     let safe = json!(good(certify(&safe)));
     assert_eq!(safe["verdict"], "robust", "{}", safe["words"]);
+}
+
+/// A window that ends before the motion has settled misses what the same run reaches later: no other start is needed for it.
+#[test]
+fn contract_a_window_too_short_is_not_said_to_be_another_start() {
+    let desk = Desk::with(&tiny());
+    let study = retune_study::read(&desk.path("study.json")).expect("a study");
+    let certificate = good(certify(&study));
+    let seen = json!(certificate);
+    assert_eq!(seen["verdict"], "from rest only", "{certificate}");
+    assert_eq!(seen["motions"]["largest"]["from_rest"], true, "{certificate}");
+    let words = "; but runs from rest between its samples, or longer ones, lead to ";
+    let said = seen["words"].as_str().expect("words");
+    assert!(said.starts_with("robust on the runs of the study only: ") && said.contains(words), "{said}");
 }
 
 /// The damper of `results/ssvi` has 225.814 J, 0.02 J more than that with the isola, and is taken.

@@ -107,8 +107,15 @@ fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -
         }
         _ => match all.motions.as_ref().and_then(|motions| motions.largest.as_ref()) {
             Some(other) if other.value.value > (1.0 + WIDE) * own => {
-                let words = format!("{}; {}", other.words(), other.reached());
-                (Verdict::FromRest, format!("robust from rest only: {said}; but a motion has {words}"))
+                let motion = other.words();
+                let words = if other.from_rest {
+                    format!(
+                        "robust on the runs of the study only: {said}; but runs from rest between its samples, or longer ones, lead to {motion}"
+                    )
+                } else {
+                    format!("robust from rest only: {said}; but a motion has {motion}; {}", other.reached())
+                };
+                (Verdict::FromRest, words)
             }
             other => {
                 let others = if other.is_some() { "; no motion from other starts has 5 % more" } else { "" };
