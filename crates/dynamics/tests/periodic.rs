@@ -227,18 +227,16 @@ fn contract_a_search_that_is_ended_says_so() {
 fn regress_starts_at_the_resonance_of_an_undamped_structure_settle() {
     let numbers = Numbers { c1: 0.0, k2: 2100.0, c2: 112.0, ..TMD };
     let natural = (numbers.k1 / numbers.m1).sqrt();
-    let found = branches(
-        &numbers.scene(),
-        Plan { range: [natural, 1.0001 * natural], ..plan(2, 8) },
-        &Settings::default(),
-        Watch::default(),
-    )
-    .expect("branches");
-    for sample in &found.samples {
-        assert_eq!(
-            sample.attractors.iter().map(|attractor| attractor.starts).sum::<usize>(),
-            9,
-            "{sample:?}"
-        );
+    // The unit of states is that of the middle.
+    for range in [[natural, 1.0001 * natural], [0.5 * natural, 1.5 * natural]] {
+        let plan = Plan { range, ..plan(3, 8) };
+        let found =
+            branches(&numbers.scene(), plan, &Settings::default(), Watch::default()).expect("branches");
+        let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
+        assert_eq!([branch.points[0].value, branch.points[branch.points.len() - 1].value], range);
+        for sample in &found.samples {
+            let settled = sample.attractors.iter().map(|attractor| attractor.starts).sum::<usize>();
+            assert_eq!(settled, 9, "{sample:?}");
+        }
     }
 }

@@ -2,13 +2,13 @@
 
 use super::look::{Reached, Sample, look};
 use super::orbit::Orbit;
-use super::settle::{MOST_PERIODS, is_same};
+use super::settle::{MOST_PERIODS, is_same, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
 use super::trace::{Branch, trace};
 use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
-use retune_model::{Bare, Parameter, Scene};
+use retune_model::{Parameter, Scene};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
@@ -123,8 +123,7 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
 pub fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shooting, Error> {
     let [from, to] = plan.range;
     let middle = plan.parameter.at(*scene, 0.5 * (from + to))?;
-    let bare = Bare::new(&middle.primary, &middle.forcing);
-    let size = (2.0 * bare.steady(middle.forcing.frequency.get()).e1_max).sqrt().max(f64::MIN_POSITIVE);
+    let size = (2.0 * most_energy(&middle)).sqrt().max(f64::MIN_POSITIVE);
     Ok(Shooting::new(middle, plan.parameter, 1, (to - from, size), settings))
 }
 

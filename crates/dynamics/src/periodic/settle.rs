@@ -103,14 +103,19 @@ fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)
     Some((periods, own.correct_at_value(&start)?))
 }
 
-/// The speed that the structure reaches without damper, m/s: in its steady motion, or, where that takes longer, at resonance from rest within
-/// the periods before the first look, by P t / (2 m1). Without damping there is no steady motion at resonance.
-pub fn fastest(scene: &Scene) -> f64 {
+/// The energy that the structure reaches without damper, J: in its steady motion, or, where that takes longer, at resonance from rest within
+/// the periods before the first look, where its speed grows by P t / (2 m1). Without damping there is no steady motion at resonance.
+pub(super) fn most_energy(scene: &Scene) -> f64 {
     let bare = Bare::new(&scene.primary, &scene.forcing);
-    let (mass, omega) = (bare.mass(), bare.frequency());
+    let omega = bare.frequency();
     let [cos, sin] = bare.excitation(0.0);
-    let time = LOOKS[0] as f64 * TAU / omega;
-    (2.0 * bare.steady(omega).e1_max / mass).sqrt().min(cos.hypot(sin) * time / (2.0 * mass))
+    let impulse = cos.hypot(sin) * LOOKS[0] as f64 * TAU / omega;
+    bare.steady(omega).e1_max.min(impulse * impulse / (8.0 * bare.mass()))
+}
+
+/// The speed that the structure reaches without damper, m/s.
+pub fn fastest(scene: &Scene) -> f64 {
+    (2.0 * most_energy(scene) / scene.primary.mass.get()).sqrt()
 }
 
 /// A start for each of `count` numbers of a Sobol sequence, over the states that the force can reach: the structure within what it does

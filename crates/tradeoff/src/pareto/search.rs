@@ -82,13 +82,17 @@ impl Fronts {
         Ok(tasks)
     }
 
-    /// The study of a damper under a bound.
+    /// The study of a damper under a bound, which keeps some room below a limit.
     pub(super) fn under(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
+        let room = if under.sweep == Sweep::K2 { 1.0 } else { ROOM };
+        self.bounded(Under { bound: room * under.bound, ..under }, starts)
+    }
+
+    fn bounded(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
         let Under { damper, sweep, bound } = under;
-        let room = if sweep == Sweep::K2 { 1.0 } else { ROOM };
         let (_, study) = &self.plan.dampers[damper];
         let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
-        study::bounded(study, sweep, room * bound, starts).map_err(refuse)
+        study::bounded(study, sweep, bound, starts).map_err(refuse)
     }
 
     /// The designs at which a search starts: the best of the dampers before it under the bound.
@@ -138,7 +142,7 @@ impl Fronts {
                 study.and_then(|study| look(&study)).map_or(f64::INFINITY, |found| found.energy.max(*e1_max));
             return Ok(Candidate { checked: Some(seen), ..design.clone() });
         }
-        let study = self.under(under, Vec::new())?;
+        let study = self.bounded(under, Vec::new())?;
         let scene = study.scene_at(at).unwrap_or(study.scene);
         let certificate = certify(&Study { scene, ..study })?;
         Ok(Candidate { verdict: certificate.short().verdict(), ..design.clone() })
