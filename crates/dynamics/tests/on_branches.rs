@@ -86,7 +86,7 @@ fn invariant_branches_keep_their_period() {
     let all = [2e4, 2.5e4, 3e4, 3.5e4, 4.5e4, 5e4, 5.5e4, 6e4];
     let structures = if std::env::var("RETUNE_FREQUENCIES").is_ok() { &all[..] } else { &all[4..5] };
     println!(
-        "\n| k1, N/m | branches | motions | of a shorter period | ends where no motion is found ahead |"
+        "\n## Branches of Table 2's damper at eight stiffnesses\n| k1, N/m | branches | motions | of a shorter period | ends where no motion is found ahead |"
     );
     println!("| ---: | ---: | ---: | ---: | ---: |");
     for &k1 in structures {
@@ -94,11 +94,14 @@ fn invariant_branches_keep_their_period() {
         let plan = Plan { parameter: Parameter::Omega, range, samples: 31, starts: 16, looks: 2 };
         let scene = Numbers { k1, ..SSVI }.scene();
         let found = branches(&scene, plan, &Settings::default(), Watch::default()).expect("branches");
-        let orbits = || found.branches.iter().flat_map(|branch| &branch.points);
-        let shorter = orbits().filter(|orbit| repeats_sooner(orbit)).count();
+        // A branch that ends at a period doubling of another ends on a motion of that.
+        let inner = |points: &[Orbit]| points[1..points.len() - 1].to_vec();
+        let orbits = found.branches.iter().flat_map(|branch| inner(&branch.points));
+        let repeated: Vec<bool> = orbits.map(|orbit| repeats_sooner(&orbit)).collect();
+        let shorter = repeated.iter().filter(|sooner| **sooner).count();
         let lost =
             found.branches.iter().flat_map(|branch| branch.ends).filter(|end| *end == End::Lost).count();
-        println!("| {k1} | {} | {} | {shorter} | {lost} |", found.branches.len(), orbits().count());
+        println!("| {k1} | {} | {} | {shorter} | {lost} |", found.branches.len(), repeated.len());
         assert_eq!(shorter, 0, "k1 = {k1}");
     }
 }

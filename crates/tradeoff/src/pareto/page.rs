@@ -76,6 +76,9 @@ fn made(fronts: &Fronts, names: &[&str]) -> String {
         );
     }
     text += " Strokes (spring deflections |x2 - x1 - D|) and forces are the largest of whole runs from rest.";
+    if plan.sweeps().iter().any(|sweep| *sweep != Sweep::K2) {
+        text += " Verdict edge: an error of 1 % can break the bound; none: a motion that other starts than rest lead to breaks it.";
+    }
     for (damper, name) in names.iter().enumerate() {
         if fronts.is_steady(damper) {
             text +=

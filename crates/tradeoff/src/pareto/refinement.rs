@@ -147,7 +147,7 @@ pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
 /// from one design to the next, and no slope leads to the better ones.
 pub(super) fn scattered(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
     const FAR: f64 = 0.1;
-    const PLACES: u32 = 64;
+    const PLACES: u32 = 128;
     let value = |i: u32, variable: Variable| {
         let (low, _) = optimize.bounds.get(variable).unwrap_or((0.0, None));
         let is_gap = matches!(variable, Variable::D | Variable::C);
@@ -163,7 +163,7 @@ pub(super) fn scattered(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64
 /// Places on the sides of the box where one wall touches the damper at rest and the spring is as stiff as a bound allows: good designs lie there,
 /// and a search of the whole box does not find them.
 pub(super) fn on_sides(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
-    const PLACES: u32 = 160;
+    const PLACES: u32 = 320;
     /// Share of its upper bound at which a dashpot begins.
     const SMALL: f64 = 0.02;
     let box_of = |variable: Variable| match optimize.bounds.get(variable) {
