@@ -4,7 +4,7 @@
 
 Nothing of Retune is used but its tables: equation (1) is written down here, integrated by DOP853 together with its variational
 equations, restarted at every touch-down and lift-off, and Newton's iteration finds each motion from a first state that is rounded to
-three digits. Compared are the state at a crest of the force (1e-8 of the motion's size) and the modulus of the largest multiplier
+three digits (five or seven where three lead to another motion). Compared are the state at a crest of the force (1e-8 of the motion's size) and the modulus of the largest multiplier
 (1e-6). Exits with 1 if one differs.
 """
 
@@ -73,7 +73,8 @@ class Scene:
                 events, directions = [lambda t, y, i=contact: self.depths(y)[i]], (-1,)
             for event, direction in zip(events, directions):
                 event.terminal, event.direction = True, direction
-            longest = (end - t) if contact is not None else 0.02
+            # Steps of 0.02 s miss a wall that is hardly touched: events are looked for at the ends of steps only.
+            longest = (end - t) if contact is not None else 0.002
             run = solve_ivp(
                 lambda t, y: self.rate(t, y, contact), (t, end), y, "DOP853", rtol=1e-12, atol=1e-14, events=events,
                 max_step=longest,
@@ -128,13 +129,17 @@ def main():
             row = known[(2 * i + 1) * len(known) // (2 * each)]
             expected = first[row["branch"], row["place"]]
             own = Scene(scene, float(row["omega"]))
-            start = np.array([float(f"{value:.2e}") for value in expected])
-            found, M = own.periodic(start, int(row["periods"]))
-            state = np.abs(found - expected).max() / np.abs(expected).max()
-            multiplier = abs(np.abs(np.linalg.eigvals(M)).max() - float(row["multiplier"]))
+            # Nearly hard walls have motions close beside each other: where three digits lead to another one, more are given.
+            for digits in (3, 5, 7):
+                start = np.array([float(f"{value:.{digits - 1}e}") for value in expected])
+                found, M = own.periodic(start, int(row["periods"]))
+                state = np.abs(found - expected).max() / np.abs(expected).max()
+                multiplier = abs(np.abs(np.linalg.eigvals(M)).max() - float(row["multiplier"]))
+                if state < 1e-8:
+                    break
             print(
                 f"{place.name:>7} omega = {float(row['omega']):.6f}, {row['periods']} periods, impacts {row['impacts']:<4}: "
-                f"state to {state:.1e}, largest multiplier to {multiplier:.1e}"
+                f"from {digits} digits state to {state:.1e}, largest multiplier to {multiplier:.1e}"
             )
             worst_state, worst_multiplier = max(worst_state, state), max(worst_multiplier, multiplier)
             count += 1
