@@ -1,10 +1,10 @@
 """Times what people wait for beside an earlier version: values over a band, a grid of runs, whole searches; and what a looser tolerance of a
 search changes of its result.
 
-    python3 tests/job.py RETUNE BASE [--repeats N]
+    python3 tests/job.py RETUNE BASE [--repeats N] [--build]
 
-RETUNE and BASE are the programs of two versions. Times are those of the processor, one thread; of values the least of N turns taken one after
-the other.
+RETUNE and BASE are the programs of two versions, each in target/release of its checkout. Times are those of the processor, one thread; of values the
+least of N turns taken one after the other. With --build also the wall clock of a build of either from clean.
 """
 
 import argparse
@@ -72,9 +72,15 @@ def search(program, name, directory, old=False, **solver):
     return took, json.loads((out / "optimum.json").read_text())["E1max"]
 
 
+def commit(program):
+    """The commit of the checkout in which a program was built."""
+    command = ["git", "-C", program.parents[2], "rev-parse", "--short=7", "HEAD"]
+    return subprocess.run(command, text=True, capture_output=True, check=True).stdout.strip()
+
+
 def compare(programs, directory, repeats):
     """Both versions."""
-    print(f"{'':<56}{'today':>10}{'f3d2d61':>10}{'ratio':>8}")
+    print(f"{'':<56}{'today':>10}{commit(programs[1]):>10}{'ratio':>8}")
 
     def row(name, times):
         print(f"{name:<56}{times[0]:>10.3f}{times[1]:>10.3f}{times[1] / times[0]:>8.2f}", flush=True)
@@ -143,7 +149,7 @@ def main():
     parser.add_argument("--build", action="store_true", help="time builds of both from clean, too")
     given = parser.parse_args()
     programs = [program.resolve() for program in given.programs]
-    print("`just bench-job`: processor time on one thread, beside commit f3d2d61; the certificate of today follows other motions, too\n")
+    print(f"`just bench-job`: processor time on one thread, beside commit {commit(programs[1])}; the certificate of today follows other motions, too\n")
     with tempfile.TemporaryDirectory() as directory:
         compare(programs, Path(directory), given.repeats)
         tolerances(programs[0], Path(directory))

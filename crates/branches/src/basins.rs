@@ -4,6 +4,7 @@ use crate::found::Found;
 use crate::words::{joule, kind};
 use retune_dynamics::periodic::Basins;
 use retune_figures::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
+use retune_model::Bare;
 use retune_study::{counted, rounded};
 use retune_workbench::document::Block;
 
@@ -46,8 +47,8 @@ pub fn blocks(found: &Found, basins: &Basins) -> Vec<Block> {
 fn row(found: &Found, basins: &Basins, motion: Option<usize>) -> Vec<String> {
     let one = motion.map(|number| &basins.sample.attractors[number]);
     let own = || basins.starts().filter(|(_, end)| *end == motion).map(|(start, _)| start);
-    let [m1, k1] = [found.study.scene.primary.mass.get(), found.study.scene.primary.stiffness.get()];
-    let push = own().map(|[x1, v1]| 0.5 * (k1 * x1 * x1 + m1 * v1 * v1)).fold(f64::INFINITY, f64::min);
+    let bare = Bare::new(&found.study.scene.primary, &found.study.scene.forcing);
+    let push = own().map(|[x1, v1]| bare.primary_energy(x1, v1)).fold(f64::INFINITY, f64::min);
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
     vec![
         or_none(motion.map(|number| number.to_string())),

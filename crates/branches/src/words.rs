@@ -1,15 +1,12 @@
 //! Motions in words.
 
 use retune_dynamics::periodic::Orbit;
-use retune_study::{counted, rounded};
+use retune_study::rounded;
+use retune_workbench::certify::periodic;
 
 /// The periods and impacts of a motion in words.
 pub fn kind(orbit: &Orbit) -> String {
-    let impacts = match orbit.seen.impacts.as_str() {
-        "" => "no impact".to_owned(),
-        impacts => format!("impacts {impacts}"),
-    };
-    format!("{}, {impacts}", counted(orbit.periods as u64, "period"))
+    periodic(orbit.periods, &orbit.seen.impacts)
 }
 
 /// An energy, J, to five digits.

@@ -97,14 +97,17 @@ impl Regime {
     /// `nT, m, k`, or the name of the kind.
     pub fn label(&self) -> String {
         let end = match (self.kind, self.period) {
-            (Kind::Periodic, Some(n)) => {
-                let n = if n == 1 { String::new() } else { n.to_string() };
-                format!("{n}T, {:.0}, {:.0}", self.impacts[0], self.impacts[1])
-            }
+            (Kind::Periodic, Some(n)) => periodic_label(n, self.impacts),
             (kind, _) => kind.words().to_owned(),
         };
         if self.transient.is_some() { format!("transient chaos, then {end}") } else { end }
     }
+}
+
+/// The paper's `nT, m, k`: a motion of `n` periods of the force with `m` impacts on the structure and `k` on the obstacle.
+pub fn periodic_label(n: usize, [structure, obstacle]: [f64; 2]) -> String {
+    let n = if n == 1 { String::new() } else { n.to_string() };
+    format!("{n}T, {structure:.0}, {obstacle:.0}")
 }
 
 impl Kind {

@@ -54,6 +54,13 @@ impl Bare {
         let x1 = self.force(omega) / Complex::new(self.k1 - m_omega2, omega * self.c1);
         Steady { x1, x2: x1, e1_max: largest_energy(x1, self.k1, m_omega2), e2_max: 0.0 }
     }
+
+    /// The energy that the force brings to this structure without its damping, at resonance and from rest, in `time` (s), J: `x1` is then
+    /// `P t sin(ωt) / (2 m1 ω)`, which solves equation (1), so the speed grows by `P t / (2 m1)` and the energy is `(P t)² / (8 m1)`.
+    pub fn resonant_energy(&self, time: f64) -> f64 {
+        let impulse = self.force(self.omega).norm() * time;
+        impulse * impulse / (8.0 * self.m1)
+    }
 }
 
 impl Coupled {

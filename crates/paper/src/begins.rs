@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use retune_dynamics::Parameter;
 use retune_dynamics::periodic::branches::{Plan as Asked, Watch};
 use retune_dynamics::periodic::{Branch, Branches, End, EventKind, branches};
+use retune_dynamics::regime::periodic_label;
 use retune_workbench::Error;
 
 /// Frequencies at which runs are started, at most, and starts at each beside that from rest.
@@ -111,11 +112,10 @@ fn parts(branch: &Branch) -> Vec<Part> {
         if let (Some(begin), true) = (first, ends) {
             // At a grazing rounding decides whether the impact counts: the motion between the ends names the part.
             let orbit = &branch.points[usize::midpoint(begin, place)];
-            let struck = |wall: char| orbit.seen.impacts.matches(wall).count();
-            let n = if orbit.periods == 1 { String::new() } else { orbit.periods.to_string() };
+            let struck = |wall: char| orbit.seen.impacts.matches(wall).count() as f64;
+            let label = periodic_label(orbit.periods, ['S', 'O'].map(struck));
             let mut ends = [at(begin), at(place)];
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let label = format!("{n}T, {}, {}", struck('S'), struck('O'));
             found.push(Part { label, ends, rest: false });
             first = None;
         }

@@ -4,7 +4,7 @@ mod certificate;
 mod measure;
 mod motions;
 
-pub use certificate::{Certificate, Short, Verdict};
+pub use certificate::{Certificate, Short, Verdict, periodic};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Job, open};

@@ -104,13 +104,11 @@ fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)
 }
 
 /// The energy that the structure reaches without damper, J: in its steady motion, or, where that takes longer, at resonance from rest within
-/// the periods before the first look, where its speed grows by P t / (2 m1). Without damping there is no steady motion at resonance.
+/// the periods before the first look. Without damping there is no steady motion at resonance.
 pub(super) fn most_energy(scene: &Scene) -> f64 {
     let bare = Bare::new(&scene.primary, &scene.forcing);
     let omega = bare.frequency();
-    let [cos, sin] = bare.excitation(0.0);
-    let impulse = cos.hypot(sin) * LOOKS[0] as f64 * TAU / omega;
-    bare.steady(omega).e1_max.min(impulse * impulse / (8.0 * bare.mass()))
+    bare.steady(omega).e1_max.min(bare.resonant_energy(LOOKS[0] as f64 * TAU / omega))
 }
 
 /// The speed that the structure reaches without damper, m/s.

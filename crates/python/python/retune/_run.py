@@ -15,8 +15,6 @@ from retune._table import Table, axes
 if TYPE_CHECKING:
     import pandas as pd
 
-    from retune._problem import Problem
-
 UNITS = {"t": "s", "x1": "m", "v1": "m/s", "x2": "m", "v2": "m/s", "E1": "J", "E2": "J", "FconL": "N", "FconR": "N"}
 #: Largest values in the summary of a run, with what is shown of them.
 SHOWN = {"E1max": "J", "E2max": "J", "x1max": "m", "v1max": "m/s", "a1max": "m/s2", "ground_force_max": "N", "spring_deflection_max": "m"}
@@ -73,7 +71,7 @@ class Run:
         return _show.page(["largest", "value", "unit"], self._rows(), self._title())
 
 
-def simulate(problem: Problem, x: ArrayLike | None, interval: float, changes: Mapping[str, float]) -> Run:
+def simulate(problem: _core.Core, x: ArrayLike | None, interval: float, changes: Mapping[str, float]) -> Run:
     motion, events, moments, maxima = _core.run(problem, x, interval, list(changes.items()))
     events["moment"] = np.array(moments, dtype=object)
     return Run(Table(motion, UNITS), Table(events, UNITS), json.loads(maxima))

@@ -82,12 +82,13 @@ impl Fronts {
         Ok(tasks)
     }
 
-    /// The study of a damper under a bound, which keeps some room below a limit.
+    /// [`Self::bounded`], with some room below a limit.
     pub(super) fn under(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
         let room = if under.sweep == Sweep::K2 { 1.0 } else { ROOM };
         self.bounded(Under { bound: room * under.bound, ..under }, starts)
     }
 
+    /// The study of a damper under a bound.
     fn bounded(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
         let Under { damper, sweep, bound } = under;
         let (_, study) = &self.plan.dampers[damper];

@@ -8,7 +8,7 @@ mod verdict;
 
 pub use limits::{Kept, Near};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
-pub use motions::{Another, Irregular, Motions};
+pub use motions::{Another, Irregular, Motions, periodic};
 pub use verdict::Verdict;
 
 use crate::Error;

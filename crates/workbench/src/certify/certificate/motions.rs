@@ -50,6 +50,12 @@ pub struct Irregular {
     pub value: Amount,
 }
 
+/// A periodic motion in words, with the walls that it strikes in turn: "2 periods, impacts OSS".
+pub fn periodic(periods: usize, impacts: &str) -> String {
+    let impacts = if impacts.is_empty() { "no impact".to_owned() } else { format!("impacts {impacts}") };
+    format!("{}, {impacts}", counted(periods as u64, "period"))
+}
+
 impl Another {
     pub fn new(quantity: Measure, found: &Largest) -> Self {
         Self {
@@ -65,11 +71,7 @@ impl Another {
     /// What it is and where.
     pub fn words(&self) -> String {
         let Self { value, omega, periods, impacts, .. } = self;
-        let kind = match (periods, impacts.as_str()) {
-            (None, _) => "irregular".to_owned(),
-            (Some(n), "") => format!("{}, no impact", counted(*n as u64, "period")),
-            (Some(n), impacts) => format!("{}, impacts {impacts}", counted(*n as u64, "period")),
-        };
+        let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
         format!("{} at omega = {} rad/s ({kind})", measured(value.value, value.quantity), short(*omega))
     }
 
