@@ -197,7 +197,7 @@ test-branches *OPTIONS:
 # Run four dampers from rest at FREQUENCIES frequencies: whatever settles must lie on a branch that was found; follow the branches of eight structures, which must keep their period: results/robustness/branches.md
 hunt-branches FREQUENCIES="3001":
     mkdir -p results/robustness
-    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture --test-threads 1 | grep -E '^\||^#|^[0-9]+ settled' | sed -E 's/^#.*/\n&\n/; s/^[0-9].*/\n&/' > results/robustness/branches.md.tmp
+    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture --test-threads 1 | grep -E '^\||^#|^[0-9]+ (settled|of those)' | sed -E 's/^#.*/\n&\n/; s/^[0-9].*/\n&/' > results/robustness/branches.md.tmp
     mv results/robustness/branches.md.tmp results/robustness/branches.md && cat results/robustness/branches.md
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)

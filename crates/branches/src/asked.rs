@@ -22,6 +22,10 @@ pub struct Asked {
     pub samples: usize,
     /// Number of starts at each, beside that from rest.
     pub starts: usize,
+    /// Runs at each from whose states Newton's iteration is led to motions other than those known.
+    pub apart: usize,
+    /// Number of values at which a run from rest alone is followed as well.
+    pub fine: usize,
     /// Whether to look for the force at which an isola begins.
     pub margin: bool,
     /// The value of the parameter at which starts in a plane are followed; none unless asked for.
@@ -36,6 +40,8 @@ impl Default for Asked {
             to: None,
             samples: 31,
             starts: 16,
+            apart: 0,
+            fine: 3001,
             margin: false,
             basins: None,
         }
@@ -48,7 +54,7 @@ impl Asked {
     /// # Errors
     /// An end is no number or out of range, or there are too many runs.
     pub(crate) fn plan(&self, study: &Study) -> Result<(Plan, Option<f64>), Error> {
-        let Self { over, samples, starts, .. } = *self;
+        let Self { over, samples, starts, apart, fine, .. } = *self;
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
             return Err(Error::Asked { option: "STUDY", problem });
@@ -81,12 +87,17 @@ impl Asked {
             let problem = format!("{} is not above --from {}", range[1], range[0]);
             return Err(Error::Asked { option: "--to", problem });
         }
-        if !(2..=MOST).contains(&samples) || starts > MOST {
-            let problem = format!("give 2 to {MOST} samples, and at most {MOST} starts at each");
-            return Err(Error::Asked { option: "--samples, --starts", problem });
+        if !(2..=MOST).contains(&samples)
+            || starts.max(apart) > MOST
+            || !(fine == 0 || (2..=MOST).contains(&fine))
+        {
+            let problem = format!(
+                "give 2 to {MOST} samples, at most {MOST} starts of each kind at each, and 0 or 2 to {MOST} fine runs"
+            );
+            return Err(Error::Asked { option: "--samples, --starts, --apart, --fine", problem });
         }
         let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
-        Ok((Plan { parameter: over, range, samples, starts, looks: SPACINGS.len() }, basins))
+        Ok((Plan { parameter: over, range, samples, starts, apart, fine, looks: SPACINGS.len() }, basins))
     }
 }
 
@@ -107,8 +118,8 @@ fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
 
 /// The plan as it stands in the resolved study.
 pub(crate) fn plan_json(plan: &Plan) -> Value {
-    let Plan { parameter, range: [from, to], samples, starts, .. } = plan;
-    json!({ "over": parameter.symbol(), "from": from, "to": to, "samples": samples, "starts": starts })
+    let Plan { parameter, range: [from, to], samples, starts, apart, fine, .. } = plan;
+    json!({ "over": parameter.symbol(), "from": from, "to": to, "samples": samples, "starts": starts, "apart": apart, "fine": fine })
 }
 
 /// The plan in a resolved study; none if it is not one.
@@ -119,6 +130,8 @@ pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
         range: [json["from"].as_f64()?, json["to"].as_f64()?],
         samples: count("samples")?,
         starts: count("starts")?,
+        apart: count("apart")?,
+        fine: count("fine")?,
         looks: SPACINGS.len(),
     })
 }

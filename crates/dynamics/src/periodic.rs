@@ -6,17 +6,21 @@
 //!
 //! Read `forced` (what it asks of a system), `shooting` (the equations and their solution), `orbit` (a motion, and `seen` of it), `trace` (a
 //! branch), `events` (its bifurcations), `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs
-//! from many starts do), `largest`, then `branches`, which asks for all of them, `worst`, the largest value over them, and `basins`, where
-//! starts end.
+//! from many starts do), `largest`, then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
+//! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, and `basins`,
+//! where starts end.
 
 pub mod basins;
+mod belongs;
 pub mod branches;
+pub mod deflate;
 pub mod events;
 pub mod forced;
 pub mod largest;
 pub mod look;
 mod node;
 pub mod orbit;
+mod seek;
 pub mod seen;
 pub mod settle;
 pub mod shooting;

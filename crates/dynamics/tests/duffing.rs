@@ -1,11 +1,13 @@
 //! Continuation on a system whose answer is known: Duffing's oscillator, by the general propagator.
 
-use nalgebra::{Matrix4, SMatrix, Vector4};
+use nalgebra::{DVector, Matrix4, SMatrix, Vector4};
 use retune_dynamics::Error;
+use retune_dynamics::periodic::deflate::another;
 use retune_dynamics::periodic::forced::Flow;
 use retune_dynamics::periodic::seen::Seen;
+use retune_dynamics::periodic::shooting::Solution;
 use retune_dynamics::periodic::trace::trace;
-use retune_dynamics::periodic::{Branch, End, Event, EventKind, Forced, Shooting};
+use retune_dynamics::periodic::{Branch, End, Event, EventKind, Forced, Orbit, Shooting};
 use retune_solver::methods::{Dop853, Run};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Settings, System};
@@ -152,4 +154,31 @@ fn reference_duffings_isola_of_three_periods() {
     compare(&branch, &subharmonic);
     let stable = (0..branch.points.len()).filter(|place| branch.is_stable_at(*place)).count();
     assert!(stable > 20 && branch.points.len() - stable > 20, "{stable} of {}", branch.points.len());
+}
+
+/// Between two folds there are three motions. Newton's iteration leads from rest to one of them, and kept away from that to another; from
+/// elsewhere to the third, and then to none.
+#[test]
+fn reference_deflation_finds_all_three_motions() {
+    let Reference { system, main, .. } = reference();
+    let omega = f64::midpoint(main.folds[0].omega, main.folds[1].omega);
+    let branch = branch(system, &main);
+    let shooting = &branch.shooting;
+    let passing = |pair: &&[Orbit]| (pair[0].value - omega) * (pair[1].value - omega) <= 0.0;
+    let motion = |pair: &[Orbit]| shooting.correct_at_value(&shooting.unknowns(&pair[0].states, omega));
+    let all: Vec<Solution> = branch.points.windows(2).filter(passing).filter_map(motion).collect();
+    assert_eq!(all.len(), 3);
+    let mut found: Vec<DVector<f64>> = Vec::new();
+    let [first, .., last] = [[0.0, 0.0], [-5.0, 0.0], [5.0, 0.0], [0.0, 5.0]].map(|[x, v]| {
+        let start = shooting.unknowns(&[[x, v, 0.0, 0.0]], omega);
+        while let Some(motion) = another(shooting, &start, &found) {
+            found.push(motion.x);
+        }
+        found.len()
+    });
+    assert!(first > 1 && last == 3, "{first}, then {last}");
+    for known in &all {
+        let nearest = found.iter().map(|x| (x - &known.x).amax()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-9, "{nearest:e} from {:?}", shooting.states(&known.x));
+    }
 }

@@ -44,8 +44,15 @@ pub fn follow(
     };
     let band = band(study);
     let range = [band.from, band.to];
-    let plan =
-        Plan { parameter: Parameter::Omega, range, samples: SAMPLES, starts: STARTS, looks: SPACINGS.len() };
+    let plan = Plan {
+        parameter: Parameter::Omega,
+        range,
+        samples: SAMPLES,
+        starts: STARTS,
+        apart: 0,
+        fine: 0,
+        looks: SPACINGS.len(),
+    };
     let [done, made] = [AtomicU64::new(0), AtomicU64::new(0)];
     let watch = Watch {
         done: &|| send(progress(1 + done.fetch_add(1, SeqCst))),

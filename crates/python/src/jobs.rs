@@ -136,6 +136,8 @@ pub struct Along {
     to: Option<String>,
     samples: usize,
     starts: usize,
+    apart: usize,
+    fine: usize,
 }
 
 /// Follows every periodic motion along a parameter; returns the answer as JSON.
@@ -151,10 +153,18 @@ pub fn branches(
     tell: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let request = asked.request(study)?;
-    let Along { over, from, to, samples, starts } = along;
+    let Along { over, from, to, samples, starts, apart, fine } = along;
     let over = over.parse().map_err(Fault::Other)?;
-    let asked =
-        retune_branches::Asked { over, from, to, samples, starts, ..retune_branches::Asked::default() };
+    let asked = retune_branches::Asked {
+        over,
+        from,
+        to,
+        samples,
+        starts,
+        apart,
+        fine,
+        ..retune_branches::Asked::default()
+    };
     watched(py, tell.as_ref(), |watch| match retune_branches::branches(&request, &asked, watch)? {
         Done::Made(found) => json(&retune_branches::summary(&found)),
         Done::FinishedBefore => {

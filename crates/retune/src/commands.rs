@@ -139,8 +139,9 @@ fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
 
 fn branches(arguments: cli::Branches) -> Result<(), Error> {
     let (request, screen) = arguments.running.request(&arguments.study);
-    let cli::Branches { over, from, to, samples, starts, margin, basins, json: as_json, .. } = arguments;
-    let asked = retune_branches::Asked { over, from, to, samples, starts, margin, basins };
+    let cli::Branches { over, from, to, samples, starts, apart, fine, margin, basins, json: as_json, .. } =
+        arguments;
+    let asked = retune_branches::Asked { over, from, to, samples, starts, apart, fine, margin, basins };
     if !as_json {
         return retune_branches::branches(&request, &asked, &screen).map(drop);
     }

@@ -2,7 +2,7 @@
 
 use super::look::{Reached, Sample, look};
 use super::orbit::Orbit;
-use super::settle::{MOST_PERIODS, is_same, most_energy};
+use super::settle::{MOST_PERIODS, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
 use super::trace::{Branch, trace};
@@ -16,12 +16,12 @@ use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 /// starts, for runs that do not settle take longest.
 pub const SPACINGS: [f64; 2] = [1.0 / 200.0, 1.0 / 400.0];
 const FEWER: usize = 4;
+/// Most periods of motions that Newton's iteration looks for.
+const APART: usize = 2;
 /// The narrowest gap that is looked into, as a share of the range.
 const NARROW: f64 = 2e-4;
 /// Most branches.
 const MOST_BRANCHES: usize = 200;
-/// A branch as far as this from a motion is not tried, in units of the motion's size.
-const FAR: f64 = 0.3;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +34,19 @@ pub struct Plan {
     pub samples: usize,
     /// Starts at each, beside that from rest.
     pub starts: usize,
+    /// Runs at each sample from whose states Newton's iteration is led to motions of one and two periods other than those known.
+    pub apart: usize,
+    /// Number of values at which one run more is started, from rest, once the branches through the samples are known.
+    pub fine: usize,
     /// How often the gaps without a stable motion are looked into, more closely each time: at most as often as [`SPACINGS`] says.
     pub looks: usize,
+}
+
+impl Plan {
+    /// Starts where runs are started beside the samples.
+    pub(super) const fn fewer_starts(&self) -> usize {
+        self.starts.div_ceil(FEWER)
+    }
 }
 
 /// Branches and samples.
@@ -87,30 +98,30 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
     let mut spacings = SPACINGS.iter().take(plan.looks);
     let mut starts = plan.starts;
     loop {
+        let first = found.samples.is_empty();
         let look = |&value: &f64| {
             let seen = look(&shooting, value, starts, &goes_on);
-            if found.samples.is_empty() {
+            if first {
                 (watch.done)();
             }
             seen
         };
         let seen: Vec<Result<Reached, Error>> = values.par_iter().map(look).collect();
         for seen in seen {
-            let seen = seen?;
-            if seen.starts == 0 {
-                continue;
+            found.add(&shooting, seen?, &goes_on)?;
+        }
+        if first {
+            for periods in 1..=APART {
+                found.seek_apart(&shooting, periods, &goes_on)?;
             }
-            let sample = seen.sample(&shooting, |own, solution| {
-                found.holds(own, solution).or_else(|| found.follow(own, solution, &goes_on))
-            })?;
-            found.samples.push(sample);
         }
         if ended.load(SeqCst) {
             break;
         }
         let Some(spacing) = spacings.next() else { break };
-        (values, starts) = (found.unseen(*spacing), plan.starts.div_ceil(FEWER));
+        (values, starts) = (found.unseen(*spacing), plan.fewer_starts());
     }
+    found.seek_from_rest(&shooting, &goes_on)?;
     found.ended = ended.into_inner();
     found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
@@ -137,6 +148,25 @@ pub fn sample(scene: &Scene, plan: Plan, settings: &Settings, value: f64) -> Res
 }
 
 impl Branches {
+    /// Adds what runs have reached, with the branches through it that are new.
+    ///
+    /// # Errors
+    /// A scene cannot be run.
+    pub(super) fn add(
+        &mut self,
+        shooting: &Shooting,
+        seen: Reached,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
+        if seen.starts > 0 {
+            let sample = seen.sample(shooting, |own, motion| {
+                self.holds(own, motion).or_else(|| self.follow(own, motion, goes_on))
+            })?;
+            self.samples.push(sample);
+        }
+        Ok(())
+    }
+
     /// Values in the gaps without a stable motion, at most `spacing` of the range apart, beside those that have been looked at.
     fn unseen(&self, spacing: f64) -> Vec<f64> {
         let [from, to] = self.plan.range;
@@ -152,29 +182,13 @@ impl Branches {
             .collect()
     }
 
-    /// The number of the branch that a motion lies on; none if it is on none.
-    pub fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
-        let value = shooting.value(&motion.x);
-        self.branches.iter().position(|branch| {
-            branch.shooting.periods == shooting.periods
-                && branch.points.windows(2).any(|pair| {
-                    let [a, b] = [pair[0].value, pair[1].value];
-                    if (a - value) * (b - value) > 0.0 {
-                        return false;
-                    }
-                    let share = if a == b { 0.0 } else { (value - a) / (b - a) };
-                    let [x, y] = [&pair[0], &pair[1]].map(|orbit| shooting.unknowns(&orbit.states, value));
-                    let guess = &x + (y - &x) * share;
-                    shooting.nearest(&guess, &motion.x).1 < FAR
-                        && shooting
-                            .correct_at_value(&guess)
-                            .is_some_and(|own| is_same(shooting, &own, motion))
-                })
-        })
-    }
-
     /// Follows the branch through a motion and those that branch off where it gains or loses stability; gives its number.
-    fn follow(&mut self, shooting: &Shooting, seed: &Solution, goes_on: &dyn Fn() -> bool) -> Option<usize> {
+    pub(super) fn follow(
+        &mut self,
+        shooting: &Shooting,
+        seed: &Solution,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<usize> {
         if self.branches.len() >= MOST_BRANCHES {
             return None;
         }

@@ -46,6 +46,11 @@ pub(super) struct Reached {
 }
 
 impl Reached {
+    /// Whether a periodic motion is such a one.
+    pub(super) fn is_any(&self, shooting: &Shooting, such: impl Fn(&Shooting, &Solution) -> bool) -> bool {
+        self.attractors.iter().any(|(periods, motion, ..)| such(&shooting.of_periods(*periods), motion))
+    }
+
     /// As a sample, with the branch that each motion is on.
     ///
     /// # Errors

@@ -187,10 +187,7 @@ impl<S: Forced> Shooting<S> {
         let mut before = f64::INFINITY;
         for iterations in 0..=ITERATIONS {
             let at = self.linearised(&x).ok()?;
-            let out = self.inner(normal, &(&x - start));
-            let mut right = at.gaps.clone().insert_row(4 * self.segments, out);
-            right.neg_mut();
-            let change = self.bordered(&at.jacobian, normal).lu().solve(&right)?;
+            let change = self.change(&at, normal, self.inner(normal, &(&x - start)))?;
             let size = self.norm(&change);
             if at.gaps.amax() <= CLOSED {
                 // One change more costs nothing: its derivatives are known.
@@ -208,8 +205,25 @@ impl<S: Forced> Shooting<S> {
 
     /// The solution at the value of the parameter in `start`.
     pub fn correct_at_value(&self, start: &DVector<f64>) -> Option<Solution> {
+        self.correct(start, &self.by_value())
+    }
+
+    /// Newton's change of unknowns whose value of the parameter stays.
+    pub fn change_at_value(&self, x: &DVector<f64>) -> Option<DVector<f64>> {
+        self.change(&self.linearised(x).ok()?, &self.by_value(), 0.0)
+    }
+
+    /// Newton's change where the equations are `at`, and `out` is how far the unknowns are off a plane with this normal.
+    fn change(&self, at: &Linearised, normal: &DVector<f64>, out: f64) -> Option<DVector<f64>> {
+        let mut right = at.gaps.clone().insert_row(4 * self.segments, out);
+        right.neg_mut();
+        self.bordered(&at.jacobian, normal).lu().solve(&right)
+    }
+
+    /// The direction of the parameter.
+    fn by_value(&self) -> DVector<f64> {
         let last = 4 * self.segments;
-        self.correct(start, &DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last))))
+        DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)))
     }
 
     /// The direction of the branch through a solution, of length 1, on the side of `before`.

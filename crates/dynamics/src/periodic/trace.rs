@@ -82,13 +82,25 @@ impl<S> Branch<S> {
     /// Whether the motions between point `i` and the next are stable. At a bifurcation itself a multiplier is on the unit circle, and
     /// rounding decides on which side: the other point counts.
     pub fn is_stable_after(&self, i: usize) -> bool {
+        let last = self.points.len().saturating_sub(1);
         let at_bifurcation = |place: usize| {
-            self.events.iter().any(|event| event.place == place && event.kind != EventKind::Grazing)
+            place == 0 && self.ends[0] == End::Halved
+                || place == last && self.ends[1] == End::Halved
+                || self.events.iter().any(|event| event.place == place && event.kind != EventKind::Grazing)
         };
         let mut decisive = [i, i + 1].into_iter().filter(|place| !at_bifurcation(*place)).peekable();
         i + 1 < self.points.len()
             && decisive.peek().is_some()
             && decisive.all(|place| self.points[place].is_stable())
+    }
+
+    /// The same with motions before its first.
+    pub(super) fn after(mut self, first: Vec<Orbit>) -> Self {
+        for event in &mut self.events {
+            event.place += first.len();
+        }
+        self.points.splice(..0, first);
+        self
     }
 
     /// Whether a motion is stable, or the limit of stable ones.
@@ -172,6 +184,7 @@ fn side(
         if straight && next.solution.iterations <= 4 {
             step = (1.6 * step).min(LONGEST);
         }
+        let turned = events.len();
         found.extend(events.into_iter().map(|event| (event.orbit.clone(), Some(event))));
         let value = next.orbit.value;
         if value < from || value > to {
@@ -182,6 +195,10 @@ fn side(
             return (found, End::Range);
         }
         if joins_half(shooting, &now, &next) {
+            // It turns back there, along itself.
+            for (_, event) in found.iter_mut().rev().take(turned) {
+                event.take_if(|event| event.kind == EventKind::Fold);
+            }
             return (found, End::Halved);
         }
         // Back at the start: nearer than a step, after it was farther away, and in the same direction. Before the branch has turned all the way

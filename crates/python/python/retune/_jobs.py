@@ -140,6 +140,8 @@ def branches(
     span: tuple[float, float] | None = None,
     samples: int = 31,
     starts: int = 16,
+    apart: int = 0,
+    fine: int = 3001,
     restart: bool = False,
     replace: bool = False,
     threads: int | None = None,
@@ -148,11 +150,12 @@ def branches(
     """Every periodic motion of a study, or of the design in a directory of results, as `retune branches` does.
 
     ``over`` is the parameter, by its symbol, and ``span`` its range (SI units), by default the band of the study. Runs are started at
-    ``samples`` values, from rest and from ``starts`` other states. Returns the answer as `branches.json` has it: ``branches`` with their
+    ``samples`` values, from rest and from ``starts`` other states, and at ``fine`` values from rest; Newton's iteration is
+    led to other motions from states of ``apart`` runs. Returns the answer as `branches.json` has it: ``branches`` with their
     ``events`` and ``largest_stable``, and the ``stable`` and ``irregular`` parts of the range.
     """
     ends = (None, None) if span is None else tuple(repr(float(end)) for end in span)
-    along = {"over": over, "from": ends[0], "to": ends[1], "samples": samples, "starts": starts}
+    along = {"over": over, "from": ends[0], "to": ends[1], "samples": samples, "starts": starts, "apart": apart, "fine": fine}
     what = asked(out, False, restart, replace, threads)
     answer: dict[str, Any] = json.loads(_core.branches(os.fspath(study), along, what, Progress(progress)))
     return answer

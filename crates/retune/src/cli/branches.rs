@@ -26,6 +26,12 @@ pub struct Branches {
     /// Number of starts at each, beside that from rest
     #[arg(long, value_name = "N", default_value_t = 16)]
     pub starts: usize,
+    /// Number of runs at each from whose states Newton's iteration is led to motions of one and two periods other than those known
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub apart: usize,
+    /// Number of values at which a run from rest alone is followed as well, for motions that are stable over little of the range
+    #[arg(long, value_name = "N", default_value_t = 3001)]
+    pub fine: usize,
     /// Look for the force at which an isola begins, up to twice the study's
     #[arg(long)]
     pub margin: bool,

@@ -1,0 +1,67 @@
+//! Which branch a motion lies on.
+
+use super::branches::Branches;
+use super::orbit::Orbit;
+use super::settle::{SAME, is_same};
+use super::shooting::{Shooting, Solution};
+use super::trace::trace;
+use nalgebra::DVector;
+
+/// A branch as far as this from a motion is not tried, in units of the motion's size.
+const FAR: f64 = 0.3;
+/// One as near as this is followed to the motions of the branch next to it, where Newton's iteration does not reach it: beside a grazing at a
+/// nearly hard wall it converges only from very near.
+const CLOSE: f64 = 1e-2;
+
+impl Branches {
+    /// The number of the branch that a motion lies on; none if it is on none.
+    pub fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
+        let value = shooting.value(&motion.x);
+        let is_here = |(_, pair, guess): &(usize, &[Orbit], DVector<f64>)| {
+            let gap = shooting.nearest(guess, &motion.x).1;
+            gap < FAR
+                && (shooting.correct_at_value(guess).is_some_and(|own| is_same(shooting, &own, motion))
+                    || gap < CLOSE && leads_to(shooting, motion, pair))
+        };
+        self.near(shooting, value).find(is_here).map(|(number, ..)| number)
+    }
+
+    /// The motions of as many periods on all branches at a value.
+    pub(super) fn at(&self, shooting: &Shooting, value: f64) -> Vec<Solution> {
+        self.near(shooting, value).filter_map(|(.., guess)| shooting.correct_at_value(&guess)).collect()
+    }
+
+    /// The places at which branches of as many periods pass a value: their numbers, the motions on either side, and that between them.
+    fn near<'a>(
+        &'a self,
+        shooting: &'a Shooting,
+        value: f64,
+    ) -> impl Iterator<Item = (usize, &'a [Orbit], DVector<f64>)> + 'a {
+        let own = self.branches.iter().enumerate();
+        own.filter(|(_, branch)| branch.shooting.periods == shooting.periods).flat_map(
+            move |(number, branch)| {
+                let around = move |pair: &&[Orbit]| (pair[0].value - value) * (pair[1].value - value) <= 0.0;
+                branch.points.windows(2).filter(around).map(move |pair| {
+                    let [a, b] = [pair[0].value, pair[1].value];
+                    let share = if a == b { 0.0 } else { (value - a) / (b - a) };
+                    let [x, y] = [&pair[0], &pair[1]].map(|orbit| shooting.unknowns(&orbit.states, value));
+                    (number, pair, &x + (y - &x) * share)
+                })
+            },
+        )
+    }
+}
+
+/// Whether the branch through a motion leads to one of two others on either side of it.
+fn leads_to(shooting: &Shooting, motion: &Solution, pair: &[Orbit]) -> bool {
+    let [a, b] = [pair[0].value, pair[1].value];
+    let Some(own) = trace(shooting, motion, [a.min(b), a.max(b)], &|| true) else { return false };
+    let ends = [own.points.first(), own.points.last()].into_iter().flatten();
+    let unknowns = |orbit: &Orbit| shooting.unknowns(&orbit.states, orbit.value);
+    let is_met = |end: &Orbit| {
+        pair.iter().any(|orbit| {
+            orbit.value == end.value && shooting.nearest(&unknowns(orbit), &unknowns(end)).1 < SAME
+        })
+    };
+    ends.into_iter().any(is_met)
+}

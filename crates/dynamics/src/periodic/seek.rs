@@ -1,0 +1,105 @@
+//! What the runs at the samples have not led to: motions that are stable over little of the range, and those that no run settles on.
+
+use super::branches::Branches;
+use super::deflate::another;
+use super::look::{Sample, look};
+use super::settle;
+use super::shooting::{Shooting, Solution};
+use crate::parameter::{Error, evenly};
+use crate::poincare::PoincareMap;
+use nalgebra::DVector;
+use rayon::prelude::*;
+use retune_model::Coupled;
+use retune_solver::observe::Unobserved;
+use retune_solver::{Motion, Phase};
+
+/// Periods after which a run has come near to a motion, or to one that it leaves again.
+const PASSED: usize = 20;
+
+impl Branches {
+    /// Runs from rest at many values of the parameter: the branches of those motions that are on none so far.
+    ///
+    /// # Errors
+    /// A scene in the range cannot be run.
+    pub(super) fn seek_from_rest(
+        &mut self,
+        shooting: &Shooting,
+        goes_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Error> {
+        let [from, to] = self.plan.range;
+        let unknown = |branches: &Self, value: f64| -> Result<bool, Error> {
+            let seen = look(shooting, value, 0, goes_on)?;
+            Ok(seen.is_any(shooting, |own, motion| branches.holds(own, motion).is_none()))
+        };
+        let values = evenly(from, to, self.plan.fine);
+        let seen: Result<Vec<bool>, Error> = values.par_iter().map(|value| unknown(self, *value)).collect();
+        for (value, _) in values.into_iter().zip(seen?).filter(|(_, is_unknown)| *is_unknown) {
+            // The branch through one of them may hold the next.
+            if unknown(self, value)? {
+                self.add(shooting, look(shooting, value, self.plan.fewer_starts(), goes_on)?, goes_on)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Newton's iteration from states that runs pass, kept away from the motions of so many periods that are known: the branches of those
+    /// that it finds.
+    ///
+    /// # Errors
+    /// A scene in the range cannot be run.
+    pub(super) fn seek_apart(
+        &mut self,
+        shooting: &Shooting,
+        periods: usize,
+        goes_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Error> {
+        let own = shooting.of_periods(periods);
+        let others = |sample: &Sample| -> Result<Vec<Solution>, Error> {
+            let value = sample.value;
+            let (system, scene) = (own.system(value)?, own.scene_at(value)?);
+            let mut known = self.solutions(shooting, periods, value);
+            let mut found = Vec::new();
+            for y in settle::starts(&system, &scene, self.plan.apart) {
+                let start = own.unknowns(&passed(&own, &system, y)?, value);
+                while let Some(motion) = goes_on().then(|| another(&own, &start, &known)).flatten() {
+                    known.push(motion.x.clone());
+                    found.push(motion);
+                }
+            }
+            Ok(found)
+        };
+        let found: Result<Vec<Vec<Solution>>, Error> = self.samples.par_iter().map(others).collect();
+        for motion in found?.into_iter().flatten() {
+            if self.holds(&own, &motion).is_none() {
+                self.follow(&own, &motion, goes_on);
+            }
+        }
+        Ok(())
+    }
+
+    /// The motions on all branches at a value that repeat after so many periods, those that repeat sooner among them.
+    fn solutions(&self, shooting: &Shooting, periods: usize, value: f64) -> Vec<DVector<f64>> {
+        let own = shooting.of_periods(periods);
+        let shorter = (1..=periods).filter(|shorter| periods.is_multiple_of(*shorter));
+        let all = shorter.flat_map(|shorter| {
+            let part = shooting.of_periods(shorter);
+            let states = self.at(&part, value).into_iter().map(move |motion| part.states(&motion.x));
+            states.map(move |states| states.repeat(periods / shorter))
+        });
+        all.map(|states| own.unknowns(&states, value)).collect()
+    }
+}
+
+/// The states at the last crests of the force of a run from a state.
+fn passed(shooting: &Shooting, system: &Coupled, y: [f64; 4]) -> Result<Vec<[f64; 4]>, Error> {
+    let mut map = PoincareMap::new(system, shooting.settings());
+    let mut motion = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
+    let mut states = Vec::new();
+    for taken in 0..PASSED {
+        motion = map.next(motion, &mut Unobserved)?;
+        if taken + shooting.periods >= PASSED {
+            states.push(motion.y);
+        }
+    }
+    Ok(states)
+}
