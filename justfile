@@ -194,6 +194,12 @@ test-retention *OPTIONS:
 test-branches *OPTIONS:
     python3 tests/reference/orbits.py "$@"
 
+# Walk under k2 <= 300 N/m to less and less E1max on 601 frequencies alone, and look at the ends on 5000: results/robustness/walk.md
+hunt-walk:
+    mkdir -p results/robustness
+    cargo test --release --package retune-tradeoff --test walk -- --nocapture --ignored | grep -E '^\||^#' | sed -E 's/^#.*/\n&\n/' > results/robustness/walk.md.tmp
+    mv results/robustness/walk.md.tmp results/robustness/walk.md && cat results/robustness/walk.md
+
 # Run four dampers from rest at FREQUENCIES frequencies: whatever settles must lie on a branch that was found; follow the branches of eight structures, which must keep their period: results/robustness/branches.md
 hunt-branches FREQUENCIES="3001":
     mkdir -p results/robustness

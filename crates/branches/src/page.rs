@@ -60,24 +60,17 @@ fn asked(found: &Found) -> String {
     let plan = &found.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
     let damper = found.study.scene.damper.map_or(String::new(), |damper| TunedDamper::of(&damper).words(5));
-    let fine = match plan.fine {
-        0 => String::new(),
-        fine => format!(
-            " A run from rest at each of {} leads to the branches that this has missed.",
-            counted(fine as u64, "value")
-        ),
-    };
-    let apart = match plan.apart {
-        0 => String::new(),
-        apart => format!(
-            " From {} at each value of the first, Newton's iteration looks for motions of one and two periods beside those known.",
-            counted(apart as u64, "run")
-        ),
-    };
+    let more = [
+        (plan.fine, "value", " A run from rest at each of # leads to the branches that this has missed."),
+        (plan.apart, "run", " From # at each of the former, Newton's iteration looks for other motions."),
+    ];
+    let more = more.iter().filter(|(count, ..)| *count > 0);
+    let more: String =
+        more.map(|(count, what, words)| words.replace('#', &counted(*count as u64, what))).collect();
     format!(
         "The damper: {damper}. At {} of {symbol} from {} to {} {unit}, runs from rest and from {} are followed until they repeat, and more where \
          no stable motion is known; the branch of each motion that they settle on is followed to both sides, and from each period doubling at \
-         which it gains or loses stability.{fine}{apart}",
+         which it gains or loses stability.{more}",
         counted(plan.samples as u64, "value"),
         short(from),
         short(to),
