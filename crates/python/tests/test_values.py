@@ -60,6 +60,7 @@ def test_contract_a_problem_of_objects_is_that_of_its_study(tmp_path: Path) -> N
         bounds={"k2": (10, 600), "c2": (1, 1000), "D": (0, 1), "C": (0, 2)},
         surf=json.loads((STUDIES / "ssvi.json").read_text())["optimize"]["surf"],
         refine={"starts": 3, "scaled": True, "TolX": 1e-4, "TolFun": 1e-3, "MaxFunEvals": 2000, "MaxIter": 2000},
+        solver={"search_rtol": 1e-8},
         name="ssvi",
     )
     assert built == rt.Problem.from_study(STUDIES / "ssvi.json")
