@@ -119,7 +119,10 @@ pub struct Periods {
 }
 
 /// Computes one orbit; returns its samples and its final state.
-fn orbit(
+///
+/// # Errors
+/// The system cannot be run there.
+pub(crate) fn orbit(
     system: &Coupled,
     value: f64,
     start: Motion,

@@ -42,7 +42,7 @@ fn shooting(numbers: &Numbers, omega: f64) -> Shooting {
 }
 
 fn plan(samples: usize, starts: usize) -> Plan {
-    Plan { parameter: Parameter::Omega, range: [5.0, 8.0], samples, starts, apart: 0, fine: 0, looks: 2 }
+    Plan { samples, starts, looks: 2, ..Plan::over(Parameter::Omega, [5.0, 8.0]) }
 }
 
 /// A damper that touches nothing: the branch is the steady response, its multipliers those of the linear flow.

@@ -45,13 +45,10 @@ pub fn follow(
     let band = band(study);
     let range = [band.from, band.to];
     let plan = Plan {
-        parameter: Parameter::Omega,
-        range,
         samples: SAMPLES,
         starts: STARTS,
-        apart: 0,
-        fine: 0,
         looks: SPACINGS.len(),
+        ..Plan::over(Parameter::Omega, range)
     };
     let [done, made] = [AtomicU64::new(0), AtomicU64::new(0)];
     let watch = Watch {

@@ -39,15 +39,7 @@ pub fn begins(plan: &Plan, families: &[Family], all: &[Motions]) -> Result<Grid,
     let found = families.par_iter().zip(all).map(|(family, motions)| {
         let range = [motions.omega[0], motions.omega[motions.omega.len() - 1]];
         let samples = SAMPLES.min(motions.omega.len());
-        let asked = Asked {
-            parameter: Parameter::Omega,
-            range,
-            samples,
-            starts: STARTS,
-            apart: 0,
-            fine: 0,
-            looks: 1,
-        };
+        let asked = Asked { samples, starts: STARTS, looks: 1, ..Asked::over(Parameter::Omega, range) };
         branches(&plan.scenes(family.k1)?[1], asked, &plan.settings(), Watch::default()).map_err(Error::from)
     });
     for (family, found) in families.iter().zip(found.collect::<Vec<Result<Branches, Error>>>()) {

@@ -25,6 +25,7 @@ fn invariant_a_walk_fits_its_design_to_the_samples() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/fronts-ssvi.json");
     let study = read(&path).expect("the study of fronts");
     let [few, fine, finest] = [FEW, 601, 5000].map(|samples| over(&study, samples));
+    // That of `results/fronts/k2.csv`: k2, N/m; c2, N s/m; D, m.
     let kept = [300.0, 216.26883973710628, 0.43798840045928955];
     let walk = |number: u32| {
         let (mut best, mut least) = (kept, worst(&fine, &kept, f64::INFINITY));
@@ -49,7 +50,7 @@ fn invariant_a_walk_fits_its_design_to_the_samples() {
     let [coarse, whole] = row("begins", &kept);
     for (number, end) in ends.iter().enumerate() {
         let [fitted, seen] = row(&format!("{}", number + 1), end);
-        assert!(end[0] <= MOST && fitted < 1.01 * coarse, "{fitted} J after a walk from {coarse} J");
+        assert!(end[0] <= MOST && fitted < coarse, "{fitted} J after a walk from {coarse} J");
         assert!(seen - fitted > whole - coarse, "{seen} J on 5000 frequencies beside {fitted} J");
     }
 }

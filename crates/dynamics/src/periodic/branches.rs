@@ -43,6 +43,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// A plan without samples and without whatever is looked for beside them.
+    pub const fn over(parameter: Parameter, range: [f64; 2]) -> Self {
+        Self { parameter, range, samples: 0, starts: 0, apart: 0, fine: 0, looks: 0 }
+    }
+
     /// Starts where runs are started beside the samples.
     pub(super) const fn fewer_starts(&self) -> usize {
         self.starts.div_ceil(FEWER)

@@ -22,13 +22,15 @@ pub fn another<S: Forced>(
     start: &DVector<f64>,
     known: &[DVector<f64>],
 ) -> Option<Solution> {
-    let crests = (0..shooting.segments).step_by((shooting.segments / shooting.periods).max(1));
     let known: Vec<DVector<f64>> =
-        crests.flat_map(|shift| known.iter().map(move |x| shooting.moved_on(x, shift))).collect();
+        shooting.crests().flat_map(|shift| known.iter().map(move |x| shooting.moved_on(x, shift))).collect();
     let mut x = start.clone();
     for _ in 0..ITERATIONS {
         let change = shooting.change_at_value(&x)?;
         let size = shooting.norm(&change);
+        if !size.is_finite() {
+            return None;
+        }
         if size < SHORT {
             let found = shooting.correct_at_value(&x).filter(|found| {
                 let apart = |known| shooting.nearest(known, &found.x).1 > SAME;

@@ -6,11 +6,9 @@ use super::look::{Sample, look};
 use super::settle;
 use super::shooting::{Shooting, Solution};
 use crate::parameter::{Error, evenly};
-use crate::poincare::PoincareMap;
+use crate::poincare::{Periods, orbit};
 use nalgebra::DVector;
 use rayon::prelude::*;
-use retune_model::Coupled;
-use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase};
 
 /// Periods after which a run has come near to a motion, or to one that it leaves again.
@@ -54,13 +52,16 @@ impl Branches {
         goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
         let own = shooting.of_periods(periods);
+        let near = Periods { settle: PASSED - periods, record: periods };
         let others = |sample: &Sample| -> Result<Vec<Solution>, Error> {
             let value = sample.value;
             let (system, scene) = (own.system(value)?, own.scene_at(value)?);
             let mut known = self.solutions(shooting, periods, value);
             let mut found = Vec::new();
             for y in settle::starts(&system, &scene, self.plan.apart) {
-                let start = own.unknowns(&passed(&own, &system, y)?, value);
+                let from = Motion { t: 0.0, y, phase: Phase::of(&system, &y) };
+                let (run, _) = orbit(&system, value, from, near, own.settings())?;
+                let start = own.unknowns(&run.samples, value);
                 while let Some(motion) = goes_on().then(|| another(&own, &start, &known)).flatten() {
                     known.push(motion.x.clone());
                     found.push(motion);
@@ -88,18 +89,4 @@ impl Branches {
         });
         all.map(|states| own.unknowns(&states, value)).collect()
     }
-}
-
-/// The states at the last crests of the force of a run from a state.
-fn passed(shooting: &Shooting, system: &Coupled, y: [f64; 4]) -> Result<Vec<[f64; 4]>, Error> {
-    let mut map = PoincareMap::new(system, shooting.settings());
-    let mut motion = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
-    let mut states = Vec::new();
-    for taken in 0..PASSED {
-        motion = map.next(motion, &mut Unobserved)?;
-        if taken + shooting.periods >= PASSED {
-            states.push(motion.y);
-        }
-    }
-    Ok(states)
 }

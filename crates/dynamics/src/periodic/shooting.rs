@@ -142,11 +142,15 @@ impl<S: Forced> Shooting<S> {
     /// motion of several periods may begin at any crest of the force.
     pub fn nearest(&self, a: &DVector<f64>, b: &DVector<f64>) -> (usize, f64) {
         let n = 4 * self.segments;
-        // A crest at which no segment begins cannot be compared.
-        let step = if self.segments.is_multiple_of(self.periods) { n / self.periods } else { n };
-        let gap = |shift: usize| (0..n).map(|i| (a[i] - b[(i + shift) % n]).abs()).fold(0.0, f64::max);
-        let all = (0..n).step_by(step).map(|shift| (shift / 4, gap(shift)));
+        let gap = |shift: usize| (0..n).map(|i| (a[i] - b[(i + 4 * shift) % n]).abs()).fold(0.0, f64::max);
+        let all = self.crests().map(|shift| (shift, gap(shift)));
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
+    }
+
+    /// The numbers of the segments that begin at a crest of the force; the first alone if periods are not cut into as many segments each.
+    pub fn crests(&self) -> impl Iterator<Item = usize> + use<S> {
+        let whole = self.segments.is_multiple_of(self.periods);
+        (0..self.segments).step_by(if whole { self.segments / self.periods } else { self.segments })
     }
 
     /// Unknowns or a direction, moved on by so many segments.
@@ -220,17 +224,15 @@ impl<S: Forced> Shooting<S> {
         self.bordered(&at.jacobian, normal).lu().solve(&right)
     }
 
-    /// The direction of the parameter.
-    fn by_value(&self) -> DVector<f64> {
+    /// The direction of the parameter alone.
+    pub(super) fn by_value(&self) -> DVector<f64> {
         let last = 4 * self.segments;
         DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)))
     }
 
     /// The direction of the branch through a solution, of length 1, on the side of `before`.
     pub fn tangent(&self, at: &Linearised, before: &DVector<f64>) -> Option<DVector<f64>> {
-        let last = 4 * self.segments;
-        let right = DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)));
-        let direction = self.bordered(&at.jacobian, before).lu().solve(&right)?;
+        let direction = self.bordered(&at.jacobian, before).lu().solve(&self.by_value())?;
         let length = self.norm(&direction);
         length.is_finite().then(|| direction / length)
     }

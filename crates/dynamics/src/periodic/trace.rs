@@ -118,9 +118,7 @@ pub fn trace<S: Forced>(
     [from, to]: [f64; 2],
     goes_on: &dyn Fn() -> bool,
 ) -> Option<Branch<S>> {
-    let last = seed.x.len() - 1;
-    let along = DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)));
-    let start = Node::new(shooting, seed.clone(), &along)?;
+    let start = Node::new(shooting, seed.clone(), &shooting.by_value())?;
     let (after, end) = side(shooting, &start, [from, to], goes_on);
     if end == End::Closed {
         return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));

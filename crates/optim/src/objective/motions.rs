@@ -25,8 +25,7 @@ pub(super) fn largest_motion(
     settings: &Settings,
 ) -> Result<Found, Unusable> {
     let starts = term.starts.unwrap_or(STARTS);
-    let plan =
-        Plan { parameter: Parameter::Omega, range: [from, to], samples, starts, apart: 0, fine: 0, looks: 1 };
+    let plan = Plan { samples, starts, looks: 1, ..Plan::over(Parameter::Omega, [from, to]) };
     let kinds = [term.quantity, Measure::Stroke, Measure::ContactForce];
     // A study refuses other quantities for this response.
     let kinds = kinds.map(|kind| quantity(kind).unwrap_or(|seen| seen.e1_max));

@@ -2,6 +2,7 @@
 
 use super::running::Running;
 use clap::Args;
+use retune_branches::Asked;
 use retune_model::Parameter;
 use std::path::PathBuf;
 
@@ -21,16 +22,16 @@ pub struct Branches {
     #[arg(long, value_name = "B")]
     pub to: Option<String>,
     /// Number of values at which runs are started
-    #[arg(long, value_name = "N", default_value_t = 31)]
+    #[arg(long, value_name = "N", default_value_t = Asked::default().samples)]
     pub samples: usize,
     /// Number of starts at each, beside that from rest
-    #[arg(long, value_name = "N", default_value_t = 16)]
+    #[arg(long, value_name = "N", default_value_t = Asked::default().starts)]
     pub starts: usize,
     /// Number of runs at each from whose states Newton's iteration is led to motions of one and two periods other than those known
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = Asked::default().apart)]
     pub apart: usize,
     /// Number of values at which a run from rest alone is followed as well, for motions that are stable over little of the range
-    #[arg(long, value_name = "N", default_value_t = 3001)]
+    #[arg(long, value_name = "N", default_value_t = Asked::default().fine)]
     pub fine: usize,
     /// Look for the force at which an isola begins, up to twice the study's
     #[arg(long)]

@@ -43,8 +43,7 @@ pub(super) fn coexisting(
     let [from, to] = band.map_or([omega; 2], |band| [band.from, band.to]);
     let samples = if from == to { 1 } else { SAMPLES };
     let starts = term.and_then(|term| term.starts).unwrap_or(STARTS);
-    let plan =
-        Plan { parameter: Parameter::Omega, range: [from, to], samples, starts, apart: 0, fine: 0, looks: 0 };
+    let plan = Plan { samples, starts, ..Plan::over(Parameter::Omega, [from, to]) };
     let walls = [Measure::Stroke, Measure::ContactForce].map(|measure| quantity(measure).unwrap_or(of));
     let found = motions(&scene, plan, settings, &[of, walls[0], walls[1]])?;
     let mut reached = own.reached;
