@@ -290,17 +290,17 @@ lint:
 
 # Speed against accuracy of every method and peer, on six scenes, into results/accuracy
 accuracy *OPTIONS:
-    cargo run --release -p retune-bench --features integrators --bin accuracy "$@"
+    cargo run --profile bench -p retune-bench --features integrators --bin accuracy "$@"
 
 # GNU Octave, SciPy and SUNDIALS on the same scenes (needs octave, and numpy, scipy, scikit-sundae for python3), and the charts again
 accuracy-external:
     octave-cli --no-gui --quiet tests/reference/external/octave_methods.m
     python3 tests/reference/external/scipy_methods.py
-    cargo run --release -p retune-bench --features integrators --bin accuracy draw
+    cargo run --profile bench -p retune-bench --features integrators --bin accuracy draw
 
 # Where methods fail, and how, into results/stability
 stability *OPTIONS:
-    cargo run --release -p retune-bench --bin stability "$@"
+    cargo run --profile bench -p retune-bench --bin stability "$@"
 
 # SciPy's optimisers beside Retune's own searches on the same objectives (needs numpy and scipy for python3), into results/rivals
 rivals *PROBLEMS:
