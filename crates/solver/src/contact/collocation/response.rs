@@ -51,13 +51,12 @@ impl Collisions {
             (0.1 * rtol * gains[1] * factorial / (2.0 * gains[k].abs())).powf(1.0 / (k - 1) as f64)
         };
         let brief = BRIEF / flow.linear().rate;
-        let longest = std::array::from_fn(|terms| {
-            if (2..MOMENTS - 1).contains(&terms) {
-                (terms + 1..MOMENTS).map(limit).fold(brief, f64::min)
-            } else {
-                0.0
-            }
-        });
+        let mut longest = [0.0; MOMENTS];
+        let mut least = brief;
+        for terms in (2..MOMENTS - 1).rev() {
+            least = least.min(limit(terms + 1));
+            longest[terms] = least;
+        }
         let equations = system.regularised_contact(side);
         let [cos, sin] = system.excitation(0.0);
         let amplitude = cos.hypot(sin);
