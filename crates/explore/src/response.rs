@@ -5,7 +5,7 @@ use crate::motion::figures;
 use crate::protocol::Answer;
 use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
-use retune_optim::{Band, Goal, Limits, Objective, Response, worst_over};
+use retune_optim::{Band, Goal, Objective, Response, worst_over};
 use retune_study::{Study, rounded};
 use retune_workbench::simulate::simulate;
 
@@ -61,7 +61,7 @@ pub struct Curve {
 impl Curve {
     /// Of a study.
     pub fn of(study: &Study) -> Self {
-        let goal = Goal { objective: term(study), window: study.window.window(), limits: Limits::default() };
+        let goal = Goal { objective: term(study), ..study.window.window().into() };
         Self { goal, study: study.clone() }
     }
 

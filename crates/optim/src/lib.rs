@@ -29,4 +29,4 @@ pub use search::global::{Basin, Descent, Global, GlobalError, Point, basins, exp
 pub use search::grid::{Axis, AxisError, Grid, GridError, Scale};
 pub use search::minimax::{Height, Piece, minimax};
 pub use search::space::{Side, Space};
-pub use search::surf::{best_separated, surf, surf_part};
+pub use search::surf::{best_separated, best_separated_above, surf, surf_part};

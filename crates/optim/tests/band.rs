@@ -6,8 +6,8 @@ mod scenes;
 use rayon::ThreadPoolBuilder;
 use retune_model::{Positive, Scene, Worst};
 use retune_optim::{
-    Band, Bounds, FrequencyBand, Goal, Limits, Objective, Options, PeakEnergy, Response, Scaling, Unusable,
-    Variable, minimize, worst_over,
+    Band, Bounds, FrequencyBand, Goal, Objective, Options, PeakEnergy, Response, Scaling, Unusable, Variable,
+    minimize, worst_over,
 };
 use retune_solver::{Settings, Window};
 use scenes::{Numbers, SSVI, TMD};
@@ -27,11 +27,7 @@ fn goal(window: Option<Window>, band: Option<Band>) -> Goal {
     });
     let response = if window.is_some() { Response::Window } else { Response::Steady };
     let window = window.unwrap_or(Window { from: 0.0, to: 1.0 });
-    Goal {
-        objective: Objective { omega, response, ..Objective::default() },
-        window,
-        limits: Limits::default(),
-    }
+    Goal { objective: Objective { omega, response, ..Objective::default() }, ..window.into() }
 }
 
 /// Its value and frequency.

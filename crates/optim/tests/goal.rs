@@ -6,7 +6,7 @@ mod scenes;
 use retune_model::Positive;
 use retune_model::Scene;
 use retune_optim::{
-    Ensemble, Evaluation, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange,
+    Ensemble, Evaluation, FrequencyBand, Goal, Objective, Part, Response, Statistic, StiffnessRange,
     Stiffnesses,
 };
 use retune_solver::{Ask, Settings, Settle, Window, extremes};
@@ -27,7 +27,7 @@ fn set(stiffnesses: &[f64]) -> Option<Stiffnesses> {
 }
 
 fn goal(objective: Objective, window: Window) -> Goal {
-    Goal { objective, window, limits: Limits::default() }
+    Goal { objective, ..window.into() }
 }
 
 fn evaluate(objective: Objective, scene: &Scene, cutoff: f64) -> Evaluation {

@@ -145,7 +145,7 @@ fn reference_broken_limits() {
     let window = Window { from: 8.2, to: 8.3 };
     for omega in [None, band(31)] {
         let objective = Objective { omega, ..Objective::default() };
-        let objective = problem(SSVI.scene(), &ALL, Goal { objective, window, limits });
+        let objective = problem(SSVI.scene(), &ALL, Goal { objective, limits, ..window.into() });
         assert!(objective.value(&[], f64::INFINITY) > INFEASIBLE);
         agree(&objective, 1e-5, 1e-6);
     }

@@ -74,7 +74,7 @@ fn exact_a_steady_stroke_is_limited_in_closed_form() {
     for (allowed, violation) in [(1.01 * stroke, 0.0), (0.5 * stroke, 1.0)] {
         let limits = limits(Some(allowed), Some(1.0), None);
         let found =
-            evaluate(&Goal { objective: steady(), window: WINDOW, limits }, &TMD.scene(), f64::INFINITY);
+            evaluate(&Goal { objective: steady(), limits, ..WINDOW.into() }, &TMD.scene(), f64::INFINITY);
         assert!((found.violation - violation).abs() < 1e-12 && found.reached.get(Limit::Force) == 0.0);
     }
 }
@@ -113,7 +113,7 @@ fn exact_a_search_ends_on_an_active_limit() {
         let middle = 0.5 * (low + high);
         if stroke(middle) < limit { high = middle } else { low = middle }
     }
-    let goal = Goal { objective: steady(), window: WINDOW, limits: limits(Some(limit), None, None) };
+    let goal = Goal { objective: steady(), limits: limits(Some(limit), None, None), ..WINDOW.into() };
     let numbers = of(150.0);
     let objective =
         PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Variable::C2], goal, Settings::default());
@@ -186,7 +186,7 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
             let objective = Objective { omega: band(samples), ..Objective::default() };
             let limits = Limits { from: NonNegative::new(50.0).ok(), ..Limits::default() };
             let limits = limits.with(limit, positive(allowed));
-            let goal = Goal { objective, window: Window { from: 50.0, to: 100.0 }, limits };
+            let goal = Goal { objective, limits, ..Window { from: 50.0, to: 100.0 }.into() };
             evaluate(&goal, &numbers.scene(), f64::INFINITY)
         };
         // No peak can break so loose a limit, so none is searched.

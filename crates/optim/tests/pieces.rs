@@ -22,7 +22,7 @@ fn objective(limits: Limits) -> PeakEnergy {
     let band = FrequencyBand { from: positive(5.0), to: positive(8.0), samples: 31, relative: false };
     let objective = Objective { omega: Some(band), ..Objective::default() };
     let settings = Settings { rtol: 1e-12, atol: 1e-14, ..Settings::default() };
-    let goal = Goal { objective, window: WINDOW, limits };
+    let goal = Goal { objective, limits, ..WINDOW.into() };
     PeakEnergy::new(TMD.scene(), TMD.damper(), Variable::PAPER.to_vec(), goal, settings)
 }
 

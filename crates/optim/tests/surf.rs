@@ -1,7 +1,8 @@
 //! The surf stage: the same bytes at any number of threads, and the choice of the best points.
 
-use retune_optim::{Axis, Grid, Scale, best_separated, surf};
+use retune_optim::{Axis, Grid, Scale, best_separated, best_separated_above, surf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 fn grid(points: &[usize]) -> Grid {
     let axis = |points: &usize| Axis::new(-1.0, 1.0, *points, Scale::Linear).expect("a valid axis");
@@ -96,6 +97,34 @@ fn invariant_best_points_meet_their_definition() {
             let allowed = |j: &usize| taken[..k].iter().all(|&t| apart(t, *j) >= min_steps);
             let best = (0..grid.len()).filter(allowed).min_by(|&a, &b| values[a].total_cmp(&values[b]));
             assert_eq!(Some(i), best, "choice {k} at {min_steps} steps");
+        }
+    }
+}
+
+/// Values that are up to a half above their bounds: the choice is that by the values, though a few of them are computed.
+#[test]
+fn exact_best_points_by_lower_bounds_are_those_by_values() {
+    let grid = grid(&[9, 8, 7]);
+    for case in 0..200 {
+        let lower: Vec<f64> = (0..grid.len()).map(|i| 1.0 + scattered(case * 1000 + i)).collect();
+        let value = |i: usize| match scattered(case * 777 + 3 * i) {
+            share if share > 0.98 => f64::INFINITY,
+            share => lower[i] * (1.0 + 0.5 * (2.0 * share - 1.0).max(0.0)),
+        };
+        let values: Vec<f64> = (0..grid.len()).map(value).collect();
+        for (count, min_steps) in [(1, 0), (3, 2), (12, 3)] {
+            let computed = AtomicUsize::new(0);
+            let of = |i: usize| {
+                computed.fetch_add(1, Relaxed);
+                values[i]
+            };
+            let found = best_separated_above(&grid, &lower, of, count, min_steps);
+            let expected: Vec<(usize, f64)> = best_separated(&grid, &values, count, min_steps)
+                .into_iter()
+                .map(|i| (i, values[i]))
+                .collect();
+            assert_eq!(found, expected, "case {case}: {count} at least {min_steps} apart");
+            assert!(computed.into_inner() < grid.len() / 2);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use rayon::prelude::*;
 use retune_model::{Positive, Scene};
-use retune_optim::{Ensemble, FrequencyBand, Goal, Limits, Objective, Response, Statistic};
+use retune_optim::{Ensemble, FrequencyBand, Goal, Objective, Response, Statistic};
 use retune_solver::{Settings, Window};
 
 /// The band of the worst case, rad/s, and the samples with which designs are compared.
@@ -45,7 +45,7 @@ pub fn over_band(samples: usize, response: Response) -> Objective {
 
 /// E1max of a scene by an objective; infinite where it cannot be run.
 pub fn energy(scene: &Scene, objective: &Objective, window: Window, settings: &Settings) -> f64 {
-    let goal = Goal { objective: objective.clone(), window, limits: Limits::default() };
+    let goal = Goal { objective: objective.clone(), ..window.into() };
     goal.evaluate(scene, settings, f64::INFINITY).map_or(f64::INFINITY, |found| found.energy)
 }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use retune_dynamics::parameter::evenly;
 use retune_figures::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
 use retune_model::Measure;
-use retune_optim::{Goal, Limits, Objective, PeakEnergy, Response, Variable};
+use retune_optim::{Goal, Objective, PeakEnergy, Response, Variable};
 use retune_study::Study;
 use retune_study::short;
 use retune_workbench::Error;
@@ -172,7 +172,7 @@ fn surface(
     let refuse = |problem: String| Error::Figure { name: surface.name.to_owned(), problem };
     let damper = study.scene.damper.ok_or_else(|| refuse("the study has no damper".into()))?;
     let &Asked { name, words, points, stiffest, .. } = asked;
-    let goal = Goal { objective: asked.objective.clone(), window: plan.window(), limits: Limits::default() };
+    let goal = Goal { objective: asked.objective.clone(), ..plan.window().into() };
     let objective = PeakEnergy::new(study.scene, damper, surface.variables.to_vec(), goal, plan.settings());
     let [xs, ys] = surface.ranges.map(|(from, to)| evenly(from, to, points));
     let designs: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();

@@ -6,7 +6,7 @@ use super::measures::{BAND, Spread, at_omega, near, over_band, whole, worst};
 use super::plan::Plan;
 use retune_model::{Design, Scene, Variable};
 use retune_optim::{Failures, Limits, Objective, Response};
-use retune_study::{Optimize, PerVariable, Refine, Setting, Study};
+use retune_study::{Coarse, Optimize, PerVariable, Refine, Setting, Study};
 use retune_workbench::Error;
 use retune_workbench::searches::Searches;
 
@@ -120,6 +120,7 @@ impl Search<'_> {
             bounds,
             limits: Limits::default(),
             surf: None,
+            coarse: Coarse::default(),
             global: None,
             starts: Vec::new(),
             refine,

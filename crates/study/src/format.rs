@@ -92,6 +92,9 @@ pub struct Optimize {
     /// refinement starts from the damper of `scene`.
     #[serde(default)]
     pub surf: Option<PerVariable<GridAxis>>,
+    /// How exact the grid is, which only says where refinements start. Default: as exact as they are.
+    #[serde(default, skip_serializing_if = "Coarse::is_default")]
+    pub coarse: Coarse,
     /// A global search in addition to the grid. Default: none; `{}` selects it with its default settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub global: Option<GlobalSearch>,
@@ -102,6 +105,38 @@ pub struct Optimize {
     /// The refinement (the paper's `fminsearch`).
     #[serde(default)]
     pub refine: Refine,
+}
+
+/// How exact the values of a grid are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Coarse {
+    /// Relative tolerance of its runs. Default: `solver.search_rtol`.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 0.1))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rtol: Option<f64>,
+    /// Whether the peaks between the samples of a band are searched. Without, a value is the largest of its samples.
+    pub peaks: bool,
+}
+
+impl Coarse {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// What is left out, as words after those about a grid.
+impl std::fmt::Display for Coarse {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.rtol.map_or(Ok(()), |rtol| write!(f, ", at rtol {rtol:e}"))?;
+        if self.peaks { Ok(()) } else { write!(f, ", on the samples of the band alone") }
+    }
+}
+
+impl Default for Coarse {
+    fn default() -> Self {
+        Self { rtol: None, peaks: true }
+    }
 }
 
 /// Evenly spaced values of a parameter, both ends included.

@@ -8,7 +8,7 @@ use super::objective::check_energy;
 use super::per_variable::PerVariable;
 use super::read::named;
 use super::rule::Rule;
-use retune_model::Positive;
+use retune_model::{Design, Positive};
 use retune_optim::{Limit, Variable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,6 +62,10 @@ pub struct FrontDamper {
     /// The study that tunes it, which must tune k2; a path relative to this file. The damper of its scene is plotted beside the
     /// optimised ones, as reference design. A `surf` stage in it is ignored.
     pub study: PathBuf,
+    /// Designs that are known from elsewhere: they stand beside those that the searches find, under every bound that they keep, and descents
+    /// begin at them. What one leaves out is as in the scene of the study.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub designs: Vec<PerVariable<f64>>,
 }
 
 /// The quantity that is bounded along a front.
@@ -82,6 +86,8 @@ pub struct FrontsPlan {
     pub said: Fronts,
     /// Each damper's name and study.
     pub dampers: Vec<(String, Study)>,
+    /// The designs that are known from elsewhere, with the number of their damper.
+    pub designs: Vec<(usize, Design)>,
 }
 
 fn kind() -> Kind {
@@ -181,6 +187,18 @@ pub fn bounded(
     Ok(study)
 }
 
+/// A design of the damper of a study, which lends what is left out; or a value that it cannot have.
+fn known(study: &Study, said: &PerVariable<f64>) -> Result<Design, (Variable, f64)> {
+    let own = |variable: Variable| study.scene.damper.map_or(f64::NAN, |damper| variable.get(&damper));
+    let foreign =
+        |&variable: &Variable| Some((variable, said.get(variable).filter(|_| own(variable).is_nan())?));
+    match Variable::ALL.iter().find_map(foreign) {
+        Some(refused) => Err(refused),
+        None => Design::new(|variable| said.get(variable).unwrap_or_else(|| own(variable)))
+            .map_err(|(variable, _)| (variable, said.get(variable).unwrap_or(f64::NAN))),
+    }
+}
+
 /// Reads a file of fronts and the studies that it names, and checks that each can be tuned under each bound.
 ///
 /// # Errors
@@ -206,8 +224,9 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
         }
     }
     let directory = path.parent().unwrap_or(Path::new(""));
-    let mut plan = FrontsPlan { said, dampers: Vec::new() };
-    for FrontDamper { damper, study } in plan.said.dampers.clone() {
+    let mut plan = FrontsPlan { said, dampers: Vec::new(), designs: Vec::new() };
+    for (number, FrontDamper { damper, study, designs }) in plan.said.dampers.clone().into_iter().enumerate()
+    {
         let study_file = directory.join(&study);
         let study = named(&study_file)?;
         check_energy(&study)
@@ -221,6 +240,13 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
         }
         if plan.dampers.iter().any(|(name, other)| *name == damper || other.name() == study.name()) {
             return Err(refuse("dampers", format!("\"{damper}\" twice"), "each name and each study once"));
+        }
+        for (place, design) in designs.iter().enumerate() {
+            let design = known(&study, design).map_err(|(variable, value)| {
+                let field = format!("dampers[{number}].designs[{place}].{variable}");
+                refuse(&field, value.to_string(), "what the damper of the study has and may be")
+            })?;
+            plan.designs.push((number, design));
         }
         plan.dampers.push((damper, study));
     }

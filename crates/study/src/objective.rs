@@ -1,6 +1,6 @@
 //! The rules for objectives and limits that their types cannot express, and the objective of a study.
 
-use super::format::Study;
+use super::format::{Coarse, Study};
 use super::rule::Rule;
 use retune_model::{Forcing, Measure, Scene, Source};
 use retune_optim::{
@@ -164,7 +164,12 @@ impl Study {
     /// The objective of its search with its window and limits.
     pub fn goal(&self) -> Goal {
         let limits = self.optimize.as_ref().map(|optimize| optimize.limits).unwrap_or_default();
-        Goal { objective: self.objective(), window: self.window.window(), limits }
+        Goal { objective: self.objective(), limits, ..self.window.window().into() }
+    }
+
+    /// How exact the values of its grid are.
+    pub fn coarse(&self) -> Coarse {
+        self.optimize.as_ref().map(|optimize| optimize.coarse).unwrap_or_default()
     }
 
     /// The value of its structure without a damper by its objective; NaN where it has none, infinite where it has no bound.

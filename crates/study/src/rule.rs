@@ -21,7 +21,7 @@ pub enum Rule {
         end: f64,
     },
     /// The relative tolerance is out of range.
-    #[error("solver.{field}: {value} is not allowed here: give a number above 0 and at most 0.1")]
+    #[error("{field}: {value} is not allowed here: give a number above 0 and at most 0.1")]
     Rtol {
         /// The field.
         field: &'static str,

@@ -1,6 +1,6 @@
 //! From a study to its search; the rules between its fields.
 
-use super::format::{GridAxis, Optimize, Study};
+use super::format::{GridAxis, Optimize, Solver, Study};
 use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
 use super::per_variable::PerVariable;
@@ -43,7 +43,13 @@ impl Study {
         if t0 >= end {
             return Err(Rule::EmptyWindow { t0, end });
         }
-        for (field, rtol) in [("rtol", Some(self.solver.rtol)), ("search_rtol", self.solver.search_rtol)] {
+        let Solver { rtol, search_rtol, .. } = self.solver;
+        let coarse = self.optimize.as_ref().and_then(|optimize| optimize.coarse.rtol);
+        for (field, rtol) in [
+            ("solver.rtol", Some(rtol)),
+            ("solver.search_rtol", search_rtol),
+            ("optimize.coarse.rtol", coarse),
+        ] {
             if let Some(value) = rtol.filter(|rtol| !(*rtol > 0.0 && *rtol <= 0.1)) {
                 return Err(Rule::Rtol { field, value });
             }

@@ -118,6 +118,13 @@ fn contract_values_out_of_range_are_named_with_what_is_allowed() {
         &study.to_string(),
         "solver.search_rtol: 0.2 is not allowed here: give a number above 0 and at most 0.1",
     );
+    study["solver"] = json!({});
+    study["optimize"]["coarse"] = json!({ "rtol": 0.0 });
+    refused_text(
+        &study.to_string(),
+        "optimize.coarse.rtol: 0 is not allowed here: give a number above 0 and at most 0.1",
+    );
+    study["optimize"]["coarse"] = json!({});
     study["solver"] = json!({ "method": "ode45s" });
     refused_text(
         &study.to_string(),

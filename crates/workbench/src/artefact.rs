@@ -6,6 +6,8 @@
 pub enum Content {
     /// The complete input that all the other files follow from; the manifest holds its hash.
     Input,
+    /// A row for each design of a grid: its parameters and the value that the coarse stage gave it.
+    Grid,
     /// A row for each design of a search: its parameters and the value that the search gave it.
     Searched,
     /// A row for each frequency: E1max without a damper, with that of the study, with the tuned one.

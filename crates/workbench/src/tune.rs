@@ -38,7 +38,7 @@ pub static KIND: Kind = Kind {
     answer: OPTIMUM,
     artefacts: &[
         artefact(resolved::ONE, Content::Input),
-        artefact("surf.csv", Content::Searched),
+        artefact("surf.csv", Content::Grid),
         artefact("fminsearch.csv", Content::Searched),
         artefact("fminsearch-starts.csv", Content::Searched),
         artefact("basins.csv", Content::Searched),

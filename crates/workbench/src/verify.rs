@@ -68,7 +68,7 @@ static KINDS: [&Kind; 4] = [&tune::KIND, &certify::KIND, &table2::KIND, &sweep::
 fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
     let known = known(&there, others);
-    let of_searches = |content| matches!(content, Content::Searched | Content::Band);
+    let of_searches = |content| matches!(content, Content::Grid | Content::Searched | Content::Band);
     let plain = |content| matches!(content, Content::Input | Content::Derived);
     if !has(&known, Content::Input) || known.iter().all(|(_, content, _)| plain(*content)) {
         return report.unchecked("no row of these results can be run again by itself");
@@ -76,6 +76,7 @@ fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) 
     for &(name, content, again) in &known {
         let done = match content {
             Content::Input | Content::Derived => Ok(()),
+            Content::Grid => One::read(place).and_then(|one| one.grid(name, most, report)),
             Content::Searched => One::read(place).and_then(|one| one.searched(name, most, report)),
             Content::Band => One::read(place).and_then(|one| one.band(name, most, report)),
             Content::Optimum => One::read(place).and_then(|one| one.optimum(name, report)),

@@ -45,7 +45,7 @@ pub fn worst_over<E: Send + Sync>(
     value: impl Fn(f64) -> Result<f64, E> + Sync,
     cutoff: f64,
 ) -> Result<Worst, E> {
-    let [worst] = all_worst_over(band, |omega| value(omega).map(|value| [value]), cutoff, [None])?;
+    let [worst] = all_worst_over(band, |omega| value(omega).map(|value| [value]), cutoff, [None], true)?;
     Ok(worst)
 }
 
@@ -54,6 +54,8 @@ pub fn worst_over<E: Send + Sync>(
 /// Each quantity has its own peaks. If `limits` has no limit for it, all peaks are searched; otherwise those that could exceed
 /// the limit and all samples, if the peak rose four times as far above its sample as the parabola through it and its neighbours.
 ///
+/// Without `peaks` the samples are all there is.
+///
 /// # Errors
 /// As [`worst_over`].
 pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
@@ -61,6 +63,7 @@ pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
     values: impl Fn(f64) -> Result<[f64; N], E> + Sync,
     cutoff: f64,
     limits: [Option<f64>; N],
+    peaks: bool,
 ) -> Result<[Worst; N], E> {
     let look = |frequency: f64| values(frequency).map(|values| Look { frequency, values });
     let count = band.samples.max(2);
@@ -76,7 +79,7 @@ pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
     samples.sort_by_key(|(i, _)| *i);
     let samples = samples.into_iter().map(|(_, sample)| sample).collect::<Result<Vec<Look<N>>, E>>()?;
     let worst = samples[1..].iter().fold(worst_of(&samples[0]), |all, look| larger(all, worst_of(look)));
-    if worst[0].value > cutoff {
+    if worst[0].value > cutoff || !peaks {
         return Ok(worst);
     }
     let last = samples.len() - 1;
@@ -183,8 +186,9 @@ mod tests {
                 count.fetch_add(1, Relaxed);
                 Ok::<_, ()>([0.0, 1.0 - (omega - 6.2).powi(2)])
             };
-            let found = all_worst_over(&band, values, f64::INFINITY, [Some(f64::INFINITY), Some(limit)])
-                .expect("values");
+            let found =
+                all_worst_over(&band, values, f64::INFINITY, [Some(f64::INFINITY), Some(limit)], true)
+                    .expect("values");
             (count.into_inner(), found[1].value)
         };
         // Samples -0.44, 0.96, 0.36: at most 0.96 + 0.5 (1.92 + 0.44 - 0.36) = 1.96.

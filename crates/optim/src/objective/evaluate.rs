@@ -187,6 +187,6 @@ impl Watch<'_> {
     ) -> Result<Largest, Unusable> {
         let beyond = |limit| Some(self.limits.get(limit).unwrap_or(f64::INFINITY));
         let limits = [None, beyond(Limit::Stroke), beyond(Limit::Force)];
-        Ok(all_worst_over(band, at, cutoff, limits)?.map(|worst| worst.value))
+        Ok(all_worst_over(band, at, cutoff, limits, self.peaks)?.map(|worst| worst.value))
     }
 }

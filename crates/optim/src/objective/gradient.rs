@@ -9,7 +9,7 @@
 //! The value of a design that breaks a limit is its violation ([`ranked`](super::limits::ranked)), and so are its derivatives.
 
 use super::evaluation::{Evaluation, Place};
-use super::limits::{INFEASIBLE, Limit, Limits, widens};
+use super::limits::{INFEASIBLE, Limit, widens};
 use super::peak_energy::PeakEnergy;
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
@@ -97,7 +97,7 @@ impl Slopes<'_> {
         });
         let from = self.goal.limits.walls_from().unwrap_or(0.0);
         let window = Window { from, ..self.goal.window };
-        let goal = Goal { objective, window, limits: Limits::default() };
+        let goal = Goal { objective, ..window.into() };
         let mut worst: Option<(Member, &Objective)> = None;
         for (number, (_, term)) in goal.objective.terms().into_iter().enumerate() {
             for member in self.members(&goal, (number, term))? {

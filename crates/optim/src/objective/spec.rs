@@ -17,12 +17,14 @@ pub struct Goal {
     pub window: Window,
     /// The limits, which apply to the largest values over all runs of all terms.
     pub limits: Limits,
+    /// Whether the peaks between the samples of a band are searched.
+    pub peaks: bool,
 }
 
 impl From<Window> for Goal {
     /// E1max in a window, without limits.
     fn from(window: Window) -> Self {
-        Self { objective: Objective::default(), window, limits: Limits::default() }
+        Self { objective: Objective::default(), window, limits: Limits::default(), peaks: true }
     }
 }
 

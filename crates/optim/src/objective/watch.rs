@@ -35,6 +35,7 @@ pub(super) struct Watch<'a> {
     pub settings: &'a Settings,
     window: Window,
     pub limits: &'a Limits,
+    pub peaks: bool,
     hooks: Hooks<'a>,
     pub seen: Mutex<Seen>,
 }
@@ -49,7 +50,7 @@ impl<'a> Watch<'a> {
     pub(super) fn new(goal: &'a Goal, scene: &Scene, settings: &'a Settings, hooks: Hooks<'a>) -> Self {
         let worst = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
         let seen = Mutex::new(Seen { reached: PerLimit::default(), worst, runs: 0, unsettled: 0 });
-        Self { settings, window: goal.window, limits: &goal.limits, hooks, seen }
+        Self { settings, window: goal.window, limits: &goal.limits, peaks: goal.peaks, hooks, seen }
     }
 
     pub(super) fn run(

@@ -1,5 +1,6 @@
 //! The `surf` stage: an objective at every point of a grid, and its best points.
 
+use crate::chunks::TOGETHER;
 use crate::search::grid::Grid;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -77,6 +78,35 @@ pub fn best_separated(grid: &Grid, values: &[f64], count: usize, min_steps: usiz
         }
     }
     taken
+}
+
+/// As [`best_separated`] by values of which `lower` are lower bounds: only the points that may be among the best are evaluated, some at a
+/// time. Returns their numbers, best first, and their values.
+///
+/// A point that is not evaluated has a larger lower bound than those chosen, or is too near to one that is better.
+///
+/// # Panics
+/// If `lower` is not one value for each point of `grid`.
+pub fn best_separated_above(
+    grid: &Grid,
+    lower: &[f64],
+    value: impl Fn(usize) -> f64 + Sync,
+    count: usize,
+    min_steps: usize,
+) -> Vec<(usize, f64)> {
+    let (mut values, mut known) = (lower.to_vec(), vec![false; lower.len()]);
+    loop {
+        let best = best_separated(grid, &values, count.max(TOGETHER), min_steps);
+        let chosen = &best[..count.min(best.len())];
+        if chosen.iter().all(|&i| known[i]) {
+            return chosen.iter().map(|&i| (i, values[i])).collect();
+        }
+        let open: Vec<usize> = best.into_iter().filter(|&i| !known[i]).collect();
+        let found: Vec<(usize, f64)> = open.into_par_iter().map(|i| (i, value(i))).collect();
+        for (i, found) in found {
+            (values[i], known[i]) = (found, true);
+        }
+    }
 }
 
 /// Largest number of steps between two grid points along any axis.

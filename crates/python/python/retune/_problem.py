@@ -77,7 +77,7 @@ class Problem(_core.Core):
     - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
       "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
     - ``limits`` has largest allowed values of ``stroke`` (m), ``force`` (N) and ``cavity`` (m), and ``from`` (s).
-    - ``surf``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are integrated,
+    - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are integrated,
       with the fields of study files.
     """
 
@@ -101,6 +101,7 @@ class Problem(_core.Core):
         objective: Mapping[str, Any] | None = None,
         limits: Mapping[str, float] | None = None,
         surf: Mapping[str, Mapping[str, Any]] | None = None,
+        coarse: Mapping[str, Any] | None = None,
         global_search: Mapping[str, Any] | None = None,
         starts: Sequence[Mapping[str, float]] | None = None,
         refine: Mapping[str, Any] | None = None,
@@ -113,7 +114,7 @@ class Problem(_core.Core):
         frequencies = None if band is None else given({"from": band[0], "to": band[1], "samples": samples})
         goal = {**(objective or {}), **given({"omega": frequencies, "response": response, "quantity": quantity})}
         open_ended = {key: [low, None if high == math.inf else high] for key, (low, high) in (bounds or {}).items()}
-        search = given({"surf": surf, "global": global_search, "starts": starts, "refine": refine, "limits": limits})
+        search = given({"surf": surf, "coarse": coarse, "global": global_search, "starts": starts, "refine": refine, "limits": limits})
         optimize = {"vary": vary, "bounds": open_ended, "objective": goal, **search}
         study = {
             "name": name,

@@ -35,6 +35,9 @@ pub(super) fn search(
             fronts.given.extend(fronts.look(damper, at, GIVEN));
         }
     }
+    for (damper, at) in fronts.plan.designs.clone() {
+        fronts.designs.extend(fronts.look(damper, at, CONTINUED));
+    }
     for damper in 0..fronts.plan.dampers.len() {
         tasks.extend(fronts.tune(damper, searches, watch)?);
     }

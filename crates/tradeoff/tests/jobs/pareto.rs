@@ -89,6 +89,23 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
     desk.assert_same("out", "two");
 }
 
+/// No search comes to a spring as soft as this, so nothing dominates the design.
+#[test]
+fn contract_a_design_that_is_known_stands_beside_those_that_are_found() {
+    let desk = desk();
+    let mut fronts = desk.read_json("fronts.json");
+    fronts["dampers"][1]["designs"] = json!([{ "k2": 12.5, "C": 0.5 }]);
+    for (field, value) in [("k2", json!([100])), ("stroke", json!([])), ("force", json!([]))] {
+        fronts[field] = value;
+    }
+    desk.write_json("fronts.json", &fronts);
+    good(pareto(&request(&desk, "fronts.json", "out"), &Silent));
+    let front = desk.rows("out/front.csv");
+    // What it leaves out is as in the scene: c2 and D.
+    let own = ["12.5", "232", "0.06", "0.5"];
+    assert!(front.iter().any(|row| row[0] == "SSVI NES" && row[3..7] == own), "{front:?}");
+}
+
 #[test]
 fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     let desk = desk();
@@ -129,6 +146,11 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
         }
         other => panic!("{other}"),
     }
+    let mut fronts = good.clone();
+    fronts["dampers"][1]["designs"] = json!([{ "k2": 100 }, { "C": -1 }]);
+    let words =
+        "dampers[1].designs[1].C: -1 is not allowed here: give what the damper of the study has and may be";
+    assert!(rule(&fronts).to_string().ends_with(words));
     let mut fronts = good;
     fronts["dampers"][1]["study"] = json!("tmd.json");
     match rule(&fronts) {

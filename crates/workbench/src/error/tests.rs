@@ -34,7 +34,7 @@ fn rules() -> Vec<Rule> {
     vec![
         Rule::Name { name: name.clone() },
         Rule::EmptyWindow { t0: 4.0, end: 4.0 },
-        Rule::Rtol { field: "rtol", value },
+        Rule::Rtol { field: "solver.rtol", value },
         Rule::Atol { value },
         Rule::NoDamper,
         Rule::NoOptimize,

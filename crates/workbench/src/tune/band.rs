@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use retune_figures::colour::{BLACK, BLUE, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
 use retune_model::{Measure, NonNegative, Scene};
-use retune_optim::{Band, Goal, Limits, Objective, Response};
+use retune_optim::{Band, Goal, Objective, Response};
 use retune_store::Directory;
 use retune_study::Study;
 use retune_study::short;
@@ -72,7 +72,7 @@ pub(crate) fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
 
 /// The quantity of a scene as in a term, without limits; NaN if it has none.
 pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
-    let goal = Goal { objective: term.clone(), window: study.window.window(), limits: Limits::default() };
+    let goal = Goal { objective: term.clone(), ..study.window.window().into() };
     let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
     value.map_or(f64::NAN, |found| found.energy)
 }

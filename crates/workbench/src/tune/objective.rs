@@ -1,6 +1,7 @@
 //! The objective of a study as searches call it.
 
-use retune_optim::{PeakEnergy, Variable};
+use retune_optim::{Goal, PeakEnergy, Variable};
+use retune_solver::Settings;
 use retune_store::Journal;
 use retune_study::{Search, Study};
 
@@ -29,4 +30,12 @@ pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> Peak
 pub fn searched(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
     let settings = study.solver.searching();
     PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
+}
+
+/// The same as exact as their grid.
+pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
+    let (said, own) = (study.coarse(), study.solver.searching());
+    let settings = Settings { rtol: said.rtol.unwrap_or(own.rtol), ..own };
+    let goal = Goal { peaks: said.peaks, ..study.goal() };
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), goal, settings)
 }

@@ -157,7 +157,7 @@ impl Optimum {
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
                 best: PerVariable::of(&surf.variables, &surf.point(surf.best)),
-                value: Amount::new(quantity, energy(surf.values[surf.best])),
+                value: Amount::new(quantity, energy(surf.least)),
             }),
             global: basins,
             refine: Refinement {

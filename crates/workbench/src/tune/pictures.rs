@@ -54,14 +54,13 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
     let others = (0..surf.variables.len()).filter(|axis| *axis != x && *axis != y);
     let others: Vec<String> = others.map(|axis| surf.variables[axis].to_string()).collect();
     let what = match others.as_slice() {
-        [] => format!("{} at each point of the grid.", quantity.name()),
-        others => format!("Least {} over the grid in {}.", quantity.name(), others.join(" and ")),
+        [] => format!("{} at each point of the grid{}.", quantity.name(), study.coarse()),
+        others => {
+            format!("Least {} over the grid in {}{}.", quantity.name(), others.join(" and "), study.coarse())
+        }
     };
     let places = [
-        Place {
-            at: (best[x], best[y]),
-            label: format!("best of the grid, {}", worth(surf.values[surf.best], quantity)),
-        },
+        Place { at: (best[x], best[y]), label: format!("best of the grid, {}", worth(surf.least, quantity)) },
         Place {
             at: (found(x), found(y)),
             label: format!("refined, {}", worth(refined.best().minimum.value, quantity)),

@@ -1,6 +1,6 @@
 //! A share of the grid, for many machines: `optimize --shard 3/64`.
 
-use super::objective::searched;
+use super::objective::coarse;
 use crate::parts::{Shard, Work};
 use crate::resolved::identity_of;
 use crate::{Error, Observer};
@@ -22,7 +22,7 @@ pub fn shard(
     let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
     let search = study.search().map_err(refuse)?;
     let (variables, grid) = search.surf.clone().ok_or_else(|| refuse(Rule::NoGrid))?;
-    let objective = searched(study, &search, &variables);
+    let objective = coarse(study, &search, &variables);
     let work = Work { shard, len: grid.len(), width: 1, identity: identity_of(study)?, out, order };
     work.make(watch, |journal, points, bar| {
         let value = |i: usize, design: &[f64]| {

@@ -1,14 +1,14 @@
 //! The coarse stage: the objective on a grid.
 
 use super::log::worth;
-use super::objective::searched;
+use super::objective::{coarse, kept, searched};
 use super::refine::columns;
 use crate::Error;
 use crate::Observer;
 use retune_model::Measure;
-use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated};
+use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated_above};
 use retune_store::Directory;
-use retune_study::{Search, Study};
+use retune_study::{Coarse, Search, Study};
 use retune_study::{counted, fields, joined, short};
 use std::time::Instant;
 
@@ -21,10 +21,14 @@ pub struct Surf {
     pub variables: Vec<Variable>,
     /// The grid.
     pub grid: Grid,
-    /// Its value at each point; +∞ where it could not be computed.
+    /// Its value at each point, as exact as the study wants its grid; +∞ where it could not be computed.
     pub values: Vec<f64>,
     /// The number of the best point.
     pub best: usize,
+    /// Its value, as exact as a refinement's.
+    pub least: f64,
+    /// The numbers of the points where refinements start.
+    chosen: Vec<usize>,
     /// The points that could not be computed.
     pub failures: Failures,
     /// The numbers of designs evaluated.
@@ -42,13 +46,14 @@ pub(super) fn surf(
     watch: &dyn Observer,
 ) -> Result<Option<Surf>, Error> {
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
-    let objective = searched(study, search, &variables);
+    let objective = coarse(study, search, &variables);
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
     watch.log(&format!(
-        "surf: {} = {} over {}",
+        "surf: {} = {} over {}{}",
         axes.join(" x "),
         counted(grid.len() as u64, "point"),
-        joined(&variables, " ")
+        joined(&variables, " "),
+        study.coarse()
     ))?;
 
     let begun = Instant::now();
@@ -65,13 +70,27 @@ pub(super) fn surf(
     bar.finish();
     journal.check()?;
 
-    let failures = objective.failures();
-    let Some(&best) = best_separated(&grid, &values, 1, 0).first() else {
-        return Err(Error::NoStart(failures));
+    let (failures, mut counts) = (objective.failures(), objective.counts());
+    let exact = searched(study, search, &variables);
+    let value = kept(&exact, journal, "surf", || ());
+    let said = study.coarse();
+    let at = |i: usize| {
+        if said == Coarse::default() {
+            return values[i];
+        }
+        let mut point = vec![0.0; grid.dim()];
+        grid.point(i, &mut point);
+        value(&point, f64::INFINITY)
     };
+    let chosen = best_separated_above(&grid, &values, at, search.starts.max(1), search.apart);
+    journal.check()?;
+    let Some(&(best, least)) = chosen.first() else {
+        return Err(Error::NoStart(if failures.count > 0 { failures } else { exact.failures() }));
+    };
+    counts.evaluations += exact.counts().evaluations;
+    let chosen = chosen.into_iter().take(search.starts).map(|(i, _)| i).collect();
     write(&objective, &grid, &values, study.quantity(), results)?;
-    let counts = objective.counts();
-    let surf = Surf { variables, grid, values, best, failures, counts };
+    let surf = Surf { variables, grid, values, best, least, chosen, failures, counts };
     watch.log(&surf.report(study.quantity(), begun.elapsed().as_secs_f64()))?;
     Ok(Some(surf))
 }
@@ -105,8 +124,7 @@ impl Surf {
 
     /// Where the refinements start: a value for each tuned parameter.
     pub(super) fn starts(&self, search: &Search) -> Vec<Vec<f64>> {
-        let chosen = best_separated(&self.grid, &self.values, search.starts, search.apart);
-        let start = |i| {
+        let start = |&i: &usize| {
             let point = self.point(i);
             let on_grid = |variable| self.variables.iter().position(|other| *other == variable);
             let value = |&variable: &Variable| match on_grid(variable) {
@@ -115,7 +133,7 @@ impl Surf {
             };
             search.variables.iter().map(value).collect()
         };
-        chosen.into_iter().map(start).collect()
+        self.chosen.iter().map(start).collect()
     }
 
     fn report(&self, quantity: Measure, seconds: f64) -> String {
@@ -130,7 +148,7 @@ impl Surf {
             .zip(point)
             .map(|(variable, value)| format!("{variable} = {value}"))
             .collect();
-        let least = worth(self.values[self.best], quantity);
+        let least = worth(self.least, quantity);
         format!("surf: {seconds:.1} s; least {} {least} at {}{failed}", quantity.name(), at.join(", "))
     }
 }

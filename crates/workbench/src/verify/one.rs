@@ -8,7 +8,7 @@ use crate::artefact::{Artefact, Content};
 use crate::certify::certify;
 use crate::resolved;
 use crate::summary::Summary;
-use crate::tune::objective::{objective, searched};
+use crate::tune::objective::{coarse, objective, searched};
 use crate::tune::{self, OPTIMUM, band};
 use retune_model::{Design, NonNegative, Scene};
 use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
@@ -39,7 +39,25 @@ impl One {
     /// # Errors
     /// The file cannot be read, as of all checks.
     pub fn searched(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-        let (objective, sample) = (self.objective(searched)?, Sample::read(&self.place.join(name), most)?);
+        self.designs(self.objective(searched)?, name, most, report)
+    }
+
+    /// The same of rows of a grid.
+    ///
+    /// # Errors
+    /// As [`Self::searched`].
+    pub fn grid(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+        self.designs(self.objective(coarse)?, name, most, report)
+    }
+
+    fn designs(
+        &self,
+        objective: PeakEnergy,
+        name: &str,
+        most: usize,
+        report: &mut Report<'_>,
+    ) -> Result<(), Error> {
+        let sample = Sample::read(&self.place.join(name), most)?;
         let checks: Vec<Check> = sample.rows().map(|row| value(&objective, &self.study, row)).collect();
         report.look(name, &sample.of(checks.len()), &checks)
     }
@@ -101,7 +119,8 @@ impl One {
     }
 
     fn is_of_a_search(&self) -> bool {
-        let made_by_search = |of: &&Artefact| matches!(of.content, Content::Searched | Content::Band);
+        let made_by_search =
+            |of: &&Artefact| matches!(of.content, Content::Grid | Content::Searched | Content::Band);
         let mut files = tune::KIND.artefacts.iter().filter(made_by_search);
         files.any(|file| self.place.join(file.name).exists())
     }

@@ -205,3 +205,29 @@ fn contract_a_search_has_a_tolerance_of_its_own() {
     assert_eq!(value(&last[..4], 1e-9), number(&optimum, "/E1max"));
     verified::holds(&desk, "out", 7, &[]);
 }
+
+/// The grid on its samples alone and at its own tolerance; refinements start where they would without that, and say what is there.
+#[test]
+fn contract_a_coarse_grid_leads_to_the_starts_of_an_exact_one() {
+    let mut study = tiny();
+    study["optimize"]["objective"] = json!({ "omega": { "from": 5, "to": 8, "samples": 7 } });
+    let desk = Desk::with(&study);
+    search(&desk, "study.json", "exact");
+    study["optimize"]["coarse"] = json!({ "rtol": 1e-4, "peaks": false });
+    desk.write_json("study.json", &study);
+    search(&desk, "study.json", "out");
+    let values = |place: &str| -> Vec<f64> {
+        desk.rows(&format!("{place}/surf.csv"))[1..]
+            .iter()
+            .map(|row| row[4].parse().expect("a number"))
+            .collect()
+    };
+    let (exact, coarse) = (values("exact"), values("out"));
+    assert!(exact.iter().zip(&coarse).all(|(exact, coarse)| *coarse <= exact * (1.0 + 1e-4)));
+    assert!(exact.iter().zip(&coarse).any(|(exact, coarse)| *coarse < 0.99 * exact), "no peak was left out");
+    assert_eq!(desk.read("exact/fminsearch-starts.csv"), desk.read("out/fminsearch-starts.csv"));
+    let best = |place: &str| desk.read_json(&format!("{place}/optimum.json"))["surf"].clone();
+    assert_eq!(best("exact"), best("out"));
+    assert!(desk.read("out/surf-k2-c2.svg").contains("at rtol 1e-4, on the samples of the band alone"));
+    verified::holds(&desk, "out", 7, &[]);
+}

@@ -52,7 +52,7 @@ fn stages(findings: &Findings) -> Table {
         table.row([stage.to_owned(), evaluations, infeasible, failed, worth(best, quantity)]);
     };
     if let Some(surf) = findings.surf {
-        row("grid", surf.counts, surf.failures.count, surf.values[surf.best]);
+        row("grid", surf.counts, surf.failures.count, surf.least);
     }
     if let Some(explored) = findings.explored {
         let best = explored.basins.first().map_or(f64::NAN, |basin| basin.best.value);

@@ -38,7 +38,7 @@ fn words(findings: &Findings) -> Markup {
     match findings.surf {
         None => html! { p { "This search had no grid." } },
         Some(surf) => html! { p {
-            "The best of " (surf.grid.len()) " points of the grid has " (amount(energy(surf.values[surf.best]), quantity)) "; the design that was found has "
+            "The best of " (surf.grid.len()) " points of the grid has " (amount(energy(surf.least), quantity)) "; the design that was found has "
             (found) "."
         } },
     }
