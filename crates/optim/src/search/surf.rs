@@ -1,6 +1,5 @@
 //! The `surf` stage: an objective at every point of a grid, and its best points.
 
-use crate::chunks::TOGETHER;
 use crate::search::grid::Grid;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -96,7 +95,7 @@ pub fn best_separated_above(
 ) -> Vec<(usize, f64)> {
     let (mut values, mut known) = (lower.to_vec(), vec![false; lower.len()]);
     loop {
-        let best = best_separated(grid, &values, count.max(TOGETHER), min_steps);
+        let best = best_separated(grid, &values, count, min_steps);
         let chosen = &best[..count.min(best.len())];
         if chosen.iter().all(|&i| known[i]) {
             return chosen.iter().map(|&i| (i, values[i])).collect();

@@ -75,6 +75,9 @@ fn made(fronts: &Fronts, names: &[&str]) -> String {
             plan.check()
         );
     }
+    if !plan.designs.is_empty() {
+        text += " Designs that were known before stand among them, and descents begin at them, too.";
+    }
     text += " Strokes (spring deflections |x2 - x1 - D|) and forces are the largest of whole runs from rest.";
     if plan.sweeps().iter().any(|sweep| *sweep != Sweep::K2) {
         text += " Verdict edge: an error of 1 % can break the bound; none: a motion that other starts than rest lead to breaks it.";
