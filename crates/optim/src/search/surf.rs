@@ -96,13 +96,12 @@ pub fn best_separated_above(
     let (mut values, mut known) = (lower.to_vec(), vec![false; lower.len()]);
     loop {
         let best = best_separated(grid, &values, count, min_steps);
-        let chosen = &best[..count.min(best.len())];
-        if chosen.iter().all(|&i| known[i]) {
-            return chosen.iter().map(|&i| (i, values[i])).collect();
+        let open: Vec<usize> = best.iter().copied().filter(|&i| !known[i]).collect();
+        if open.is_empty() {
+            return best.into_iter().map(|i| (i, values[i])).collect();
         }
-        let open: Vec<usize> = best.into_iter().filter(|&i| !known[i]).collect();
-        let found: Vec<(usize, f64)> = open.into_par_iter().map(|i| (i, value(i))).collect();
-        for (i, found) in found {
+        let found: Vec<f64> = open.par_iter().map(|&i| value(i)).collect();
+        for (i, found) in open.into_iter().zip(found) {
             (values[i], known[i]) = (found, true);
         }
     }

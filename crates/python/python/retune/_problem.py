@@ -77,8 +77,8 @@ class Problem(_core.Core):
     - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
       "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
     - ``limits`` has largest allowed values of ``stroke`` (m), ``force`` (N) and ``cavity`` (m), and ``from`` (s).
-    - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are integrated,
-      with the fields of study files.
+    - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are
+      integrated, with the fields of study files.
     """
 
     def __new__(
