@@ -72,7 +72,7 @@ study = json.load(open(sys.argv[1]))
 study["optimize"] |= {
     "surf": {"k2": {"from": 100, "to": 600, "points": 20}, "c2": {"from": 50, "to": 300, "points": 20}},
     "vary": ["k2", "c2"], "bounds": {"k2": [10, 600], "c2": [1, 1000]},
-    "objective": {"omega": {"from": 5, "to": 8, "samples": 9}}, "refine": {"starts": 1, "MaxFunEvals": 25},
+    "objective": {"omega": {"from": 5, "to": 8, "samples": 9}}, "coarse": {}, "refine": {"starts": 1, "MaxFunEvals": 25},
 }
 del study["$schema"]
 result = rt.optimize(rt.Problem.from_study(study), sys.argv[2])
