@@ -194,7 +194,7 @@ test-retention *OPTIONS:
 test-branches *OPTIONS:
     python3 tests/reference/orbits.py "$@"
 
-# Walk under k2 <= 300 N/m to less and less E1max on 601 frequencies alone, then on 5000 (half an hour): results/robustness/walk.md
+# Walk under k2 <= 300 N/m to less and less E1max on 601 frequencies alone, then on 5000 (a quarter of an hour and more): results/robustness/walk.md
 hunt-walk:
     mkdir -p results/robustness
     cargo test --release --package retune-tradeoff --test walk -- --nocapture --ignored | grep -E '^\||^#' | sed -E 's/^#.*/\n&\n/' > results/robustness/walk.md.tmp

@@ -94,7 +94,7 @@ def compare(programs, directory, repeats):
             took[rtol] = values("ssvi", [design] * VALUES, programs, directory, repeats, rtol=rtol)
             row(f"worst over the band, {motion}, rtol {rtol:g}, ms", took[rtol])
         row("the same at 1e-5, beside the 1e-10 of then, ms", [took[1e-5][0], took[1e-10][1]])
-    grid = [" ".join(map(str, design)) for design in GRID]
+    grid, took = [" ".join(map(str, design)) for design in GRID], {}
     for rtol in (1e-10, 1e-4):
         took[rtol] = values("ssvi-resonance", grid, programs, directory, repeats, rtol=rtol)
         row(f"a run of a surf of {len(grid)}, rtol {rtol:g}, ms", took[rtol])

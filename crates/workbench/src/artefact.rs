@@ -26,6 +26,13 @@ pub enum Content {
     Derived,
 }
 
+impl Content {
+    /// Whether only a search leaves it.
+    pub fn is_of_a_search(self) -> bool {
+        matches!(self, Self::Grid | Self::Searched | Self::Band)
+    }
+}
+
 /// A file of results.
 #[derive(Clone, Copy, Debug)]
 pub struct Artefact {

@@ -68,7 +68,6 @@ static KINDS: [&Kind; 4] = [&tune::KIND, &certify::KIND, &table2::KIND, &sweep::
 fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
     let known = known(&there, others);
-    let of_searches = |content| matches!(content, Content::Grid | Content::Searched | Content::Band);
     let plain = |content| matches!(content, Content::Input | Content::Derived);
     if !has(&known, Content::Input) || known.iter().all(|(_, content, _)| plain(*content)) {
         return report.unchecked("no row of these results can be run again by itself");
@@ -96,7 +95,7 @@ fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) 
             other => other?,
         }
     }
-    if known.iter().any(|(_, content, _)| of_searches(*content)) && !has(&known, Content::Optimum) {
+    if known.iter().any(|(_, content, _)| content.is_of_a_search()) && !has(&known, Content::Optimum) {
         return report.unchecked("there is no optimum.json: the design that was found");
     }
     Ok(())

@@ -65,10 +65,10 @@ impl Candidate {
         self.verdict == Verdict::FromRest.name()
     }
 
-    /// Whether it is of the same damper and each parameter is within a hundredth, which is how far a certificate looks, or two millimetres.
+    /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
     pub fn is_nearly(&self, other: &Self) -> bool {
         let near = |(a, b): (f64, f64)| {
-            a.is_nan() && b.is_nan() || (a - b).abs() <= (0.01 * a.abs().max(b.abs())).max(0.002)
+            a.is_nan() && b.is_nan() || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
         };
         self.damper == other.damper && self.at.values().into_iter().zip(other.at.values()).all(near)
     }

@@ -32,7 +32,7 @@ pub fn searched(study: &Study, search: &Search, variables: &[Variable]) -> PeakE
     PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
 }
 
-/// The same as exact as their grid.
+/// The same as exact as the study wants its grid: at the tolerance of `optimize.coarse`, and on samples alone if it says so.
 pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
     let (said, own) = (study.coarse(), study.solver.searching());
     let settings = Settings { rtol: said.rtol.unwrap_or(own.rtol), ..own };

@@ -21,11 +21,11 @@ pub struct Surf {
     pub variables: Vec<Variable>,
     /// The grid.
     pub grid: Grid,
-    /// Its value at each point, as exact as the study wants its grid; +∞ where it could not be computed.
+    /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; +∞ where it could not be computed.
     pub values: Vec<f64>,
     /// The number of the best point.
     pub best: usize,
-    /// Its value, as exact as a refinement's.
+    /// Its value in the unit of the quantity, at the tolerance of refinements and with the peaks between samples.
     pub least: f64,
     /// The numbers of the points where refinements start.
     chosen: Vec<usize>,
@@ -73,26 +73,26 @@ pub(super) fn surf(
     let (failures, mut counts) = (objective.failures(), objective.counts());
     let exact = searched(study, search, &variables);
     let value = kept(&exact, journal, "surf", || ());
-    let said = study.coarse();
-    let at = |i: usize| {
-        if said == Coarse::default() {
-            return values[i];
-        }
-        let mut point = vec![0.0; grid.dim()];
-        grid.point(i, &mut point);
-        value(&point, f64::INFINITY)
-    };
-    let chosen = best_separated_above(&grid, &values, at, search.starts.max(1), search.apart);
+    let is_coarse = study.coarse() != Coarse::default();
+    let at = |i: usize| if is_coarse { value(&point(&grid, i), f64::INFINITY) } else { values[i] };
+    let chosen = best_separated_above(&grid, &values, at, search.starts, search.apart);
     journal.check()?;
     let Some(&(best, least)) = chosen.first() else {
         return Err(Error::NoStart(if failures.count > 0 { failures } else { exact.failures() }));
     };
     counts.evaluations += exact.counts().evaluations;
-    let chosen = chosen.into_iter().take(search.starts).map(|(i, _)| i).collect();
+    let chosen = chosen.into_iter().map(|(i, _)| i).collect();
     write(&objective, &grid, &values, study.quantity(), results)?;
     let surf = Surf { variables, grid, values, best, least, chosen, failures, counts };
     watch.log(&surf.report(study.quantity(), begun.elapsed().as_secs_f64()))?;
     Ok(Some(surf))
+}
+
+/// The coordinates of point number `i`.
+fn point(grid: &Grid, i: usize) -> Vec<f64> {
+    let mut point = vec![0.0; grid.dim()];
+    grid.point(i, &mut point);
+    point
 }
 
 /// A row for each point, its whole design and the value.
@@ -117,9 +117,7 @@ fn write(
 impl Surf {
     /// The coordinates of point number `i`.
     pub fn point(&self, i: usize) -> Vec<f64> {
-        let mut point = vec![0.0; self.grid.dim()];
-        self.grid.point(i, &mut point);
-        point
+        point(&self.grid, i)
     }
 
     /// Where the refinements start: a value for each tuned parameter.

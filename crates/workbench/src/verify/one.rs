@@ -4,7 +4,7 @@ use super::input::json;
 use super::report::{Check, Report};
 use super::table::{Row, Sample};
 use crate::Error;
-use crate::artefact::{Artefact, Content};
+use crate::artefact::Artefact;
 use crate::certify::certify;
 use crate::resolved;
 use crate::summary::Summary;
@@ -119,8 +119,7 @@ impl One {
     }
 
     fn is_of_a_search(&self) -> bool {
-        let made_by_search =
-            |of: &&Artefact| matches!(of.content, Content::Grid | Content::Searched | Content::Band);
+        let made_by_search = |of: &&Artefact| of.content.is_of_a_search();
         let mut files = tune::KIND.artefacts.iter().filter(made_by_search);
         files.any(|file| self.place.join(file.name).exists())
     }

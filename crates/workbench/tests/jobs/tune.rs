@@ -178,11 +178,12 @@ fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
     assert!(number(&optimum, "/objective/runs") >= 8.0);
 }
 
-/// The search at its own tolerance; what it finds, at that of the results.
+/// The grid at its own tolerance, the search at its own; what it finds, at that of the results.
 #[test]
-fn contract_a_search_has_a_tolerance_of_its_own() {
+fn contract_a_grid_and_a_search_have_tolerances_of_their_own() {
     let mut study = tiny();
     study["solver"] = json!({ "rtol": 1e-9, "search_rtol": 1e-3 });
+    study["optimize"]["coarse"] = json!({ "rtol": 1e-2 });
     let desk = Desk::with(&study);
     search(&desk, "study.json", "out");
     let optimum = desk.read_json("out/optimum.json");
@@ -198,7 +199,9 @@ fn contract_a_search_has_a_tolerance_of_its_own() {
     let said = |field: &String| field.parse::<f64>().expect("a number");
     let surf = desk.rows("out/surf.csv");
     let values = |rtol: f64| surf[1..].iter().all(|row| value(&row[..4], rtol) == said(&row[4]));
-    assert!(values(1e-3) && !values(1e-9));
+    assert!(values(1e-2) && !values(1e-3));
+    let best = ["k2", "c2", "D", "C"].map(|name| number(&optimum, &format!("/surf/best/{name}")).to_string());
+    assert_eq!(value(&best, 1e-3), number(&optimum, "/surf/E1max"));
     let log = desk.rows("out/fminsearch.csv");
     let last = &log.last().expect("a row")[3..];
     assert_eq!(value(&last[..4], 1e-3), said(&last[4]));
