@@ -65,7 +65,7 @@ pub use excitation::Excitation;
 pub use forcing::{Forcing, Source, Start};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
 pub use measure::Measure;
-pub use regularised::bounds::{Growth, ORDERS};
+pub use regularised::bounds::{Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene};
 pub use sensitivity::Parameter;

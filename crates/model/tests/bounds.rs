@@ -126,9 +126,16 @@ fn exact_bounds_over_a_contact_add_up_every_cause() {
                 [q * q + beyond, w, 0.5 * rate],
                 [w, rate, 0.5 * jerk[1]],
             ];
-            let found = equations
-                .growth_over_contact(&[0.0, w0, -x1, -v1, 0.0], q0, duration, p)
-                .expect("a short contact");
+            let over =
+                equations.over_contact(&[0.0, w0, -x1, -v1, 0.0], q0, duration, p).expect("a short contact");
+            let impulse = w0 + w + duration * apart;
+            let beside = [v, on_primary, w, apart];
+            for (found, expected) in over.beside.iter().zip(&beside).chain([(&over.impulse, &impulse)]) {
+                assert!((found / expected - 1.0).abs() < 1e-12, "{side:?} {found} {expected}");
+            }
+            assert_eq!(over.duration, duration);
+            let found = equations.growth_over_contact(&over);
+            assert_eq!(over.most, found.map(|[most, ..]| most));
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                 assert!((found / expected - 1.0).abs() < 1e-12, "{side:?} {found} {expected}");
             }
@@ -161,9 +168,10 @@ fn invariant_no_contact_leaves_its_bounds() {
         }
         states.pop(); // has left the wall
         let duration = states.last().expect("the first")[4];
-        let Some(bounds) = equations.growth_over_contact(&touch, depth, duration, numbers.p) else {
+        let Some(over) = equations.over_contact(&touch, depth, duration, numbers.p) else {
             continue;
         };
+        let (bounds, mut impulse) = (equations.growth_over_contact(&over), 0.0);
         bounded += 1;
         let beyond = side.sign() * (system.wall(side) - numbers.d);
         let accelerations =
@@ -181,6 +189,14 @@ fn invariant_no_contact_leaves_its_bounds() {
             for (value, bound) in values.iter().flatten().zip(bounds.iter().flatten()) {
                 assert!(value.abs() <= bound * (1.0 + 1e-9), "{value} {bound} {numbers:?}");
             }
+            let force = equations.hertz_rate() * q.powi(3);
+            let beside = [v1, a - side.sign() * force / equations.mass_ratio(), w, rate + force];
+            for (value, bound) in beside.iter().zip(&over.beside) {
+                assert!(value.abs() <= bound * (1.0 + 1e-9), "{value} {bound} {numbers:?}");
+            }
+            impulse += equations.hertz_rate() * 0.5 * (q.powi(3) + pair[1][0].powi(3)) * passed;
+            // The rule of trapezoids is good to 1e-3 here.
+            assert!(impulse <= over.impulse * 1.001, "{impulse} {} {numbers:?}", over.impulse);
         }
     }
     assert!(bounded > 100, "{bounded}");
@@ -193,6 +209,6 @@ fn contract_no_bound_is_given_where_none_is_proven() {
     let touch = [0.0, 0.7, 0.0, 0.0, 0.0];
     let depth = equations.greatest_depth(0.7);
     for amplitude in [1e9, 1e12, f64::NAN] {
-        assert_eq!(equations.growth_over_contact(&touch, depth, 0.01, amplitude), None, "{amplitude}");
+        assert_eq!(equations.over_contact(&touch, depth, 0.01, amplitude), None, "{amplitude}");
     }
 }

@@ -4,6 +4,7 @@ mod problems;
 
 use problems::scenes::{Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED};
 use problems::{quintic, rates};
+use retune_model::{Coupled, OverContact, Side};
 use retune_solver::observe::{
     DamperEnergy, Observer, Path, PrimaryEnergy, Quantity, RelativePosition, Segment,
 };
@@ -18,14 +19,18 @@ struct Held<Q> {
     contacts: [u64; 2],
     /// The largest share of a bound that a piece used.
     used: [f64; 2],
-    /// The second derivative that a contact's pieces may have.
+    /// The second derivative that a contact's pieces may have, and the value that they may reach.
     second: f64,
+    highest: f64,
+    /// Contacts that are known to have little more than at their ends: a tenth.
+    level: u64,
 }
 
 impl<Q: Quantity<4>> Held<Q> {
     fn new(quantity: Q) -> Self {
         let (pieces, bounded, contacts) = ([0; 2], [0; 2], [0; 2]);
-        Self { quantity, pieces, bounded, contacts, used: [0.0; 2], second: f64::INFINITY }
+        let (second, highest) = (f64::INFINITY, f64::INFINITY);
+        Self { quantity, pieces, bounded, contacts, used: [0.0; 2], second, highest, level: 0 }
     }
 }
 
@@ -58,14 +63,19 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
             }
             let [_, _, curvature] = self.quantity.rates(knot.excitation, &knot.y);
             assert!(curvature.abs() <= self.second * (1.0 + 1e-9), "{curvature:e} {:e}", self.second);
+            assert!(value <= self.highest + rounding, "{value:e} {:e}", self.highest);
         }
     }
     fn path(&mut self, path: &impl Path<4>) {
         self.second = path.second_derivative(self.quantity.form());
         self.contacts[1] += 1;
         self.contacts[0] += u64::from(self.second.is_finite());
+        let [begin, end] = path.ends().map(|y| self.quantity.rates([0.0; 2], y)[0]);
+        let rise = path.rise(self.quantity.form());
+        self.highest = begin.max(end) + rise;
+        self.level += u64::from(rise < 0.1 * begin.max(end));
         (0..path.pieces()).for_each(|piece| path.show(piece, self));
-        self.second = f64::INFINITY;
+        (self.second, self.highest) = (f64::INFINITY, f64::INFINITY);
     }
 }
 
@@ -82,12 +92,21 @@ fn held<Q: Quantity<4>>(numbers: &Numbers, quantity: Q, totals: &mut Held<()>) {
         totals.contacts[kind] += held.contacts[kind];
         totals.used[kind] = totals.used[kind].max(held.used[kind]);
     }
+    totals.level += held.level;
 }
 
 #[test]
 fn invariant_no_motion_leaves_its_bounds() {
-    let mut totals =
-        Held { quantity: (), pieces: [0; 2], bounded: [0; 2], contacts: [0; 2], used: [0.0; 2], second: 0.0 };
+    let mut totals = Held {
+        quantity: (),
+        pieces: [0; 2],
+        bounded: [0; 2],
+        contacts: [0; 2],
+        used: [0.0; 2],
+        second: 0.0,
+        highest: 0.0,
+        level: 0,
+    };
     let mut draw = Spread::new(5);
     let mut scenes = vec![SSVI, ROW1, TMD, TWO_SIDED, Numbers { d: 0.0, ..TWO_SIDED }];
     for _ in 0..40 {
@@ -110,13 +129,73 @@ fn invariant_no_motion_leaves_its_bounds() {
         held(numbers, RelativePosition::new(&system, 1.0), &mut totals);
     }
     eprintln!(
-        "pieces {:?}, bounded {:?}; contacts bounded and all {:?}; largest share of a bound used {:.3?}",
-        totals.pieces, totals.bounded, totals.contacts, totals.used
+        "pieces {:?}, bounded {:?}; contacts bounded and all {:?}, level {}; largest share of a bound used {:.3?}",
+        totals.pieces, totals.bounded, totals.contacts, totals.level, totals.used
     );
     // The bounds are of use: finite where they are asked for, and not far above what they bound.
     assert!(totals.pieces[0] > 10_000 && totals.pieces[1] > 10_000, "{:?}", totals.pieces);
     assert_eq!(totals.bounded[0], totals.pieces[0]);
     assert!(totals.bounded[1] as f64 > 0.95 * totals.pieces[1] as f64, "{:?}", totals.bounded);
     assert!(totals.contacts[0] as f64 > 0.95 * totals.contacts[1] as f64, "{:?}", totals.contacts);
+    assert!(totals.level as f64 > 0.2 * totals.contacts[1] as f64, "{}", totals.level);
     assert!(totals.used.iter().all(|used| *used > 0.05), "{:?}", totals.used);
+}
+
+/// The rise of a quantity in contacts beside what it should be.
+struct Rises<'a, Q, E> {
+    numbers: &'a Numbers,
+    system: &'a Coupled,
+    quantity: Q,
+    expected: E,
+    contacts: u64,
+}
+
+impl<Q: Quantity<4>, E: Fn(&Numbers, &OverContact, f64) -> f64> Observer<4> for Rises<'_, Q, E> {
+    fn path(&mut self, path: &impl Path<4>) {
+        let (&touch, mut duration) = (path.ends()[0], 0.0);
+        path.states(|t, _| duration = t);
+        let to = |side: Side| (touch[2] - touch[0] - self.system.wall(side)).abs();
+        let side = if to(Side::Primary) < to(Side::Obstacle) { Side::Primary } else { Side::Obstacle };
+        let equations = self.system.regularised_contact(side);
+        let touch = equations.regularise(&touch);
+        let depth = equations.greatest_depth(touch[1]);
+        let over = equations.over_contact(&touch, depth, duration, self.numbers.p).expect("a bound");
+        // ∫ F dt, N·s.
+        let impulse = self.system.hertz(side) * over.impulse / equations.hertz_rate();
+        let found = path.rise(self.quantity.form());
+        let expected = (self.expected)(self.numbers, &over, impulse);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        self.contacts += 1;
+    }
+}
+
+fn rises<Q: Quantity<4>>(
+    numbers: &Numbers,
+    system: &Coupled,
+    quantity: Q,
+    expected: impl Fn(&Numbers, &OverContact, f64) -> f64,
+) {
+    let mut rises = Rises { numbers, system, quantity, expected, contacts: 0 };
+    let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+    Hybrid::new(system, 1e-8, 20.0, 1_000_000).propagate(rest, 20.0, &mut rises).expect("a run");
+    assert!(rises.contacts > 10, "{}", rises.contacts);
+}
+
+/// At most by what all forces but Hertz's do, and by what they change of what Hertz's does.
+#[test]
+fn exact_rise_in_a_contact_adds_up_every_cause() {
+    for numbers in [SSVI, ROW1, TWO_SIDED] {
+        let system = numbers.coupled();
+        rises(&numbers, &system, PrimaryEnergy::new(&system), |n, over, impulse| {
+            let ([_, v, stretch, w], [_, a, _, _]) = (over.most, over.beside);
+            over.duration * (v * (n.p + n.c1 * v + n.c2 * w + n.k2 * stretch) + impulse * a)
+        });
+        // m2 a2 + k2 (x2 - D) = k2 x1 - c2 (v2 - v1).
+        rises(&numbers, &system, DamperEnergy::new(&system), |n, over, impulse| {
+            let ([x, v, _, w], [_, a, _, apart]) = (over.most, over.beside);
+            over.duration * ((v + w) * (n.k2 * x + n.c2 * w) + impulse * (a + apart))
+        });
+        let away = RelativePosition::new(&system, -1.0);
+        rises(&numbers, &system, away, |_, over, _| over.duration * over.most[3]);
+    }
 }

@@ -9,6 +9,23 @@ pub const ORDERS: usize = 7;
 /// `v1`, the spring's stretch `z + s (wall - D)` towards the wall and the speed `w = dz/dt` into it.
 pub type Growth<const K: usize> = [[f64; K]; 4];
 
+/// Bounds over a whole contact, of the four numbers of [`Growth`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OverContact {
+    /// Their sizes, m and m/s.
+    pub most: [f64; 4],
+    /// Those of their rates by all forces but Hertz's, m/s and m/s².
+    pub beside: [f64; 4],
+    /// `∫ κ q³ dt`, m/s: Hertz's impulse.
+    pub impulse: f64,
+    /// `q`, √m.
+    depth: f64,
+    /// How long it takes, s.
+    pub duration: f64,
+    /// What the force adds to the acceleration of the structure, m/s².
+    excitation: f64,
+}
+
 /// Series with every term by its size: of the numbers of [`Growth`], of `a1` and of `dw/dt`.
 struct Series<const K: usize> {
     growth: Growth<K>,
@@ -104,61 +121,66 @@ impl RegularisedContact {
         Series { growth: [x1, v1, stretch, w], a1, rate }
     }
 
-    /// Bounds on the first Taylor coefficients in *time* over a whole contact of `duration` seconds that begins at `touch`
-    /// (`q = 0`); `None` if forces other than Hertz's may change its speed too much for the proof. `q0` is the [`greatest
-    /// depth`](Self::greatest_depth) of an undisturbed collision at its touch-down speed, √m, `amplitude` that of the force, N.
+    /// Bounds over a whole contact of `duration` seconds that begins at `touch` (`q = 0`); `None` if forces other than Hertz's may
+    /// change its speed too much for the proof. `q0` is the [`greatest depth`](Self::greatest_depth) of an undisturbed collision at its
+    /// touch-down speed, √m, `amplitude` that of the force, N.
     ///
     /// Let `G` bound the acceleration into the wall by all forces but Hertz's. Then `|w| <= ŵ = w0 + 2 G t`, as
     /// `w² + (4/5) κ q⁵ = w0² + 2 ∫ g w dt <= w0² + 2 G t ŵ <= ŵ²`; so `q` stays below the greatest depth at
-    /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and `q |w|` below `max u √(1 - u⁵) = 0.658` times both. The change of `v1` follows from the
-    /// impulse. The speeds are guessed first, and the proof holds if the bounds confirm the guess.
-    pub fn growth_over_contact(
+    /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and Hertz's impulse below `w0 + ŵ + G t`. The change of `v1` follows from that. The speeds are
+    /// guessed first, and the proof holds if the bounds confirm the guess.
+    pub fn over_contact(
         &self,
         touch: &RegularisedState,
         q0: f64,
         duration: f64,
         amplitude: f64,
-    ) -> Option<Growth<3>> {
+    ) -> Option<OverContact> {
         let [w0, x1, v1] = [touch[1], touch[2], touch[3]].map(f64::abs);
-        let (share, excitation) = (self.hertz[0] / self.hertz[1], self.primary[0] * amplitude);
-        let outside = |w: f64, v: f64, z: f64| {
-            let resisting = excitation + self.primary[1] * v + self.primary[2] * (x1 + duration * v);
-            [0, 1].map(|i| resisting + self.dashpot[i] * w + self.spring[i] * (z + self.stretch.abs()))
-        };
+        let share = self.hertz[0] / self.hertz[1];
         let depth = |w: f64| q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
-        let follows = |[w, v]: [f64; 2]| {
-            let [on_primary, apart] = outside(w, v, depth(w).powi(2));
+        let excitation = self.primary[0] * amplitude;
+        let within = |[w, v]: [f64; 2]| {
+            let most = [x1 + duration * v, v, depth(w).powi(2) + self.stretch.abs(), w];
+            let resisting = excitation + self.primary[1] * v + self.primary[2] * most[0];
+            let [on_primary, apart] =
+                [0, 1].map(|i| resisting + self.dashpot[i] * w + self.spring[i] * most[2]);
+            (most, [v, on_primary, w, apart])
+        };
+        let impulse = |w: f64, apart: f64| w0 + w + apart * duration;
+        let follows = |guess: [f64; 2]| {
+            let (_, [_, on_primary, _, apart]) = within(guess);
             let reached = w0 + 2.0 * apart * duration;
-            let impulse = share * (w0 + reached + apart * duration);
-            [reached, v1 + impulse + on_primary * duration]
+            [reached, v1 + share * impulse(reached, apart) + on_primary * duration]
         };
         let mut guess = [1.5 * w0, v1 + 3.0 * w0];
-        let mut most = follows(guess);
+        let mut speeds = follows(guess);
         for _ in 0..3 {
-            if most[0] <= guess[0] && most[1] <= guess[1] {
+            if speeds[0] <= guess[0] && speeds[1] <= guess[1] {
                 break;
             }
-            guess = most.map(|bound| 1.5 * bound);
-            most = follows(guess);
+            guess = speeds.map(|bound| 1.5 * bound);
+            speeds = follows(guess);
         }
-        let [w, v] = most;
+        let [w, v] = speeds;
         // NaN is no proof.
         if !(w <= guess[0] && v <= guess[1]) {
             return None;
         }
-        let q = depth(w);
-        let (z, x) = (q * q, x1 + duration * v);
-        let [on_primary, apart] = outside(w, v, z);
-        let (cube, cube_rate) = (z * q, 1.5 * 0.658 * q * w);
+        let (most, beside) = within(speeds);
+        let impulse = impulse(w, beside[3]);
+        Some(OverContact { most, beside, impulse, depth: depth(w), duration, excitation })
+    }
+
+    /// Bounds on the first Taylor coefficients in *time* over a whole contact. `q |w|` is at most `max u √(1 - u⁵) = 0.658` times the
+    /// bounds on both.
+    pub fn growth_over_contact(&self, over: &OverContact) -> Growth<3> {
+        let ([x, v, stretch, w], [_, on_primary, _, apart], q) = (over.most, over.beside, over.depth);
+        let (cube, cube_rate) = (q * q * q, 1.5 * 0.658 * q * w);
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
-        let turning = self.omega * excitation + self.primary[1] * a1 + self.primary[2] * v;
+        let turning = self.omega * over.excitation + self.primary[1] * a1 + self.primary[2] * v;
         let jerk =
             |i: usize| turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate;
-        Some([
-            [x, v, 0.5 * a1],
-            [v, a1, 0.5 * jerk(0)],
-            [z + self.stretch.abs(), w, 0.5 * rate],
-            [w, rate, 0.5 * jerk(1)],
-        ])
+        [[x, v, 0.5 * a1], [v, a1, 0.5 * jerk(0)], [stretch, w, 0.5 * rate], [w, rate, 0.5 * jerk(1)]]
     }
 }

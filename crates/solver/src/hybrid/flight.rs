@@ -67,12 +67,19 @@ impl Hybrid<'_> {
                     return Ok(FlightEnd::Stopped(now));
                 }
                 let walls = Side::BOTH.into_iter().filter(|&side| seen == open && near[side as usize]);
-                let (step, touched) = self.careful_step(
-                    [now, steps.knot(seen + 1)],
-                    walls,
-                    leaving,
-                    (remaining, steps.energy()),
-                )?;
+                let motion = self.flow.expand(now.excitation, &now.y);
+                let (length, touched) = self.first_touch(&now, &motion, walls, leaving, remaining)?;
+                let energy = steps.energy();
+                let mut step = if length == whole {
+                    Step::whole(&self.flow, [now, steps.knot(seen + 1)], energy)
+                } else {
+                    Step::part(&self.flow, now, &motion, length, energy)
+                };
+                match touched {
+                    Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
+                    None if length < whole => step.end().t = now.t + remaining,
+                    None => {}
+                }
                 if step.length() > 0.0 {
                     observer.segment(&step);
                 }
@@ -112,33 +119,24 @@ impl Hybrid<'_> {
         (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
     }
 
-    /// A step that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: up to that point. `energy` bounds
-    /// the energy norm of the motion, √J.
-    fn careful_step(
+    /// How long a step from `now` is that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: up to that
+    /// point, s; and the wall.
+    fn first_touch(
         &self,
-        [now, end]: [Knot<4>; 2],
+        now: &Knot<4>,
+        motion: &Expansion<4>,
         walls: impl Iterator<Item = Side>,
         leaving: Option<Side>,
-        (remaining, energy): (f64, f64),
-    ) -> Result<(Step<'_, 4>, Option<Side>), SolverError> {
-        let whole = self.flow.step();
-        let motion = self.flow.expand(now.excitation, &now.y);
-        let (mut length, mut touched) = (whole.min(remaining), None);
+        remaining: f64,
+    ) -> Result<(f64, Option<Side>), SolverError> {
+        let mut first = (self.flow.step().min(remaining), None);
         for side in walls {
-            let found = first_contact(self.gap_polynomial(&motion, side, leaving), length);
+            let found = first_contact(self.gap_polynomial(motion, side, leaving), first.0);
             if let Some(s) = found.map_err(|Lost| SolverError::NonFinite { t: now.t })? {
-                (length, touched) = (s, Some(side));
+                first = (s, Some(side));
             }
         }
-        if length == whole {
-            return Ok((Step::whole(&self.flow, [now, end], energy), touched));
-        }
-        let mut step = Step::part(&self.flow, now, &motion, length, energy);
-        match touched {
-            Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
-            None => step.end().t = now.t + remaining,
-        }
-        Ok((step, touched))
+        Ok(first)
     }
 
     /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.

@@ -1,8 +1,10 @@
 //! Quantities as polynomials in the state, and bounds on their derivatives: the search for a largest value rests on them.
 
+mod contact;
+
 use super::polynomial::{BLOCKS, Polynomial};
 use crate::system::LinearSystem;
-use retune_model::Growth;
+use contact::SlopeInFlight;
 use wide::f64x4;
 
 /// `R` over `M h⁶`.
@@ -18,6 +20,7 @@ pub struct Form<const N: usize> {
     rest: [f64; N],
     /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
     sixth: [f64; 3],
+    slope: SlopeInFlight<N>,
 }
 
 /// The part of a quantity that is linear in the rate of the state.
@@ -73,12 +76,14 @@ impl<const N: usize> Form<N> {
     /// `row · d`.
     pub fn linear<S: LinearSystem<N>>(system: &S, row: [f64; N]) -> Self {
         let [.., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
+        let squares = [(0.0, row); 2];
         Self {
             linear: row,
             rated: None,
-            squares: [(0.0, row); 2],
+            squares,
             rest: system.linear().origin,
             sixth: [offset, slope, 0.0],
+            slope: SlopeInFlight::new(system, &row, &squares),
         }
     }
 
@@ -131,13 +136,9 @@ impl<const N: usize> Form<N> {
             sixth[1] += binomial * (times(a, d) + times(b, c));
             sixth[0] += binomial * times(b, d);
         }
-        Self {
-            linear: [0.0; N],
-            rated: None,
-            squares: [(mass, unit(v)), (stiffness, unit(x))],
-            rest: linear.origin,
-            sixth,
-        }
+        let (none, squares) = ([0.0; N], [(mass, unit(v)), (stiffness, unit(x))]);
+        let slope = SlopeInFlight::new(system, &none, &squares);
+        Self { linear: none, rated: None, squares, rest: linear.origin, sixth, slope }
     }
 
     /// A bound on the sixth time derivative in flight, wherever the energy norm of the state is at most `energy` (√J).
@@ -209,29 +210,6 @@ impl<const N: usize> Form<N> {
             power *= length;
             term
         })
-    }
-}
-
-impl Form<4> {
-    /// A bound on the Taylor coefficient of order `k` in a contact, from those of its motion and, for what is linear in the rate of
-    /// the state, from those of that rate.
-    pub fn in_contact<const K: usize>(&self, growth: &Growth<K>, rates: &Growth<K>, k: usize) -> f64 {
-        // x2 - D = x1 + sign (stretch), v2 = v1 + sign w.
-        let weights = |[x1, v1, x2, v2]: &[f64; 4]| [x1 + x2, v1 + v2, *x2, *v2].map(f64::abs);
-        let combined = |row: &[f64; 4]| -> [f64; K] {
-            let weights = weights(row);
-            std::array::from_fn(|k| (0..4).map(|i| times(weights[i], growth[i][k])).sum())
-        };
-        let rated = self.rated.as_ref().map_or(0.0, |rated| {
-            let weights = weights(&rated.row);
-            (0..4).map(|i| times(weights[i], rates[i][k])).sum()
-        });
-        let square = |(weight, row): &(f64, [f64; 4])| {
-            let row = combined(row);
-            let products: f64 = (0..=k).map(|i| times(row[i], row[k - i])).sum();
-            times(0.5 * weight, products)
-        };
-        combined(&self.linear)[k] + self.squares.iter().map(square).sum::<f64>() + rated
     }
 }
 

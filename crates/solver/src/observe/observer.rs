@@ -12,6 +12,11 @@ pub trait Path<const N: usize> {
     fn pieces(&self) -> usize;
     /// Visits the times (s, since the first) and states at the knots in their order.
     fn states(&self, visit: impl FnMut(f64, &[f64; N]));
+    /// The states at both ends.
+    fn ends(&self) -> [&[f64; N]; 2];
+    /// A bound on how far a quantity that depends on the state alone exceeds the larger of its values at both ends; infinite where none is
+    /// known.
+    fn rise(&self, form: &Form<N>) -> f64;
     /// A bound on the second time derivative of a quantity that depends on the state alone; infinite where none is known.
     fn second_derivative(&self, form: &Form<N>) -> f64;
     /// A bound on the first time derivative of a quantity; infinite where none is known.

@@ -84,11 +84,18 @@ where
         self.search.begin(segment, &from, &to, remainder);
     }
 
-    /// Searches only between knots where the record could be broken: a quantity whose second derivative is at most `m` rises above
-    /// the larger of two values `t` seconds apart by at most `m t² / 8`. A quantity that contact forces enter has no such `m`, but a
-    /// first derivative of at most some `m`: it rises above the mean of two values by at most `m t / 2`.
+    /// Searches only where the record could be broken, by the values at both ends or between knots: a quantity whose second derivative
+    /// is at most `m` rises above the larger of two values `t` seconds apart by at most `m t² / 8`. A quantity that contact forces
+    /// enter has no such `m`, but a first derivative of at most some `m`: it rises above the mean of two values by at most `m t / 2`.
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
+        let quantity = &self.search.quantity;
+        if !quantity.is_forced() {
+            let [begin, end] = path.ends().map(|y| quantity.rates([0.0; 2], y)[0]);
+            if begin.max(end) + path.rise(quantity.form()) <= self.search.record.value {
+                return;
+            }
+        }
         let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
         let mut count = 0;
         path.states(|t, y| {

@@ -82,6 +82,18 @@ fn is_near(a: &[f64; 4], b: &[f64; 4], omega: f64, share: f64) -> bool {
     size(std::array::from_fn(|i| a[i] - b[i])) <= share * size(*a)
 }
 
+impl Repeats<'_> {
+    /// Looks at the states among some steps.
+    #[inline(never)]
+    fn among(&mut self, steps: &Steps<'_, 4>) {
+        for number in 0..steps.count() {
+            if self.passing.pass_by(steps.time(number + 1)) {
+                self.segment(&steps.step(number));
+            }
+        }
+    }
+}
+
 impl Observer<4> for Repeats<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         let mut latest = None;
@@ -94,7 +106,7 @@ impl Observer<4> for Repeats<'_> {
     fn path(&mut self, _path: &impl Path<4>) {}
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         if self.passing.pass_by(steps.time(steps.count())) {
-            (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
+            self.among(steps);
         }
     }
     fn satisfied(&self) -> bool {

@@ -11,7 +11,7 @@ use crate::motion::lanes::each;
 use crate::motion::linearised::{LinearContact, MOMENTS};
 use crate::observe::observer::{Observer, Path};
 use nalgebra::DMatrix;
-use retune_model::Growth;
+use retune_model::{Growth, OverContact};
 use wide::f64x4;
 
 /// A contact from touch-down to lift-off.
@@ -109,10 +109,14 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
 
     /// Bounds on the motion over the whole contact.
     #[inline(always)]
-    fn growth(&self) -> Option<Growth<3>> {
+    fn over(&self) -> Option<OverContact> {
         let Collisions { equations, amplitude, .. } = self.of;
         let touch = equations.regularise(&self.touch.y);
-        equations.growth_over_contact(&touch, self.depth.sqrt(), self.duration, *amplitude)
+        equations.over_contact(&touch, self.depth.sqrt(), self.duration, *amplitude)
+    }
+
+    fn growth(&self) -> Option<Growth<3>> {
+        self.over().map(|over| self.of.equations.growth_over_contact(&over))
     }
 
     fn knot(&self, knot: usize) -> Knot<4> {
@@ -149,7 +153,16 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         visit(self.duration, &self.end);
     }
 
+    fn ends(&self) -> [&[f64; 4]; 2] {
+        [&self.touch.y, &self.end]
+    }
+
     #[inline(always)]
+    fn rise(&self, form: &Form<4>) -> f64 {
+        let (kick, hertz_rate) = (&self.of.kicks[0], self.of.equations.hertz_rate());
+        self.over().map_or(f64::INFINITY, |over| form.rise_in_contact(kick, hertz_rate, &over))
+    }
+
     fn second_derivative(&self, form: &Form<4>) -> f64 {
         // 2! of a Taylor coefficient
         self.growth().map_or(f64::INFINITY, |growth| 2.0 * form.in_contact::<3>(&growth, &[[0.0; 3]; 4], 2))
