@@ -46,7 +46,7 @@ pub fn settled_by(
     variables: &[Variable],
 ) -> Result<Vec<f64>, SolverError> {
     let Some((system, settings)) = exact(scene, settings, ask) else { return Ok(vec![0.0; variables.len()]) };
-    if in_closed_form(&system, window, &settings).is_some() {
+    if in_closed_form(&system, &settings).is_some() {
         let omega = scene.forcing.frequency.get();
         return Ok(variables.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
     }

@@ -2,7 +2,7 @@
 
 use crate::energy_bound;
 use crate::error::SolverError;
-use crate::hybrid::contact_free::ContactFree;
+use crate::hybrid::contact_free::{ContactFree, clears_walls};
 use crate::observe::Magnitude;
 use crate::observe::counters::{TouchDownTimes, TouchDowns};
 use crate::observe::observer::Unobserved;
@@ -54,11 +54,9 @@ fn largest_energy(
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
             let mut e1 = RunningMaximum::new(PrimaryEnergy::new(&system), cutoff);
-            if hybrid {
-                let mut free = ContactFree::new(&system, window.to, settings.max_steps);
-                if free.clears_walls() {
-                    return free.e1_max(window, e1, system.steady(system.bare().frequency()).e1_max);
-                }
+            if hybrid && clears_walls(&system) {
+                let steady = system.steady(system.bare().frequency()).e1_max;
+                return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, e1, steady);
             }
             follow_until_it_repeats(&system, window, window.from, settings, &mut Unobserved, &mut e1)?;
             Ok(e1.record())

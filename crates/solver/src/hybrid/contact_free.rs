@@ -15,7 +15,7 @@ use crate::observe::quantity::Quantity;
 use crate::observe::running_maximum::RunningMaximum;
 use crate::response::{Extreme, Work};
 use crate::settings::Window;
-use crate::system::LinearSystem;
+use crate::system::{Linear, LinearSystem};
 use nalgebra::Complex;
 use retune_model::{Coupled, Side};
 
@@ -99,19 +99,13 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             return self.propagate(to, &mut Unobserved);
         };
         if whole >= 2.0 && whole < u64::MAX as f64 {
-            let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
+            let transient = difference(&self.now.y, &steady_state(self.flow.linear(), &steady, self.now.t));
             let t = self.now.t + whole * self.flow.step();
-            let y = sum(&steady_state(&self.flow, &steady, t), &self.flow.decay(whole as u64, transient));
+            let y =
+                sum(&steady_state(self.flow.linear(), &steady, t), &self.flow.decay(whole as u64, transient));
             self.now = Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] };
         }
         self.propagate(to, &mut Unobserved)
-    }
-
-    /// Energy norm of the transient at this moment, √J; infinite where there is no steady motion.
-    fn transient(&self) -> f64 {
-        let Some(steady) = self.system.steady() else { return f64::INFINITY };
-        let transient = difference(&self.now.y, &steady_state(&self.flow, &steady, self.now.t));
-        self.system.energy_norm(&sum(&self.flow.linear().origin, &transient))
     }
 
     /// Largest energy of the primary structure over the window; it ends early once `cutoff` is exceeded, or once steady motion
@@ -146,7 +140,8 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 return Err(self.flow.too_fast(self.now.t));
             }
             self.go(to, &mut maximum, budget)?;
-            let bound = (steady_e1.sqrt() + self.transient() * std::f64::consts::FRAC_1_SQRT_2).powi(2);
+            let transient = transient(self.system, self.now.t, &self.now.y);
+            let bound = (steady_e1.sqrt() + transient * std::f64::consts::FRAC_1_SQRT_2).powi(2);
             if bound <= maximum.record().value {
                 break;
             }
@@ -155,14 +150,21 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     }
 }
 
-impl ContactFree<'_, Coupled, 4> {
-    /// Whether the damper provably stays off both walls from its start on: `|r - D| <= |X2 - X1| + |row of r| |transient|`.
-    pub fn clears_walls(&self) -> bool {
-        let reach = self.system.steady(self.system.bare().frequency()).stroke()
-            + self.system.dual_energy_norm(&[-1.0, 0.0, 1.0, 0.0]) * self.transient();
-        let rest = self.system.rest_distance();
-        reach < rest - self.system.wall(Side::Primary) && reach < self.system.wall(Side::Obstacle) - rest
-    }
+/// Whether a damper provably stays off both walls from its start on: `|r - D| <= |X2 - X1| + |row of r| |transient|`.
+pub fn clears_walls(system: &Coupled) -> bool {
+    let reach = system.steady(system.bare().frequency()).stroke()
+        + system.dual_energy_norm(&[-1.0, 0.0, 1.0, 0.0])
+            * transient(system, 0.0, &LinearSystem::start(system));
+    let rest = system.rest_distance();
+    reach < rest - system.wall(Side::Primary) && reach < system.wall(Side::Obstacle) - rest
+}
+
+/// Energy norm of the transient of a motion, √J; infinite where there is no steady motion.
+fn transient<S: LinearSystem<N>, const N: usize>(system: &S, t: f64, y: &[f64; N]) -> f64 {
+    let Some(steady) = system.steady() else { return f64::INFINITY };
+    let linear = system.linear();
+    let transient = difference(y, &steady_state(&linear, &steady, t));
+    system.energy_norm(&sum(&linear.origin, &transient))
 }
 
 fn difference<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
@@ -174,9 +176,9 @@ fn sum<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
 }
 
 /// The steady motion at time `t`: `origin + Re(Y e^{iωt})`.
-fn steady_state<const N: usize>(flow: &Flow<N>, amplitudes: &[Complex<f64>; N], t: f64) -> [f64; N] {
-    let turn = Complex::from_polar(1.0, flow.linear().frequency * t);
-    std::array::from_fn(|i| flow.linear().origin[i] + (amplitudes[i] * turn).re)
+fn steady_state<const N: usize>(linear: &Linear<N>, amplitudes: &[Complex<f64>; N], t: f64) -> [f64; N] {
+    let turn = Complex::from_polar(1.0, linear.frequency * t);
+    std::array::from_fn(|i| linear.origin[i] + (amplitudes[i] * turn).re)
 }
 
 #[cfg(test)]

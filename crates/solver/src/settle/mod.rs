@@ -7,7 +7,7 @@ mod blocks;
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::extremes::{Ask, Extremes};
-use crate::hybrid::contact_free::ContactFree;
+use crate::hybrid::contact_free::clears_walls;
 use crate::observe::displacement_range::DisplacementRange;
 use crate::observe::observer::Unobserved;
 use crate::recurrence::test::Settle;
@@ -49,7 +49,7 @@ pub fn settled(
         return Ok(closed(system.steady(omega).largest(&system, omega, ask.measure), 0.0));
     };
     let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-    if let Some(steady) = in_closed_form(&system, window, settings) {
+    if let Some(steady) = in_closed_form(&system, settings) {
         let largest = steady.largest(system.bare(), omega, ask.measure);
         let Some(from) = ask.walls else { return Ok(closed(largest, 0.0)) };
         let mut range = DisplacementRange::new(&system, from, f64::INFINITY);
@@ -66,8 +66,7 @@ pub fn settled(
 }
 
 /// The steady motion, if the damper provably stays off both walls.
-pub(crate) fn in_closed_form(system: &Coupled, window: Window, settings: &Settings) -> Option<Steady> {
+pub(crate) fn in_closed_form(system: &Coupled, settings: &Settings) -> Option<Steady> {
     let steady = system.steady(system.bare().frequency());
-    let free = ContactFree::new(system, window.to, settings.max_steps);
-    (settings.method == Method::Hybrid && free.clears_walls() && steady.e1_max.is_finite()).then_some(steady)
+    (settings.method == Method::Hybrid && clears_walls(system) && steady.e1_max.is_finite()).then_some(steady)
 }
