@@ -193,6 +193,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             length,
             steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
             ends,
+            bounds: Default::default(),
         });
     }
 

@@ -99,6 +99,7 @@ pub fn integrate(
             length,
             steps: 1,
             ends: [start, end],
+            bounds: Default::default(),
         };
         observer.segment(&piece);
         if over || observer.satisfied() {

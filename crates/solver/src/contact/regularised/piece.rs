@@ -4,7 +4,8 @@ use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use retune_model::{ORDERS, RegularisedContact, RegularisedState};
+use retune_model::{Growth, ORDERS, RegularisedContact, RegularisedState};
+use std::cell::OnceCell;
 
 // Components of a regularised state.
 pub const Q: usize = 0;
@@ -25,6 +26,8 @@ pub struct Piece<'a> {
     /// Steps in which it is reached.
     pub steps: u32,
     pub ends: [Knot<4>; 2],
+    /// Bounds over all of it, for observers of the state and of its rate.
+    pub bounds: [OnceCell<[Growth<ORDERS>; 2]>; 2],
 }
 
 /// The moment of a regularised state.
@@ -63,21 +66,32 @@ impl Segment<4> for Piece<'_> {
         Knot { t, ..knot(self.equations, self.touch_down, &y) }
     }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
+        let own;
+        let [growth, rates] = if h == self.length {
+            self.bounds[usize::from(form.is_rated())].get_or_init(|| self.growth(form, ends, h))
+        } else {
+            own = self.growth(form, ends, h);
+            &own
+        };
+        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(growth, rates, 6)) // 6! of a Taylor coefficient
+    }
+}
+
+impl Piece<'_> {
+    /// Bounds between two places `h` apart; those of the rates where a form needs them.
+    fn growth(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64) -> [Growth<ORDERS>; 2] {
         // `q` is taken from the clock, because it has lost digits in the state.
         let [from, to] = ends.map(|knot| {
             let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
             [knot.clock[0], w, x1, v1, 0.0]
         });
-        let [growth, rates] = if form.is_rated() {
+        if form.is_rated() {
             self.equations.growth_of_rates(h, &from, &to)
         } else {
             [self.equations.growth(h, &from, &to), [[0.0; ORDERS]; 4]]
-        };
-        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(&growth, &rates, 6)) // 6! of a Taylor coefficient
+        }
     }
-}
 
-impl Piece<'_> {
     fn advance(&self, theta: f64) -> RegularisedState {
         let h = theta / f64::from(self.steps);
         let mut y = step(self.equations, self.from, self.slope, h).y;
