@@ -4,6 +4,7 @@ mod anything;
 
 use anything::scenes::{Numbers, SSVI, Spread, TMD, TWO_SIDED};
 use nalgebra::Matrix4;
+use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter};
 use retune_solver::observe::Unobserved;
 use retune_solver::{
@@ -159,39 +160,40 @@ fn exact_the_determinant_over_a_period() {
 fn reference_gradients_of_largest_values_agree_with_differences() {
     let mut spread = Spread::new(8);
     let window = Window { from: 1.0, to: 5.0 };
-    let (mut worst, mut compared): (f64, usize) = (0.0, 0);
-    for scene in 0..60 {
-        let (numbers, _) = random(&mut spread, scene % 2 == 1);
-        for measure in Measure::ALL {
-            let largest = |numbers: &Numbers| {
-                let ask = Ask { measure, walls: Some(5.0), ..Ask::default() };
-                extremes(&numbers.scene(), window, &settings(), ask).expect("a run").largest
-            };
-            let found =
-                gradients(&numbers.coupled(), window, &settings(), measure, &Parameter::ALL).expect("a run");
-            let first = &found[0];
-            let expected = largest(&numbers).value;
-            assert!((first.at.value - expected).abs() <= 1e-11 * expected, "{scene} {measure:?}");
-            if first.at.value == 0.0 {
+    let scenes: Vec<Numbers> = (0..60).map(|scene| random(&mut spread, scene % 2 == 1).0).collect();
+    let largest = |numbers: &Numbers, measure: Measure| {
+        let ask = Ask { measure, walls: Some(5.0), ..Ask::default() };
+        extremes(&numbers.scene(), window, &settings(), ask).expect("a run").largest
+    };
+    // How many derivatives are compared, and the largest error of them.
+    let compare = |numbers: &Numbers, measure: Measure| -> (usize, f64) {
+        let (mut compared, mut worst) = (0, 0.0_f64);
+        let found =
+            gradients(&numbers.coupled(), window, &settings(), measure, &Parameter::ALL).expect("a run");
+        let first = &found[0];
+        let expected = largest(numbers, measure).value;
+        assert!((first.at.value - expected).abs() <= 1e-11 * expected, "{numbers:?} {measure:?}");
+        if first.at.value == 0.0 {
+            return (0, 0.0);
+        }
+        for (by, parameter) in first.by.iter().zip(Parameter::ALL) {
+            let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
+            let step = share * size(numbers, parameter);
+            let at = |h: f64| largest(&moved(numbers, parameter, h), measure);
+            if [-step, step].iter().any(|&h| (at(h).time - first.at.time).abs() > 0.02) {
                 continue;
             }
-            for (by, parameter) in first.by.iter().zip(Parameter::ALL) {
-                let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
-                let step = share * size(&numbers, parameter);
-                let ends = [-1.0, 1.0].map(|sign| largest(&moved(&numbers, parameter, sign * step)));
-                if ends.iter().any(|end| (end.time - first.at.time).abs() > 0.02) {
-                    continue;
-                }
-                let expected =
-                    richardson(step, |h| [largest(&moved(&numbers, parameter, h)).value, 0.0, 0.0, 0.0])[0];
-                // Beside the change of the value by a change of the parameter as large as itself.
-                let scale = expected.abs().max(1e-3 * first.at.value / size(&numbers, parameter));
-                let error = (by - expected).abs() / scale;
-                worst = worst.max(error);
-                compared += 1;
-            }
+            let expected = richardson(step, |h| [at(h).value, 0.0, 0.0, 0.0])[0];
+            // Beside the change of the value by a change of the parameter as large as itself.
+            let scale = expected.abs().max(1e-3 * first.at.value / size(numbers, parameter));
+            worst = worst.max((by - expected).abs() / scale);
+            compared += 1;
         }
-    }
+        (compared, worst)
+    };
+    let all =
+        scenes.par_iter().flat_map_iter(|numbers| Measure::ALL.map(|measure| compare(numbers, measure)));
+    let (compared, worst) = all.reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)));
     assert!(compared > 3000 && worst < 1e-6, "{compared} {worst:e}");
 }
 

@@ -3,6 +3,7 @@
 mod problems;
 
 use problems::scenes::{Numbers, SSVI, TMD};
+use rayon::prelude::*;
 use retune_solver::{Contacts, Method, Remedy, Settings, SolverError, Window, e1_max, simulate};
 
 const EXTREMES: [f64; 8] = [1e-300, 1e-150, 1e-20, 1e-6, 1e6, 1e20, 1e150, 1e300];
@@ -93,25 +94,26 @@ const HYBRID: Settings = Settings {
 
 fn sweep(method: Method, to: f64, max_steps: u64) {
     let settings = Settings { method, max_steps, ..HYBRID };
-    for (scene, base) in [("SSVI", SSVI), ("TMD", TMD)] {
-        for name in NAMES {
-            for value in EXTREMES {
-                let what = format!("{} {scene} {name}={value:e}", method.name());
-                let (numbers, window) = with(base, to, name, value);
-                match simulate(&numbers.scene(), window, &settings) {
-                    Ok(found) => {
-                        assert!(found.work.steps <= max_steps, "{what}: {found:?}");
-                        assert!(found.e1_max.value.is_finite(), "{what}: {found:?}");
-                    }
-                    Err(error) => check_advice(name, &numbers, window, &settings, error),
+    let check = |(scene, base): (&str, Numbers), name: &str| {
+        for value in EXTREMES {
+            let what = format!("{} {scene} {name}={value:e}", method.name());
+            let (numbers, window) = with(base, to, name, value);
+            match simulate(&numbers.scene(), window, &settings) {
+                Ok(found) => {
+                    assert!(found.work.steps <= max_steps, "{what}: {found:?}");
+                    assert!(found.e1_max.value.is_finite(), "{what}: {found:?}");
                 }
-                match e1_max(&numbers.scene(), window, &settings, f64::INFINITY) {
-                    Ok(found) => assert!(found.value.is_finite(), "{what}: {found:?}"),
-                    Err(error) => check_advice(name, &numbers, window, &settings, error),
-                }
+                Err(error) => check_advice(name, &numbers, window, &settings, error),
+            }
+            match e1_max(&numbers.scene(), window, &settings, f64::INFINITY) {
+                Ok(found) => assert!(found.value.is_finite(), "{what}: {found:?}"),
+                Err(error) => check_advice(name, &numbers, window, &settings, error),
             }
         }
-    }
+    };
+    NAMES
+        .into_par_iter()
+        .for_each(|name| [("SSVI", SSVI), ("TMD", TMD)].into_iter().for_each(|scene| check(scene, name)));
 }
 
 #[test]
