@@ -33,6 +33,11 @@ pub trait LinearSystem<const N: usize>: System<N> {
     fn energy_norm(&self, y: &[f64; N]) -> f64;
     /// Largest growth of that norm under the force, √J/s.
     fn energy_norm_growth(&self) -> f64;
+    /// The amplitude of the force, N.
+    fn amplitude(&self) -> f64 {
+        let [cos, sin] = self.excitation(0.0);
+        cos.hypot(sin)
+    }
     /// The largest `|row · (y - origin)|` over all states of norm 1; infinite if there is none.
     fn dual_energy_norm(&self, row: &[f64; N]) -> f64;
 }

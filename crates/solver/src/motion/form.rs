@@ -1,10 +1,11 @@
 //! Quantities as polynomials in the state, and bounds on their derivatives: the search for a largest value rests on them.
 
 mod contact;
+mod slope;
 
 use super::polynomial::{BLOCKS, Polynomial};
 use crate::system::LinearSystem;
-use contact::SlopeInFlight;
+use slope::SlopeInFlight;
 use wide::f64x4;
 
 /// `R` over `M h⁶`.
@@ -39,7 +40,7 @@ pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
     system: &S,
     row: [f64; N],
 ) -> [[f64; 2]; K] {
-    let (linear, amplitude) = (system.linear(), amplitude(system));
+    let (linear, amplitude) = (system.linear(), system.amplitude());
     let dot = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut row, mut forced) = (row, 0.0);
     std::array::from_fn(|_| {
@@ -48,12 +49,6 @@ pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
         row = linear.columns.map(|column| dot(&row, &column));
         bound
     })
-}
-
-/// P, N.
-fn amplitude<S: LinearSystem<N>, const N: usize>(system: &S) -> f64 {
-    let [cos, sin] = system.excitation(0.0);
-    cos.hypot(sin)
 }
 
 /// Terms of the polynomials that a motion in flight consists of.
@@ -98,7 +93,7 @@ impl<const N: usize> Form<N> {
         let rated = Rated {
             row: rated,
             size: linear.columns.map(|column| size(&column)),
-            force: times(amplitude(system), size(&linear.input)),
+            force: times(system.amplitude(), size(&linear.input)),
         };
         Self { rated: Some(rated), sixth: [b0 + offset, b1 + slope, b2], ..of_row }
     }
@@ -124,7 +119,7 @@ impl<const N: usize> Form<N> {
         force[x] += stiffness;
         let speeds: [[f64; 2]; 6] = derivative_bounds(system, unit(v));
         let mut forces: [[f64; 2]; 6] = derivative_bounds(system, force);
-        let mut driving = mass * linear.input[v].abs() * amplitude(system);
+        let mut driving = mass * linear.input[v].abs() * system.amplitude();
         for force in &mut forces {
             force[1] += driving;
             driving *= linear.frequency;
