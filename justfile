@@ -274,6 +274,15 @@ bench-job BASE="f3d2d61" *OPTIONS:
     mkdir -p results/speed
     python3 tests/job.py target/release/retune target/bench-job/target/release/retune {{OPTIONS}} | tee results/speed/job.txt
 
+# Time fronts by the plan of an earlier version beside that version, and compare what they find (needs python3): results/speed/fronts.txt
+bench-fronts BASE="f3d2d61":
+    test -d target/bench-job || git clone --quiet --shared --no-checkout . target/bench-job
+    git -C target/bench-job checkout --quiet {{BASE}}
+    cd target/bench-job && cargo build --release --quiet --package retune --target-dir target
+    cargo build --release --quiet --package retune
+    mkdir -p results/speed
+    python3 tests/job.py target/release/retune target/bench-job/target/release/retune --fronts | tee results/speed/fronts.txt
+
 # Measure time and memory of a surf of a million runs, and what a second core is worth
 bench-surf *OPTIONS:
     cargo bench --quiet --package retune-optim --bench surf "$@"

@@ -2,9 +2,11 @@
 search changes of its result.
 
     python3 tests/job.py RETUNE BASE [--repeats N] [--build]
+    python3 tests/job.py RETUNE BASE --fronts
 
 RETUNE and BASE are the programs of two versions, each in target/release of its checkout. Times are those of the processor, one thread; of values the
-least of N turns taken one after the other. With --build also the wall clock of a build of either from clean.
+least of N turns taken one after the other. With --build also the wall clock of a build of either from clean. With --fronts only the wall
+clock of fronts by the plan and the studies of BASE, and what either finds.
 """
 
 import argparse
@@ -20,7 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 # Designs in the order k2 c2 D C: that of results/ssvi, whose motions are regular, and Table 2's, where they are not.
-DESIGNS = {"regular": "583.85802 94.99932 0.028809 1.104293", "irregular": "215 232 0.06 0.36"}
+DESIGNS = {"regular": "583.92141 94.97052 0.028850 1.104545", "irregular": "215 232 0.06 0.36"}
 # Values in one process, so that its start counts for little.
 VALUES = 40
 # A coarse grid of designs, as a `surf` has, each one run at one frequency.
@@ -127,6 +129,33 @@ def build(programs, directory):
     print(f"\n{'a build from clean, s, two cores':<56}{took[0]:>10.0f}{took[1]:>10.0f}{took[1] / took[0]:>8.2f}")
 
 
+def fronts(programs, directory):
+    """Wall clock of fronts by the plan and the studies of the earlier version, and the E1max of the SSVI NES under each bound on k2."""
+    studies, took, found = programs[1].parents[2] / "studies", [], []
+    for number, program in enumerate(programs):
+        place = directory / str(number)
+        place.mkdir()
+        for name in ("fronts", "fronts-tmd", "fronts-ssvi"):
+            plan = json.loads((studies / f"{name}.json").read_text())
+            plan.pop("$schema")
+            if number == 0:
+                plan["kind"] = "fronts" if name == "fronts" else "study"
+                if name != "fronts":
+                    plan["solver"] = {**plan.get("solver", {}), "search_rtol": 1e-6}
+            (place / f"{name}.json").write_text(json.dumps(plan))
+        begin = time.perf_counter()
+        subprocess.run([program, "fronts", place / "fronts.json", "--out", place / "out"], capture_output=True, check=True)
+        took.append(time.perf_counter() - begin)
+        with open(place / "out/k2.csv", newline="") as table:
+            rows = [row for row in csv.DictReader(table) if row["damper"] == "SSVI NES"]
+        found.append({float(row["k2_most"]): float(row["E1max"]) for row in rows})
+    print(f"`just bench-fronts`: fronts by the plan of commit {commit(programs[1])}, all cores\n")
+    print(f"{'':<40}{'today':>10}{commit(programs[1]):>10}")
+    print(f"{'wall clock, s':<40}{took[0]:>10.0f}{took[1]:>10.0f}")
+    for bound, value in found[1].items():
+        print(f"{f'SSVI NES, k2 at most {bound:g} N/m: E1max, J':<40}{found[0][bound]:>10.1f}{value:>10.1f}")
+
+
 def peers():
     """The time of a run to an error of E1max by the best of other programs, and by ours, of `results/accuracy`."""
     errors = {}
@@ -156,8 +185,12 @@ def main():
     parser.add_argument("programs", nargs=2, type=Path)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--build", action="store_true", help="time builds of both from clean, too")
+    parser.add_argument("--fronts", action="store_true", help="only fronts, by the plan of BASE")
     given = parser.parse_args()
     programs = [program.resolve() for program in given.programs]
+    if given.fronts:
+        with tempfile.TemporaryDirectory() as directory:
+            return fronts(programs, Path(directory))
     print(f"`just bench-job`: processor time on one thread, beside commit {commit(programs[1])}; the certificate of today follows other motions, too\n")
     with tempfile.TemporaryDirectory() as directory:
         compare(programs, Path(directory), given.repeats)
