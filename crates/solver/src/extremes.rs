@@ -106,7 +106,7 @@ fn in_coupled(
 ) -> Result<Extremes, SolverError> {
     let mut before = ask.walls.map(|from| DisplacementRange::new(system, from, f64::INFINITY));
     let mut seen = maxima(system, ask);
-    let late = ask.walls.unwrap_or(0.0);
+    let late = ask.walls.unwrap_or(window.from);
     follow_until_it_repeats(system, window, late, settings, &mut before, &mut seen)?;
     let ([stroke, force], seen) = (stroke_and_force(before.as_ref()), read(&seen));
     Ok(Extremes { stroke: stroke.max(seen.stroke), force: force.max(seen.force), ..seen })

@@ -66,7 +66,7 @@ fn invariant_a_run_that_repeats_has_seen_its_largest_values() {
         let [e1, stroke, force] =
             [0, 1, 2].map(|i| own.iter().map(|(_, missed)| missed[i]).fold(0.0, f64::max));
         println!("| {rtol:e} | {} | {ended} | {e1:.2} | {stroke:.2} | {force:.2} |", own.len());
-        assert!(exponent > 6 || ended > own.len() / 5, "few runs ended early: {ended} of {}", own.len());
+        assert!(ended > own.len() / 5, "few runs ended early: {ended} of {}", own.len());
         faults.extend(
             own.into_iter()
                 .filter(|(_, missed)| missed.iter().any(|missed| missed.is_nan() || *missed > ALLOWED)),
@@ -76,4 +76,13 @@ fn invariant_a_run_that_repeats_has_seen_its_largest_values() {
         eprintln!("{number} {missed:?} {:?}", drawn(*number));
     }
     assert!(faults.is_empty(), "{} of {count}", faults.len());
+}
+
+/// Irregular runs that once come close to a motion, look ahead in vain, and go on: to the last bit as if they had not looked.
+#[test]
+fn regress_a_look_ahead_in_vain_changes_nothing() {
+    for number in [1834, 1940, 7228, 10769, 12980, 13042, 15339, 15802, 17454, 21079, 22424, 35212] {
+        let missed = both(number, Window { from: 50.0, to: 100.0 });
+        assert!(missed.iter().all(|missed| *missed == 0.0), "{number}: {missed:?}");
+    }
 }

@@ -3,14 +3,16 @@
 //! A motion repeats if its states at whole periods of the force return for a while, and all that they will still change by, extrapolated
 //! from how these changes fall, is below the tolerance of the run. So a run is not longer than its transient and a few periods, and what it
 //! finds differs from what the whole run finds by no more than that tolerance allows the run itself (`just hunt-repeats` measures it).
+//! One that converges to such a motion need not be followed to it (`ahead`).
 
+use super::ahead::{Converging, LookAhead};
 use super::section::Periods;
 use super::test::{Recurrence, Settle};
 use crate::error::SolverError;
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Observer, Path};
+use crate::observe::observer::{Observer, Path, Unobserved};
 use crate::run::follow_coupled;
 use crate::settings::{Method, Settings, Window};
 use retune_model::Coupled;
@@ -25,6 +27,15 @@ const NEAR: f64 = 0.02;
 /// A motion that returns less closely than this may be irregular, whatever the tolerance of the run.
 const LOOSEST: f64 = 1e-5;
 
+/// What is known of a motion.
+#[derive(Clone, Copy)]
+enum Known {
+    /// It repeats after so many periods.
+    Repeats(usize),
+    /// It will, and where it is when the window begins.
+    Converges(Converging),
+}
+
 /// Whether a motion repeats, while it is followed.
 struct Repeats<'a> {
     system: &'a Coupled,
@@ -35,19 +46,20 @@ struct Repeats<'a> {
     held: usize,
     /// Whether the motion is far from repeating. Then only the state after every so many periods is worth a look.
     far: bool,
-    /// Periods after which it repeats.
-    periods: Option<usize>,
+    /// The look ahead, if what is left before the window may be passed over.
+    ahead: Option<LookAhead<'a>>,
+    known: Option<Known>,
 }
 
 impl<'a> Repeats<'a> {
-    fn new(system: &'a Coupled, settings: &Settings) -> Self {
+    fn new(system: &'a Coupled, settings: &Settings, ahead: Option<LookAhead<'a>>) -> Self {
         let passing = Periods::of(TAU / system.bare().frequency());
         let (tolerance, states) = (settings.rtol.min(LOOSEST), [[0.0; 4]; BLOCKS * LONGEST]);
-        Self { system, tolerance, passing, states, held: 0, far: true, periods: None }
+        Self { system, tolerance, passing, states, held: 0, far: true, ahead, known: None }
     }
 
-    /// Keeps a state, and looks whether it is one of a motion that repeats.
-    fn look(&mut self, state: [f64; 4]) {
+    /// Keeps a state at a time, s, and looks whether it is one of a motion that repeats.
+    fn look(&mut self, t: f64, state: [f64; 4]) {
         if self.held == self.states.len() {
             self.states.rotate_left(1);
             self.held -= 1;
@@ -56,6 +68,7 @@ impl<'a> Repeats<'a> {
         let latest = self.states[..self.held].iter().rev().take(if self.far { 1 } else { LONGEST });
         let nearest = |share| latest.clone().position(|earlier| is_near(&state, earlier, omega, share));
         let (near, back) = (nearest(NEAR).is_some(), nearest(4.0 * self.tolerance));
+        let close = self.ahead.as_ref().and_then(|ahead| nearest(ahead.close));
         self.states[self.held] = state;
         self.held += 1;
         // A motion of several periods is not near to itself after one.
@@ -63,12 +76,15 @@ impl<'a> Repeats<'a> {
             self.far = !near;
             self.states[0] = state;
             self.held = 1;
+        } else if let Some(motion) = close.filter(|_| !self.far).and_then(|back| self.look_ahead(t, back + 1))
+        {
+            self.known = Some(Known::Converges(motion));
         } else if let Some(back) = back.filter(|_| !self.far) {
             let periods = (back + 1).max(2);
             let settle = Settle { periods: periods as u32, blocks: BLOCKS as u32, tolerance: self.tolerance };
             let latest = &self.states[self.held.saturating_sub(BLOCKS * periods)..self.held];
             let test = Recurrence::to_the_end(self.system, settle);
-            self.periods = test.has_settled(latest).then_some(periods);
+            self.known = test.has_settled(latest).then_some(Known::Repeats(periods));
         }
         if self.far {
             self.passing.skip(LONGEST - 1);
@@ -83,6 +99,12 @@ fn is_near(a: &[f64; 4], b: &[f64; 4], omega: f64, share: f64) -> bool {
 }
 
 impl Repeats<'_> {
+    /// Looks ahead from the latest state, at `t` (s), that returns closely after some periods.
+    #[inline(never)]
+    fn look_ahead(&mut self, t: f64, periods: usize) -> Option<Converging> {
+        self.ahead.as_mut()?.look(t, &self.states[..self.held], periods)
+    }
+
     /// Looks at the states among some steps.
     #[inline(never)]
     fn among(&mut self, steps: &Steps<'_, 4>) {
@@ -97,9 +119,9 @@ impl Repeats<'_> {
 impl Observer<4> for Repeats<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         let mut latest = None;
-        self.passing.states(segment, |state| latest = Some(state));
-        if let Some(state) = latest.filter(|_| self.periods.is_none()) {
-            self.look(state);
+        let t = self.passing.states(segment, |state| latest = Some(state));
+        if let Some(state) = latest.filter(|_| self.known.is_none()) {
+            self.look(t, state);
         }
     }
     /// A moment within a contact of some milliseconds is put off to its end, period after period: it would cost more to look inside.
@@ -110,7 +132,7 @@ impl Observer<4> for Repeats<'_> {
         }
     }
     fn satisfied(&self) -> bool {
-        self.periods.is_some()
+        self.known.is_some()
     }
 }
 
@@ -132,17 +154,24 @@ pub fn follow_until_it_repeats(
         return follow_coupled(system, window, settings, before, observer).map(|_| ());
     }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-    let mut repeats = Repeats::new(system, settings);
+    // Nothing before the window is passed over if it is observed, too.
+    let ahead = if late == window.from { LookAhead::new(system, window, settings) } else { None };
+    let mut repeats = Repeats::new(system, settings, ahead);
     let y = system.start();
     let mut now = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
     if window.from > 0.0 {
         now = hybrid.propagate(now, window.from, &mut (before, &mut repeats))?;
     }
-    if repeats.periods.is_none() {
+    if repeats.known.is_none() {
         now = hybrid.propagate(now, window.to, &mut (&mut *observer, &mut repeats))?;
     }
-    let Some(periods) = repeats.periods.filter(|_| !observer.satisfied()) else {
-        return Ok(());
+    let periods = match repeats.known.filter(|_| !observer.satisfied()) {
+        None => return Ok(()),
+        Some(Known::Converges(Converging { late, repeats })) => {
+            let now = hybrid.propagate(late, window.from, &mut Unobserved)?;
+            return hybrid.propagate(now, repeats, observer).map(|_| ());
+        }
+        Some(Known::Repeats(periods)) => periods,
     };
     let span = periods as f64 * period;
     let [begin, end] = if now.t < from {

@@ -33,8 +33,8 @@ impl Periods {
         self.count += periods as f64;
     }
 
-    /// The states at those that pass in a segment.
-    pub fn states(&mut self, segment: &impl Segment<4>, mut keep: impl FnMut([f64; 4])) {
+    /// The states at those that pass in a segment; returns when the latest has passed, s.
+    pub fn states(&mut self, segment: &impl Segment<4>, mut keep: impl FnMut([f64; 4])) -> f64 {
         let [begin, end] = segment.ends();
         while self.next() <= end.t {
             keep(match self.next() {
@@ -44,6 +44,7 @@ impl Periods {
             });
             self.count += 1.0;
         }
+        self.count * self.period
     }
 }
 

@@ -104,7 +104,7 @@ impl<'a> Recurrence<'a> {
     }
 
     /// The sizes of both parts of a motion. A body that moves a million times less than the other is compared less closely.
-    fn size(&self, states: &[[f64; 4]]) -> [f64; 2] {
+    pub fn size(&self, states: &[[f64; 4]]) -> [f64; 2] {
         const LEAST: f64 = 1e-6;
         let omega = self.system.bare().frequency();
         let rest = self.system.rest_distance();
@@ -122,7 +122,7 @@ impl<'a> Recurrence<'a> {
     }
 
     /// The change from one state to another, as a share of the size of the motion.
-    fn change(&self, a: &[f64; 4], b: &[f64; 4], size: [f64; 2]) -> f64 {
+    pub fn change(&self, a: &[f64; 4], b: &[f64; 4], size: [f64; 2]) -> f64 {
         let [structure, damper] = self.parts(std::array::from_fn(|i| a[i] - b[i]));
         let share = |part: f64, size: f64| if part == 0.0 { 0.0 } else { (part / size).sqrt() };
         share(structure, size[0]).max(share(damper, size[1]))

@@ -1,0 +1,84 @@
+//! A look ahead: where a run will be when the window begins, told from afar by the periodic motion that it converges to.
+
+use super::limit::{Limit, NEGLECTED, Question, limit};
+use super::test::{Recurrence, Settle};
+use crate::hybrid::propagator::{Hybrid, Motion, Phase};
+use crate::observe::observer::Unobserved;
+use crate::settings::{Settings, Window};
+use retune_model::Coupled;
+use std::f64::consts::TAU;
+
+/// Share of a state by which it differs from an earlier one at most for a first look, and the factor to that for the next one.
+const CLOSE: f64 = 1e-3;
+const CLOSER: f64 = 0.1;
+/// The longest motion that is looked for, in periods of the force. A look takes seven or eight such motions.
+const PERIODS: usize = 2;
+/// The number of these motions that must be left before the window so that it pays.
+const WORTH: u32 = 12;
+/// The loosest tolerance at which it does.
+const LOOSEST: f64 = 1e-7;
+
+/// Looks ahead to the start of a window.
+pub struct LookAhead<'a> {
+    system: &'a Coupled,
+    window: Window,
+    settings: Settings,
+    /// Share of a state by which it differs from an earlier one at most for the next look.
+    pub close: f64,
+}
+
+/// A run that converges to a periodic motion.
+#[derive(Clone, Copy)]
+pub struct Converging {
+    /// A moment of the run less than a few periods before the start of the window.
+    pub late: Motion,
+    /// The time, s, from which on it repeats what the window has seen by then; at most the end of the window.
+    pub repeats: f64,
+}
+
+impl<'a> LookAhead<'a> {
+    /// For a run to a window; `None` if its tolerance is so loose that it is less work to wait.
+    pub fn new(system: &'a Coupled, window: Window, settings: &Settings) -> Option<Self> {
+        (settings.rtol <= LOOSEST).then_some(Self { system, window, settings: *settings, close: CLOSE })
+    }
+
+    /// Where a run will be that has these states at whole periods of the force, the last at `t` (s), and returns closely after some periods;
+    /// `None` if that cannot be told, or if it is not worth the work.
+    pub fn look(&mut self, t: f64, states: &[[f64; 4]], periods: usize) -> Option<Converging> {
+        let Self { system, window, ref settings, .. } = *self;
+        let omega = system.bare().frequency();
+        let span = periods as f64 * TAU / omega;
+        let counts = [window.from - t, window.to - window.from].map(|time| (time / span) as u32);
+        let last = states.len() - 1;
+        if periods > PERIODS || counts[0] < WORTH || last < 2 * periods {
+            return None;
+        }
+        let test = Recurrence::to_the_end(system, Settle::default());
+        let size = test.size(&states[last + 1 - periods..]);
+        let change = |i: usize| test.change(&states[i], &states[i - periods], size);
+        let returns = last / periods - 1;
+        let fall = (change(last) / change(last - returns * periods)).powf(1.0 / returns as f64);
+        // Of what will be left, judged by how the changes have fallen so far, each map may be wrong by the root of the tolerance.
+        let left = change(last) * fall.powi(counts[0] as i32);
+        if f64::from(counts[0]) * left > NEGLECTED * settings.rtol.sqrt() {
+            return None;
+        }
+        self.close *= CLOSER;
+        let now = states[last];
+        let rates = [omega, 1.0, omega, 1.0];
+        let speed = now.iter().zip(rates).map(|(y, rate)| rate * y.abs()).fold(0.0, f64::max);
+        let question = Question {
+            counts,
+            share: |change: &[f64; 4]| test.change(change, &[0.0; 4], size),
+            tolerance: settings.rtol,
+            scales: rates.map(|rate| speed / rate),
+        };
+        // One of its own: the run that is observed goes on as if nobody looked ahead.
+        let mut hybrid = Hybrid::new(system, settings.rtol, span, settings.max_steps);
+        let moment = |t: f64, y: [f64; 4]| Motion { t, y, phase: Phase::of(system, &y) };
+        let map = |y| hybrid.propagate(moment(t, y), t + span, &mut Unobserved).ok().map(|end| end.y);
+        let Limit { state, left, more } = limit(map, now, &question)?;
+        let late = moment(t + f64::from(counts[0]) * span, std::array::from_fn(|i| state[i] + left[i]));
+        Some(Converging { late, repeats: window.to.min(window.from + f64::from(more + 1) * span) })
+    }
+}

@@ -1,0 +1,144 @@
+//! The periodic motion that a run converges to, and how far from it the run will be many periods later.
+//!
+//! Near a periodic motion the map from one period to the next is linear: it multiplies what is left of a transient by the monodromy matrix
+//! `M`. So Newton's iteration finds the motion from a state close to it, and a power of `M` what will be left. Both neglect the square of
+//! what is left now, and `M`, from differences, is known to about the root of the tolerance only. Neither is taken on trust: the iteration
+//! goes on, with the same matrix, until the state stands still; a period that was followed shows what linear prediction misses; and where the
+//! power of `M` does not shrink every difference, the motion may not be a stable one.
+
+use nalgebra::{Matrix4, Vector4};
+
+/// Most iterations after the first.
+const ITERATIONS: usize = 4;
+/// An iteration changes the state by at most this share of what the one before it did; the power of `M` has at most this norm.
+const SHRINKS: f64 = 0.1;
+/// What may be neglected, as a share of the tolerance.
+pub const NEGLECTED: f64 = 0.1;
+
+/// A periodic motion, and a run that converges to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// State of the periodic motion.
+    pub state: [f64; 4],
+    /// By how much the state of the run differs from it after as many maps as were asked for.
+    pub left: [f64; 4],
+    /// After how many maps more that can be neglected; at most as many as were asked for.
+    pub more: u32,
+}
+
+/// What is to be known, and how closely.
+pub struct Question<F: Fn(&[f64; 4]) -> f64> {
+    /// The number of maps after which the run is asked for, and the most for which it is then followed.
+    pub counts: [u32; 2],
+    /// The size of a change of the state, as a share of that of the motion.
+    pub share: F,
+    /// Tolerance on such shares.
+    pub tolerance: f64,
+    /// Changes of each component as large as the motion.
+    pub scales: [f64; 4],
+}
+
+/// The stable fixed point of `map` to which its powers lead from `now`; `None` if that, or what will be left, cannot be told. Takes six maps
+/// and one more for each iteration after the first.
+pub fn limit(
+    mut map: impl FnMut([f64; 4]) -> Option<[f64; 4]>,
+    now: [f64; 4],
+    question: &Question<impl Fn(&[f64; 4]) -> f64>,
+) -> Option<Limit> {
+    let Question { counts: [count, most], tolerance, scales, .. } = question;
+    let share = |change: Vector4<f64>| (question.share)(&change.into());
+    let may_be_neglected = |change: Vector4<f64>| share(change) <= NEGLECTED * tolerance;
+    let after = Vector4::from(map(now)?);
+    let mut monodromy = Matrix4::zeros();
+    for (i, scale) in scales.iter().enumerate() {
+        let (mut moved, step) = (now, tolerance.sqrt() * scale);
+        moved[i] += step;
+        monodromy.set_column(i, &((Vector4::from(map(moved)?) - after) / step));
+    }
+    let power = monodromy.pow(count.saturating_sub(1));
+    let units = Matrix4::from_diagonal(&Vector4::from(*scales));
+    let size = (units.try_inverse()? * power * monodromy * units).norm();
+    if size.is_nan() || size > SHRINKS {
+        return None;
+    }
+    let equations = (Matrix4::identity() - monodromy).lu();
+    let now = Vector4::from(now);
+    let mut change = equations.solve(&(after - now))?;
+    let mut state = now + change;
+    for _ in 0..ITERATIONS {
+        let gap = Vector4::from(map(state.into())?) - state;
+        let next = equations.solve(&gap).filter(|next| share(*next) <= SHRINKS * share(change))?;
+        state += next;
+        change = next;
+        if may_be_neglected(change) {
+            let missed = after - state - monodromy * (now - state);
+            let left = power * monodromy * (now - state);
+            let (mut later, mut more) = (left, 0);
+            while more < *most && !may_be_neglected(later) {
+                later = monodromy * later;
+                more += 1;
+            }
+            let is_told = may_be_neglected(power * missed * f64::from(*count));
+            return is_told.then(|| Limit { state: state.into(), left: left.into(), more });
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A map with the fixed point `(1, -2, 3, 0.5)`, a matrix of these multipliers (the second pair a rotation), and some curvature.
+    fn map(multipliers: [f64; 3], curvature: f64) -> impl Fn([f64; 4]) -> [f64; 4] {
+        move |y| {
+            let [a, b, c, d]: [f64; 4] = std::array::from_fn(|i| y[i] - FIXED[i]);
+            let [one, two, turned] = multipliers;
+            let bent = curvature * (a * a + c * d);
+            [1.0 + one * a + 0.3 * b + bent, two * b - 2.0, 3.0 + turned * d - bent, 0.5 - turned * c + bent]
+        }
+    }
+
+    const FIXED: [f64; 4] = [1.0, -2.0, 3.0, 0.5];
+
+    fn question(count: u32) -> Question<impl Fn(&[f64; 4]) -> f64> {
+        let share = |change: &[f64; 4]| change.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        Question { counts: [count, 50], share, tolerance: 1e-9, scales: [3.0; 4] }
+    }
+
+    fn found(map: impl Fn([f64; 4]) -> [f64; 4], count: u32) -> Option<Limit> {
+        limit(|y| Some(map(y)), [1.001, -2.002, 3.001, 0.499], &question(count))
+    }
+
+    #[test]
+    fn exact_limit_and_what_is_left_are_those_of_the_powers_of_the_map() {
+        for curvature in [0.0, 0.2] {
+            let map = map([0.6, -0.5, 0.4], curvature);
+            let Limit { state, left, more } = found(&map, 25).expect("a stable motion");
+            let mut y = [1.001, -2.002, 3.001, 0.499];
+            for _ in 0..25 {
+                y = map(y);
+            }
+            for i in 0..4 {
+                assert!((state[i] - FIXED[i]).abs() < 1e-10, "{state:?}");
+                assert!((state[i] + left[i] - y[i]).abs() < 2e-10, "{left:?} {y:?}");
+            }
+            // 1e-10 may be neglected, and each map leaves 0.6.
+            let later = left[0].abs() * 0.6_f64.powi(more as i32);
+            assert!(more > 3 && (0.59e-10..1.01e-10).contains(&later), "{more} {later:e}");
+        }
+    }
+
+    #[test]
+    fn contract_no_limit_where_it_is_unstable_or_cannot_be_told() {
+        assert!(found(map([0.6, -0.5, 0.4], 0.2), 25).is_some());
+        assert_eq!(found(map([1.1, -0.5, 0.4], 0.2), 25), None, "unstable, but found by Newton's iteration");
+        assert_eq!(found(map([0.6, -1.001, 0.4], 0.2), 25), None, "a period doubling");
+        assert_eq!(found(map([0.97, -0.5, 0.4], 0.2), 25), None, "too slow to be sure that it is stable");
+        assert_eq!(found(map([0.6, -0.5, 0.4], 100.0), 25), None, "too far from it");
+        assert_eq!(found(map([0.9, -0.5, 0.4], 5.0), 25), None, "what is left cannot be told");
+        assert_eq!(found(|y| y, 25), None, "any state is one of its own");
+        assert_eq!(found(|_| [f64::NAN; 4], 25), None);
+        assert_eq!(limit(|_| None, FIXED, &question(25)), None, "a map that fails");
+    }
+}
