@@ -13,7 +13,7 @@ impl Hybrid<'_> {
     ///
     /// # Errors
     /// [`SolverError`] with the time reached.
-    #[inline(always)]
+    #[inline(never)]
     pub fn propagate(
         &mut self,
         from: Motion,

@@ -5,8 +5,9 @@ use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
 use super::undisturbed::DURATION;
-use crate::linear::flow::Flow;
+use crate::linear::flow::{Expansion, Flow};
 use crate::motion::knot::Knot;
+use crate::motion::linearised::MOMENTS;
 use crate::motion::polynomial::Polynomial;
 use crate::observe::observer::Observer;
 use std::sync::LazyLock;
@@ -61,6 +62,46 @@ impl Collisions {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
+        let mut pushed = Pushed {
+            free: flow.expand(touch.excitation, &touch.y),
+            moments: rule.undisturbed,
+            last: rule.undisturbed_last,
+        };
+        let Found { depth, terms, depths, duration, iterations } =
+            self.iterate(rule, touch, to, &mut pushed)?;
+        let mut collision = Collision {
+            of: self,
+            rule,
+            flow,
+            touch,
+            free: &pushed.free,
+            free_terms: free_terms(terms),
+            terms,
+            moments: &pushed.moments,
+            last: &pushed.last,
+            scale: duration * depth * depth.sqrt(),
+            duration,
+            depth,
+            roots: depths.map(|z| (z * depth).sqrt()),
+            end: [0.0; 4],
+        };
+        collision.end = collision.lift_off();
+        observer.path(&collision);
+        let excitation = flow.excitation_after(touch.excitation, duration);
+        let end = Knot { t: touch.t + duration, excitation, y: collision.end, clock: [1.0, 0.0] };
+        Some((end, u64::from(iterations) * N as u64))
+    }
+
+    /// Newton's iteration for a contact from the moments of the undisturbed force, in `pushed`, to its own; `None` if it is not of the kind
+    /// that the rule is for. It is compiled once for a rule, not once more for every observer.
+    #[inline(never)]
+    fn iterate<const N: usize, const M: usize>(
+        &self,
+        rule: &'static Rule<N, M>,
+        touch: &Knot<4>,
+        to: f64,
+        Pushed { free, moments, last }: &mut Pushed<M>,
+    ) -> Option<Found<M>> {
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         let depth = self.equations.greatest_depth(speed).powi(2);
         let undisturbed = DURATION * depth / speed;
@@ -68,14 +109,11 @@ impl Collisions {
             return None;
         }
         let terms = self.longest.iter().position(|&longest| undisturbed < longest)?;
-        let free_terms = terms + 4; // their error is about the square of the response's
-        let free = flow.expand::<FREE>(touch.excitation, &touch.y);
         // z_free / depth, without the constant term, which is zero.
         let [x1, _, x2, _] = free.0;
         let to_depth = self.side.sign() / depth;
         let approach = Polynomial::<FREE>(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * to_depth)).over_s();
         let (mut depths, mut stretch) = (rule.depths, 1.0);
-        let (mut moments, mut last) = (rule.undisturbed, rule.undisturbed_last);
         let mut shares = [0.0; 2];
         let (mut before, mut iterations): (f64, u32) = (1.0, 0);
         let force = loop {
@@ -89,7 +127,7 @@ impl Collisions {
             }
             let scale = duration * duration * depth.sqrt();
             let times = rule.times.map(|time| time * duration);
-            let mean_rate = at_nodes(&approach, free_terms - 1, &times);
+            let mean_rate = at_nodes(&approach, free_terms(terms) - 1, &times);
             let free_last = approach.at(duration) * duration;
             let residual: Nodes<M> =
                 std::array::from_fn(|i| depths[i] - mean_rate[i] * times[i] + pushed[i] * scale);
@@ -128,29 +166,32 @@ impl Collisions {
         let tail = (dot(&rule.tails[0], &force).powi(2) + dot(&rule.tails[1], &force).powi(2)).sqrt();
         let duration = stretch * undisturbed;
         let error = TAIL[N / 4 - 2] * tail * tail.sqrt().sqrt();
-        if error.is_nan() || error > self.rtol || touch.t + duration >= to {
-            return None;
-        }
-        let mut collision = Collision {
-            of: self,
-            rule,
-            flow,
-            touch,
-            free: &free,
-            free_terms,
-            terms,
-            moments: &moments,
-            last: &last,
-            scale: duration * depth * depth.sqrt(),
-            duration,
-            depth,
-            roots: depths.map(|z| (z * depth).sqrt()),
-            end: [0.0; 4],
-        };
-        collision.end = collision.lift_off();
-        observer.path(&collision);
-        let excitation = flow.excitation_after(touch.excitation, duration);
-        let end = Knot { t: touch.t + duration, excitation, y: collision.end, clock: [1.0, 0.0] };
-        Some((end, u64::from(iterations) * N as u64))
+        let is_right = error <= self.rtol && touch.t + duration < to;
+        is_right.then_some(Found { depth, terms, depths, duration, iterations })
     }
+}
+
+/// The motion without contact, and the moments of the force at the nodes and at lift-off.
+struct Pushed<const M: usize> {
+    free: Expansion<4, FREE>,
+    moments: [Nodes<M>; MOMENTS],
+    last: [f64; MOMENTS],
+}
+
+/// What the iteration has found.
+struct Found<const M: usize> {
+    /// Greatest depth of the undisturbed collision, m.
+    depth: f64,
+    /// Terms of the response to the force that are needed.
+    terms: usize,
+    /// At the nodes, over `depth`.
+    depths: Nodes<M>,
+    /// s
+    duration: f64,
+    iterations: u32,
+}
+
+/// Terms of the motion without contact that are needed: their error is about the square of the response's.
+fn free_terms(terms: usize) -> usize {
+    terms + 4
 }

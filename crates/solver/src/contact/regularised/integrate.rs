@@ -29,89 +29,128 @@ pub enum End {
 pub fn integrate(
     mut equations: RegularisedContact,
     from: &Knot<4>,
-    mut y: RegularisedState,
+    y: RegularisedState,
     to: f64,
     (rtol, budget): (f64, Budget),
     work: &mut Work,
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
-    let touch_down = from.t;
     equations.set_excitation(y[TIME], from.excitation);
-    let mut plan = Plan::new(&equations, &y, rtol);
-    let shortest = plan.h * 1e-12;
-    let mut start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
+    let plan = Plan::new(&equations, &y, rtol);
+    let start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
+    let mut contact =
+        Contact { shortest: plan.h * 1e-12, touch_down: from.t, equations, to, rtol, budget, plan, start, y };
     loop {
-        // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
-        equations.set_excitation(y[TIME], start.excitation);
-        let reach = RegularisedContact::TURN / (equations.frequency() * plan.q);
-        // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
-        let unhindered = plan.step(&y);
-        let planned = unhindered.min(reach);
-        let left = if y[W] < 0.0 { equations.theta_to_wall(&y) } else { f64::INFINITY };
-        let h = if left < (1.2 * planned).min(reach) { left } else { planned };
-        let slope = equations.derivative(&y);
-        let tried = step(&equations, &y, &slope, h);
-        work.evaluations += EVALUATIONS + 1;
-        let error = plan.error(h, &tried, rtol);
-        let t = touch_down + y[TIME];
-        let shortened = (h / unhindered).min(1.0);
-        let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
-        let wall = if lifting { reach_wall(&equations, &tried.y, &plan, rtol, work) } else { None };
-        // The length of the last step if it goes on to the wall: it may hardly be longer than the one tried.
-        let to_wall = |wall: &RegularisedState| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
-        let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
-        // Beyond the wall there is no contact: a step must end where the wall can be reached. Nor may it outrun the force.
-        let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
-        let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * RegularisedContact::TURN;
-        if error.is_nan() || error > 1.0 || lost {
-            work.rejected += 1;
-            plan.refuse(if lost { f64::INFINITY } else { error }, shortened, &y);
-            if !y.iter().all(|v| v.is_finite()) {
-                return Err(SolverError::NonFinite { t });
-            }
-            // Rejected steps count as work too.
-            budget.check(work.steps + work.rejected, t)?;
-            if plan.h < shortest {
-                return Err(SolverError::Contact { t });
-            }
-            continue;
-        }
-        work.steps += 1;
-        budget.check(work.steps, t)?;
-        let (mut next, mut length) = (tried.y, h);
-        if let Some(wall) = wall {
-            (next, length) = (wall, to_wall(&wall));
-        }
-        let over = touch_down + next[TIME] >= to;
-        if over {
-            let advance = |theta: f64| step(&equations, &y, &slope, theta).y;
-            (length, next) = at_elapsed(advance, length, to - touch_down);
-        }
-        let mut end = knot(&equations, touch_down, &next);
-        if over {
-            end.t = to;
-        }
+        let Accepted { slope, length, next, end, is_last, lifts_off } = contact.step(work)?;
         let piece = Piece {
-            equations: &equations,
-            touch_down,
-            from: &y,
+            equations: &contact.equations,
+            touch_down: contact.touch_down,
+            from: &contact.y,
             slope: &slope,
             length,
             steps: 1,
-            ends: [start, end],
+            ends: [contact.start, end],
             bounds: Default::default(),
         };
         observer.segment(&piece);
-        if over || observer.satisfied() {
+        if is_last || observer.satisfied() {
             return Ok(End::InContact(end));
         }
-        if wall.is_some() {
+        if lifts_off {
             return Ok(End::LiftOff(end));
         }
-        let seconds = next[TIME] - y[TIME];
-        plan.adapt(&equations, error, (shortened, seconds), &next, rtol);
-        y = next;
-        start = end;
+        (contact.y, contact.start) = (next, end);
+    }
+}
+
+/// A contact on its way.
+struct Contact {
+    equations: RegularisedContact,
+    touch_down: f64,
+    /// The end of the run, s.
+    to: f64,
+    rtol: f64,
+    budget: Budget,
+    plan: Plan,
+    /// Step length that is not fallen below.
+    shortest: f64,
+    /// Where it is.
+    start: Knot<4>,
+    y: RegularisedState,
+}
+
+/// A step of a contact.
+struct Accepted {
+    /// The derivative at its start.
+    slope: RegularisedState,
+    length: f64,
+    next: RegularisedState,
+    end: Knot<4>,
+    /// Whether the run ends there.
+    is_last: bool,
+    lifts_off: bool,
+}
+
+impl Contact {
+    /// The next step, of the length that its error allows. It is compiled once, not once for every observer.
+    fn step(&mut self, work: &mut Work) -> Result<Accepted, SolverError> {
+        let Self { equations, plan, y, rtol, touch_down, .. } = self;
+        let (rtol, touch_down) = (*rtol, *touch_down);
+        loop {
+            // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
+            equations.set_excitation(y[TIME], self.start.excitation);
+            let reach = RegularisedContact::TURN / (equations.frequency() * plan.q);
+            // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
+            let unhindered = plan.step(y);
+            let planned = unhindered.min(reach);
+            let left = if y[W] < 0.0 { equations.theta_to_wall(y) } else { f64::INFINITY };
+            let h = if left < (1.2 * planned).min(reach) { left } else { planned };
+            let slope = equations.derivative(y);
+            let tried = step(equations, y, &slope, h);
+            work.evaluations += EVALUATIONS + 1;
+            let error = plan.error(h, &tried, rtol);
+            let t = touch_down + y[TIME];
+            let shortened = (h / unhindered).min(1.0);
+            let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
+            let wall = if lifting { reach_wall(equations, &tried.y, plan, rtol, work) } else { None };
+            // The length of the last step if it goes on to the wall: it may hardly be longer than the one tried.
+            let to_wall = |wall: &RegularisedState| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
+            let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
+            // Beyond the wall there is no contact: a step must end where the wall can be reached. Nor may it outrun the force.
+            let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
+            let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * RegularisedContact::TURN;
+            if error.is_nan() || error > 1.0 || lost {
+                work.rejected += 1;
+                plan.refuse(if lost { f64::INFINITY } else { error }, shortened, y);
+                if !y.iter().all(|v| v.is_finite()) {
+                    return Err(SolverError::NonFinite { t });
+                }
+                // Rejected steps count as work too.
+                self.budget.check(work.steps + work.rejected, t)?;
+                if plan.h < self.shortest {
+                    return Err(SolverError::Contact { t });
+                }
+                continue;
+            }
+            work.steps += 1;
+            self.budget.check(work.steps, t)?;
+            let (mut next, mut length) = (tried.y, h);
+            if let Some(wall) = wall {
+                (next, length) = (wall, to_wall(&wall));
+            }
+            let is_last = touch_down + next[TIME] >= self.to;
+            if is_last {
+                let advance = |theta: f64| step(equations, y, &slope, theta).y;
+                (length, next) = at_elapsed(advance, length, self.to - touch_down);
+            }
+            let mut end = knot(equations, touch_down, &next);
+            if is_last {
+                end.t = self.to;
+            }
+            let seconds = next[TIME] - y[TIME];
+            plan.adapt(equations, error, (shortened, seconds), &next, rtol);
+            return Ok(Accepted { slope, length, next, end, is_last, lifts_off: wall.is_some() });
+        }
     }
 }
 
