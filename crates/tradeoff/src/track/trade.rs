@@ -2,7 +2,7 @@
 //!
 //! For each damper the widest range is searched for (Sobol points and CMA-ES over the box of its study, if it has one, then `fminsearch`), then, for ranges between that of
 //! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design that was seen). The
-//! front is what no design that was seen dominates, looked at again on the common samples.
+//! front is what no design that was seen dominates, looked at again on the common samples, at the tolerance of the study.
 
 use super::range::{Care, Range, Threshold, range};
 use super::tuned::{Tuned, Tuning};
@@ -10,7 +10,7 @@ use retune_model::Design;
 use retune_optim::{Global, PeakEnergy, explore, minimize};
 use retune_study::{Setting, Study};
 use retune_workbench::searches::Searches;
-use retune_workbench::tune::objective::{kept, objective};
+use retune_workbench::tune::objective::{kept, loose};
 use retune_workbench::{Error, Observer};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -30,6 +30,10 @@ const WIDEST: Global = Global {
 const BETWEEN: u32 = 6;
 /// Evaluations of the search under each.
 const EVALUATIONS: u64 = 60;
+/// Relative tolerances of these searches: of E1max at the nominal stiffness, and of those that are only compared with the threshold, as ends
+/// of ranges are looked for within 1e-3 alone ([`Care::SEARCH`]).
+const RTOL: f64 = 1e-6;
+const OF_RANGES: f64 = 1e-4;
 /// About the most designs of a front that are looked at again.
 const MOST: usize = 32;
 /// A value above every E1max, J: of a design with too small a range.
@@ -92,9 +96,10 @@ pub fn trade(
 ) -> Result<Vec<Point>, Error> {
     let study = &tuned.study;
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
-    let of = objective(study, &search, &search.variables);
+    let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
     let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
-    let seen = Seen { study, of: &of, threshold, searches, stages, all: Mutex::default() };
+    let seen =
+        Seen { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all: Mutex::default() };
     // The designs that are kept are seen first, those within the bounds of the search.
     let mut least = 0.0;
     for kept in &tuned.kept {
@@ -147,6 +152,7 @@ pub fn trade(
 struct Seen<'a> {
     study: &'a Study,
     of: &'a PeakEnergy,
+    of_ranges: &'a PeakEnergy,
     threshold: &'a Threshold,
     searches: &'a Searches<'a>,
     stages: [String; 2],
@@ -174,7 +180,7 @@ impl Seen<'_> {
         let study = Study { scene, ..self.study.clone() };
         let energy = |k1: f64, cutoff: f64| {
             let scene = study.scene_with(&[Setting::new("k1", k1)]).ok();
-            let found = scene.and_then(|scene| self.of.evaluate(&scene, cutoff).ok());
+            let found = scene.and_then(|scene| self.of_ranges.evaluate(&scene, cutoff).ok());
             found.map_or(f64::INFINITY, |found| found.energy)
         };
         self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)

@@ -32,6 +32,13 @@ pub fn searched(study: &Study, search: &Search, variables: &[Variable]) -> PeakE
     PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
 }
 
+/// The same at a relative tolerance, or at that of searches where it is looser.
+pub fn loose(study: &Study, search: &Search, variables: &[Variable], rtol: f64) -> PeakEnergy {
+    let own = study.solver.searching();
+    let settings = Settings { rtol: own.rtol.max(rtol), ..own };
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
+}
+
 /// The same as exact as the study wants its grid: at the tolerance of `optimize.coarse`, and on samples alone if it says so.
 pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
     let (said, own) = (study.coarse(), study.solver.searching());
