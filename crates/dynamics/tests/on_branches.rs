@@ -29,7 +29,7 @@ const DAMPERS: [Numbers; 4] = [
 /// branch is a fault; and of as many runs between them hardly one may.
 #[test]
 fn invariant_what_settles_lies_on_a_branch() {
-    let count = std::env::var("RETUNE_FREQUENCIES").map_or(41, |count| count.parse().expect("a number"));
+    let count = std::env::var("RETUNE_FREQUENCIES").map_or(31, |count| count.parse().expect("a number"));
     println!("\n## Runs from rest at many frequencies of four dampers, and between them");
     println!(
         "| k2, N/m | c2, N·s/m | D, m | C, m | branches | frequencies | on a branch | irregular | largest exponents of these, 1/s | between them, on no branch |"

@@ -159,7 +159,7 @@ fn reference_contacts_that_other_forces_rule_agree_with_dop853() {
 /// Scenes of all kinds that touch a wall a few times, before small differences can grow. RETUNE_SCENES sets how many are drawn.
 #[test]
 fn reference_any_scene_that_touches_a_wall_agrees_with_dop853() {
-    let drawn = std::env::var("RETUNE_SCENES").map_or(450, |count| count.parse().expect("a number"));
+    let drawn = std::env::var("RETUNE_SCENES").map_or(300, |count| count.parse().expect("a number"));
     let mut runner = TestRunner::new(config(1));
     let mut drawn_scene = |width: f64| {
         let mut draws = draws(width).new_tree(&mut runner).expect("draws").current();
