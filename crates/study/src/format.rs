@@ -92,7 +92,7 @@ pub struct Optimize {
     /// refinement starts from the damper of `scene`.
     #[serde(default)]
     pub surf: Option<PerVariable<GridAxis>>,
-    /// How exact the grid is, which only says where refinements start. Default: as exact as they are.
+    /// How exact the grid and the global search are, which only say where refinements start. Default: as exact as these are.
     #[serde(default, skip_serializing_if = "Coarse::is_default")]
     pub coarse: Coarse,
     /// A global search in addition to the grid. Default: none; `{}` selects it with its default settings.
@@ -107,7 +107,7 @@ pub struct Optimize {
     pub refine: Refine,
 }
 
-/// How exact the values of a grid are.
+/// How exact the values of a grid and of a global search are, which only say where refinements start.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Coarse {
@@ -117,15 +117,25 @@ pub struct Coarse {
     pub rtol: Option<f64>,
     /// Whether the peaks between the samples of a band are searched. Without, a value is the largest of its samples.
     pub peaks: bool,
+    /// The largest value of the grid that matters, in the unit of the quantity. The evaluation of a point ends once it is known to be above;
+    /// the point then has this value in tables and maps. Refinements start where they would without. Default: none.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most: Option<f64>,
 }
 
 impl Coarse {
     fn is_default(&self) -> bool {
         *self == Self::default()
     }
+
+    /// The value up to which a grid is computed, in the unit of the quantity; infinite if all of it is.
+    pub fn up_to(&self) -> f64 {
+        self.most.unwrap_or(f64::INFINITY)
+    }
 }
 
-/// What is left out, as words after those about a grid.
+/// What is left out, as words after those about a grid or a global search.
 impl std::fmt::Display for Coarse {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.rtol.map_or(Ok(()), |rtol| write!(f, ", at rtol {rtol:e}"))?;
@@ -135,7 +145,7 @@ impl std::fmt::Display for Coarse {
 
 impl Default for Coarse {
     fn default() -> Self {
-        Self { rtol: None, peaks: true }
+        Self { rtol: None, peaks: true, most: None }
     }
 }
 

@@ -54,6 +54,13 @@ impl Study {
                 return Err(Rule::Rtol { field, value });
             }
         }
+        if let Some(most) = self.coarse().most.filter(|most| !(*most > 0.0 && most.is_finite())) {
+            return Err(Rule::NotAllowed {
+                field: "optimize.coarse.most".to_owned(),
+                value: most.to_string(),
+                allowed: "a finite number above 0",
+            });
+        }
         if !(self.solver.atol >= 0.0 && self.solver.atol.is_finite()) {
             return Err(Rule::Atol { value: self.solver.atol });
         }

@@ -124,6 +124,11 @@ fn contract_values_out_of_range_are_named_with_what_is_allowed() {
         &study.to_string(),
         "optimize.coarse.rtol: 0 is not allowed here: give a number above 0 and at most 0.1",
     );
+    study["optimize"]["coarse"] = json!({ "most": 0.0 });
+    refused_text(
+        &study.to_string(),
+        "optimize.coarse.most: 0 is not allowed here: give a finite number above 0",
+    );
     study["optimize"]["coarse"] = json!({});
     study["solver"] = json!({ "method": "ode45s" });
     refused_text(

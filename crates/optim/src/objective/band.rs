@@ -67,15 +67,16 @@ pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
 ) -> Result<[Worst; N], E> {
     let look = |frequency: f64| values(frequency).map(|values| Look { frequency, values });
     let count = band.samples.max(2);
-    let groups = count.div_ceil(TOGETHER);
-    // Group g has the samples g, g + groups, g + 2 groups, …
-    let order: Vec<usize> = (0..groups).flat_map(|g| (g..count).step_by(groups)).collect();
+    let order = if cutoff.is_finite() { likely_first(band) } else { (0..count).collect() };
     let sample = |&i: &usize| (i, look(band.at(i)));
     let above =
         |(_, sample): &(usize, Result<Look<N>, E>)| !sample.as_ref().is_ok_and(|s| s.values[0] <= cutoff);
     let ends = |taken: &[(usize, Result<Look<N>, E>)]| taken.iter().any(above);
-    let together = if cutoff.is_finite() { TOGETHER } else { count };
-    let mut samples = in_groups(count, together, |place, _| sample(&order[place]), ends);
+    let mut samples = if cutoff.is_finite() {
+        in_groups(count, TOGETHER, |place, _| sample(&order[place]), ends)
+    } else {
+        order.par_iter().map(sample).collect()
+    };
     samples.sort_by_key(|(i, _)| *i);
     let samples = samples.into_iter().map(|(_, sample)| sample).collect::<Result<Vec<Look<N>>, E>>()?;
     let worst = samples[1..].iter().fold(worst_of(&samples[0]), |all, look| larger(all, worst_of(look)));
@@ -95,6 +96,16 @@ pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
     let refine = |&(quantity, i): &(usize, usize)| local_maximum(&look, around(i), quantity, cutoff);
     let refined: Vec<Result<[Worst; N], E>> = peaks.par_iter().map(refine).collect();
     refined.into_iter().try_fold(worst, |all, more| Ok(larger(all, more?)))
+}
+
+/// The samples of a band in the order in which one above a cutoff is likely to come soon: every eighth of them or so from the middle outwards,
+/// where a structure near its resonance has its largest values, then those between in the same way.
+fn likely_first(band: &Band) -> Vec<usize> {
+    let count = band.samples.max(2);
+    let strides = count.div_ceil(TOGETHER);
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&i| ((i + strides - count / 2 % strides) % strides, (2 * i + 1).abs_diff(count)));
+    order
 }
 
 fn worst_of<const N: usize>(&Look { frequency, values }: &Look<N>) -> [Worst; N] {

@@ -31,6 +31,17 @@ pub struct Counts {
     pub infeasible: u64,
 }
 
+impl Counts {
+    /// Those of two stages together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            evaluations: self.evaluations + other.evaluations,
+            infeasible: self.infeasible + other.infeasible,
+        }
+    }
+}
+
 /// The goal of a search as a function of a design, which has a value for each varied parameter of the damper. Threads may share it.
 ///
 /// A design that cannot be evaluated has the value +∞ and is recorded in [`Self::failures`].
@@ -97,11 +108,24 @@ impl PeakEnergy {
     /// The value that searches minimise: the goal's energy of `design`, J, or a number above [`INFEASIBLE`] if it breaks a
     /// limit; any number above `cutoff` once the value is known to exceed it; +∞ if there is no value.
     pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
+        self.value_as(design, cutoff, |found| (found.value, found.violation > 0.0))
+    }
+
+    /// The same, but `most` if it is above that, whichever number it is; a design that is so is not counted as one that breaks a limit.
+    pub fn value_up_to(&self, design: &[f64], most: f64) -> f64 {
+        self.value_as(design, most, |found| {
+            (found.value.min(most), found.violation > 0.0 && most > INFEASIBLE)
+        })
+    }
+
+    /// What `of` says of an evaluation: its value, and whether it counts as one that breaks a limit.
+    fn value_as(&self, design: &[f64], cutoff: f64, of: impl FnOnce(Evaluation) -> (f64, bool)) -> f64 {
         self.counts[0].fetch_add(1, Relaxed);
         match self.scene(design).and_then(|scene| self.evaluate(&scene, cutoff)) {
             Ok(found) => {
-                self.counts[1].fetch_add(u64::from(found.violation > 0.0), Relaxed);
-                found.value
+                let (value, breaks_a_limit) = of(found);
+                self.counts[1].fetch_add(u64::from(breaks_a_limit), Relaxed);
+                value
             }
             Err(reason) => {
                 self.note(design, reason);

@@ -1,11 +1,12 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
 use super::log::worth;
-use super::objective::{kept, searched};
+use super::objective::{coarse, kept, searched};
 use super::refine::{Refined, Run, columns};
 use crate::Error;
 use crate::Observer;
 use crate::amount::{Amount, measured};
+use rayon::prelude::*;
 use retune_model::{Measure, Variable};
 use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
 use retune_store::{Directory, Journal};
@@ -41,13 +42,14 @@ pub(super) fn global(
     watch: &dyn Observer,
 ) -> Result<Option<Explored>, Error> {
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
-    let objective = searched(study, search, &search.variables);
+    let objective = coarse(study, search, &search.variables);
     watch.log(&format!(
-        "global: {} over the box of {}, then {} of at most {} each",
+        "global: {} over the box of {}, then {} of at most {} each{}",
         counted(global.samples.into(), "design"),
         joined(&search.variables, " "),
         counted(global.searches as u64, "CMA-ES search"),
-        counted(global.evaluations, "evaluation")
+        counted(global.evaluations, "evaluation"),
+        study.coarse()
     ))?;
     let begun = Instant::now();
     let most = u64::from(global.samples) + global.searches as u64 * global.evaluations;
@@ -58,9 +60,12 @@ pub(super) fn global(
     journal.check()?;
     let failures = objective.failures();
     let searches = found.map_err(|source| Error::Global { source, failures: failures.clone() })?;
-    let ends: Vec<Point> = searches.iter().map(|search| search.found.clone()).collect();
+    let exact = searched(study, search, &search.variables);
+    let value = kept(&exact, journal, "ends", || ());
+    let again = |point: &Point| Point { value: value(&point.x, f64::INFINITY), x: point.x.clone() };
+    let ends: Vec<Point> = searches.par_iter().map(|search| again(&search.found)).collect();
     let basins = basins(value, &space, &ends, apart);
-    let counts = objective.counts();
+    let counts = objective.counts().and(exact.counts());
     let explored = Explored { searches, basins, space, apart, failures, counts };
     watch.log(&explored.report(search, study.quantity(), begun.elapsed().as_secs_f64()))?;
     Ok(Some(explored))

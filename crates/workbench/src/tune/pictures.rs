@@ -40,7 +40,8 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
     let [columns, lines] = [x, y].map(|axis| surf.grid.axes()[axis].points());
     let mut least = vec![f64::INFINITY; columns * lines];
     let mut steps = vec![0; surf.grid.dim()];
-    for (i, &value) in surf.values.iter().enumerate() {
+    let most = study.coarse().up_to();
+    for (i, &value) in surf.values.iter().enumerate().filter(|(_, value)| **value < most) {
         surf.grid.steps(i, &mut steps);
         let cell = &mut least[steps[y] * columns + steps[x]];
         *cell = cell.min(energy(value)); // NaN (an infeasible design) is never the smaller
@@ -59,6 +60,8 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
             format!("Least {} over the grid in {}{}.", quantity.name(), others.join(" and "), study.coarse())
         }
     };
+    let above = |most| format!(" Grey: none below {}.", worth(most, quantity));
+    let what = what + &study.coarse().most.map_or_else(String::new, above);
     let places = [
         Place { at: (best[x], best[y]), label: format!("best of the grid, {}", worth(surf.least, quantity)) },
         Place {

@@ -22,11 +22,11 @@ pub fn shard(
     let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
     let search = study.search().map_err(refuse)?;
     let (variables, grid) = search.surf.clone().ok_or_else(|| refuse(Rule::NoGrid))?;
-    let objective = coarse(study, &search, &variables);
+    let (objective, most) = (coarse(study, &search, &variables), study.coarse().up_to());
     let work = Work { shard, len: grid.len(), width: 1, identity: identity_of(study)?, out, order };
     work.make(watch, |journal, points, bar| {
         let value = |i: usize, design: &[f64]| {
-            journal.grid_value(i, || objective.value(design, f64::INFINITY), |_| bar.known())
+            journal.grid_value(i, || objective.value_up_to(design, most), |_| bar.known())
         };
         retune_optim::surf_part(&grid, points, value, |_| bar.inc(1))
     })

@@ -21,7 +21,8 @@ pub struct Surf {
     pub variables: Vec<Variable>,
     /// The grid.
     pub grid: Grid,
-    /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; +∞ where it could not be computed.
+    /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; [`Coarse::up_to`] where it is above that,
+    /// +∞ where it could not be computed.
     pub values: Vec<f64>,
     /// The number of the best point.
     pub best: usize,
@@ -46,14 +47,18 @@ pub(super) fn surf(
     watch: &dyn Observer,
 ) -> Result<Option<Surf>, Error> {
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
-    let objective = coarse(study, search, &variables);
+    let (objective, most) = (coarse(study, search, &variables), study.coarse().up_to());
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
     watch.log(&format!(
-        "surf: {} = {} over {}{}",
+        "surf: {} = {} over {}{}{}",
         axes.join(" x "),
         counted(grid.len() as u64, "point"),
         joined(&variables, " "),
-        study.coarse()
+        study.coarse(),
+        study
+            .coarse()
+            .most
+            .map_or_else(String::new, |most| format!(", up to {}", worth(most, study.quantity())))
     ))?;
 
     let begun = Instant::now();
@@ -64,7 +69,7 @@ pub(super) fn surf(
             bar.known();
             objective.recall(value);
         };
-        journal.grid_value(point, || objective.value(design, f64::INFINITY), known)
+        journal.grid_value(point, || objective.value_up_to(design, most), known)
     };
     let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));
     bar.finish();

@@ -39,7 +39,7 @@ impl One {
     /// # Errors
     /// The file cannot be read, as of all checks.
     pub fn searched(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-        self.designs(self.objective(searched)?, name, most, report)
+        self.designs(self.objective(searched)?, f64::INFINITY, name, most, report)
     }
 
     /// The same of rows of a grid.
@@ -47,18 +47,21 @@ impl One {
     /// # Errors
     /// As [`Self::searched`].
     pub fn grid(&self, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-        self.designs(self.objective(coarse)?, name, most, report)
+        let up_to = self.study.coarse().up_to();
+        self.designs(self.objective(coarse)?, up_to, name, most, report)
     }
 
     fn designs(
         &self,
         objective: PeakEnergy,
+        up_to: f64,
         name: &str,
         most: usize,
         report: &mut Report<'_>,
     ) -> Result<(), Error> {
         let sample = Sample::read(&self.place.join(name), most)?;
-        let checks: Vec<Check> = sample.rows().map(|row| value(&objective, &self.study, row)).collect();
+        let checks: Vec<Check> =
+            sample.rows().map(|row| value(&objective, &self.study, up_to, row)).collect();
         report.look(name, &sample.of(checks.len()), &checks)
     }
 
@@ -176,8 +179,9 @@ pub fn energy(study: &Study, design: &Design) -> f64 {
     study.scene_at(design).and_then(|scene| study.energy(&scene)).unwrap_or(f64::INFINITY)
 }
 
-/// The check of a row of a search: the minimised value, or the value of a basin, which is empty where the design breaks a limit.
-fn value<'a>(objective: &'a PeakEnergy, study: &'a Study, row: Row) -> Check<'a> {
+/// The check of a row of a search: the minimised value, `up_to` if it is above that, or the value of a basin, which is empty where the design
+/// breaks a limit.
+fn value<'a>(objective: &'a PeakEnergy, study: &'a Study, up_to: f64, row: Row) -> Check<'a> {
     let name = objective.goal().objective.quantity().name();
     let text = row.text(name);
     let basin = !row.text("basin").is_empty();
@@ -187,8 +191,8 @@ fn value<'a>(objective: &'a PeakEnergy, study: &'a Study, row: Row) -> Check<'a>
     let design = row.design();
     let again = move || {
         let scene = design.and_then(|design| study.scene_at(&design));
-        let found = scene.and_then(|scene| objective.evaluate(&scene, f64::INFINITY).ok());
-        let value = found.map_or(f64::INFINITY, |found| found.value);
+        let found = scene.and_then(|scene| objective.evaluate(&scene, up_to).ok());
+        let value = found.map_or(f64::INFINITY, |found| found.value.min(up_to));
         if basin { retune_optim::energy(value) } else { value }
     };
     Check { said: row.number(name), again: Box::new(again) }
