@@ -178,6 +178,12 @@ hunt-repeats SCENES="42000":
     RETUNE_REPEATS={{SCENES}} cargo test --package retune-solver --test repeats -- --nocapture | grep -E '^\|' > results/robustness/repeats.rows
     cat tests/repeats.md results/robustness/repeats.rows > results/robustness/repeats.md && rm results/robustness/repeats.rows && cat results/robustness/repeats.md
 
+# Compare what a search of peaks between 31 samples finds with 1201 samples, DAMPERS dampers of two kinds: results/robustness/peaks.md
+hunt-peaks DAMPERS="3000":
+    mkdir -p results/robustness
+    RETUNE_PEAKS={{DAMPERS}} cargo test --release --package retune-optim --test peaks -- --nocapture | grep -E '^\|' > results/robustness/peaks.rows
+    cat tests/peaks.md results/robustness/peaks.rows > results/robustness/peaks.md && rm results/robustness/peaks.rows && cat results/robustness/peaks.md
+
 # Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
 test-settled SCENES="4000":
     RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture

@@ -76,7 +76,7 @@ fn contract_the_number_of_evaluations_is_bounded_and_a_cutoff_ends_them() {
         Ok::<f64, ()>((1e5 * omega).sin())
     };
     worst_over(&BAND, rugged, f64::INFINITY).expect("no failures");
-    assert!(count.load(Relaxed) <= 61 + 12 * 31, "{}", count.load(Relaxed));
+    assert!(count.load(Relaxed) <= 61 + 11 * 31, "{}", count.load(Relaxed));
     count.store(0, Relaxed);
     worst_over(&BAND, rugged, -2.0).expect("no failures");
     assert_eq!(count.load(Relaxed), 1, "one sample is enough");
@@ -101,7 +101,7 @@ fn contract_a_search_ends_above_its_cutoff_not_at_it() {
     assert!(found.value > first, "{found:?} {first}");
 }
 
-/// The points that a search evaluates: few where the function is smooth, and never more than 12 in addition to the samples.
+/// The points that a search evaluates: few where the function is smooth, and never more than 11 in addition to the samples.
 #[test]
 fn regress_places_that_a_search_looks_at() {
     let band = Band { from: 5.0, to: 8.0, samples: 4 };
@@ -130,11 +130,11 @@ fn regress_places_that_a_search_looks_at() {
     // Their number, their sum and the largest: the last function increases up to the end of the band.
     let expected = [
         (7, 44.333, 6.111),
-        (16, 101.89636, 6.3),
+        (14, 89.29636, 6.3),
         (12, 74.986217, 6.111),
-        (16, 100.723997, 6.222996),
-        (16, 91.401404, 5.4),
-        (16, 86.618028, 5.0),
+        (15, 94.500972, 6.222996),
+        (14, 80.601403, 5.4),
+        (15, 81.618018, 5.0),
     ];
     assert_eq!(looks, expected);
 }

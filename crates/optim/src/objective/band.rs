@@ -23,8 +23,13 @@ impl Band {
     }
 }
 
-/// Most evaluations in the refinement of one maximum of the samples. A smooth peak needs about eight.
-const REFINEMENTS: usize = 12;
+/// Most evaluations in the search of one peak. A smooth one needs four or five.
+const REFINEMENTS: usize = 11;
+/// A search ends after so many evaluations if what it has found by then is below the largest sample by more than this share.
+const FEW: usize = 2;
+const HOPELESS: f64 = 0.4;
+/// A search ends once its parabola promises no more than this share.
+const GAIN: f64 = 1e-11;
 
 /// Some quantities at a frequency; cutoffs apply to the first.
 #[derive(Clone, Copy)]
@@ -34,7 +39,7 @@ struct Look<const N: usize> {
 }
 
 /// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is not
-/// below them. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any number of
+/// below them, which is short where it comes to nothing near the largest sample. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any number of
 /// them. It is a lower bound: a peak between samples that none of them shows is missed. Samples are taken in groups, each spread
 /// over the band; once one of a group is above `cutoff`, the largest sample so far is the answer.
 ///
@@ -93,7 +98,10 @@ pub(crate) fn all_worst_over<E: Send + Sync, const N: usize>(
     };
     let places = (0..N).flat_map(|quantity| (0..=last).map(move |i| (quantity, i)));
     let peaks: Vec<(usize, usize)> = places.filter(worth_a_search).collect();
-    let refine = |&(quantity, i): &(usize, usize)| local_maximum(&look, around(i), quantity, cutoff);
+    let promising = |Worst { value, .. }: Worst| value - HOPELESS * value.abs();
+    let refine = |&(quantity, i): &(usize, usize)| {
+        local_maximum(&look, around(i), quantity, promising(worst[quantity]), cutoff)
+    };
     let refined: Vec<Result<[Worst; N], E>> = peaks.par_iter().map(refine).collect();
     refined.into_iter().try_fold(worst, |all, more| Ok(larger(all, more?)))
 }
@@ -118,12 +126,13 @@ fn larger<const N: usize>(a: [Worst; N], b: [Worst; N]) -> [Worst; N] {
 }
 
 /// A local maximum of a quantity between two points, given one between them that is not below either, and the largest values of the
-/// others met on the way: parabolic steps, with golden sections where these fail (R. P. Brent, Algorithms for Minimization without
+/// others met on the way, as far as it is `promising` and what is left to gain matters: parabolic steps, with golden sections where these fail (R. P. Brent, Algorithms for Minimization without
 /// Derivatives, 1973, chapter 5), from three known points.
 fn local_maximum<E, const N: usize>(
     look: &impl Fn(f64) -> Result<Look<N>, E>,
     around: [Look<N>; 3],
     quantity: usize,
+    promising: f64,
     cutoff: f64,
 ) -> Result<[Worst; N], E> {
     const GOLDEN: f64 = 0.381_966_011_250_105_1;
@@ -134,9 +143,10 @@ fn local_maximum<E, const N: usize>(
     let (mut x, (mut w, mut v)) =
         (best, if left.value > right.value { (left, right) } else { (right, left) });
     let (mut step, mut earlier) = (b - a, b - a);
-    for _ in 0..REFINEMENTS {
+    for looks in 0..REFINEMENTS {
         let (middle, tolerance) = (0.5 * (a + b), 1e-8 * x.frequency.abs());
-        if (x.frequency - middle).abs() + 0.5 * (b - a) <= 2.0 * tolerance {
+        let is_at_its_place = (x.frequency - middle).abs() + 0.5 * (b - a) <= 2.0 * tolerance;
+        if is_at_its_place || looks >= FEW && x.value < promising {
             break;
         }
         let (to_w, to_v) = (x.frequency - w.frequency, x.frequency - v.frequency);
@@ -144,6 +154,10 @@ fn local_maximum<E, const N: usize>(
         let parabola = 0.5 * (to_v * q - to_w * r) / (r - q);
         let inside = x.frequency + parabola > a && x.frequency + parabola < b;
         if inside && parabola.abs() < 0.5 * earlier.abs() {
+            let bend = (r - q) / (to_w * to_v * (to_v - to_w));
+            if looks > 0 && bend.abs() * parabola.powi(2) < GAIN * x.value.abs() {
+                break;
+            }
             (earlier, step) = (step, parabola);
         } else {
             earlier = if x.frequency < middle { b - x.frequency } else { a - x.frequency };
