@@ -50,8 +50,8 @@ pub fn pareto(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, E
     let dampers = plan.dampers.iter().map(|(name, study)| (name.as_str(), study));
     let job = Job::of_studies(&KIND, request, json!(plan.said), dampers)?;
     job.run(request, watch, |directory| {
-        let mut searches = Searches::new(directory, &job.order, watch);
-        let fronts = search::search(plan, &mut searches, watch)?;
+        let searches = Searches::new(directory, &job.order, watch);
+        let fronts = search::search(plan, &searches, watch)?;
         for sweep in fronts.plan.sweeps() {
             directory.write(&format!("{}.csv", sweep.name()), &fronts.csv(sweep))?;
         }

@@ -1,6 +1,7 @@
 //! The searches that a larger job is made of, each a job of its own below the directory of the whole.
 
 use crate::observer::Quiet;
+use crate::tune::ends::{Ends, ends};
 use crate::tune::{Optimum, optimize};
 use crate::{Error, Observer};
 use rayon::prelude::*;
@@ -42,28 +43,20 @@ impl<'a> Searches<'a> {
         Ok(optimum)
     }
 
-    /// Makes the searches of some studies side by side, each in its place; what each is told is not shown.
+    /// The ends of the searches of some studies, side by side, each with a name of its own; what each is told is not shown.
     ///
     /// # Errors
-    /// As [`optimize`], the first in their order.
-    pub fn tune_all(&mut self, all: &[(Study, String)]) -> Result<Vec<Optimum>, Error> {
+    /// As [`ends`], the first in their order.
+    pub fn ends_of_all(&self, all: &[(Study, String)]) -> Result<Vec<Ends>, Error> {
         let bar = self.watch.progress("searches", all.len() as u64);
         let quiet = Quiet(self.watch);
-        let search = |(study, place): &(Study, String)| {
-            let name = format!("{place}/{}", study.name());
-            let found = optimize(study, &self.directory.part(&name), self.order, &quiet);
+        let search = |(study, name): &(Study, String)| {
+            let found = ends(study, self.journal(), &format!("{name} "), &quiet);
             bar.inc(1);
             found
         };
-        let found: Vec<Result<(Optimum, Directory), Error>> = all.par_iter().map(search).collect();
+        let found: Vec<Result<Ends, Error>> = all.par_iter().map(search).collect();
         bar.finish();
-        let mut optima = Vec::new();
-        for found in found {
-            let (optimum, results) = found?;
-            self.results.push(results);
-            self.infeasible = self.infeasible.take().or(optimum.check_limits().err());
-            optima.push(optimum);
-        }
-        Ok(optima)
+        found.into_iter().collect()
     }
 }

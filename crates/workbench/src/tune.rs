@@ -2,6 +2,7 @@
 
 pub mod band;
 pub(crate) mod choice;
+pub mod ends;
 pub(crate) mod global;
 pub mod log;
 pub mod merge;
@@ -147,21 +148,17 @@ fn search_and_write(
     watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
     let surf = surf::surf(study, search, results, watch)?;
-    let explored = global::global(study, search, results.journal(), watch)?;
-    let mut starts = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
-    let on_grid = starts.len();
-    starts.extend(explored.as_ref().map(|explored| explored.starts(search.starts)).unwrap_or_default());
-    starts.extend(search.given.iter().cloned());
-    if starts.is_empty() {
-        starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
-    }
-    let mut refined = refine::refine(study, search, starts, results, watch)?;
+    let explored = global::global(study, search, (results.journal(), ""), watch)?;
+    let on_grid = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
+    let starts = ends::starts(search, &on_grid, explored.as_ref());
+    let on_grid = on_grid.len();
+    let mut refined = refine::refine(study, search, &starts, results, watch)?;
     results.journal().check()?;
     let (certificate, passed_over) = choice::choose(study, &mut refined)?;
     refine::write_winner(study, &refined, results)?;
-    let basins = explored
-        .as_ref()
-        .map(|found| Basins::new(found, study.quantity(), search, &refined, results.journal(), on_grid));
+    let basins = explored.as_ref().map(|found| {
+        Basins::new(found, study.quantity(), search, &refined, (results.journal(), ""), on_grid)
+    });
     results.journal().check()?;
     if let Some(basins) = &basins {
         basins.write(&refined.objective, results)?;

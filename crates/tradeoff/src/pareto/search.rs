@@ -13,6 +13,7 @@ use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
 use retune_workbench::certify::certify;
 use retune_workbench::look::{finer, look};
 use retune_workbench::searches::Searches;
+use retune_workbench::tune::ends::Ends;
 use retune_workbench::{Error, Observer};
 
 /// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
@@ -22,11 +23,7 @@ const ROOM: f64 = 0.99;
 ///
 /// # Errors
 /// A study cannot be searched under a bound, or results cannot be written.
-pub(super) fn search(
-    plan: FrontsPlan,
-    searches: &mut Searches,
-    watch: &dyn Observer,
-) -> Result<Fronts, Error> {
+pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer) -> Result<Fronts, Error> {
     let mut fronts = Fronts::new(plan);
     let mut tasks = Vec::new();
     for damper in 0..fronts.plan.dampers.len() {
@@ -50,37 +47,25 @@ pub(super) fn search(
 impl Fronts {
     /// The searches of a damper under all bounds, side by side; the descents that begin where they came to. A steady response is exact over
     /// the whole band: its searches need none.
-    fn tune(
-        &mut self,
-        damper: usize,
-        searches: &mut Searches,
-        watch: &dyn Observer,
-    ) -> Result<Vec<Task>, Error> {
+    fn tune(&mut self, damper: usize, searches: &Searches, watch: &dyn Observer) -> Result<Vec<Task>, Error> {
         let bounds: Vec<Under> = self.all().into_iter().filter(|under| under.damper == damper).collect();
         let study = |under: &Under| -> Result<(Study, String), Error> {
-            Ok((self.under(*under, self.starts(*under))?, format!("{}-{}", under.sweep.name(), under.bound)))
+            let Under { damper, sweep, bound } = *under;
+            Ok((self.under(*under, self.starts(*under))?, format!("{damper} {} {bound}", sweep.name())))
         };
-        let optima = searches.tune_all(&bounds.iter().map(study).collect::<Result<Vec<_>, _>>()?)?;
+        let all = searches.ends_of_all(&bounds.iter().map(study).collect::<Result<Vec<_>, _>>()?)?;
         let mut tasks = Vec::new();
-        for (under, optimum) in bounds.into_iter().zip(optima) {
+        for (under, Ends { best, value, places }) in bounds.into_iter().zip(all) {
             let Under { sweep, bound, .. } = under;
-            watch.log(&format!(
-                "\n{}, {} at most {bound} {}",
-                self.name(damper),
-                sweep.name(),
-                sweep.unit()
-            ))?;
-            watch.log(&optimum.report())?;
-            let found = optimum.found().damper.design;
-            self.designs.extend(self.look(damper, found, optimum.verdict()));
+            let found =
+                if value.is_nan() { "nothing that keeps it".to_owned() } else { format!("{value:.2} J") };
+            let (name, unit) = (self.name(damper), sweep.unit());
+            watch.log(&format!("{name}, {} at most {bound} {unit}: {found}", sweep.name()))?;
+            self.designs.extend(self.look(damper, best, CONTINUED));
             if self.is_steady(damper) {
                 continue;
             }
-            let places = optimum.places().into_iter().filter_map(|place| {
-                Design::new(|variable| place.get(variable).unwrap_or_else(|| found.get(variable))).ok()
-            });
-            let all: Vec<Design> = [found].into_iter().chain(places).collect();
-            tasks.extend(all.iter().flat_map(|at| self.descents(at, under)));
+            tasks.extend([best].iter().chain(&places).flat_map(|at| self.descents(at, under)));
         }
         Ok(tasks)
     }

@@ -31,14 +31,14 @@ pub struct Explored {
     pub counts: Counts,
 }
 
-/// Makes the global search of a study, if it asks for one.
+/// Makes the global search of a study, if it asks for one. The journal keeps its values under names that begin with `place`.
 ///
 /// # Errors
 /// No design could be computed.
 pub(super) fn global(
     study: &Study,
     search: &Search,
-    journal: &Journal,
+    (journal, place): (&Journal, &str),
     watch: &dyn Observer,
 ) -> Result<Option<Explored>, Error> {
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
@@ -54,14 +54,15 @@ pub(super) fn global(
     let begun = Instant::now();
     let most = u64::from(global.samples) + global.searches as u64 * global.evaluations;
     let bar = watch.progress("global", most);
-    let value = kept(&objective, journal, "global", || bar.known());
+    let stages = ["global", "ends"].map(|stage| format!("{place}{stage}"));
+    let value = kept(&objective, journal, &stages[0], || bar.known());
     let found = explore(&value, &space, &global, || bar.inc(1));
     bar.finish();
     journal.check()?;
     let failures = objective.failures();
     let searches = found.map_err(|source| Error::Global { source, failures: failures.clone() })?;
     let exact = searched(study, search, &search.variables);
-    let value = kept(&exact, journal, "ends", || ());
+    let value = kept(&exact, journal, &stages[1], || ());
     let again = |point: &Point| Point { value: value(&point.x, f64::INFINITY), x: point.x.clone() };
     let ends: Vec<Point> = searches.par_iter().map(|search| again(&search.found)).collect();
     let basins = basins(value, &space, &ends, apart);
@@ -127,11 +128,12 @@ impl Basins {
         quantity: Measure,
         search: &Search,
         refined: &Refined,
-        journal: &Journal,
+        (journal, place): (&Journal, &str),
         skip: usize,
     ) -> Self {
         let runs = &refined.runs;
-        let value = kept(&refined.objective, journal, "basins", || ());
+        let stage = format!("{place}basins");
+        let value = kept(&refined.objective, journal, &stage, || ());
         let end = |run: &Run| Point { x: run.minimum.x.clone(), value: run.minimum.value };
         let count = explored.basins.len().min(search.starts);
         let mut points: Vec<Point> = explored.basins.iter().map(|basin| basin.best.clone()).collect();

@@ -43,37 +43,56 @@ impl Refined {
 pub(super) fn refine(
     study: &Study,
     search: &Search,
-    starts: Vec<Vec<f64>>,
+    starts: &[Vec<f64>],
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Refined, Error> {
-    let objective = searched(study, search, &search.variables);
     let mut all = results.file("fminsearch-starts.csv")?;
     all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
+    let mut begun = 0;
+    let refined = each(study, search, starts, (results.journal(), "fminsearch"), |number, row, design| {
+        if number > begun {
+            begun = number;
+            watch.log(&format!(
+                "\nfminsearch, start {number} of {}\n{}",
+                starts.len(),
+                log::screen_header(&search.variables, study.quantity())
+            ))?;
+        }
+        all.push_line(&format!("{number},{}", log::csv(row, design)))?;
+        watch.log(&log::screen(row, design))
+    })?;
+    if refined.runs.len() > 1 {
+        all.finish()?;
+    }
+    Ok(refined)
+}
+
+/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
+/// keeps values under the name of a stage.
+///
+/// # Errors
+/// A run cannot be started, that of `tell`, or the journal cannot be written.
+pub(super) fn each(
+    study: &Study,
+    search: &Search,
+    starts: &[Vec<f64>],
+    (journal, stage): (&Journal, &str),
+    mut tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error>,
+) -> Result<Refined, Error> {
+    let objective = searched(study, search, &search.variables);
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
-        watch.log(&format!(
-            "\nfminsearch, start {} of {}\n{}",
-            number + 1,
-            starts.len(),
-            log::screen_header(&search.variables, study.quantity())
-        ))?;
-        let run = run(&objective, search, start, results.journal(), |row, design| {
-            all.push_line(&format!("{},{}", number + 1, log::csv(row, design)))?;
-            watch.log(&log::screen(row, design))
-        })?;
+        let run =
+            run(&objective, search, start, (journal, stage), |row, design| tell(number + 1, row, design))?;
         let best = runs.get(winner).map_or(f64::INFINITY, |best: &Run| best.minimum.value);
         if run.minimum.value < best {
             winner = number;
         }
         runs.push(run);
     }
-    let refined = Refined { objective, runs, winner };
-    if refined.runs.len() > 1 {
-        all.finish()?;
-    }
-    Ok(refined)
+    Ok(Refined { objective, runs, winner })
 }
 
 /// A whole design, in the order of the columns of its tables.
@@ -87,20 +106,19 @@ fn run(
     objective: &PeakEnergy,
     search: &Search,
     start: &[f64],
-    journal: &Journal,
+    (journal, stage): (&Journal, &str),
     mut tell: impl FnMut(&Row, &[f64]) -> Result<(), Error>,
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
     let mut told = Ok(());
-    let found =
-        minimize(kept(objective, journal, "fminsearch", || ()), start, search.options.clone(), |row| {
-            if journal.is_broken() {
-                return ControlFlow::Break(());
-            }
-            rows.push(row.clone());
-            told = columns(objective, &row.best).and_then(|values| tell(row, &values));
-            if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
+    let found = minimize(kept(objective, journal, stage, || ()), start, search.options.clone(), |row| {
+        if journal.is_broken() {
+            return ControlFlow::Break(());
+        }
+        rows.push(row.clone());
+        told = columns(objective, &row.best).and_then(|values| tell(row, &values));
+        if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
     told?;
     journal.check()?;
     let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;

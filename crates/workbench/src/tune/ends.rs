@@ -1,0 +1,60 @@
+//! The ends of a search that is a part of a larger job: the designs that it comes to, without a directory, files or a certificate of its own.
+
+use super::global::{Basins, Explored, global};
+use super::refine::each;
+use super::searched;
+use crate::{Error, Observer};
+use retune_model::Design;
+use retune_optim::energy;
+use retune_store::Journal;
+use retune_study::{PerVariable, Search, Study};
+
+/// What a search comes to.
+#[derive(Clone, Debug)]
+pub struct Ends {
+    /// The best of its refinements.
+    pub best: Design,
+    /// Its value at the tolerance of searches, in the unit of the quantity; NaN if it breaks a limit.
+    pub value: f64,
+    /// The best design of every other place that it came to, best first, the place of `best` among them.
+    pub places: Vec<Design>,
+}
+
+/// Makes the global search of a study and the refinements, from its own starts as well; a grid in it is ignored. The journal of the larger job
+/// keeps the values, under names that begin with `place`.
+///
+/// # Errors
+/// The study has nothing to tune, nothing can be computed, or the journal cannot be written.
+pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer) -> Result<Ends, Error> {
+    let search = searched(study)?;
+    let explored = global(study, &search, (journal, place), watch)?;
+    let stage = format!("{place}fminsearch");
+    let starts = starts(&search, &[], explored.as_ref());
+    let refined = each(study, &search, &starts, (journal, &stage), |_, _, _| Ok(()))?;
+    let whole = |tuned: &PerVariable<f64>, of: &Design| {
+        Design::new(|variable| tuned.get(variable).unwrap_or_else(|| of.get(variable))).ok()
+    };
+    let best = Design::of(&refined.objective.damper(&refined.best().minimum.x)?);
+    let places: Vec<PerVariable<f64>> = match &explored {
+        Some(explored) => {
+            let basins = Basins::new(explored, study.quantity(), &search, &refined, (journal, place), 0);
+            basins.places().collect()
+        }
+        None => refined.runs.iter().map(|run| PerVariable::of(&search.variables, &run.minimum.x)).collect(),
+    };
+    journal.check()?;
+    let value = energy(refined.best().minimum.value);
+    Ok(Ends { best, value, places: places.iter().filter_map(|place| whole(place, &best)).collect() })
+}
+
+/// Where refinements start: at points of a grid, at places of a global search, at designs that are given; where there are none of these at the
+/// damper of the study.
+pub(super) fn starts(search: &Search, on_grid: &[Vec<f64>], explored: Option<&Explored>) -> Vec<Vec<f64>> {
+    let mut starts = on_grid.to_vec();
+    starts.extend(explored.map(|explored| explored.starts(search.starts)).unwrap_or_default());
+    starts.extend(search.given.iter().cloned());
+    if starts.is_empty() {
+        starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
+    }
+    starts
+}
