@@ -11,6 +11,8 @@ use crate::job::{Job, open};
 use crate::request::where_results_are;
 use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
+use measure::OtherStarts;
+use retune_model::Damper;
 use retune_store::Extent;
 use retune_study::{self as study, Rule, Study};
 use std::path::Path;
@@ -69,15 +71,26 @@ fn is_same(one: &Path, other: &Path) -> bool {
 /// # Errors
 /// There is no damper, or the design has no value.
 pub fn certify(study: &Study) -> Result<Certificate, Error> {
-    let Some(damper) = &study.scene.damper else {
+    measure::measure(study, damper_of(study)?, OtherStarts::Always)
+}
+
+/// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without.
+///
+/// # Errors
+/// As [`certify`].
+pub fn judge(study: &Study) -> Result<Certificate, Error> {
+    measure::measure(study, damper_of(study)?, OtherStarts::WhereTheyDecide)
+}
+
+fn damper_of(study: &Study) -> Result<&Damper, Error> {
+    study.scene.damper.as_ref().ok_or_else(|| {
         let rule = Rule::NotAllowed {
             field: "scene.damper".to_owned(),
             value: "none".to_owned(),
             allowed: "a damper, for that is what is certified",
         };
-        return Err(Error::Rule { name: study.name().to_owned(), rule });
-    };
-    measure::measure(study, damper)
+        Error::Rule { name: study.name().to_owned(), rule }
+    })
 }
 
 /// Refuses the results of a search in `out` whose design breaks the limits of its study.

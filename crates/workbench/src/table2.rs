@@ -1,7 +1,7 @@
 //! `table2`: the same search for several dampers, from the paper's own designs.
 
 use crate::artefact::{Content, Kind, artefact};
-use crate::certify::certify;
+use crate::certify::judge;
 use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
 use crate::resolved;
@@ -55,7 +55,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
                 found: own,
                 printed: printed.map(Positive::get),
                 e1_max,
-                verdict: certify(study)?.short().verdict(),
+                verdict: judge(study)?.short().verdict(),
                 ..again.clone()
             };
             table.extend([paper, again]);

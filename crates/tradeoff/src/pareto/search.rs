@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use retune_model::Design;
 use retune_optim::Limit;
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
-use retune_workbench::certify::certify;
+use retune_workbench::certify::judge;
 use retune_workbench::look::{finer, look};
 use retune_workbench::searches::Searches;
 use retune_workbench::tune::ends::Ends;
@@ -133,8 +133,8 @@ impl Fronts {
         }
         let study = self.bounded(under, Vec::new())?;
         let scene = study.scene_at(at).unwrap_or(study.scene);
-        let certificate = certify(&Study { scene, ..study })?;
-        Ok(Candidate { verdict: certificate.short().verdict(), ..design.clone() })
+        let verdict = judge(&Study { scene, ..study })?.short().verdict();
+        Ok(Candidate { verdict, ..design.clone() })
     }
 
     /// Every bound for every damper.

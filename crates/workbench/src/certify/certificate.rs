@@ -9,7 +9,7 @@ mod verdict;
 pub use limits::{Kept, Near};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
 pub use motions::{Another, Irregular, Motions, periodic};
-pub use verdict::Verdict;
+pub use verdict::{Judged, Verdict};
 
 use crate::Error;
 use crate::amount::Amount;
@@ -108,12 +108,8 @@ impl Short {
 
 impl Certificate {
     pub(super) fn new(study: &Study, damper: &Damper, own: &Evaluation, measured: Measured) -> Self {
-        let missed = measured.finer.map_or(0.0, |finer| (finer - own.energy).abs());
-        let error_bar =
-            measured.convergence.iter().map(|run| run.error(&measured.worst_run)).fold(missed, f64::max);
-        let predictable = verdict::is_predictable(error_bar, measured.worst_run.value.value);
         let value = Amount::new(study.quantity(), own.energy);
-        let (verdict, words) = verdict::judge(value, error_bar, predictable, &measured);
+        let Judged { error_bar, predictable, verdict, words } = measured.judged(value);
         let Measured { worst_run, convergence, finer, motion, motions, sensitivity, neighbourhood, limits } =
             measured;
         Self {
@@ -134,6 +130,12 @@ impl Certificate {
             sensitivity,
             neighbourhood,
         }
+    }
+
+    /// Whether it has all measurements. One of [`judge`](crate::certify::judge) lacks the motions from other starts where the verdict was
+    /// decided without.
+    pub(crate) fn is_whole(&self) -> bool {
+        matches!(self.verdict, Some(Verdict::Robust | Verdict::FromRest | Verdict::Edge))
     }
 
     /// Refuses a design that breaks the limits of its study.

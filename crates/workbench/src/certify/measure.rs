@@ -1,7 +1,7 @@
 //! The measurements behind a certificate.
 
 use super::certificate::{
-    Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Run, Sensitivity, WorstRun,
+    Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Run, Sensitivity, Verdict, WorstRun,
 };
 use super::motions::coexisting;
 use crate::Error;
@@ -30,11 +30,20 @@ const CONVERGENCE: [(Method, f64); 5] = [
 const LONG: f64 = 2000.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 
+/// Which designs are looked at from other starts than rest.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum OtherStarts {
+    /// All.
+    Always,
+    /// Those whose verdict may depend on it.
+    WhereTheyDecide,
+}
+
 /// Makes all measurements and the certificate.
 ///
 /// # Errors
 /// The design itself has no value, or its worst run cannot be followed.
-pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Error> {
+pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
     let own = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
     let mut near = Vec::new();
@@ -54,14 +63,6 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
         Source::Decay(_) => Motion::decay(),
         _ => Motion::new(&classify(&follow(&own.worst.scene, None, Stretch::default(), &settings)?)),
     };
-    let motions = match coexisting(&study.scene, &own, &goal, &settings)? {
-        None => None,
-        Some((motions, reached)) => {
-            near.push(Near { at: "on a motion from another start".to_owned(), neighbour: false, reached });
-            Some(motions)
-        }
-    };
-    let limits = Kept::new(&goal.limits, &own.reached, &near);
     let Place { largest, scene, phase, .. } = own.worst;
     let quantity = study.quantity();
     let worst_run = WorstRun {
@@ -70,8 +71,18 @@ pub(super) fn measure(study: &Study, damper: &Damper) -> Result<Certificate, Err
         k1: scene.primary.stiffness.get(),
         phase,
     };
-    let measured =
-        Measured { worst_run, convergence, finer, motion, motions, sensitivity, neighbourhood, limits };
+    let limits = Kept::new(&goal.limits, &own.reached, &near);
+    let mut measured =
+        Measured { worst_run, convergence, finer, motion, motions: None, sensitivity, neighbourhood, limits };
+    let so_far = measured.judged(Amount::new(quantity, own.energy)).verdict;
+    let decide = matches!(so_far, Some(Verdict::Robust | Verdict::Edge));
+    if (decide || others == OtherStarts::Always)
+        && let Some((motions, reached)) = coexisting(&study.scene, &own, &goal, &settings)?
+    {
+        near.push(Near { at: "on a motion from another start".to_owned(), neighbour: false, reached });
+        measured.motions = Some(motions);
+        measured.limits = Kept::new(&goal.limits, &own.reached, &near);
+    }
     Ok(Certificate::new(study, damper, &own, measured))
 }
 

@@ -4,7 +4,7 @@
 use super::refine::{Refined, Run};
 use crate::Error;
 use crate::amount::Amount;
-use crate::certify::{Certificate, Verdict, certify};
+use crate::certify::{Certificate, Verdict, certify, judge};
 use retune_study::{PerVariable, Study};
 use serde::Serialize;
 
@@ -68,9 +68,12 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     let best = values[refined.winner];
     order.retain(|&i| i == refined.winner || values[i] <= (1.0 + SAME) * best);
     let mut seen: Vec<(usize, Certificate)> = Vec::new();
-    for number in order {
+    let of = |number: usize| -> Result<Study, Error> {
         let scene = refined.objective.scene(&refined.runs[number].minimum.x)?;
-        let certificate = certify(&Study { scene, ..study.clone() })?;
+        Ok(Study { scene, ..study.clone() })
+    };
+    for number in order {
+        let certificate = judge(&of(number)?)?;
         let is_robust = certificate.verdict == Some(Verdict::Robust);
         seen.push((number, certificate));
         if is_robust {
@@ -87,6 +90,7 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     });
     let passed = passed.collect();
     let (number, certificate) = seen.swap_remove(chosen);
+    let certificate = if certificate.is_whole() { certificate } else { certify(&of(number)?)? };
     refined.winner = number;
     Ok((certificate, passed))
 }

@@ -44,18 +44,35 @@ impl Verdict {
     }
 }
 
+/// What measurements say of a design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// In the unit of the value.
+    pub error_bar: f64,
+    pub predictable: bool,
+    /// None where the design breaks a limit.
+    pub verdict: Option<Verdict>,
+    pub words: String,
+}
+
+impl Measured {
+    /// What they say of a design with this value.
+    pub fn judged(&self, value: Amount) -> Judged {
+        let missed = self.finer.map_or(0.0, |finer| (finer - value.value).abs());
+        let error_bar = self.convergence.iter().map(|run| run.error(&self.worst_run)).fold(missed, f64::max);
+        let predictable = is_predictable(error_bar, self.worst_run.value.value);
+        let (verdict, words) = judge(value, error_bar, predictable, self);
+        Judged { error_bar, predictable, verdict, words }
+    }
+}
+
 /// Whether an error bar makes the value of a run predictable, both in one unit.
-pub fn is_predictable(error_bar: f64, value: f64) -> bool {
+fn is_predictable(error_bar: f64, value: f64) -> bool {
     error_bar <= PREDICTABLE * value
 }
 
 /// The verdict on a design with this value ± `error_bar`; none where it breaks a limit. With its words.
-pub fn judge(
-    value: Amount,
-    error_bar: f64,
-    predictable: bool,
-    measured: &Measured,
-) -> (Option<Verdict>, String) {
+fn judge(value: Amount, error_bar: f64, predictable: bool, measured: &Measured) -> (Option<Verdict>, String) {
     let limits = measured.limits.as_ref();
     if let Some(broken) = limits.and_then(|limits| limits.broken()) {
         return (None, format!("no verdict, for the design breaks {broken}"));
