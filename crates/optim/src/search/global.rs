@@ -8,13 +8,15 @@
 //!   certain.
 
 use crate::search::space::Space;
+use crate::search::surf::best_apart_above;
 use basin::{
     BoundedCmaEs, BoxBounds, Constrained, ConstraintSet, Constraints, CostFunction, DenseMatrix, Executor,
     NoConstraints, PopulationProgress,
 };
 use rayon::prelude::*;
+use std::cell::{Cell, RefCell};
 use std::convert::Infallible;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::ops::Range;
 use thiserror::Error;
 
 /// The settings of a global search.
@@ -84,8 +86,12 @@ pub enum GlobalError {
     Cma(String),
 }
 
-/// Searches the whole of `space`. `objective(parameters, cutoff)` is as in [`crate::minimize`]; CMA-ES ranks all designs of a
-/// generation, so the cutoff is always +∞. `progress` is called after each evaluation, from any thread.
+/// Searches the whole of `space`. `objective(parameters, cutoff)` is as in [`crate::minimize`]: no value is negative, and one above the
+/// cutoff need only be known to be above. `progress` is called after each evaluation, from any thread.
+///
+/// A quarter of the samples is computed in full; of the others those that may be among the starts, which are so the same as if all were. A
+/// search counts a design that has more than one and a half times the least that it has found, and more than the median of its last generation,
+/// as one that has just so much: CMA-ES ranks designs, and by the better half in the first place.
 ///
 /// # Errors
 /// [`GlobalError`].
@@ -95,46 +101,73 @@ pub fn explore(
     global: &Global,
     progress: impl Fn() + Sync,
 ) -> Result<Vec<Descent>, GlobalError> {
-    let value = |x: &[f64]| {
-        let value = objective(x, f64::INFINITY);
-        progress();
+    let value = |x: &[f64], cutoff: f64| {
+        let value = objective(x, cutoff);
         if value.is_nan() { f64::INFINITY } else { value }
     };
-    let look = |i: u32| {
-        let coordinate = |side| f64::from(sobol_burley::sample(i, side as u32, global.seed));
-        let x = space.point(&(0..space.dim()).map(coordinate).collect::<Vec<f64>>());
-        Point { value: value(&x), x }
+    let place = |i: usize| {
+        let coordinate = |side| f64::from(sobol_burley::sample(i as u32, side as u32, global.seed));
+        space.point(&(0..space.dim()).map(coordinate).collect::<Vec<f64>>())
     };
-    let mut points: Vec<Point> = (0..global.samples).into_par_iter().map(look).collect();
-    points.retain(|point| point.value < f64::INFINITY);
-    points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let mut starts: Vec<Point> = Vec::new();
-    for point in points {
-        if starts.len() < global.searches
-            && starts.iter().all(|other| space.distance(&other.x, &point.x) >= global.apart)
-        {
-            starts.push(point);
-        }
-    }
+    let samples = global.samples as usize;
+    let in_full = samples / 4;
+    let looks = |range: Range<usize>, cutoff: f64| -> Vec<f64> {
+        let look = |i: usize| value(&place(i), cutoff);
+        range.into_par_iter().map(look).inspect(|_| progress()).collect()
+    };
+    let mut values = looks(0..in_full, f64::INFINITY);
+    let mut ranked = values.clone();
+    ranked.sort_by(f64::total_cmp);
+    let cutoff = ranked.get(global.searches.max(1) - 1).copied().unwrap_or(f64::INFINITY);
+    values.extend(looks(in_full..samples, cutoff));
+    let known = (0..samples).map(|i| i < in_full || values[i] <= cutoff).collect();
+    let apart = |i: usize, j: usize| space.distance(&place(i), &place(j)) >= global.apart;
+    let again = |i: usize| value(&place(i), f64::INFINITY);
+    let starts = best_apart_above(values, known, again, global.searches, apart);
     if starts.is_empty() {
         return Err(GlobalError::NoStart { samples: global.samples });
     }
-    let search = |(number, start): (usize, Point)| search(&value, space, global, start, number);
+    let told = |x: &[f64], cutoff: f64| {
+        let value = value(x, cutoff);
+        progress();
+        value
+    };
+    let search = |(number, (i, value)): (usize, (usize, f64))| {
+        search(&told, space, global, Point { x: place(i), value }, number)
+    };
     starts.into_par_iter().enumerate().map(search).collect()
+}
+
+/// How many times the least that a search has found is as bad as any more.
+const BAD: f64 = 1.5;
+
+/// The middle of some values, the lower one of two.
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len().saturating_sub(1) / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 /// One CMA-ES search.
 fn search(
-    value: &(impl Fn(&[f64]) -> f64 + Sync),
+    value: &(impl Fn(&[f64], f64) -> f64 + Sync),
     space: &Space,
     global: &Global,
     start: Point,
     number: usize,
 ) -> Result<Descent, GlobalError> {
-    let (counted, count) = (AtomicU64::new(0), space.dim());
+    let count = space.dim();
+    let members = BoundedCmaEs::<Vec<f64>, DenseMatrix, f64>::default_lambda(count);
+    let seen = RefCell::new(vec![start.value]);
+    let least = Cell::new(start.value);
     let cost = |u: &[f64]| {
-        counted.fetch_add(1, Relaxed);
-        value(&space.point(u))
+        let mut seen = seen.borrow_mut();
+        let last = &seen[seen.len().saturating_sub(members)..];
+        let most = median(last).max(BAD * least.get());
+        let value = value(&space.point(u), most).min(most);
+        seen.push(value);
+        least.set(least.get().min(value));
+        value
     };
     let bounds = BoxBounds::new(Some(vec![0.0; count]), Some(vec![1.0; count]));
     let problem = Constrained::new(Cost(cost), ConstraintSet::new().with_bounds(bounds));
@@ -142,7 +175,7 @@ fn search(
     let solver = BoundedCmaEs::<Vec<f64>, DenseMatrix, f64>::new(seed, global.spread)
         .with_absolute_distribution_size_tolerance(global.tolerance);
     // A generation costs its members and the mean.
-    let generation = BoundedCmaEs::<Vec<f64>, DenseMatrix, f64>::default_lambda(count) as u64 + 1;
+    let generation = members as u64 + 1;
     let progress = PopulationProgress::from_point(space.coordinates(&start.x));
     let result = Executor::new(problem, solver, progress)
         .max_iter((global.evaluations / generation).max(1))
@@ -150,7 +183,7 @@ fn search(
         .map_err(|error| GlobalError::Cma(error.to_string()))?;
     let found = Point { x: space.point(result.best_param()), value: result.best_cost() };
     let found = if found.value < start.value { found } else { start.clone() };
-    Ok(Descent { start, found, evaluations: counted.load(Relaxed) })
+    Ok(Descent { start, found, evaluations: seen.borrow().len() as u64 - 1 })
 }
 
 /// A closure as basin's problem.

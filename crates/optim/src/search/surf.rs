@@ -59,21 +59,31 @@ pub fn surf_part(
 /// If `values` is not one value for each point of `grid`.
 pub fn best_separated(grid: &Grid, values: &[f64], count: usize, min_steps: usize) -> Vec<usize> {
     assert_eq!(values.len(), grid.len(), "one value for each point of the grid");
+    best_apart(values, count, steps_apart(grid, min_steps))
+}
+
+/// Whether two points of a grid are so many steps apart along some axis.
+fn steps_apart(grid: &Grid, min_steps: usize) -> impl Fn(usize, usize) -> bool {
+    let steps = move |i: usize| {
+        let mut steps = vec![0; grid.dim()];
+        grid.steps(i, &mut steps);
+        steps
+    };
+    move |i, j| chebyshev(&steps(i), &steps(j)) >= min_steps
+}
+
+/// The numbers of the `count` smallest finite `values`, best first, any two of them `apart`; of equal values those with the lower numbers.
+fn best_apart(values: &[f64], count: usize, apart: impl Fn(usize, usize) -> bool) -> Vec<usize> {
     let mut ranked: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     // The sort is stable, so equal values (−0 and 0 among them) stay in the order of their numbers.
     ranked.sort_by(|&a, &b| values[a].partial_cmp(&values[b]).unwrap_or(Ordering::Equal));
-
     let mut taken: Vec<usize> = Vec::new();
-    let mut taken_steps: Vec<Vec<usize>> = Vec::new();
-    let mut steps = vec![0; grid.dim()];
     for i in ranked {
         if taken.len() == count {
             break;
         }
-        grid.steps(i, &mut steps);
-        if taken_steps.iter().all(|other| chebyshev(other, &steps) >= min_steps) {
+        if taken.iter().all(|&other| apart(other, i)) {
             taken.push(i);
-            taken_steps.push(steps.clone());
         }
     }
     taken
@@ -93,9 +103,22 @@ pub fn best_separated_above(
     count: usize,
     min_steps: usize,
 ) -> Vec<(usize, f64)> {
-    let (mut values, mut known) = (lower.to_vec(), vec![false; lower.len()]);
+    assert_eq!(lower.len(), grid.len(), "one value for each point of the grid");
+    let none_known = vec![false; lower.len()];
+    best_apart_above(lower.to_vec(), none_known, value, count, steps_apart(grid, min_steps))
+}
+
+/// [`best_apart`] by `values` of which all that are not `known` are lower bounds: of these only such are evaluated as may be among the best, some
+/// at a time. Their numbers, best first, and their values.
+pub(crate) fn best_apart_above(
+    mut values: Vec<f64>,
+    mut known: Vec<bool>,
+    value: impl Fn(usize) -> f64 + Sync,
+    count: usize,
+    apart: impl Fn(usize, usize) -> bool,
+) -> Vec<(usize, f64)> {
     loop {
-        let best = best_separated(grid, &values, count, min_steps);
+        let best = best_apart(&values, count, &apart);
         let open: Vec<usize> = best.iter().copied().filter(|&i| !known[i]).collect();
         if open.is_empty() {
             return best.into_iter().map(|i| (i, values[i])).collect();
