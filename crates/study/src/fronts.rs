@@ -48,6 +48,11 @@ pub struct Fronts {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 2, max = 10000))]
     pub check: Option<usize>,
+    /// Maximum number of rounds of descents that follow the searches, each as long as the last gained anything; 0 for the searches alone, a first
+    /// look in a fraction of the time.
+    #[serde(default = "rounds", skip_serializing_if = "is_most")]
+    #[schemars(range(max = 24))]
+    pub rounds: usize,
     /// Number of designs to certify: those whose E1max is furthest below that of the first damper under the same bound.
     #[serde(default = "certificates")]
     pub certificates: usize,
@@ -96,6 +101,17 @@ fn kind() -> Kind {
 
 fn samples() -> usize {
     61
+}
+
+/// Rounds that no front has needed so far.
+const MOST_ROUNDS: usize = 24;
+
+fn rounds() -> usize {
+    MOST_ROUNDS
+}
+
+fn is_most(rounds: &usize) -> bool {
+    *rounds == MOST_ROUNDS
 }
 
 fn certificates() -> usize {
@@ -217,6 +233,9 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     }
     if said.k2.is_empty() && said.stroke.is_empty() && said.force.is_empty() {
         return Err(refuse("k2", "an empty list".to_owned(), "at least one bound on k2, stroke or force"));
+    }
+    if said.rounds > MOST_ROUNDS {
+        return Err(refuse("rounds", said.rounds.to_string(), "a whole number from 0 to 24"));
     }
     for (field, samples) in [("samples", Some(said.samples)), ("check", said.check)] {
         if let Some(samples) = samples.filter(|samples| !(2..=MOST_SAMPLES).contains(samples)) {

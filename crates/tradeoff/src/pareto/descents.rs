@@ -21,9 +21,6 @@ const FINER: usize = 4;
 const TOUCHES: f64 = 0.97;
 /// E1max that is lower by this share is a gain.
 const GAIN: f64 = 1e-3;
-/// Most rounds of descents.
-const ROUNDS: usize = 24;
-
 /// A descent that is to be made, or a design that is to be looked at.
 #[derive(Clone, PartialEq)]
 pub(super) struct Task {
@@ -48,7 +45,7 @@ impl Fronts {
         let bounds = self.all();
         let (mut tasks, mut done) = (first, Vec::new());
         let mut followed: Vec<Option<Candidate>> = vec![None; bounds.len()];
-        for round in 1..=ROUNDS {
+        for round in 1..=self.plan.said.rounds {
             tasks.dedup();
             tasks.retain(|task| !done.contains(task));
             if tasks.is_empty() {

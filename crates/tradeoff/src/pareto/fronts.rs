@@ -5,6 +5,7 @@
 
 use super::again::certifiable;
 use super::candidate::{Candidate, SAME};
+use rayon::prelude::*;
 use retune_study::{FrontsPlan, Sweep};
 use retune_workbench::Error;
 use retune_workbench::certify::{Certificate, certify};
@@ -128,15 +129,23 @@ impl Fronts {
         }
         gains.sort_by(|a, b| a.0.total_cmp(&b.0));
         gains.truncate(self.plan.said.certificates);
-        let mut certified = Vec::new();
-        for (_, sweep, bound, design, reference) in gains {
-            let (_, study) = &self.plan.dampers[design.damper];
-            let Some(study) = certifiable(study, self.plan.said.samples, &design.at) else { continue };
-            let file = format!("certificate-{}-{bound}.json", sweep.name());
-            let (design, certificate) = (design.clone(), certify(&study)?);
-            certified.push(Certified { sweep, bound, design, reference, file, certificate });
-        }
-        Ok(certified)
+        let certified =
+            |&(_, sweep, bound, design, reference): &(f64, Sweep, f64, &Candidate, Option<f64>)| {
+                let (_, study) = &self.plan.dampers[design.damper];
+                let study = certifiable(study, self.plan.said.samples, &design.at)?;
+                let file = format!("certificate-{}-{bound}.json", sweep.name());
+                let design = design.clone();
+                Some(certify(&study).map(|certificate| Certified {
+                    sweep,
+                    bound,
+                    design,
+                    reference,
+                    file,
+                    certificate,
+                }))
+            };
+        let certified: Vec<Option<Result<Certified, Error>>> = gains.par_iter().map(certified).collect();
+        certified.into_iter().flatten().collect()
     }
 
     /// The least E1max of the first damper under the bound of a row, J.
