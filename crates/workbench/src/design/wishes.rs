@@ -191,6 +191,7 @@ impl Wishes {
                 "D": axis(0.0, 0.8 * reach, "linear", 5),
                 "C": axis(0.2 * reach, 2.6 * reach, "linear", 5)
             },
+            "coarse": { "rtol": 1e-4, "peaks": false },
             "refine": { "starts": 2, "scaled": true, "TolX": 1e-3, "TolFun": 1e-5 * self.energy(reach), "MaxFunEvals": 300 }
         });
         self.study("ssvi", start, [0.2 * reach, reach], optimize)
