@@ -130,7 +130,7 @@ fn regress_places_that_a_search_looks_at() {
     // Their number, their sum and the largest: the last function increases up to the end of the band.
     let expected = [
         (7, 44.333, 6.111),
-        (14, 89.29636, 6.3),
+        (15, 95.59636, 6.3),
         (12, 74.986217, 6.111),
         (15, 94.500972, 6.222996),
         (14, 80.601403, 5.4),

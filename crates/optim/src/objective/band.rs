@@ -29,7 +29,7 @@ const REFINEMENTS: usize = 11;
 const FEW: usize = 2;
 const HOPELESS: f64 = 0.4;
 /// A search ends once its parabola promises no more than this share.
-const GAIN: f64 = 1e-11;
+const GAIN: f64 = 1e-13;
 
 /// Some quantities at a frequency; cutoffs apply to the first.
 #[derive(Clone, Copy)]

@@ -22,7 +22,10 @@ fn contract_limits_are_kept_and_reported() {
     let free = desk.read_json("free/optimum.json");
     assert_eq!((&free["limits"]["active"], number(&free, "/limits/infeasible")), (&json!([]), 0.0));
     let stroke = 0.7 * number(&free, "/limits/stroke");
-    desk.write_json("kept.json", &global(json!({}), json!({ "stroke": stroke })));
+    let mut study = global(json!({}), json!({ "stroke": stroke }));
+    // Enough to come to the limit.
+    study["optimize"]["refine"] = json!({ "starts": 2, "scaled": true, "MaxFunEvals": 150 });
+    desk.write_json("kept.json", &study);
     let optimum = search(&desk, "kept.json", "kept");
     assert!(optimum.check_limits().is_ok());
     let said = flat(&optimum.report());

@@ -223,7 +223,7 @@ fn contract_a_coarse_grid_leads_to_the_starts_of_an_exact_one() {
     });
     let desk = Desk::with(&study);
     search(&desk, "study.json", "exact");
-    study["optimize"]["coarse"] = json!({ "rtol": 1e-4, "peaks": false, "most": 900 });
+    study["optimize"]["coarse"] = json!({ "rtol": 1e-4, "peaks": false, "most": 300 });
     desk.write_json("study.json", &study);
     search(&desk, "study.json", "out");
     let values = |place: &str| -> Vec<f64> {
@@ -235,14 +235,14 @@ fn contract_a_coarse_grid_leads_to_the_starts_of_an_exact_one() {
     let (exact, coarse) = (values("exact"), values("out"));
     assert!(exact.iter().zip(&coarse).all(|(exact, coarse)| *coarse <= exact * (1.0 + 1e-4)));
     assert!(
-        exact.iter().zip(&coarse).any(|(exact, coarse)| *coarse < 0.99 * exact.min(900.0)),
+        exact.iter().zip(&coarse).any(|(exact, coarse)| *coarse < 0.99 * exact.min(300.0)),
         "no peak was left out"
     );
-    assert_eq!(coarse.iter().copied().fold(0.0, f64::max), 900.0, "no value was left out");
+    assert_eq!(coarse.iter().copied().fold(0.0, f64::max), 300.0, "no value was left out");
     assert_eq!(desk.read("exact/fminsearch-starts.csv"), desk.read("out/fminsearch-starts.csv"));
     let best = |place: &str| desk.read_json(&format!("{place}/optimum.json"))["surf"].clone();
     assert_eq!(best("exact"), best("out"));
     assert!(desk.read("out/surf-k2-c2.svg").contains("at rtol 1e-4, on the samples of the band alone"));
-    assert!(desk.read("out/surf-k2-c2.svg").contains("Grey: none below 900 J."));
+    assert!(desk.read("out/surf-k2-c2.svg").contains("Grey: none below 300 J."));
     verified::holds(&desk, "out", 7, &[]);
 }
