@@ -11,7 +11,6 @@ clock of fronts by the plan and the studies of BASE, and what either finds.
 
 import argparse
 import csv
-import itertools
 import json
 import resource
 import subprocess
@@ -25,12 +24,14 @@ ROOT = Path(__file__).resolve().parent.parent
 DESIGNS = {"regular": "583.92141 94.97052 0.028850 1.104545", "irregular": "215 232 0.06 0.36"}
 # Values in one process, so that its start counts for little.
 VALUES = 40
-# A coarse grid of designs, as a `surf` has, each one run at one frequency.
-GRID = itertools.product((50, 100, 200, 300, 400, 600, 800, 1200, 1600), (10, 30, 60, 90, 150, 250, 400),
-                         (0.02, 0.05, 0.08, 0.12, 0.16, 0.26), (0.06, 0.2, 0.35, 0.5, 0.65, 0.78))
+# A `surf`, each point one run at one frequency: points along each side, its ranges (those of `just bench-surf`), and how coarse it may be to say
+# where a search starts: its tolerance, and an eighth of what the structure has without a damper.
+POINTS = 12
+RANGES = {"k2": (50, 1600, "log"), "c2": (10, 400, "log"), "D": (0.02, 0.26, "linear"), "C": (0.06, 0.78, "linear")}
+COARSE = {"rtol": 1e-4, "most": 200}
 # Studies whose searches are made with and without a tolerance of their own, and with a coarse grid: name, search_rtol, coarse.
 SEARCHES = ("ssvi", "ssvi-global", "ssvi-robust", "ssvi-resonance", "tmd-free", "tmd-resonance")
-STAGES = (("1e-10", 1e-10, {}), ("1e-8", 1e-8, {}), ("1e-8, grid coarse", 1e-8, {"rtol": 1e-4, "peaks": False}), ("1e-6", 1e-6, {}))
+STAGES = (("1e-10", 1e-10, {}), ("1e-8", 1e-8, {}), ("1e-8, coarse", 1e-8, {"rtol": 1e-4, "peaks": False}), ("1e-6", 1e-6, {}))
 
 
 def seconds(command, text=None):
@@ -70,6 +71,18 @@ def values(name, designs, programs, directory, repeats, **solver):
     return [1e3 / len(designs) * min(times) for times in zip(*turns)]
 
 
+def run_of_a_surf(program, directory, old, coarse, **solver):
+    """Time of a run of a `surf`, ms: a grid alone, as one share of itself."""
+    file = study("ssvi-resonance", directory, old, coarse, **solver)
+    said = json.loads(file.read_text())
+    axis = lambda first, last, scale: {"from": first, "to": last, "points": POINTS, "scale": scale}
+    said["optimize"]["surf"] = {name: axis(*ends) for name, ends in RANGES.items()}
+    file.write_text(json.dumps(said))
+    out = Path(tempfile.mkdtemp(dir=directory)) / "surf"
+    took, _ = seconds([program, "optimize", file, "--shard", "1/1", "--out", out, "--threads", "1"])
+    return 1e3 * took / POINTS**4
+
+
 def search(program, name, directory, old=False, coarse=None, **solver):
     """Time of a search, s, and the E1max that it ends with, J."""
     out = Path(tempfile.mkdtemp(dir=directory)) / name
@@ -96,11 +109,19 @@ def compare(programs, directory, repeats):
             took[rtol] = values("ssvi", [design] * VALUES, programs, directory, repeats, rtol=rtol)
             row(f"worst over the band, {motion}, rtol {rtol:g}, ms", took[rtol])
         row("the same at 1e-5, beside the 1e-10 of then, ms", [took[1e-5][0], took[1e-10][1]])
-    grid, took = [" ".join(map(str, design)) for design in GRID], {}
-    for rtol in (1e-10, 1e-4):
-        took[rtol] = values("ssvi-resonance", grid, programs, directory, repeats, rtol=rtol)
-        row(f"a run of a surf of {len(grid)}, rtol {rtol:g}, ms", took[rtol])
-    row("the same at 1e-4, beside the 1e-10 of then, ms", [took[1e-4][0], took[1e-10][1]])
+    turns = {}
+    for turn in range(max(1, repeats // 2)):
+        for of, (coarse, rtol) in {"exact": ({}, 1e-10), "loose": ({}, 1e-4), "coarse": (COARSE, 1e-10)}.items():
+            for old, program in ((False, programs[0]), (True, programs[1])):
+                if not (old and of == "coarse"):
+                    took = run_of_a_surf(program, directory, old, coarse, rtol=rtol)
+                    turns[of, old] = min(took, turns.get((of, old), took))
+    row(f"a run of a surf of {POINTS**4}, rtol 1e-10, ms", [turns["exact", False], turns["exact", True]])
+    row(f"a run of a surf of {POINTS**4}, rtol 1e-4, ms", [turns["loose", False], turns["loose", True]])
+    row("the same at 1e-4 up to 200 J, beside the 1e-10 of then, ms", [turns["coarse", False], turns["exact", True]])
+    for name in ("retune-ssvi", "retune-ssvi-free"):
+        base, _ = search(programs[1], name, directory, old=True)
+        row(f"optimize {name}, as committed, s", [search(programs[0], name, directory)[0], base])
     for name in ("ssvi", "ssvi-global"):
         base, _ = search(programs[1], name, directory, old=True)
         row(f"optimize {name}, as committed, s", [search(programs[0], name, directory)[0], base])
@@ -130,18 +151,23 @@ def build(programs, directory):
 
 
 def fronts(programs, directory):
-    """Wall clock of fronts by the plan and the studies of the earlier version, and the E1max of the SSVI NES under each bound on k2."""
+    """Wall clock of fronts by the plan of the earlier version and of what they find: the E1max of the SSVI NES under each bound on k2. Searches of
+    today's version are as coarse as in its own studies; the searches alone, and with all descents after them."""
     studies, took, found = programs[1].parents[2] / "studies", [], []
-    for number, program in enumerate(programs):
+    for number, (program, rounds) in enumerate([(programs[0], 0), (programs[0], None), (programs[1], None)]):
         place = directory / str(number)
         place.mkdir()
         for name in ("fronts", "fronts-tmd", "fronts-ssvi"):
             plan = json.loads((studies / f"{name}.json").read_text())
             plan.pop("$schema")
-            if number == 0:
+            if program == programs[0]:
                 plan["kind"] = "fronts" if name == "fronts" else "study"
-                if name != "fronts":
+                if name == "fronts":
+                    plan |= {} if rounds is None else {"rounds": rounds}
+                else:
                     plan["solver"] = {**plan.get("solver", {}), "search_rtol": 1e-6}
+                if name == "fronts-ssvi":
+                    plan["optimize"]["coarse"] = {"rtol": 1e-4, "peaks": False}
             (place / f"{name}.json").write_text(json.dumps(plan))
         begin = time.perf_counter()
         subprocess.run([program, "fronts", place / "fronts.json", "--out", place / "out"], capture_output=True, check=True)
@@ -150,10 +176,11 @@ def fronts(programs, directory):
             rows = [row for row in csv.DictReader(table) if row["damper"] == "SSVI NES"]
         found.append({float(row["k2_most"]): float(row["E1max"]) for row in rows})
     print(f"`just bench-fronts`: fronts by the plan of commit {commit(programs[1])}, all cores\n")
-    print(f"{'':<40}{'today':>10}{commit(programs[1]):>10}")
-    print(f"{'wall clock, s':<40}{took[0]:>10.0f}{took[1]:>10.0f}")
-    for bound, value in found[1].items():
-        print(f"{f'SSVI NES, k2 at most {bound:g} N/m: E1max, J':<40}{found[0][bound]:>10.1f}{value:>10.1f}")
+    print(f"{'':<42}{'searches':>10}{'today':>10}{commit(programs[1]):>10}")
+    print(f"{'wall clock, s':<42}" + "".join(f"{seconds:>10.1f}" for seconds in took))
+    print(f"{'times as fast as then':<42}" + "".join(f"{took[2] / seconds:>10.2f}" for seconds in took))
+    for bound in found[2]:
+        print(f"{f'SSVI NES, k2 at most {bound:g} N/m: E1max, J':<42}" + "".join(f"{of[bound]:>10.1f}" for of in found))
 
 
 def peers():
