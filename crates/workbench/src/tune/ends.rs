@@ -2,7 +2,6 @@
 
 use super::global::{Basins, Explored, global};
 use super::refine::each;
-use super::searched;
 use crate::{Error, Observer};
 use retune_model::Design;
 use retune_optim::energy;
@@ -26,7 +25,7 @@ pub struct Ends {
 /// # Errors
 /// The study has nothing to tune, nothing can be computed, or the journal cannot be written.
 pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer) -> Result<Ends, Error> {
-    let search = searched(study)?;
+    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
     let explored = global(study, &search, (journal, place), watch)?;
     let stage = format!("{place}fminsearch");
     let starts = starts(&search, &[], explored.as_ref());
