@@ -59,7 +59,7 @@ def test_contract_a_problem_of_objects_is_that_of_its_study(tmp_path: Path) -> N
         vary=["k2", "c2", "D", "C"],
         bounds={"k2": (10, 600), "c2": (1, 1000), "D": (0, 1), "C": (0, 2)},
         surf=json.loads((STUDIES / "ssvi.json").read_text())["optimize"]["surf"],
-        coarse={"rtol": 1e-4, "peaks": False},
+        coarse={"rtol": 1e-4, "peaks": False, "most": 800},
         refine={"starts": 3, "scaled": True, "TolX": 1e-4, "TolFun": 1e-3, "MaxFunEvals": 2000, "MaxIter": 2000},
         solver={"search_rtol": 1e-8},
         name="ssvi",
