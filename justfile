@@ -271,14 +271,14 @@ count-lanes:
     python3 tests/lanes.py > results/speed/lanes.txt.tmp
     mv results/speed/lanes.txt.tmp results/speed/lanes.txt && cat results/speed/lanes.txt
 
-# Time values over a band and whole searches beside an earlier version, which it builds in target/bench-job (needs python3): results/speed/job.txt
+# Time values over a band, whole searches and fronts beside an earlier version, which it builds in target/bench-job (needs python3): results/speed/job.txt
 bench-job BASE="f3d2d61" *OPTIONS:
     test -d target/bench-job || git clone --quiet --shared --no-checkout . target/bench-job
     git -C target/bench-job checkout --quiet {{BASE}}
     cd target/bench-job && cargo build --release --quiet --package retune --target-dir target
     cargo build --release --quiet --package retune
     mkdir -p results/speed
-    python3 tests/job.py target/release/retune target/bench-job/target/release/retune {{OPTIONS}} | tee results/speed/job.txt
+    { python3 tests/job.py target/release/retune target/bench-job/target/release/retune {{OPTIONS}}; echo; python3 tests/job.py target/release/retune target/bench-job/target/release/retune --fronts; } | tee results/speed/job.txt
 
 # Time fronts by the plan of an earlier version beside that version, and compare what they find (needs python3): results/speed/fronts.txt
 bench-fronts BASE="f3d2d61":
