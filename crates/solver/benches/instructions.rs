@@ -15,7 +15,7 @@ use std::time::Instant;
 
 const WHOLE: Window = Window { from: 0.0, to: 100.0 };
 const SCENES: [(&str, Numbers); 3] = [("SSVI, Table 2", SSVI), ("SSVI, Table 1 row 3", ROW3), ("TMD", TMD)];
-const RTOLS: [f64; 3] = [1e-6, 1e-9, 1e-10];
+const RTOLS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 /// The two numbers of runs whose difference is taken. The first run of a program also computes the rules for contacts.
 const FEW: u64 = 2;
 const MANY: u64 = 12;
