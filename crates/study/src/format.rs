@@ -118,7 +118,7 @@ pub struct Coarse {
     /// Whether the peaks between the samples of a band are searched. Without, a value is the largest of its samples.
     pub peaks: bool,
     /// The largest value of the grid that matters, in the unit of the quantity. The evaluation of a point ends once it is known to be above;
-    /// the point then has this value in tables and maps. Refinements start where they would without. Default: none.
+    /// the point then has this value in tables, and maps are grey there. Refinements start where they would without. Default: none.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub most: Option<f64>,
