@@ -122,6 +122,7 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
         ("dampers", json!([]), "dampers: an empty list is not allowed here: give at least one"),
         ("k2", json!([5]), "optimize.bounds.k2: [10, 5] is not allowed here"),
         ("samples", json!(1), "samples: 1 is not allowed here: give a whole number from 2 to 10000"),
+        ("rounds", json!(25), "rounds: 25 is not allowed here: give a whole number from 0 to 24"),
     ] {
         let mut fronts = good.clone();
         fronts[field] = bad.clone();
