@@ -87,7 +87,7 @@ export class Figures {
             const among = ends ? ` ${this.spread.members} neighbours within 0.1 % have E1max from ${ends[0]} to ${ends[1]} J.` : "";
             this.irregular.replaceChildren(element("b", "", "One realisation."), ` The motion is irregular: its E1max is one of many.${among}`);
         }
-        const columns = [[`at ω = ${Number((this.omega ?? 0).toPrecision(5))}`, now, ""], ["worst of band", worst?.figures, ""]];
+        const columns = [[`at ω = ${Number((this.omega ?? 0).toPrecision(5))}`, now, ""], ["worst of band, from rest on", worst?.figures, ""]];
         for (const whose of ["A", "B"]) {
             if (this.worst[whose]) columns.push([`${whose}, worst`, this.worst[whose].figures, whose.toLowerCase()]);
         }

@@ -38,10 +38,7 @@ pub fn follow(
     if !strikes || matches!(study.scene.forcing.source, Source::Decay(_)) {
         return Ok(answer.with("problem", "nothing is struck: there is one motion, the response"));
     }
-    let Some(of) = quantity(study.quantity()) else {
-        let problem = format!("motions are not watched for {}", study.quantity().words());
-        return Ok(answer.with("problem", problem));
-    };
+    let of = quantity(study.quantity());
     let band = band(study);
     let range = [band.from, band.to];
     let plan = Plan {

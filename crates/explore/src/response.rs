@@ -1,13 +1,12 @@
 //! The response over frequency: what the study's objective measures, at each frequency of a band and at its worst.
 
 use crate::limits::MOST_SAMPLES;
-use crate::motion::figures;
 use crate::protocol::Answer;
 use rayon::prelude::*;
-use retune_model::{NonNegative, Scene};
-use retune_optim::{Band, Goal, Objective, Response, worst_over};
+use retune_model::{Measure, NonNegative, Positive, Scene};
+use retune_optim::{Band, FrequencyBand, Goal, Objective, Response, worst_over};
 use retune_study::{Study, rounded};
-use retune_workbench::simulate::simulate;
+use serde_json::{Value, json};
 
 /// Samples of the first curve, and of the final one.
 pub const CURVES: [usize; 2] = [31, 301];
@@ -117,7 +116,7 @@ impl Curve {
     }
 }
 
-/// The worst of a study over its band beside that without a damper, and the figures of the run there.
+/// The worst of a study over its band beside that without a damper, and the largest of every figure over the band, from rest on.
 ///
 /// # Errors
 /// The work has become stale.
@@ -127,9 +126,7 @@ pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -
         let problem = "no value at some frequency of the band";
         return Ok(Answer::new("worst").with("whose", whose).with("problem", problem));
     };
-    let mut there = study.clone();
-    there.scene.forcing.frequency = NonNegative::new(omega).unwrap_or_default();
-    let run = simulate(&there, None).ok();
+    let figures = largest(study, is_stale)?;
     let reduction = bare.map(|[bare, _]| bare / value).filter(|ratio| ratio.is_finite());
     Ok(Answer::new("worst")
         .with("whose", whose)
@@ -138,5 +135,26 @@ pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -
         .with("omega", omega)
         .with("reduction", reduction.map(|ratio| rounded(ratio, 3)))
         .with("none", bare.map(|[value, _]| rounded(value, 4)))
-        .with("figures", run.as_ref().map(figures)))
+        .with("figures", figures))
+}
+
+/// The largest values over the band, each at its own frequency, as the figures of a run are shown; none where some frequency has no value.
+fn largest(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<Value>, Stale> {
+    let Band { from, to, samples } = band(study);
+    let [Ok(from), Ok(to)] = [from, to].map(Positive::new) else { return Ok(None) };
+    let omega = Some(FrequencyBand { from, to, samples, relative: false });
+    let goal = Goal { objective: Objective { omega, ..term(study) }, ..study.window.window().into() };
+    let found = goal.needs(&study.scene, &study.solver.settings(), &|| !is_stale());
+    if is_stale() {
+        return Err(Stale);
+    }
+    let Ok(needs) = found else { return Ok(None) };
+    let of = |measure| rounded(needs.whole.get(measure).value, 4);
+    Ok(Some(json!({
+        "E1max": rounded(needs.own.get(Measure::Energy).value, 4),
+        "x1max": of(Measure::Displacement),
+        "stroke": of(Measure::Stroke),
+        "force": [of(Measure::ContactForce)],
+        "ground": of(Measure::GroundForce),
+    })))
 }

@@ -64,7 +64,7 @@ pub use design::{Design, Variable};
 pub use excitation::Excitation;
 pub use forcing::{Forcing, Source, Start};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
-pub use measure::Measure;
+pub use measure::{Measure, PerMeasure};
 pub use regularised::bounds::{Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene};

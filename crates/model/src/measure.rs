@@ -79,3 +79,45 @@ impl Measure {
         }
     }
 }
+
+/// A value for each [`Measure`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PerMeasure<T>(pub [T; 7]);
+
+impl<T: Copy> PerMeasure<T> {
+    /// The value for `measure`.
+    pub fn get(&self, measure: Measure) -> T {
+        self.0[measure as usize]
+    }
+
+    /// Sets the value for `measure`.
+    pub fn set(&mut self, measure: Measure, value: T) {
+        self.0[measure as usize] = value;
+    }
+}
+
+impl PerMeasure<bool> {
+    /// Every measure.
+    pub const EVERY: Self = Self([true; 7]);
+
+    /// Those that are set.
+    pub fn chosen(self) -> impl Iterator<Item = Measure> {
+        Measure::ALL.into_iter().filter(move |measure| self.get(*measure))
+    }
+}
+
+impl FromIterator<Measure> for PerMeasure<bool> {
+    fn from_iter<I: IntoIterator<Item = Measure>>(measures: I) -> Self {
+        let mut chosen = Self::default();
+        measures.into_iter().for_each(|measure| chosen.set(measure, true));
+        chosen
+    }
+}
+
+impl PerMeasure<f64> {
+    /// The larger of each.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))
+    }
+}

@@ -3,7 +3,7 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_model::{NonNegative, Positive, Scene};
+use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
     Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, PeakEnergy, Response,
     Variable, energy, minimize, ranked,
@@ -27,8 +27,8 @@ fn steady() -> Objective {
 }
 
 fn limits(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Limits {
-    let [stroke, force, cavity] = [stroke, force, cavity].map(|limit| limit.map(positive));
-    Limits { stroke, force, cavity, from: None }
+    let [stroke, contact_force, cavity] = [stroke, force, cavity].map(|limit| limit.map(positive));
+    Limits { stroke, contact_force, cavity, ..Limits::default() }
 }
 
 fn goal(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Goal {
@@ -55,17 +55,18 @@ fn exact_violations_are_shares_of_the_limits() {
     let force = run.force_max[0].max(run.force_max[1]);
     let free = evaluate(&goal(Some(1e3), Some(1e9), None), &scene, f64::INFINITY);
     assert_eq!((free.value, free.violation), (run.e1_max.value, 0.0));
-    assert_eq!(free.reached.get(Limit::Force), force);
-    let stroke = free.reached.get(Limit::Stroke);
+    assert_eq!(free.reached.get(Limit::Of(Measure::ContactForce)), force);
+    let stroke = free.reached.get(Limit::Of(Measure::Stroke));
     assert!(stroke > 0.05 && stroke < 0.5, "{stroke}");
     let broken =
         evaluate(&goal(Some(stroke / 2.0), Some(force / 1.5), Some(0.42 / 1.25)), &scene, f64::INFINITY);
     assert!((broken.violation - 1.75).abs() < 1e-12, "{}", broken.violation);
     assert_eq!(broken.value, INFEASIBLE * (1.0 + broken.violation));
     let limits = limits(Some(stroke * 1.005), Some(force * 1.5), None);
-    assert_eq!(limits.active(&free.reached), [Limit::Stroke]);
+    assert_eq!(limits.active(&free.reached), [Limit::Of(Measure::Stroke)]);
     // Quantities without a limit are not observed.
-    assert_eq!(evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached.0, [0.0, 0.0, 0.42]);
+    let seen = evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached;
+    assert_eq!(seen.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.42]);
 }
 
 #[test]
@@ -75,7 +76,10 @@ fn exact_a_steady_stroke_is_limited_in_closed_form() {
         let limits = limits(Some(allowed), Some(1.0), None);
         let found =
             evaluate(&Goal { objective: steady(), limits, ..WINDOW.into() }, &TMD.scene(), f64::INFINITY);
-        assert!((found.violation - violation).abs() < 1e-12 && found.reached.get(Limit::Force) == 0.0);
+        assert!(
+            (found.violation - violation).abs() < 1e-12
+                && found.reached.get(Limit::Of(Measure::ContactForce)) == 0.0
+        );
     }
 }
 
@@ -83,8 +87,9 @@ fn exact_a_steady_stroke_is_limited_in_closed_form() {
 #[test]
 fn invariant_values_below_a_cutoff_are_exact() {
     let designs = [SSVI, Numbers { k2: 400.0, ..SSVI }, Numbers { c: 0.1, ..SSVI }].map(|n| n.scene());
-    let stroke =
-        evaluate(&goal(Some(1.0), None, None), &designs[0], f64::INFINITY).reached.get(Limit::Stroke);
+    let stroke = evaluate(&goal(Some(1.0), None, None), &designs[0], f64::INFINITY)
+        .reached
+        .get(Limit::Of(Measure::Stroke));
     for goal in
         [goal(Some(stroke), None, Some(0.3)), goal(Some(stroke), None, None), goal(None, Some(30.0), None)]
     {
@@ -141,7 +146,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
         let goal = Goal { limits: Limits { from, ..limits(Some(1.0), Some(1e9), None) }, ..window.into() };
         let found = evaluate(&goal, &scene, f64::INFINITY);
         assert_eq!(found.value, run(4.0).e1_max.value);
-        [found.reached.get(Limit::Stroke), found.reached.get(Limit::Force)]
+        [found.reached.get(Limit::Of(Measure::Stroke)), found.reached.get(Limit::Of(Measure::ContactForce))]
     };
     for from in [0.0, 2.0, 4.0, 6.0] {
         let run = run(from);
@@ -150,7 +155,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
             assert!((found / expected - 1.0).abs() < 1e-7, "{from}: {found} {expected}");
         }
     }
-    assert_eq!(limits(Some(1.0), None, None).walls_from(), Some(0.0));
+    assert_eq!(limits(Some(1.0), None, None).also().map(|also| also.from), Some(0.0));
     let [whole, late] = [0.0, 6.0].map(reached);
     assert!(whole[0] > late[0] || whole[1] > late[1], "{whole:?} {late:?}");
 }
@@ -161,7 +166,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
 fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limit() {
     let designs = [
         (
-            Limit::Stroke,
+            Limit::Of(Measure::Stroke),
             Numbers {
                 k2: 874.395_581_926_651_5,
                 c2: 65.136_152_543_454_94,
@@ -171,7 +176,7 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
             },
         ),
         (
-            Limit::Force,
+            Limit::Of(Measure::ContactForce),
             Numbers {
                 k2: 2_127.631_338_208_155_3,
                 c2: 241.080_355_226_635_87,
@@ -202,6 +207,11 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
 #[test]
 fn contract_limits_have_names_and_units() {
     let told = Limit::ALL.map(|limit| (limit.name(), limit.unit()));
-    assert_eq!(Limit::ALL.map(|limit| format!("{limit:>7}")), [" stroke", "  force", " cavity"]);
-    assert_eq!(told, [("stroke", "m"), ("force", "N"), ("cavity", "m")]);
+    let cavity = format!("{:>7}", Limit::Cavity);
+    assert_eq!((cavity.as_str(), told[1], told[7]), (" cavity", ("x1max", "m"), ("cavity", "m")));
+    for limit in Limit::ALL {
+        let text = format!("{{\"{limit}\": 2}}");
+        let limits: Limits = serde_json::from_str(&text).expect("a limit by its name");
+        assert_eq!((limits.get(limit), limits.set().count()), (Some(2.0), 1));
+    }
 }

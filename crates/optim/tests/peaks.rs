@@ -22,7 +22,7 @@ fn e1_max(scene: &Scene, omega: f64) -> f64 {
     let settings = Settings { rtol: 1e-8, ..Settings::default() };
     let mut scene = *scene;
     scene.forcing.frequency = NonNegative::new(omega).expect("a frequency");
-    let ask = Ask { measure: Measure::default(), phase: 0.0, walls: None, cutoff: f64::INFINITY };
+    let ask = Ask { measure: Measure::default(), phase: 0.0, also: None, cutoff: f64::INFINITY };
     extremes(&scene, WINDOW, &settings, ask).expect("a run").largest.value
 }
 

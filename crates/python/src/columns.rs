@@ -2,6 +2,7 @@
 
 use crate::errors::Fault;
 use rayon::prelude::*;
+use retune_model::Measure;
 use retune_optim::{Evaluation, Limit};
 
 /// The number of columns.
@@ -13,13 +14,13 @@ const NOTHING: [f64; COUNT] = [f64::INFINITY, f64::NAN, f64::NAN, f64::NAN, f64:
 
 /// The names of [`numbers_of`].
 pub fn column_names(quantity: &'static str) -> [&'static str; COUNT] {
-    ["value", quantity, "stroke", "force", "violation", "omega_worst"]
+    ["value", quantity, "stroke", "contact_force", "violation", "omega_worst"]
 }
 
 /// What an evaluation found, by [`column_names`]; stroke and force are NaN unless they are known.
 pub fn numbers_of(found: &Evaluation, [stroke, force]: [bool; 2]) -> [f64; COUNT] {
-    let known = |limit, known| if known { found.reached.get(limit) } else { f64::NAN };
-    let [stroke, force] = [known(Limit::Stroke, stroke), known(Limit::Force, force)];
+    let known = |measure, known| if known { found.reached.get(Limit::Of(measure)) } else { f64::NAN };
+    let [stroke, force] = [known(Measure::Stroke, stroke), known(Measure::ContactForce, force)];
     let omega = found.worst.scene.forcing.frequency.get();
     // An empty sum of violations is -0.
     [found.value, found.energy, stroke, force, found.violation + 0.0, omega]

@@ -8,7 +8,7 @@ use crate::watch::{caught, on_pool};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use retune_optim::{Evaluation, GoesOn, Objective, PeakEnergy, Response, Variable};
+use retune_optim::{Evaluation, GoesOn, Limit, Objective, PeakEnergy, Response, Variable};
 use retune_study::{Rule, Setting, Study, read::from_text};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -214,8 +214,8 @@ impl Core {
         let takes_long = periods > LONG && !study.objective().is_steady()
             || !study.objective().terms().iter().all(|(_, term)| is_one(term));
         let goal = study.goal();
-        let walls = goal.limits.walls_from().is_some();
-        let knows = [walls || goal.objective.is_steady(), walls];
+        let limited = |measure| goal.limits.get(Limit::Of(measure)).is_some();
+        let knows = [limited(Measure::Stroke) || goal.objective.is_steady(), limited(Measure::ContactForce)];
         Ok(Self { study, file, objective, takes_long, knows })
     }
 

@@ -46,7 +46,7 @@ def ssvi() -> rt.Problem:
         omega=6.28,
         vary=["k2", "c2", "D", "C"],
         bounds={"k2": (10, 600), "c2": (1, 1000), "D": (0, 1), "C": (0, 2)},
-        limits={"stroke": 0.35, "force": 2e4},
+        limits={"stroke": 0.35, "contact_force": 2e4},
     )
 
 

@@ -27,7 +27,7 @@ pub fn extremes_by(
     variables: &[Variable],
 ) -> Result<Vec<f64>, SolverError> {
     let Some((system, settings)) = exact(scene, settings, ask) else { return Ok(vec![0.0; variables.len()]) };
-    let ask = Ask { walls: None, cutoff: f64::INFINITY, ..ask };
+    let ask = Ask { also: None, cutoff: f64::INFINITY, ..ask };
     let at = extremes(scene, window, &settings, ask)?.largest;
     by(&system, window, &settings, ask, at, variables)
 }
@@ -50,7 +50,7 @@ pub fn settled_by(
         let omega = scene.forcing.frequency.get();
         return Ok(variables.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
     }
-    let at = settled(scene, window, settle, &settings, Ask { walls: None, ..ask })?.largest;
+    let at = settled(scene, window, settle, &settings, Ask { also: None, ..ask })?.largest;
     by(&system, window, &settings, ask, at, variables)
 }
 

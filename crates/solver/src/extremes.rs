@@ -1,22 +1,24 @@
-//! What a study makes small, and what it may set limits on: the largest value of a [`Measure`], stroke and contact force, for any phase
-//! of the force. Only those that are asked for are computed.
+//! What a study makes small, and what it may set limits on: the largest value of a [`Measure`] in a window, and those of others from a
+//! time on, for any phase of the force. Only those that are asked for are computed.
 
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::observe::displacement_range::DisplacementRange;
+use crate::observe::largest_values::LargestValues;
 use crate::observe::magnitude::Magnitude;
 use crate::observe::observer::{Observer, Path, Unobserved};
 use crate::observe::quantity::{BareEnergy, PrimaryEnergy};
 use crate::observe::running_maximum::RunningMaximum;
+use crate::observe::since::Since;
 use crate::observe::structure::{Structure, StructureMotion};
 use crate::recurrence::repeats::follow_until_it_repeats;
 use crate::response::Extreme;
 use crate::run::follow_bare;
 use crate::settings::{Settings, Window};
 use crate::simulate::e1_max;
-use retune_model::{Bare, Coupled, Measure, Scene};
+use retune_model::{Bare, Coupled, Measure, PerMeasure, Scene};
 
 /// The question put to a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,16 +27,31 @@ pub struct Ask {
     pub measure: Measure,
     /// φ of the force `P cos(ωt + φ)`, rad. The run starts at t = 0.
     pub phase: f64,
-    /// The time, s, from which on stroke and contact forces are observed too: 0 for the whole run, whatever the window of what is
-    /// measured; `None` if they are not needed.
-    pub walls: Option<f64>,
+    /// What is observed too; `None` for nothing.
+    pub also: Option<Also>,
     /// The run may end early, with any value above this one, in the unit of what is measured, once that exceeds it.
     pub cutoff: f64,
 }
 
+/// Measures that are observed beside the one that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Also {
+    /// Which.
+    pub measures: PerMeasure<bool>,
+    /// From when on, s: 0 for the whole run, whatever the window of what is asked for.
+    pub from: f64,
+}
+
+impl Also {
+    /// Stroke and contact force from a time on, s.
+    pub fn walls(from: f64) -> Self {
+        Self { measures: [Measure::Stroke, Measure::ContactForce].into_iter().collect(), from }
+    }
+}
+
 impl Default for Ask {
     fn default() -> Self {
-        Self { measure: Measure::Energy, phase: 0.0, walls: None, cutoff: f64::INFINITY }
+        Self { measure: Measure::Energy, phase: 0.0, also: None, cutoff: f64::INFINITY }
     }
 }
 
@@ -43,15 +60,25 @@ impl Default for Ask {
 pub struct Extremes {
     /// Largest value of what is measured, in its unit, and when.
     pub largest: Extreme,
-    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m; 0 where it was not asked for, or without a damper.
-    pub stroke: f64,
-    /// Largest contact force on either wall, N; 0 where it was not asked for, or without a damper.
-    pub force: f64,
+    /// The largest values of [`Ask::also`]; 0 of what was not asked for, and of the damper where there is none.
+    pub reached: PerMeasure<f64>,
     /// Whether the motion has settled; true where that was not asked.
     pub settled: bool,
 }
 
-/// The largest value of [`Ask::measure`] over a window, and the stroke and the force from [`Ask::walls`] to its end.
+impl Extremes {
+    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
+    pub fn stroke(&self) -> f64 {
+        self.reached.get(Measure::Stroke)
+    }
+
+    /// Largest contact force on either wall, N.
+    pub fn force(&self) -> f64 {
+        self.reached.get(Measure::ContactForce)
+    }
+}
+
+/// The largest value of [`Ask::measure`] over a window, and those of [`Ask::also`] from its time to the end of the window.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -61,9 +88,9 @@ pub fn extremes(
     settings: &Settings,
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
-    if ask.phase == 0.0 && ask.walls.is_none() && ask.measure == Measure::Energy {
+    if ask.phase == 0.0 && ask.also.is_none() && ask.measure == Measure::Energy {
         let largest = e1_max(scene, window, settings, ask.cutoff)?;
-        return Ok(Extremes { largest, stroke: 0.0, force: 0.0, settled: true });
+        return Ok(Extremes { largest, reached: PerMeasure::default(), settled: true });
     }
     let seen = match &scene.damper {
         None => {
@@ -78,6 +105,22 @@ pub fn extremes(
     let seen = seen.map_err(|error| energy_bound::error(window, error))?;
     let largest = energy_bound::largest(scene, window, settings, ask.measure, seen.largest)?;
     Ok(Extremes { largest, ..seen })
+}
+
+/// The largest values of [`Ask::also`] of a structure without a damper.
+pub(crate) fn bare_values(
+    system: &Bare,
+    also: Also,
+    to: f64,
+    settings: &Settings,
+) -> Result<PerMeasure<f64>, SolverError> {
+    let mut reached = PerMeasure::default();
+    for measure in also.measures.chosen() {
+        let ask = Ask { measure, ..Ask::default() };
+        let window = Window { from: also.from.min(to), to };
+        reached.set(measure, in_bare(system, window, settings, ask)?.largest.value.max(0.0));
+    }
+    Ok(reached)
 }
 
 fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Result<Extremes, SolverError> {
@@ -95,7 +138,8 @@ fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Resu
         // There is no damper that could move or touch.
         Observed::Stroke | Observed::Force => Extreme { value: 0.0, time: window.from },
     };
-    Ok(Extremes { largest, stroke: 0.0, force: 0.0, settled: true })
+    let also = ask.also.map(|also| bare_values(system, also, window.to, settings)).transpose()?;
+    Ok(Extremes { largest, reached: also.unwrap_or_default(), settled: true })
 }
 
 fn in_coupled(
@@ -104,30 +148,34 @@ fn in_coupled(
     settings: &Settings,
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
-    let mut before = ask.walls.map(|from| DisplacementRange::new(system, from, f64::INFINITY));
+    let mut before = beside(system, ask);
     let mut seen = maxima(system, ask);
-    let late = ask.walls.unwrap_or(window.from);
+    let late = ask.also.map_or(window.from, |also| also.from);
     follow_until_it_repeats(system, window, late, settings, &mut before, &mut seen)?;
-    let ([stroke, force], seen) = (stroke_and_force(before.as_ref()), read(&seen));
-    Ok(Extremes { stroke: stroke.max(seen.stroke), force: force.max(seen.force), ..seen })
+    let (before, seen) = (values(before.as_ref()), read(&seen));
+    Ok(Extremes { reached: before.max(seen.reached), ..seen })
 }
 
-/// What is measured, and the range of the damper where stroke and force are asked for.
-pub(crate) type Maxima<'a> = (Peak<'a>, Option<DisplacementRange<'a>>);
+/// The largest values from a time on.
+pub(crate) type Beside<'a> = Since<LargestValues<'a>>;
+
+/// What is asked for, and what is asked for beside it.
+pub(crate) type Maxima<'a> = (Peak<'a>, Option<Beside<'a>>);
+
+pub(crate) fn beside(system: &Coupled, ask: Ask) -> Option<Beside<'_>> {
+    ask.also.map(|also| Since::new(LargestValues::new(system, also.measures), also.from))
+}
 
 pub(crate) fn maxima(system: &Coupled, ask: Ask) -> Maxima<'_> {
-    let range = ask.walls.map(|from| DisplacementRange::new(system, from, f64::INFINITY));
-    (Peak::new(system, ask.measure, ask.cutoff), range)
+    (Peak::new(system, ask.measure, ask.cutoff), beside(system, ask))
 }
 
-pub(crate) fn read((peak, range): &Maxima<'_>) -> Extremes {
-    let [stroke, force] = stroke_and_force(range.as_ref());
-    Extremes { largest: peak.record(), stroke, force, settled: true }
+pub(crate) fn read((peak, beside): &Maxima<'_>) -> Extremes {
+    Extremes { largest: peak.record(), reached: values(beside.as_ref()), settled: true }
 }
 
-/// The stroke, m, and the largest force, N; 0 where they were not asked for.
-fn stroke_and_force(range: Option<&DisplacementRange<'_>>) -> [f64; 2] {
-    range.map_or([0.0; 2], |range| [range.stroke(), range.force()].map(|largest| largest.value.max(0.0)))
+fn values(beside: Option<&Beside<'_>>) -> PerMeasure<f64> {
+    beside.map_or_else(PerMeasure::default, |since| since.observer.values())
 }
 
 /// The observer of a [`Measure`].
@@ -143,8 +191,8 @@ impl<'a> Peak<'a> {
         match observed(measure) {
             Observed::Energy => Self::Energy(RunningMaximum::new(PrimaryEnergy::new(system), cutoff)),
             Observed::Motion(quantity) => Self::Motion(Magnitude::new(|sign| quantity(system, sign), cutoff)),
-            Observed::Stroke => Self::Stroke(DisplacementRange::new(system, 0.0, cutoff)),
-            Observed::Force => Self::Force(DisplacementRange::new(system, 0.0, cutoff)),
+            Observed::Stroke => Self::Stroke(DisplacementRange::new(system, cutoff)),
+            Observed::Force => Self::Force(DisplacementRange::new(system, cutoff)),
         }
     }
 

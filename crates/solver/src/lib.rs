@@ -61,7 +61,7 @@ mod trajectory;
 pub use budget::{Budget, Pace};
 pub use derivatives::{extremes_by, settled_by};
 pub use error::{Remedy, SolverError};
-pub use extremes::{Ask, Extremes, extremes};
+pub use extremes::{Also, Ask, Extremes, extremes};
 pub use hybrid::propagator::{Hybrid, Motion, Phase};
 pub use linear::steps;
 pub use recurrence::test::Settle;

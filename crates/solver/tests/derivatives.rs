@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter};
 use retune_solver::observe::Unobserved;
 use retune_solver::{
-    Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, gradients,
+    Also, Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, gradients,
 };
 use std::f64::consts::TAU;
 
@@ -162,7 +162,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     let window = Window { from: 1.0, to: 5.0 };
     let scenes: Vec<Numbers> = (0..60).map(|scene| random(&mut spread, scene % 2 == 1).0).collect();
     let largest = |numbers: &Numbers, measure: Measure| {
-        let ask = Ask { measure, walls: Some(5.0), ..Ask::default() };
+        let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
         extremes(&numbers.scene(), window, &settings(), ask).expect("a run").largest
     };
     // How many derivatives are compared, and the largest error of them.

@@ -5,7 +5,7 @@ mod scenes;
 
 use retune_model::{Bare, Coupled, Scene};
 use retune_solver::{
-    Ask, Extremes, Method, Rows, Settings, Settle, Window, extremes, settled, simulate, trajectory,
+    Also, Ask, Extremes, Method, Rows, Settings, Settle, Window, extremes, settled, simulate, trajectory,
 };
 use scenes::{Numbers, SSVI, TMD};
 use std::f64::consts::PI;
@@ -14,8 +14,8 @@ const SHORT: Window = Window { from: 2.0, to: 12.0 };
 
 fn seen(scene: &Scene, method: Method, phase: f64, walls: bool) -> Extremes {
     let settings = Settings { method, ..Settings::default() };
-    let walls = walls.then_some(SHORT.from);
-    extremes(scene, SHORT, &settings, Ask { phase, walls, ..Ask::default() }).expect("a run")
+    let also = walls.then(|| Also::walls(SHORT.from));
+    extremes(scene, SHORT, &settings, Ask { phase, also, ..Ask::default() }).expect("a run")
 }
 
 #[test]
@@ -29,11 +29,11 @@ fn contract_stroke_and_force_are_those_of_the_motion() {
             largest = largest.max((sample.state[2] - sample.state[0] - rest).abs());
         })
         .expect("a run");
-        assert!(largest <= found.stroke && found.stroke - largest < 1e-6, "{largest} {}", found.stroke);
-        assert_eq!(found.force, run.force_max[0].max(run.force_max[1]));
+        assert!(largest <= found.stroke() && found.stroke() - largest < 1e-6, "{largest} {}", found.stroke());
+        assert_eq!(found.force(), run.force_max[0].max(run.force_max[1]));
         assert_eq!(found.largest, run.e1_max);
     }
-    assert_eq!(seen(&SSVI.scene(), Method::Hybrid, 0.0, false).stroke, 0.0);
+    assert_eq!(seen(&SSVI.scene(), Method::Hybrid, 0.0, false).stroke(), 0.0);
 }
 
 /// Half a turn of the force mirrors a motion without contacts; a whole turn changes nothing.
@@ -59,7 +59,7 @@ fn reference_a_phase_with_contacts_is_the_same_by_another_method() {
     let [a, b] = [Method::Hybrid, Method::Dop853].map(|method| seen(&SSVI.scene(), method, 1.0, true));
     assert!((a.largest.value / b.largest.value - 1.0).abs() < 1e-6, "{a:?} {b:?}");
     assert!(
-        (a.stroke / b.stroke - 1.0).abs() < 1e-6 && (a.force / b.force - 1.0).abs() < 1e-4,
+        (a.stroke() / b.stroke() - 1.0).abs() < 1e-6 && (a.force() / b.force() - 1.0).abs() < 1e-4,
         "{a:?} {b:?}"
     );
     let zero = seen(&SSVI.scene(), Method::Hybrid, 0.0, true);
@@ -70,7 +70,7 @@ const LONG: Window = Window { from: 50.0, to: 400.0 };
 
 fn rest(scene: &Scene, method: Method, settle: Settle) -> Extremes {
     let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
-    settled(scene, LONG, settle, &settings, Ask { walls: Some(f64::INFINITY), ..Ask::default() })
+    settled(scene, LONG, settle, &settings, Ask { also: Some(Also::walls(f64::INFINITY)), ..Ask::default() })
         .expect("a run")
 }
 
@@ -83,7 +83,7 @@ fn exact_a_linear_motion_settles_at_its_steady_response() {
         let found = rest(&scene, method, settle);
         assert!(found.settled);
         assert!((found.largest.value / steady.e1_max - 1.0).abs() < 1e-6, "{found:?}");
-        assert!((found.stroke / steady.stroke() - 1.0).abs() < 1e-6 && found.force == 0.0, "{found:?}");
+        assert!((found.stroke() / steady.stroke() - 1.0).abs() < 1e-6 && found.force() == 0.0, "{found:?}");
     }
     let bare = rest(&Scene { damper: None, ..scene }, Method::Hybrid, settle);
     assert_eq!(bare.largest.value, Bare::new(&scene.primary, &scene.forcing).steady(TMD.omega).e1_max);
@@ -94,12 +94,12 @@ fn exact_a_linear_motion_settles_at_its_steady_response() {
 fn contract_a_motion_with_contacts_settles_at_what_a_late_window_shows() {
     let scene = Numbers { omega: 5.958, ..SSVI }.scene();
     let found = rest(&scene, Method::Hybrid, Settle::default());
-    assert!(found.settled && found.force > 0.0, "{found:?}");
+    assert!(found.settled && found.force() > 0.0, "{found:?}");
     let late = Window { from: 300.0, to: 400.0 };
-    let ask = Ask { walls: Some(late.from), ..Ask::default() };
+    let ask = Ask { also: Some(Also::walls(late.from)), ..Ask::default() };
     let run = extremes(&scene, late, &Settings::default(), ask).expect("a run");
     assert!((found.largest.value / run.largest.value - 1.0).abs() < 1e-4, "{found:?} {run:?}");
-    assert!((found.stroke / run.stroke - 1.0).abs() < 1e-3, "{found:?} {run:?}");
+    assert!((found.stroke() / run.stroke() - 1.0).abs() < 1e-3, "{found:?} {run:?}");
 }
 
 /// More blocks than there are must agree: the value is that of the window, and the answer says that it has not settled.
@@ -112,7 +112,7 @@ fn contract_a_motion_that_has_not_settled_is_marked_so() {
     // The first block that begins after 50 s does so at the eighth of 6 periods.
     let from = 8.0 * 6.0 * 2.0 * PI / numbers.omega;
     let window = Window { from, ..LONG };
-    let ask = Ask { walls: Some(from), ..Ask::default() };
+    let ask = Ask { also: Some(Also::walls(from)), ..Ask::default() };
     let run = extremes(&scene, window, &Settings::default(), ask).expect("a run");
     assert!((never.largest.value / run.largest.value - 1.0).abs() < 1e-6, "{never:?} {run:?}");
 }
@@ -142,14 +142,14 @@ fn contract_stroke_and_force_are_observed_from_the_time_asked_for() {
     for from in (0..60).map(|i| 0.199 * f64::from(i)) {
         let window = Window { from, ..SHORT };
         let run = simulate(&scene, window, &Settings::default()).expect("a run");
-        let ask = Ask { walls: Some(from), ..Ask::default() };
+        let ask = Ask { also: Some(Also::walls(from)), ..Ask::default() };
         let found = extremes(&scene, SHORT, &Settings::default(), ask).expect("a run");
         assert_eq!(found.largest, simulate(&scene, SHORT, &Settings::default()).expect("a run").e1_max);
         let force = run.force_max[0].max(run.force_max[1]);
-        assert!((found.stroke / run.spring_deflection_max - 1.0).abs() < 1e-8, "{from} {found:?} {run:?}");
-        assert!((found.force - force).abs() <= 1e-6 * force, "{from} {found:?} {run:?}");
-        falls += u32::from(found.force < largest);
-        largest = found.force;
+        assert!((found.stroke() / run.spring_deflection_max - 1.0).abs() < 1e-8, "{from} {found:?} {run:?}");
+        assert!((found.force() - force).abs() <= 1e-6 * force, "{from} {found:?} {run:?}");
+        falls += u32::from(found.force() < largest);
+        largest = found.force();
     }
     assert!(falls > 3, "{falls}");
 }
@@ -160,8 +160,8 @@ fn contract_the_stroke_before_a_closed_form_counts() {
     let numbers = Numbers { omega: 5.0, c2: 40.0, k2: 2000.0, ..TMD };
     let scene = numbers.scene();
     let stroke = |walls| {
-        let ask = Ask { walls: Some(walls), ..Ask::default() };
-        settled(&scene, LONG, Settle::default(), &Settings::default(), ask).expect("a run").stroke
+        let ask = Ask { also: Some(Also::walls(walls)), ..Ask::default() };
+        settled(&scene, LONG, Settle::default(), &Settings::default(), ask).expect("a run").stroke()
     };
     let run = simulate(&scene, Window { from: 0.0, ..LONG }, &Settings::default()).expect("a run");
     let steady = numbers.coupled().steady(numbers.omega).stroke();

@@ -5,7 +5,9 @@
 mod scenes;
 
 use retune_model::{Bare, Coupled, Finite, Forcing, Measure, NonNegative, Scene, Source, Start};
-use retune_solver::{Ask, Extremes, Method, Rows, Settings, Window, e1_max, extremes, simulate, trajectory};
+use retune_solver::{
+    Also, Ask, Extremes, Method, Rows, Settings, Window, e1_max, extremes, simulate, trajectory,
+};
 use scenes::{Numbers, SSVI, Spread, TMD};
 use std::f64::consts::PI;
 
@@ -180,9 +182,9 @@ fn exact_a_damper_without_walls_is_one_that_never_touches() {
             }
             assert_eq!((a.force_max, a.impacts, a.scene), (b.force_max, b.impacts, b.scene));
         }
-        let ask = Ask { walls: Some(0.0), measure: Measure::ContactForce, ..Ask::default() };
+        let ask = Ask { also: Some(Also::walls(0.0)), measure: Measure::ContactForce, ..Ask::default() };
         let found = extremes(&open, window, &Settings::default(), ask).expect("a run");
-        assert_eq!((found.largest.value, found.force), (0.0, 0.0));
+        assert_eq!((found.largest.value, found.force()), (0.0, 0.0));
     }
 }
 

@@ -4,7 +4,7 @@
 mod scenes;
 
 use retune_model::{Bare, Coupled, Measure, Scene};
-use retune_solver::{Ask, Method, Settings, Settle, Window, extremes, settled, simulate};
+use retune_solver::{Also, Ask, Method, Settings, Settle, Window, extremes, settled, simulate};
 use scenes::{Numbers, SSVI, TMD};
 
 const WINDOW: Window = Window { from: 2.0, to: 30.0 };
@@ -35,7 +35,7 @@ fn contract_a_cutoff_is_passed_and_walls_change_nothing() {
     let settings = Settings::default();
     for measure in Measure::ALL {
         let full = asked(&scene, measure, &settings, f64::INFINITY);
-        let ask = Ask { measure, walls: Some(0.0), ..Ask::default() };
+        let ask = Ask { measure, also: Some(Also::walls(0.0)), ..Ask::default() };
         let beside = extremes(&scene, WINDOW, &settings, ask).expect("a run");
         assert_eq!(beside.largest.value, full, "{measure:?}");
         assert!(WINDOW.from <= beside.largest.time && beside.largest.time <= WINDOW.to);

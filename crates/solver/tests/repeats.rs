@@ -7,7 +7,7 @@ mod problems;
 
 use problems::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
-use retune_solver::{Ask, Settings, Window, extremes, simulate};
+use retune_solver::{Also, Ask, Settings, Window, extremes, simulate};
 
 /// A damper of those that searches meet: any bodies, springs and gaps, at any frequency of an engineer's.
 fn drawn(number: u64) -> (Numbers, Settings) {
@@ -35,14 +35,14 @@ fn drawn(number: u64) -> (Numbers, Settings) {
 /// does not, as shares; of a force that is smaller than that on the structure, as a share of the latter.
 fn both(number: u64, window: Window) -> [f64; 3] {
     let (numbers, settings) = drawn(number);
-    let ask = Ask { walls: Some(window.from), ..Ask::default() };
+    let ask = Ask { also: Some(Also::walls(window.from)), ..Ask::default() };
     let early = extremes(&numbers.scene(), window, &settings, ask).expect("a run");
     let whole = simulate(&numbers.scene(), window, &settings).expect("a run");
     let force = whole.force_max[0].max(whole.force_max[1]);
     let pairs = [
         (early.largest.value, whole.e1_max.value, whole.e1_max.value),
-        (early.stroke, whole.spring_deflection_max, whole.spring_deflection_max),
-        (early.force, force, force.max(numbers.p)),
+        (early.stroke(), whole.spring_deflection_max, whole.spring_deflection_max),
+        (early.force(), force, force.max(numbers.p)),
     ];
     pairs.map(|(a, b, size)| if a == b { 0.0 } else { (a - b).abs() / size })
 }

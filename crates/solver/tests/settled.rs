@@ -4,12 +4,16 @@
 mod scenes;
 
 use retune_model::{Measure, Scene};
-use retune_solver::{Ask, Extremes, Method, Settings, Settle, Window, extremes, settled};
+use retune_solver::{Also, Ask, Extremes, Method, Settings, Settle, Window, extremes, settled};
 use scenes::{Numbers, SSVI, Spread};
 
 /// Of the settled motion alone.
-const SETTLED: Ask =
-    Ask { measure: Measure::Energy, phase: 0.0, walls: Some(f64::INFINITY), cutoff: f64::INFINITY };
+const SETTLED: Ask = Ask {
+    measure: Measure::Energy,
+    phase: 0.0,
+    also: Some(Also::walls(f64::INFINITY)),
+    cutoff: f64::INFINITY,
+};
 
 /// The extremes of the settled motion; none where it does not settle in 400 s or is answered in closed form.
 fn rest(scene: &Scene) -> Option<Extremes> {
@@ -21,7 +25,7 @@ fn rest(scene: &Scene) -> Option<Extremes> {
 /// Those of a run five times as long.
 fn late(scene: &Scene) -> Extremes {
     let window = Window { from: 1900.0, to: 2000.0 };
-    let ask = Ask { walls: Some(window.from), ..SETTLED };
+    let ask = Ask { also: Some(Also::walls(window.from)), ..SETTLED };
     extremes(scene, window, &Settings::default(), ask).expect("a run")
 }
 
@@ -30,8 +34,8 @@ fn difference(found: Extremes, late: Extremes) -> [f64; 3] {
     let share = |a: f64, b: f64, most: f64| (a - b).abs() / most;
     [
         share(found.largest.value, late.largest.value, 1e-3 * late.largest.value),
-        share(found.stroke, late.stroke, 1e-3 * late.stroke),
-        share(found.force, late.force, (1e-2 * late.force).max(0.1)),
+        share(found.stroke(), late.stroke(), 1e-3 * late.stroke()),
+        share(found.force(), late.force(), (1e-2 * late.force()).max(0.1)),
     ]
 }
 

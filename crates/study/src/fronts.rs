@@ -8,7 +8,7 @@ use super::objective::check_energy;
 use super::per_variable::PerVariable;
 use super::read::named;
 use super::rule::Rule;
-use retune_model::{Design, Positive};
+use retune_model::{Design, Measure, Positive};
 use retune_optim::{Limit, Variable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ pub struct Fronts {
     /// Limits on the stroke (spring deflection |x2 - x1 - D|), m, as `limits.stroke` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stroke: Vec<Positive>,
-    /// Limits on the contact force on either wall, N, as `limits.force` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
+    /// Limits on the contact force on either wall, N, as `limits.contact_force` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub force: Vec<Positive>,
     /// Number of band samples on which the optimised designs are refined and re-evaluated, so that they are compared on the same frequencies.
@@ -144,8 +144,8 @@ impl Sweep {
     pub const fn limit(self) -> Option<Limit> {
         match self {
             Self::K2 => None,
-            Self::Stroke => Some(Limit::Stroke),
-            Self::Force => Some(Limit::Force),
+            Self::Stroke => Some(Limit::Of(Measure::Stroke)),
+            Self::Force => Some(Limit::Of(Measure::ContactForce)),
         }
     }
 }

@@ -46,12 +46,6 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
         let allowed = "another quantity, or another response: what is steady touches no wall";
         return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
     }
-    let unwatched =
-        matches!(objective.quantity, Measure::Velocity | Measure::Acceleration | Measure::GroundForce);
-    if objective.response == Response::Motions && unwatched {
-        let allowed = "energy, displacement, stroke or contact_force, which motions are watched for; or another response";
-        return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
-    }
     if let Some(starts) = objective.starts.filter(|starts| !(1..=MOST_STARTS).contains(starts)) {
         let allowed = "a whole number from 1 to 1000";
         return bad(field("starts"), starts.to_string(), allowed);

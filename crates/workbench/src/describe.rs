@@ -1,7 +1,7 @@
 //! Descriptions of study files in words, for `check`.
 
 use retune_model::{Forcing, Measure, Source};
-use retune_optim::{Limit, Part, Response};
+use retune_optim::{Part, Response};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
 
 /// Describes a table of studies.
@@ -120,12 +120,12 @@ fn goal(study: &Study) -> Vec<String> {
         lines.push(format!("for the {words}, {how}"));
     }
     let limits = study.goal().limits;
-    let words: Vec<String> = Limit::ALL
-        .into_iter()
+    let words: Vec<String> = limits
+        .set()
         .filter_map(|limit| Some(format!("{limit} at most {} {}", short(limits.get(limit)?), limit.unit())))
         .collect();
     if !words.is_empty() {
-        let when = match limits.walls_from() {
+        let when = match limits.also().map(|also| also.from) {
             None => String::new(),
             Some(_) if steady => ", of the steady motion".to_owned(),
             Some(0.0) => ", over the whole run".to_owned(),

@@ -6,7 +6,7 @@ use crate::tune::objective::objective;
 use crate::{Error, Request};
 use input::Line;
 use rayon::prelude::*;
-use retune_optim::{Evaluation, Limit, PeakEnergy, Unusable, Variable};
+use retune_optim::{Evaluation, PeakEnergy, Unusable, Variable};
 use retune_study::Study;
 use serde_json::json;
 use std::io::{BufRead, ErrorKind, Write};
@@ -28,7 +28,7 @@ A line has at most 4096 bytes. The end of the input ends the program.
 
 With --json the answer is an object: {\"E1max\": 190.2, \"violation\": 0.02, \"stroke\": 0.153}. E1max is then given whether limits \
 are kept or not; violation is the sum of reached / limit - 1 over the limits that are broken, 0 if none is; then follows what is \
-reached of each limit that the study sets (stroke and cavity in m, force in N). Another quantity has its own name in the place of E1max. A line without a value is {\"error\": \"...\"}.
+reached of each quantity that the study limits, by its name (stroke and cavity in m, contact_force in N). Another quantity has its own name in the place of E1max. A line without a value is {\"error\": \"...\"}.
 
 An optimiser that takes constraints (SciPy's NonlinearConstraint, MATLAB's nonlcon, Optuna's constraints_func) makes E1max small \
 under violation <= 0. One that takes none, and has to find its way to designs that keep the limits, makes E1max small where violation \
@@ -170,8 +170,7 @@ fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> Stri
         (objective.goal().objective.quantity().name(), found.energy),
         ("violation", found.violation + 0.0),
     ];
-    let set = Limit::ALL.into_iter().filter(|limit| limits.get(*limit).is_some());
-    fields.extend(set.map(|limit| (limit.name(), found.reached.get(limit))));
+    fields.extend(limits.set().map(|limit| (limit.name(), found.reached.get(limit))));
     let fields: Vec<String> =
         fields.iter().map(|(name, value)| format!("\"{name}\": {}", json!(value))).collect();
     format!("{{{}}}", fields.join(", "))

@@ -52,6 +52,7 @@ pub mod evaluate;
 pub mod html;
 pub mod job;
 pub mod look;
+pub mod needs;
 pub mod observer;
 pub mod parts;
 pub mod request;

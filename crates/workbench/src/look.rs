@@ -24,6 +24,6 @@ pub fn look(study: &Study) -> Option<Evaluation> {
     // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
     let mut goal = study.goal();
     let least = Positive::new(f64::MIN_POSITIVE).ok();
-    goal.limits = Limits { stroke: least, force: least, cavity: None, from: goal.limits.from };
+    goal.limits = Limits { stroke: least, contact_force: least, from: goal.limits.from, ..Limits::default() };
     goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }

@@ -102,12 +102,6 @@ struct Walls<T> {
     obstacle: T,
 }
 
-impl<T> Walls<T> {
-    fn map<U>(self, of: impl Fn(T) -> U) -> Walls<U> {
-        Walls { primary: of(self.primary), obstacle: of(self.obstacle) }
-    }
-}
-
 #[derive(Clone, Copy, Debug, Serialize)]
 struct FinalState {
     x1: f64,
@@ -197,28 +191,6 @@ impl Summary {
         let forcing = self.parameters.forcing;
         let share = forcing.transmissibility(self.structure.x1max, self.structure.ground_force_max);
         share.is_finite().then_some(share)
-    }
-
-    /// The room and the strength that the damper needs, in words.
-    pub fn needs(&self) -> String {
-        let Walls { primary, obstacle } = self.force_max.map(|force| rounded(force, 4));
-        let stroke = rounded(self.spring_deflection_max, 4);
-        match self.scene {
-            SceneKind::Contact => format!(
-                "a stroke of {stroke} m, and walls for {primary} N on the structure and {obstacle} N on the obstacle (at \
-                 the worst frequency)"
-            ),
-            SceneKind::Linear | SceneKind::Bare => {
-                format!("a stroke of {stroke} m (at the worst frequency); it touches no wall")
-            }
-        }
-    }
-
-    /// The motion of the structure and its force on the ground, in words.
-    pub fn motion(&self) -> String {
-        let Structure { x1max, a1max, ground_force_max, .. } = &self.structure;
-        let [x1, a1, force] = [1e3 * x1max, *a1max, *ground_force_max].map(|value| rounded(value, 4));
-        format!("moves by {x1} mm, accelerates by {a1} m/s² and loads the ground with {force} N")
     }
 
     /// The largest displacement of the structure, m.

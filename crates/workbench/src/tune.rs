@@ -15,6 +15,7 @@ mod report;
 pub mod shard;
 pub(crate) mod surf;
 mod tmd;
+pub(crate) mod valley;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
@@ -171,7 +172,10 @@ fn search_and_write(
     let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let searched = Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over };
+    let valleys = valley::measure(study, search, &refined.best().minimum.x, results.journal());
+    results.journal().check()?;
+    let searched =
+        Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over, valleys };
     results.write_json(certify::FILE, &certificate)?;
     let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short())?;
     results.write_json(OPTIMUM, &optimum)?;

@@ -2,15 +2,13 @@
 
 use crate::parameter::Error;
 use crate::poincare::coupled;
-use retune_model::{Scene, Side};
-use retune_solver::observe::{
-    DisplacementRange, Magnitude, PrimaryEnergy, RunningMaximum, StructureMotion, TouchDownTimes,
-};
+use retune_model::{PerMeasure, Scene, Side};
+use retune_solver::observe::{LargestValues, TouchDownTimes};
 use retune_solver::{Follower, Motion, Phase, Settings};
 use std::f64::consts::TAU;
 
 /// The largest values and the impacts of a periodic motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
     /// empty if none.
@@ -19,6 +17,12 @@ pub struct Seen {
     pub e1_max: f64,
     /// Largest displacement of the structure, m.
     pub displacement: f64,
+    /// Largest velocity of the structure, m/s.
+    pub velocity: f64,
+    /// Largest acceleration of the structure, m/s².
+    pub acceleration: f64,
+    /// Largest force on the ground, N.
+    pub ground_force: f64,
     /// The stroke, m.
     pub stroke: f64,
     /// Largest contact force, N.
@@ -34,22 +38,16 @@ pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 
     let system = coupled(scene)?;
     let share = periods as f64 * TAU / system.bare().frequency() / states.len() as f64;
     let mut follower = Follower::new(&system, settings, share);
-    let energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
-    let size = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
-    let range = DisplacementRange::new(&system, 0.0, f64::INFINITY);
-    let mut all = ((energy, size), (range, TouchDownTimes::default()));
+    let mut all = (LargestValues::new(&system, PerMeasure::EVERY), TouchDownTimes::default());
     for (k, &y) in states.iter().enumerate() {
         let start = Motion { t: k as f64 * share, y, phase: Phase::of(&system, &y) };
         follower.propagate(start, (k + 1) as f64 * share, &mut all)?;
     }
-    let ((energy, size), (range, touches)) = all;
-    Ok(Seen {
-        impacts: turned(touches.0.iter().map(|(_, side)| *side)),
-        e1_max: energy.record().value,
-        displacement: size.record().value,
-        stroke: range.stroke().value.max(0.0),
-        force: range.force().value.max(0.0),
-    })
+    let (values, touches) = all;
+    let PerMeasure([e1_max, displacement, velocity, acceleration, ground_force, stroke, force]) =
+        values.values();
+    let impacts = turned(touches.0.iter().map(|(_, side)| *side));
+    Ok(Seen { impacts, e1_max, displacement, velocity, acceleration, ground_force, stroke, force })
 }
 
 /// The impacts in turn, from where they read first in the alphabet.

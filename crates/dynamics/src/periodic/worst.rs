@@ -39,14 +39,16 @@ pub struct Motions {
     pub irregular: Vec<(Interval, f64)>,
 }
 
-/// How a motion has a quantity; none of what motions are not watched for.
-pub fn quantity(measure: Measure) -> Option<fn(&Seen) -> f64> {
+/// How a motion has a quantity.
+pub fn quantity(measure: Measure) -> fn(&Seen) -> f64 {
     match measure {
-        Measure::Energy => Some(|seen| seen.e1_max),
-        Measure::Displacement => Some(|seen| seen.displacement),
-        Measure::Stroke => Some(|seen| seen.stroke),
-        Measure::ContactForce => Some(|seen| seen.force),
-        Measure::Velocity | Measure::Acceleration | Measure::GroundForce => None,
+        Measure::Energy => |seen| seen.e1_max,
+        Measure::Displacement => |seen| seen.displacement,
+        Measure::Velocity => |seen| seen.velocity,
+        Measure::Acceleration => |seen| seen.acceleration,
+        Measure::GroundForce => |seen| seen.ground_force,
+        Measure::Stroke => |seen| seen.stroke,
+        Measure::ContactForce => |seen| seen.force,
     }
 }
 

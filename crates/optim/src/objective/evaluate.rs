@@ -7,12 +7,12 @@
 use super::band::{Band, all_worst_over};
 use super::ensemble::SLACK;
 use super::evaluation::{Evaluation, Place, Run};
-use super::limits::{INFEASIBLE, Limit, Limits, ranked};
+use super::limits::{INFEASIBLE, Limits, PerLimit, ranked};
 use super::spec::{Goal, Response, Stiffnesses};
 use super::unusable::Unusable;
-use super::watch::{FREE, GoesOn, Hooks, Largest, Numbered, Seen, Watch};
+use super::watch::{FREE, GoesOn, Hooks, Largest, Numbered, Seen, Watch, Watched};
 use crate::chunks::in_groups;
-use retune_model::{NonNegative, Scene};
+use retune_model::{NonNegative, PerMeasure, Scene};
 use retune_solver::Settings;
 use std::sync::PoisonError;
 
@@ -61,12 +61,13 @@ impl Goal {
         hooks: Hooks<'_>,
     ) -> Result<Evaluation, Unusable> {
         let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
-        let mut watch = Watch::new(self, scene, settings, hooks);
-        let seen = watch.seen.get_mut().unwrap_or_else(PoisonError::into_inner);
-        seen.reached.set(Limit::Cavity, cavity);
-        let reached = seen.reached;
+        let watch = Watch::new(self, scene, settings, Watched::limits(&self.limits), hooks);
+        let with_cavity = |PerMeasure(reached): PerMeasure<f64>| {
+            PerLimit(std::array::from_fn(|i| reached.get(i).copied().unwrap_or(cavity)))
+        };
         // A cavity above its limit makes the design infeasible without any run.
-        let energy = if cutoff < INFEASIBLE && self.limits.violation(&reached) > 0.0 {
+        let too_wide = self.limits.violation(&with_cavity(PerMeasure::default())) > 0.0;
+        let energy = if cutoff < INFEASIBLE && too_wide {
             f64::INFINITY
         } else {
             let cutoff = if cutoff < INFEASIBLE { cutoff } else { f64::INFINITY };
@@ -74,6 +75,7 @@ impl Goal {
         };
         let Seen { reached, worst, runs, unsettled } =
             watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let reached = with_cavity(reached);
         let violation = self.limits.violation(&reached);
         Ok(Evaluation {
             value: ranked(energy, violation),
@@ -96,13 +98,14 @@ impl Goal {
         goes_on: GoesOn<'_>,
     ) -> Result<Place, Unusable> {
         let free = Self { limits: Limits::default(), ..self.clone() };
-        let watch = Watch::new(&free, scene, settings, Hooks { goes_on, ..FREE });
+        let watched = Watched::limits(&free.limits);
+        let watch = Watch::new(&free, scene, settings, watched, Hooks { goes_on, ..FREE });
         watch.over_k1(scene, phase, term, f64::INFINITY)?;
         Ok(watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
     }
 
     /// The weighted sum, in the unit of the quantity.
-    fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
+    pub(super) fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
         if self.objective.sum.is_empty() {
             return watch.term(scene, (0, &self.objective), cutoff); // the common case, without an allocation
         }
@@ -147,7 +150,7 @@ impl Watch<'_> {
                 let k1 = |i: usize| set.get(i).map_or(own, |k1| k1.get());
                 let results = in_groups(set.len(), 1, |i, _| at(k1(i)), above);
                 let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
-                results.into_iter().try_fold([0.0; 3], |worst, more| Ok(larger(worst, more?)))
+                results.into_iter().try_fold([0.0; 8], |worst, more| Ok(larger(worst, more?)))
             }
         }
     }
@@ -178,15 +181,14 @@ impl Watch<'_> {
         }
     }
 
-    /// The largest of each over a band. Peaks of stroke and force are searched only where they could break a limit.
+    /// The largest of each over a band. Peaks of what is watched beside the quantity are searched only where they matter.
     fn worst_over(
         &self,
         band: &Band,
         at: impl Fn(f64) -> Result<Largest, Unusable> + Sync,
         cutoff: f64,
     ) -> Result<Largest, Unusable> {
-        let beyond = |limit| Some(self.limits.get(limit).unwrap_or(f64::INFINITY));
-        let limits = [None, beyond(Limit::Stroke), beyond(Limit::Force)];
+        let limits = std::array::from_fn(|i| i.checked_sub(1).map(|measure| self.watched.matters.0[measure]));
         Ok(all_worst_over(band, at, cutoff, limits, self.peaks)?.map(|worst| worst.value))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::limits::PerLimit;
 use super::spec::Goal;
-use retune_model::Scene;
+use retune_model::{PerMeasure, Scene};
 
 /// The run with the largest quantity among those behind a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,8 @@ pub struct Place {
 pub struct Run {
     /// What it is of.
     pub place: Place,
-    /// Its quantity, its stroke (m) and its largest contact force (N); the latter are 0 if no limit needs them.
-    pub reached: [f64; 3],
+    /// The largest values that it was watched for; 0 of others.
+    pub reached: PerMeasure<f64>,
 }
 
 /// The value of a design and the quantities behind it.
@@ -35,7 +35,7 @@ pub struct Evaluation {
     pub energy: f64,
     /// Total violation of the limits; see [`crate::Limits::violation`].
     pub violation: f64,
-    /// The largest stroke and force from [`crate::Limits::from`] on, and the cavity; stroke and force are 0 if no limit needs them.
+    /// The largest values from [`crate::Limits::from`] on, and the cavity; those of runs are 0 if no limit needs them.
     pub reached: PerLimit<f64>,
     /// The worst run.
     pub worst: Place,

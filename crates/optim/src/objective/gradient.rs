@@ -76,8 +76,7 @@ impl Slopes<'_> {
                 continue;
             };
             let by = match limit {
-                Limit::Stroke => self.largest(Measure::Stroke)?,
-                Limit::Force => self.largest(Measure::ContactForce)?,
+                Limit::Of(measure) => self.largest(measure)?,
                 Limit::Cavity => self.variables.iter().map(|by| widens(*by)).collect(),
             };
             add(&mut sum, INFEASIBLE / allowed, &by);
@@ -95,7 +94,7 @@ impl Slopes<'_> {
                 term.response = Response::Window;
             }
         });
-        let from = self.goal.limits.walls_from().unwrap_or(0.0);
+        let from = self.goal.limits.also().map_or(0.0, |also| also.from);
         let window = Window { from, ..self.goal.window };
         let goal = Goal { objective, ..window.into() };
         let mut worst: Option<(Member, &Objective)> = None;

@@ -5,31 +5,36 @@
 //! breaks them by less in total is better. They are written as one number, [`ranked`], so that every search follows them
 //! without knowing of them.
 
-use retune_model::{NonNegative, Positive, Variable};
+use retune_model::{Measure, NonNegative, PerMeasure, Positive, Variable};
+use retune_solver::Also;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// A quantity that a limit may be set on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Limit {
-    /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
-    Stroke,
-    /// Largest contact force on either wall, N.
-    Force,
+    /// The largest value of a measure in any run.
+    Of(Measure),
     /// `D + C`, m.
     Cavity,
 }
 
 impl Limit {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Stroke, Self::Force, Self::Cavity];
+    pub const ALL: [Self; 8] = {
+        let mut all = [Self::Cavity; 8];
+        let mut i = 0;
+        while i < Measure::ALL.len() {
+            all[i] = Self::Of(Measure::ALL[i]);
+            i += 1;
+        }
+        all
+    };
 
     /// Its name in studies.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Stroke => "stroke",
-            Self::Force => "force",
+            Self::Of(measure) => measure.name(),
             Self::Cavity => "cavity",
         }
     }
@@ -37,9 +42,23 @@ impl Limit {
     /// The SI unit.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Force => "N",
-            Self::Stroke | Self::Cavity => "m",
+            Self::Of(measure) => measure.unit(),
+            Self::Cavity => "m",
         }
+    }
+
+    /// Its place in [`Self::ALL`].
+    const fn place(self) -> usize {
+        match self {
+            Self::Of(measure) => measure as usize,
+            Self::Cavity => Measure::ALL.len(),
+        }
+    }
+}
+
+impl Serialize for Limit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 
@@ -51,17 +70,24 @@ impl std::fmt::Display for Limit {
 
 /// A value for each [`Limit`]: what is allowed, or what was reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PerLimit<T>(pub [T; 3]);
+pub struct PerLimit<T>(pub [T; 8]);
 
 impl<T: Copy> PerLimit<T> {
     /// The value for `limit`.
     pub fn get(&self, limit: Limit) -> T {
-        self.0[limit as usize]
+        self.0[limit.place()]
     }
 
     /// Sets the value for `limit`.
     pub fn set(&mut self, limit: Limit, value: T) {
-        self.0[limit as usize] = value;
+        self.0[limit.place()] = value;
+    }
+}
+
+impl PerLimit<f64> {
+    /// What was reached of each measure; the cavity has none.
+    pub fn measures(&self) -> PerMeasure<f64> {
+        PerMeasure(Measure::ALL.map(|measure| self.get(Limit::Of(measure))))
     }
 }
 
@@ -71,12 +97,27 @@ impl<T: Copy> PerLimit<T> {
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "LimitsGiven")]
 pub struct Limits {
+    /// E1max, the largest energy of the structure in any run of the objective, J.
+    #[serde(rename = "E1max", skip_serializing_if = "Option::is_none")]
+    pub e1_max: Option<Positive>,
+    /// Largest displacement |x1| of the structure in any run of the objective, m.
+    #[serde(rename = "x1max", skip_serializing_if = "Option::is_none")]
+    pub x1_max: Option<Positive>,
+    /// Largest velocity |v1| of the structure in any run of the objective, m/s.
+    #[serde(rename = "v1max", skip_serializing_if = "Option::is_none")]
+    pub v1_max: Option<Positive>,
+    /// Largest acceleration |a1| of the structure in any run of the objective, m/s².
+    #[serde(rename = "a1max", skip_serializing_if = "Option::is_none")]
+    pub a1_max: Option<Positive>,
+    /// Largest force transmitted to the ground, |k1 x1 + c1 v1|, in any run of the objective, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ground_force: Option<Positive>,
     /// The stroke: largest spring deflection |x2 - x1 - D| in any run of the objective, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stroke: Option<Positive>,
     /// Largest contact force on either wall in any run of the objective, N.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<Positive>,
+    pub contact_force: Option<Positive>,
     /// Largest D + C, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cavity: Option<Positive>,
@@ -96,16 +137,27 @@ pub const ACTIVE: f64 = 0.01;
 impl Limits {
     /// The largest value allowed of a quantity.
     pub fn get(&self, limit: Limit) -> Option<f64> {
-        let Self { stroke, force, cavity, .. } = self;
-        [stroke, force, cavity][limit as usize].map(Positive::get)
+        { *self }.field(limit).map(Positive::get)
     }
 
     /// The same limits with another one.
     #[must_use]
     pub fn with(mut self, limit: Limit, most: Positive) -> Self {
-        let Self { stroke, force, cavity, .. } = &mut self;
-        *[stroke, force, cavity][limit as usize] = Some(most);
+        *self.field(limit) = Some(most);
         self
+    }
+
+    fn field(&mut self, limit: Limit) -> &mut Option<Positive> {
+        match limit {
+            Limit::Of(Measure::Energy) => &mut self.e1_max,
+            Limit::Of(Measure::Displacement) => &mut self.x1_max,
+            Limit::Of(Measure::Velocity) => &mut self.v1_max,
+            Limit::Of(Measure::Acceleration) => &mut self.a1_max,
+            Limit::Of(Measure::GroundForce) => &mut self.ground_force,
+            Limit::Of(Measure::Stroke) => &mut self.stroke,
+            Limit::Of(Measure::ContactForce) => &mut self.contact_force,
+            Limit::Cavity => &mut self.cavity,
+        }
     }
 
     /// Whether none is given, nor from when on.
@@ -113,15 +165,23 @@ impl Limits {
         *self == Self::default()
     }
 
-    /// Whether no limit is set.
-    pub fn is_empty(&self) -> bool {
-        Limit::ALL.into_iter().all(|limit| self.get(limit).is_none())
+    /// The quantities that a limit is set on.
+    pub fn set(&self) -> impl Iterator<Item = Limit> {
+        let limits = *self;
+        Limit::ALL.into_iter().filter(move |limit| limits.get(*limit).is_some())
     }
 
-    /// From when on a run must be watched for its stroke and its forces, s; `None` where no limit asks for them.
-    pub fn walls_from(&self) -> Option<f64> {
-        (self.get(Limit::Stroke).is_some() || self.get(Limit::Force).is_some())
-            .then(|| self.from.map_or(0.0, NonNegative::get))
+    /// Whether no limit is set.
+    pub fn is_empty(&self) -> bool {
+        self.set().next().is_none()
+    }
+
+    /// What a run must be watched for, and from when on; `None` where no limit asks for anything of a run.
+    pub fn also(&self) -> Option<Also> {
+        let limited = |measure: &Measure| self.get(Limit::Of(*measure)).is_some();
+        let measures: PerMeasure<bool> = Measure::ALL.into_iter().filter(limited).collect();
+        let from = self.from.map_or(0.0, NonNegative::get);
+        (measures != PerMeasure::default()).then_some(Also { measures, from })
     }
 
     /// By how much the limits are broken: the sum of `reached / limit - 1` over those that are; 0 for a feasible design.

@@ -4,15 +4,15 @@ use super::spec::{Objective, STARTS};
 use super::unusable::Unusable;
 use retune_dynamics::periodic::branches::Plan;
 use retune_dynamics::periodic::worst::{motions, quantity};
-use retune_model::{Measure, Parameter, Scene};
+use retune_model::{Measure, Parameter, PerMeasure, Scene, Worst};
 use retune_solver::Settings;
 
 /// What was found.
 pub(super) struct Found {
-    /// Where the quantity is largest, rad/s.
-    pub at: f64,
-    /// The largest quantity, stroke (m) and contact force (N).
-    pub largest: [f64; 3],
+    /// The largest value of the quantity, and where, rad/s.
+    pub largest: Worst,
+    /// Those of the measures that were asked for beside it.
+    pub also: Vec<(Measure, Worst)>,
     /// Whether stable periodic motions are known in the whole band.
     pub settled: bool,
 }
@@ -22,15 +22,19 @@ pub(super) fn largest_motion(
     scene: &Scene,
     (from, to, samples): (f64, f64, usize),
     term: &Objective,
+    also: PerMeasure<bool>,
     settings: &Settings,
 ) -> Result<Found, Unusable> {
     let starts = term.starts.unwrap_or(STARTS);
     let plan = Plan { samples, starts, looks: 1, ..Plan::over(Parameter::Omega, [from, to]) };
-    let kinds = [term.quantity, Measure::Stroke, Measure::ContactForce];
-    // A study refuses other quantities for this response.
-    let kinds = kinds.map(|kind| quantity(kind).unwrap_or(|seen| seen.e1_max));
+    let measures: Vec<Measure> = [term.quantity].into_iter().chain(also.chosen()).collect();
+    let kinds: Vec<_> = measures.iter().map(|measure| quantity(*measure)).collect();
     let found = motions(scene, plan, settings, &kinds)?;
-    let value = |i: usize| found.largest.get(i).and_then(Option::as_ref).map_or(0.0, |largest| largest.value);
-    let at = found.largest.first().and_then(Option::as_ref).map_or(from, |largest| largest.at);
-    Ok(Found { at, largest: [0, 1, 2].map(value), settled: found.irregular.is_empty() })
+    let mut worst = found.largest.iter().map(|largest| match largest {
+        Some(largest) => Worst { value: largest.value, frequency: largest.at },
+        None => Worst { value: 0.0, frequency: from },
+    });
+    let largest = worst.next().unwrap_or(Worst { value: 0.0, frequency: from });
+    let also = measures.into_iter().skip(1).zip(worst).collect();
+    Ok(Found { largest, also, settled: found.irregular.is_empty() })
 }

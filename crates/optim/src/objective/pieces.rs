@@ -38,16 +38,21 @@ impl Goal {
         variables: &[Variable],
     ) -> Vec<Piece> {
         let by: Vec<Parameter> = variables.iter().map(|&variable| variable.into()).collect();
-        let walls = Window { from: self.limits.walls_from().unwrap_or(0.0), to: self.window.to };
-        let kinds = [
-            (0, self.objective.quantity(), self.window, None),
-            (1, Measure::Stroke, walls, self.limits.get(Limit::Stroke)),
-            (2, Measure::ContactForce, walls, self.limits.get(Limit::Force)),
-        ];
-        let asked = kinds.into_iter().filter(|(number, .., limit)| *number == 0 || limit.is_some());
-        let peaks: Vec<_> =
-            asked.flat_map(|kind| peaks(runs, kind.0).into_iter().map(move |run| (kind, run))).collect();
-        let piece = |&((_, measure, window, limit), run): &((usize, Measure, Window, Option<f64>), &Run)| {
+        let also = self.limits.also();
+        let whole = Window { from: also.map_or(0.0, |also| also.from), to: self.window.to };
+        let limited = also.into_iter().flat_map(|also| also.measures.chosen());
+        let limited = limited.map(|measure| (measure, whole, self.limits.get(Limit::Of(measure))));
+        let kinds = [(self.objective.quantity(), self.window, None)].into_iter().chain(limited);
+        let peaks: Vec<_> = kinds
+            .flat_map(|kind @ (measure, _, limit)| {
+                let value = |run: &Run| match limit {
+                    None => run.place.largest,
+                    Some(_) => run.reached.get(measure),
+                };
+                peaks(runs, value).into_iter().map(move |run| (kind, run))
+            })
+            .collect();
+        let piece = |&((measure, window, limit), run): &((Measure, Window, Option<f64>), &Run)| {
             let Place { scene: Scene { primary, forcing, damper: Some(damper) }, .. } = &run.place else {
                 return Vec::new();
             };
@@ -89,23 +94,23 @@ impl Goal {
 }
 
 /// The highest peaks of a quantity over the frequencies at each stiffness, highest first.
-fn peaks(runs: &[Run], quantity: usize) -> Vec<&Run> {
+fn peaks(runs: &[Run], value: impl Fn(&Run) -> f64) -> Vec<&Run> {
     let key = |run: &Run| [run.place.scene.primary.stiffness.get(), run.place.scene.forcing.frequency.get()];
     let mut order: Vec<&Run> = runs.iter().collect();
     order.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
     let beside = |i: Option<usize>, run: &Run| {
         let other = i.and_then(|i| order.get(i)).filter(|other| key(other)[0] == key(run)[0]);
-        other.map_or(f64::NEG_INFINITY, |other| other.reached[quantity])
+        other.map_or(f64::NEG_INFINITY, |other| value(other))
     };
     let is_peak = |&(i, run): &(usize, &&Run)| {
-        let value = run.reached[quantity];
-        value > beside(i.checked_sub(1), run) && value >= beside(Some(i + 1), run)
+        let own = value(run);
+        own > beside(i.checked_sub(1), run) && own >= beside(Some(i + 1), run)
     };
     let mut peaks: Vec<&Run> = order.iter().enumerate().filter(is_peak).map(|(_, run)| *run).collect();
-    peaks.sort_by(|a, b| b.reached[quantity].total_cmp(&a.reached[quantity]));
-    let least = peaks.first().map_or(0.0, |run| HIGH * run.reached[quantity]);
+    peaks.sort_by(|a, b| value(b).total_cmp(&value(a)));
+    let least = peaks.first().map_or(0.0, |run| HIGH * value(run));
     let mut high: Vec<&Run> = Vec::new();
-    for run in peaks.into_iter().take_while(|run| run.reached[quantity] >= least) {
+    for run in peaks.into_iter().take_while(|run| value(run) >= least) {
         let [k1, omega] = key(run);
         let is_known = |other: &&Run| key(other)[0] == k1 && (key(other)[1] / omega - 1.0).abs() < APART;
         if high.len() < MOST && !high.iter().any(is_known) {

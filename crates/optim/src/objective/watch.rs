@@ -1,12 +1,12 @@
 //! The runs behind a value: each is made, and what it reaches is kept.
 
 use super::evaluation::{Place, Run};
-use super::limits::{Limit, Limits, PerLimit};
+use super::limits::{Limit, Limits};
 use super::motions::{Found, largest_motion};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
-use retune_model::{Bare, Coupled, NonNegative, Scene, Worst};
-use retune_solver::{Ask, Settings, Window, extremes, settled};
+use retune_model::{Bare, Coupled, Measure, NonNegative, PerMeasure, Scene, Worst};
+use retune_solver::{Also, Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
 /// Whether an evaluation goes on.
@@ -24,17 +24,34 @@ pub(super) const FREE: Hooks<'static> = Hooks { goes_on: &|| true, keep: &|_| ()
 
 /// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 pub(super) struct Seen {
-    pub reached: PerLimit<f64>,
+    pub reached: PerMeasure<f64>,
     pub worst: Place,
     pub runs: u64,
     pub unsettled: u64,
+}
+
+/// What runs are watched for beside the quantity, and of each measure the value from which on its peaks between samples matter.
+#[derive(Clone, Copy)]
+pub(super) struct Watched {
+    pub also: Option<Also>,
+    /// Whether they are watched for it in the part of the response alone that the objective looks at.
+    pub own: bool,
+    pub matters: PerMeasure<f64>,
+}
+
+impl Watched {
+    /// What limits need.
+    pub(super) fn limits(limits: &Limits) -> Self {
+        let matters = Measure::ALL.map(|measure| limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY));
+        Self { also: limits.also(), own: false, matters: PerMeasure(matters) }
+    }
 }
 
 /// The settings of a goal's runs, and the values that are kept of them.
 pub(super) struct Watch<'a> {
     pub settings: &'a Settings,
     window: Window,
-    pub limits: &'a Limits,
+    pub watched: Watched,
     pub peaks: bool,
     hooks: Hooks<'a>,
     pub seen: Mutex<Seen>,
@@ -43,14 +60,24 @@ pub(super) struct Watch<'a> {
 /// A term with its number.
 pub(super) type Numbered<'a> = (usize, &'a Objective);
 
-/// The largest quantity, stroke (m) and contact force (N) of some runs; all but the first are 0 if no limit needs them.
-pub(super) type Largest = [f64; 3];
+/// The largest quantity of some runs, and their largest value of each measure; 0 of those that they are not watched for.
+pub(super) type Largest = [f64; 8];
+
+fn largest_of(quantity: f64, PerMeasure(reached): PerMeasure<f64>) -> Largest {
+    std::array::from_fn(|i| if i == 0 { quantity } else { reached[i - 1] })
+}
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(goal: &'a Goal, scene: &Scene, settings: &'a Settings, hooks: Hooks<'a>) -> Self {
+    pub(super) fn new(
+        goal: &'a Goal,
+        scene: &Scene,
+        settings: &'a Settings,
+        watched: Watched,
+        hooks: Hooks<'a>,
+    ) -> Self {
         let worst = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
-        let seen = Mutex::new(Seen { reached: PerLimit::default(), worst, runs: 0, unsettled: 0 });
-        Self { settings, window: goal.window, limits: &goal.limits, peaks: goal.peaks, hooks, seen }
+        let seen = Mutex::new(Seen { reached: PerMeasure::default(), worst, runs: 0, unsettled: 0 });
+        Self { settings, window: goal.window, watched, peaks: goal.peaks, hooks, seen }
     }
 
     pub(super) fn run(
@@ -66,7 +93,10 @@ impl<'a> Watch<'a> {
         if !(self.hooks.goes_on)() {
             return Err(Unusable::Stopped);
         }
-        let ask = Ask { measure: term.quantity, phase, walls: self.limits.walls_from(), cutoff };
+        let own_from = if term.response == Response::Settled { f64::INFINITY } else { self.window.from };
+        let from = |also: Also| if self.watched.own { own_from } else { also.from };
+        let also = self.watched.also.map(|also| Also { from: from(also), ..also });
+        let ask = Ask { measure: term.quantity, phase, also, cutoff };
         let found = match term.response {
             Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
             Response::Window => extremes(&scene, self.window, self.settings, ask)?,
@@ -74,8 +104,13 @@ impl<'a> Watch<'a> {
             Response::Motions => return self.motions(&scene, (omega, omega, 1), (number, term)),
         };
         let largest = found.largest.value;
-        self.see(Place { largest, scene, phase, term: number }, found.stroke, found.force, found.settled);
-        Ok([largest, found.stroke, found.force])
+        self.see(Place { largest, scene, phase, term: number }, found.reached, found.settled);
+        Ok(largest_of(largest, found.reached))
+    }
+
+    /// The measures that runs are watched for.
+    fn measures(&self) -> PerMeasure<bool> {
+        self.watched.also.map(|also| also.measures).unwrap_or_default()
     }
 
     /// The largest over all motions in a band of so many samples. The place is that of the largest, which may not be of a run from rest.
@@ -88,13 +123,9 @@ impl<'a> Watch<'a> {
         if scene.damper.is_none() {
             return self.steady(scene, [from, to], (number, term));
         }
-        let Found { at, largest: [largest, stroke, force], settled } =
-            largest_motion(scene, (from, to, samples), term, self.settings)?;
-        let mut scene = *scene;
-        scene.forcing.frequency = NonNegative::new(at).map_err(Unusable::Frequency)?;
-        let place = Place { largest, scene, phase: 0.0, term: number };
-        self.see(place, stroke, force, settled);
-        Ok([largest, stroke, force])
+        let Found { largest, also, settled } =
+            largest_motion(scene, (from, to, samples), term, self.measures(), self.settings)?;
+        self.see_each(scene, number, largest, &also, settled)
     }
 
     pub(super) fn steady(
@@ -104,35 +135,70 @@ impl<'a> Watch<'a> {
         (number, term): Numbered,
     ) -> Result<Largest, Unusable> {
         let Scene { primary, forcing, damper } = scene;
-        let (worst, stroke) = match damper {
-            None => (Bare::new(primary, forcing).steady_max(term.quantity, band), 0.0),
-            Some(damper) => {
-                let system = Coupled::new(primary, forcing, damper);
-                let Worst { value: stroke, frequency: omega } = system.steady_stroke_max(band);
-                let gaps = damper.rest_distance.get().min(damper.clearance.get());
-                let room = if damper.contact.is_some() { gaps } else { f64::INFINITY };
-                if stroke >= room {
-                    return Err(Unusable::Touches { omega, stroke, room });
-                }
-                (system.steady_max(term.quantity, band), stroke)
-            }
+        let bare = Bare::new(primary, forcing);
+        let coupled = damper.map(|damper| (Coupled::new(primary, forcing, &damper), damper));
+        let max = |measure| match &coupled {
+            None => bare.steady_max(measure, band),
+            Some((system, _)) => system.steady_max(measure, band),
         };
-        let mut scene = *scene;
-        scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
-        let place = Place { largest: worst.value, scene, phase: 0.0, term: number };
-        self.see(place, stroke, 0.0, true);
-        Ok([worst.value, stroke, 0.0])
+        // The force on a moving ground has no closed form over a band.
+        let closed = |measure: &Measure| *measure != Measure::GroundForce || !bare.is_on_moving_base();
+        let chosen = self.measures().chosen().filter(closed);
+        let mut also: Vec<_> = chosen.map(|measure| (measure, max(measure))).collect();
+        if let Some((system, damper)) = &coupled {
+            let worst = system.steady_stroke_max(band);
+            let Worst { value: stroke, frequency: omega } = worst;
+            let gaps = damper.rest_distance.get().min(damper.clearance.get());
+            let room = if damper.contact.is_some() { gaps } else { f64::INFINITY };
+            if stroke >= room {
+                return Err(Unusable::Touches { omega, stroke, room });
+            }
+            if !self.measures().get(Measure::Stroke) {
+                also.push((Measure::Stroke, worst));
+            }
+        }
+        self.see_each(scene, number, max(term.quantity), &also, true)
     }
 
-    fn see(&self, place: Place, stroke: f64, force: f64, settled: bool) {
-        (self.hooks.keep)(Run { place, reached: [place.largest, stroke, force] });
+    /// The largest values of one evaluation over a band, each at a frequency of its own, as those of a run there; one run counts.
+    fn see_each(
+        &self,
+        scene: &Scene,
+        term: usize,
+        quantity: Worst,
+        also: &[(Measure, Worst)],
+        settled: bool,
+    ) -> Result<Largest, Unusable> {
+        let at = |worst: &Worst| -> Result<Scene, Unusable> {
+            let mut scene = *scene;
+            scene.forcing.frequency = NonNegative::new(worst.frequency).map_err(Unusable::Frequency)?;
+            Ok(scene)
+        };
+        let mut all = PerMeasure::default();
+        for (measure, worst) in also {
+            let mut reached = PerMeasure::default();
+            reached.set(*measure, worst.value);
+            all.set(*measure, worst.value);
+            // What the quantity is there is not known, and it is not the largest.
+            let place = Place { largest: f64::NEG_INFINITY, scene: at(worst)?, phase: 0.0, term };
+            (self.hooks.keep)(Run { place, reached });
+        }
+        let place = Place { largest: quantity.value, scene: at(&quantity)?, phase: 0.0, term };
+        (self.hooks.keep)(Run { place, reached: PerMeasure::default() });
+        self.count(place, all, settled);
+        Ok(largest_of(quantity.value, all))
+    }
+
+    fn see(&self, place: Place, reached: PerMeasure<f64>, settled: bool) {
+        (self.hooks.keep)(Run { place, reached });
+        self.count(place, reached, settled);
+    }
+
+    fn count(&self, place: Place, reached: PerMeasure<f64>, settled: bool) {
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         seen.runs += 1;
         seen.unsettled += u64::from(!settled);
-        for (limit, value) in [(Limit::Stroke, stroke), (Limit::Force, force)] {
-            let largest = seen.reached.get(limit).max(value);
-            seen.reached.set(limit, largest);
-        }
+        seen.reached = seen.reached.max(reached);
         let key = |place: &Place| {
             let Scene { primary, forcing, .. } = place.scene;
             [-place.largest, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]

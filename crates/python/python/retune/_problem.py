@@ -35,7 +35,7 @@ class Evaluation:
     largest: float
     #: Largest spring deflection, m, and contact force, N; NaN where no limit asks for them.
     stroke: float
-    force: float
+    contact_force: float
     #: The sum of reached / limit - 1 over the limits that are broken; 0 if none is.
     violation: float
     #: The frequency of the worst run, rad/s.
@@ -48,7 +48,7 @@ class Evaluation:
         return [
             [self.quantity, self.largest, self.unit],
             ["stroke", self.stroke, "m"],
-            ["force", self.force, "N"],
+            ["contact_force", self.contact_force, "N"],
             ["violation", self.violation, ""],
             ["omega_worst", self.omega_worst, "rad/s"],
         ]
@@ -76,7 +76,8 @@ class Problem(_core.Core):
     - ``vary`` names the tuned parameters, of k2, c2, D, C and m2; ``bounds`` gives each its smallest and largest value.
     - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
       "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
-    - ``limits`` has largest allowed values of ``stroke`` (m), ``force`` (N) and ``cavity`` (m), and ``from`` (s).
+    - ``limits`` has largest allowed values of ``E1max``, ``x1max``, ``v1max``, ``a1max``, ``ground_force``, ``stroke``, ``contact_force``
+      and ``cavity`` (SI units), and ``from`` (s).
     - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are
       integrated, with the fields of study files.
     """
@@ -169,13 +170,13 @@ class Problem(_core.Core):
     def batch(self, X: ArrayLike, threads: int | None = None) -> Table:
         """The values of ``n`` designs, the rows of ``X`` (n, d), on all cores, or on ``threads``; the numbers do not depend on that.
 
-        Returns columns: ``value`` as of ``problem(x)``, the quantity (``E1max``, J), ``stroke`` (m) and ``force`` (N), NaN where no limit
+        Returns columns: ``value`` as of ``problem(x)``, the quantity (``E1max``, J), ``stroke`` (m) and ``contact_force`` (N), NaN where no limit
         asks for them, ``violation``, ``omega_worst`` (rad/s). A row without a value has an infinite ``value`` and NaN elsewhere;
         ``errors`` has its exception.
         """
         columns, errors = self._batch(X, threads)
         quantity, unit = self.quantity
-        return Table(columns, {"value": unit, quantity: unit, "stroke": "m", "force": "N", "omega_worst": "rad/s"}, dict(errors))
+        return Table(columns, {"value": unit, quantity: unit, "stroke": "m", "contact_force": "N", "omega_worst": "rad/s"}, dict(errors))
 
     def simulate(self, x: ArrayLike | None = None, *, interval: float = 0.005, **changes: float) -> Run:
         """One run, of a design or of the study's own: its motion every ``interval`` seconds of the window, contacts, largest values.

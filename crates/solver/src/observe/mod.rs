@@ -3,16 +3,19 @@
 //! A method hands its motion over segment by segment, and nothing else is stored on the way, so a run allocates nothing. Read
 //! `observer` (the contract, and how observers compose), then `quantity` and `running_maximum` (E1max and its like), and for its
 //! proof `search` and `quintic`. `structure` has the quantities of the structure's motion, `magnitude` the largest size of a quantity
-//! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces.
+//! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces; `largest_values` has any of the
+//! measures, `since` a part of a run.
 
 pub mod counters;
 pub mod displacement_range;
+pub mod largest_values;
 pub mod magnitude;
 pub mod observer;
 pub mod quantity;
 mod quintic;
 pub mod running_maximum;
 mod search;
+pub mod since;
 pub mod structure;
 
 // For callers of the crate; inside it every file names the file that it means.
@@ -21,6 +24,7 @@ pub use crate::motion::knot::Knot;
 pub use crate::motion::segment::Segment;
 pub use counters::{TouchDownTimes, TouchDowns};
 pub use displacement_range::DisplacementRange;
+pub use largest_values::LargestValues;
 pub use magnitude::Magnitude;
 pub use observer::{MOST_KNOTS, Observer, Path, Unobserved};
 pub use quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};

@@ -1,13 +1,13 @@
 //! A run in blocks of some periods of the force.
 
-use crate::extremes::{Ask, Extremes, Maxima, maxima, read};
+use crate::extremes::{Also, Ask, Extremes, Maxima, maxima, read};
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Path};
 use crate::recurrence::section::PoincareSection;
 use crate::recurrence::test::{Recurrence, Settle};
 use crate::settings::Settings;
-use retune_model::Coupled;
+use retune_model::{Coupled, PerMeasure};
 use std::f64::consts::TAU;
 
 /// The extremes of one block after another, until the motion has settled. A segment belongs to the block in which it begins.
@@ -21,15 +21,15 @@ pub struct Blocks<'a> {
     periods: u32,
     /// Blocks that begin at this time or later count even if the motion does not settle, s.
     from: f64,
-    /// Stroke and force count for blocks that end after this time, s; `None` if they are not asked for.
-    walls_from: Option<f64>,
+    /// What is asked for beside counts for blocks that end after this time, s; `None` if nothing is.
+    beside_from: Option<f64>,
     section: PoincareSection,
     recurrence: Recurrence<'a>,
     now: Maxima<'a>,
     /// Blocks that are finished.
     done: u32,
-    /// Largest stroke and force of the blocks that count.
-    walls: [f64; 2],
+    /// The largest values, of what is asked for beside, of the blocks that count.
+    beside: PerMeasure<f64>,
     /// The last block of a motion that has settled.
     settled: Option<Extremes>,
     /// The extremes while the motion has not settled, and whether they are those of blocks that count.
@@ -40,20 +40,21 @@ impl<'a> Blocks<'a> {
     /// Blocks from t = 0 on; those that begin at `from` (s) or later count even if the motion does not settle.
     pub fn new(system: &'a Coupled, from: f64, settle: Settle, settings: &Settings, ask: Ask) -> Self {
         let period = TAU / system.bare().frequency();
-        let walls_from = ask.walls;
-        let ask = Ask { walls: ask.walls.map(|_| 0.0), cutoff: f64::INFINITY, ..ask };
+        let beside_from = ask.also.map(|also| also.from);
+        let also = ask.also.map(|also| Also { from: 0.0, ..also });
+        let ask = Ask { also, cutoff: f64::INFINITY, ..ask };
         Self {
             system,
             ask,
             period,
             periods: settle.periods,
             from,
-            walls_from,
+            beside_from,
             section: PoincareSection::new(period, settle.periods as usize * settle.blocks as usize),
             recurrence: Recurrence::new(system, settle, settings),
             now: maxima(system, ask),
             done: 0,
-            walls: [0.0; 2],
+            beside: PerMeasure::default(),
             settled: None,
             unsettled: None,
         }
@@ -85,8 +86,8 @@ impl<'a> Blocks<'a> {
             Some((_, false)) | None => Some((block, counts)),
         };
         self.done += 1;
-        if self.walls_from.is_some_and(|from| self.begin(self.done) > from) {
-            self.walls = [self.walls[0].max(block.stroke), self.walls[1].max(block.force)];
+        if self.beside_from.is_some_and(|from| self.begin(self.done) > from) {
+            self.beside = self.beside.max(block.reached);
         }
     }
 
@@ -104,8 +105,7 @@ impl<'a> Blocks<'a> {
                 Extremes { settled: false, ..all }
             }
         };
-        let [stroke, force] = self.walls;
-        Extremes { stroke: stroke.max(found.stroke), force: force.max(found.force), ..found }
+        Extremes { reached: self.beside.max(found.reached), ..found }
     }
 }
 

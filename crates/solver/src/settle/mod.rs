@@ -6,22 +6,22 @@ mod blocks;
 
 use crate::energy_bound;
 use crate::error::SolverError;
-use crate::extremes::{Ask, Extremes};
+use crate::extremes::{Ask, Extremes, bare_values};
 use crate::hybrid::contact_free::clears_walls;
-use crate::observe::displacement_range::DisplacementRange;
+use crate::observe::largest_values::LargestValues;
 use crate::observe::observer::Unobserved;
 use crate::recurrence::test::Settle;
 use crate::response::Extreme;
 use crate::run::follow_coupled;
 use crate::settings::{Method, Settings, Window};
 use blocks::Blocks;
-use retune_model::{Bare, Coupled, Scene, Steady};
+use retune_model::{Bare, Coupled, PerMeasure, Scene, Steady};
 
 /// The largest value of [`Ask::measure`] once the motion has settled: over the last of the first blocks, counted from t = 0, that agree as `settle`
 /// says. A scene whose damper provably stays off both walls is answered in closed form.
 ///
-/// Stroke and force are the largest from the block that contains the time [`Ask::walls`] on; those of the settled motion always
-/// count.
+/// What is asked for beside is the largest from the block that contains the time of [`Ask::also`] on; that of the settled motion always
+/// counts.
 ///
 /// [`Extremes::settled`] is false for a motion that has not settled by the end of `window`; its value is then that of all blocks
 /// that begin in the window (of the last block, if none does).
@@ -38,24 +38,26 @@ pub fn settled(
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
     let omega = scene.forcing.frequency.get();
-    let closed = |largest: f64, stroke: f64| Extremes {
-        largest: Extreme { value: largest, time: window.to },
-        stroke,
-        force: 0.0,
-        settled: true,
+    let closed = |steady: Steady, structure: &Bare, before: PerMeasure<f64>| {
+        let of = |measure| steady.largest(structure, omega, measure);
+        let chosen = ask.also.map(|also| also.measures).unwrap_or_default();
+        let mut reached = before;
+        chosen.chosen().for_each(|measure| reached.set(measure, before.get(measure).max(of(measure))));
+        Extremes { largest: Extreme { value: of(ask.measure), time: window.to }, reached, settled: true }
     };
+    let early = ask.also.filter(|also| also.from < window.to);
     let Some(damper) = &scene.damper else {
-        let system = Bare::new(&scene.primary, &scene.forcing);
-        return Ok(closed(system.steady(omega).largest(&system, omega, ask.measure), 0.0));
+        let system = Bare::new(&scene.primary, &scene.forcing).with_phase(ask.phase);
+        let before = early.map(|also| bare_values(&system, also, window.to, settings)).transpose()?;
+        return Ok(closed(system.steady(omega), &system, before.unwrap_or_default()));
     };
     let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
     if let Some(steady) = in_closed_form(&system, settings) {
-        let largest = steady.largest(system.bare(), omega, ask.measure);
-        let Some(from) = ask.walls else { return Ok(closed(largest, 0.0)) };
-        let mut range = DisplacementRange::new(&system, from, f64::INFINITY);
-        let watched = Window { from: from.min(window.to), ..window };
-        follow_coupled(&system, watched, settings, &mut Unobserved, &mut range)?;
-        return Ok(closed(largest, steady.stroke().max(range.stroke().value)));
+        let Some(also) = early else { return Ok(closed(steady, system.bare(), PerMeasure::default())) };
+        let mut seen = LargestValues::new(&system, also.measures);
+        let watched = Window { from: also.from, ..window };
+        follow_coupled(&system, watched, settings, &mut Unobserved, &mut seen)?;
+        return Ok(closed(steady, system.bare(), seen.values()));
     }
     let mut blocks = Blocks::new(&system, window.from, settle, settings, ask);
     let whole = Window { from: 0.0, ..window };

@@ -7,7 +7,7 @@ use super::descents::Task;
 use super::fronts::{Fronts, GIVEN};
 use super::refinement::Under;
 use rayon::prelude::*;
-use retune_model::Design;
+use retune_model::{Design, Measure};
 use retune_optim::Limit;
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep, clipped};
 use retune_workbench::certify::judge;
@@ -96,7 +96,8 @@ impl Fronts {
     pub(super) fn look(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
         let (_, study) = self.plan.dampers.get(damper)?;
         let found = look(&finer(study, self.plan.said.samples, &at)?)?;
-        let [stroke, force] = [Limit::Stroke, Limit::Force].map(|limit| found.reached.get(limit));
+        let [stroke, force] =
+            [Measure::Stroke, Measure::ContactForce].map(|of| found.reached.get(Limit::Of(of)));
         Some(Candidate { damper, at, e1_max: found.energy, checked: None, stroke, force, verdict })
     }
 

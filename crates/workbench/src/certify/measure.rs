@@ -177,7 +177,7 @@ struct Look {
 
 impl Look {
     /// Of a scene that cannot be run.
-    const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 3]) };
+    const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 8]) };
 }
 
 fn look(scene: &Scene, goal: &Goal, settings: &Settings) -> Look {

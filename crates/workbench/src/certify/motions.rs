@@ -15,8 +15,8 @@ use retune_solver::Settings;
 const SAMPLES: usize = 31;
 const STARTS: usize = 16;
 
-/// Finds the motions at the stiffness of the worst run, with the largest stroke and force of all. None where there is nothing to find: the
-/// force has no period, the damper strikes nothing, or motions are not watched for the quantity.
+/// Finds the motions at the stiffness of the worst run, with the largest value of every measure over all. None where there is nothing to
+/// find: the force has no period, or the damper strikes nothing.
 ///
 /// # Errors
 /// A scene in the band cannot be run.
@@ -28,11 +28,9 @@ pub(super) fn coexisting(
 ) -> Result<Option<(Motions, PerLimit<f64>)>, Error> {
     let strikes = scene.damper.is_some_and(|damper| damper.contact.is_some());
     let watched = goal.objective.quantity();
-    let (Some(of), false, true) =
-        (quantity(watched), matches!(scene.forcing.source, Source::Decay(_)), strikes)
-    else {
+    if matches!(scene.forcing.source, Source::Decay(_)) || !strikes {
         return Ok(None);
-    };
+    }
     let scene = own.worst_run(*scene, goal);
     let omega = scene.forcing.frequency.get();
     if omega == 0.0 {
@@ -44,12 +42,11 @@ pub(super) fn coexisting(
     let samples = if from == to { 1 } else { SAMPLES };
     let starts = term.and_then(|term| term.starts).unwrap_or(STARTS);
     let plan = Plan { samples, starts, ..Plan::over(Parameter::Omega, [from, to]) };
-    let walls = [Measure::Stroke, Measure::ContactForce].map(|measure| quantity(measure).unwrap_or(of));
-    let found = motions(&scene, plan, settings, &[of, walls[0], walls[1]])?;
+    let kinds: Vec<_> = [watched].iter().chain(&Measure::ALL).map(|measure| quantity(*measure)).collect();
+    let found = motions(&scene, plan, settings, &kinds)?;
     let mut reached = own.reached;
-    for (limit, i) in [(Limit::Stroke, 1), (Limit::Force, 2)] {
-        let largest = found.largest.get(i).and_then(Option::as_ref).map_or(0.0, |largest| largest.value);
-        reached.set(limit, largest);
+    for (measure, largest) in Measure::ALL.into_iter().zip(found.largest.iter().skip(1)) {
+        reached.set(Limit::Of(measure), largest.as_ref().map_or(0.0, |largest| largest.value));
     }
     let irregular = found.irregular.iter().map(|([from, to], value)| Irregular {
         from: *from,

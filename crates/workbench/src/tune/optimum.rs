@@ -8,9 +8,11 @@ use super::descent::Descended;
 use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
+use super::valley::Valley;
 use crate::Error;
 use crate::amount::Amount;
 use crate::certify::Short;
+use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
 use retune_model::{Measure, Variable};
@@ -56,8 +58,17 @@ pub struct Optimum {
     /// Designs with smaller values that other motions make much worse, if one without was as good.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) passed_over: Vec<PassedOver>,
+    /// How far each parameter may go, the others held, until the value is 0.1 % larger.
+    #[serde(rename = "within_0.1_percent")]
+    valleys: Vec<Valley>,
     /// The short form of `certificate.json`.
     certificate: Short,
+    /// The largest values over all that the answer covers, each at its own place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) needs: Option<Needs>,
+    /// The study, for words.
+    #[serde(skip)]
+    of: Study,
     simulation: Summary,
     #[serde(skip)]
     start: Found,
@@ -71,6 +82,7 @@ pub(super) struct Searched<'a> {
     pub explored: Option<&'a Explored>,
     pub basins: Option<Basins>,
     pub passed_over: Vec<PassedOver>,
+    pub valleys: Vec<Valley>,
 }
 
 /// A damper that was found, and its value by the objective.
@@ -147,7 +159,7 @@ impl Optimum {
     pub(super) fn new(
         study: &Study,
         search: &Search,
-        Searched { surf, explored, basins, passed_over }: Searched,
+        Searched { surf, explored, basins, passed_over, valleys }: Searched,
         refined: &Refined,
         summary: Summary,
         evaluation: Evaluation,
@@ -188,7 +200,10 @@ impl Optimum {
                 Some(&refined.objective.failures()),
             ]),
             passed_over,
+            valleys,
             certificate,
+            needs: Needs::new(study, search, &refined.objective.scene(&best.minimum.x)?, evaluation.energy),
+            of: study.clone(),
             simulation: summary,
             start: start(refined)?,
             made_by: MadeBy::new(study),

@@ -1,6 +1,6 @@
 //! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
 
-use retune_model::{Damper, NonNegative, Positive, Variable, den_hartog};
+use retune_model::{Damper, Measure, NonNegative, Positive, Variable, den_hartog};
 use retune_optim::{Goal, Limit, PeakEnergy, Response};
 use retune_study::{Search, Study};
 
@@ -40,7 +40,8 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     let all = (0..POINTS.pow(springs.len() as u32)).map(at);
     let best = all.map(|x| (of.value(&x, f64::INFINITY), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
     let best = of.descend(&bounds, &best).end.x;
-    let stroke = of.evaluate(&of.scene(&best).ok()?, f64::INFINITY).ok()?.reached.get(Limit::Stroke);
+    let stroke =
+        of.evaluate(&of.scene(&best).ok()?, f64::INFINITY).ok()?.reached.get(Limit::Of(Measure::Stroke));
     let mut tmd: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
     for (&i, &value) in springs.iter().zip(&best) {
         tmd[i] = value;
@@ -60,8 +61,9 @@ fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Optio
     objective.for_each_term(&mut |term| {
         (term.response, term.starts, term.ensemble) = (Response::Steady, None, None);
     });
-    let most = goal.limits.get(Limit::Stroke).unwrap_or(f64::INFINITY).min(room);
-    let limits = Positive::new(most).map_or(goal.limits, |most| goal.limits.with(Limit::Stroke, most));
+    let most = goal.limits.get(Limit::Of(Measure::Stroke)).unwrap_or(f64::MAX).min(room);
+    let limits =
+        Positive::new(most).map_or(goal.limits, |most| goal.limits.with(Limit::Of(Measure::Stroke), most));
     let none = NonNegative::new(0.0).ok()?;
     let damper = Damper { contact: None, rest_distance: none, clearance: none, ..search.damper };
     let variables = springs.iter().map(|&i| search.variables[i]).collect();

@@ -6,12 +6,13 @@ use super::table::{Row, Sample};
 use crate::Error;
 use crate::artefact::Artefact;
 use crate::certify::certify;
+use crate::needs::Needs;
 use crate::resolved;
 use crate::summary::Summary;
 use crate::tune::objective::{coarse, objective, searched};
 use crate::tune::{self, OPTIMUM, band};
 use retune_model::{Design, NonNegative, Scene};
-use retune_optim::{Evaluation, Limit, PeakEnergy, Variable};
+use retune_optim::{Evaluation, PeakEnergy, Variable};
 use retune_study::{self as study, Search, Study};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -149,12 +150,14 @@ fn again(
         format!("{name}_none"): study.energy_without_damper(),
         format!("{name}_study"): study.energy(&study.scene),
         "simulation": Summary::new(study, scene, &response) });
+    if let Ok(search) = study.search().map_err(drop) {
+        again["needs"] = json!(Needs::new(study, &search, &tuned, found.energy));
+    }
     if !objective.goal().limits.is_empty() {
-        let [stroke, force, cavity] = Limit::ALL.map(|limit| found.reached.get(limit));
-        let (violation, feasible) = (found.violation, found.violation == 0.0);
-        again["limits"] = json!({
-            "stroke": stroke, "force": force, "cavity": cavity, "violation": violation, "feasible": feasible
-        });
+        again["limits"] = json!({ "violation": found.violation, "feasible": found.violation == 0.0 });
+        for limit in objective.goal().limits.set() {
+            again["limits"][limit.name()] = json!(found.reached.get(limit));
+        }
     }
     if optimum.get("certificate").is_some() {
         let certificate = certify(&Study { scene: tuned, ..study.clone() })?;

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 /// A limit that the unconstrained optimum breaks is kept and reported as active.
 #[test]
 fn contract_limits_are_kept_and_reported() {
-    let desk = Desk::with(&global(json!({}), json!({ "stroke": 1e3, "force": 1e9 })));
+    let desk = Desk::with(&global(json!({}), json!({ "stroke": 1e3, "contact_force": 1e9 })));
     let free = found(good(tune(&request(&desk, "study.json", "free"), &Silent)));
     assert!(free.check_limits().is_ok());
     let free = desk.read_json("free/optimum.json");

@@ -100,19 +100,20 @@ mod tests {
     fn contract_the_worst_broken_limit_is_reported_with_its_place() {
         let limit = |value| retune_model::Positive::new(value).ok();
         let limits = Limits { stroke: limit(0.2), cavity: limit(0.5), ..Limits::default() };
-        let near =
-            |at: &str, neighbour, reached| Near { at: at.to_owned(), neighbour, reached: PerLimit(reached) };
+        let reached =
+            |[stroke, force, cavity]: [f64; 3]| PerLimit([0.0, 0.0, 0.0, 0.0, 0.0, stroke, force, cavity]);
+        let near = |at: &str, neighbour, seen| Near { at: at.to_owned(), neighbour, reached: reached(seen) };
         let around = [
             near("here", true, [0.2, 9e9, 0.5]),
             near("there", true, [0.201, 0.0, 0.4]),
             near("beyond", false, [0.21, 0.0, 0.4]),
         ];
-        let kept = Kept::new(&limits, &PerLimit([0.2, 9e9, 0.5]), &around).expect("limits");
+        let kept = Kept::new(&limits, &reached([0.2, 9e9, 0.5]), &around).expect("limits");
         assert_eq!((kept.broken(), kept.neighbours()), (None, 1));
         let said = kept.broken_near().expect("a limit is broken");
         assert_eq!(said, "stroke is 0.21 m beyond, 5 % over its limit of 0.2 m");
-        let kept = Kept::new(&limits, &PerLimit([0.1, 0.0, 0.75]), &[]).expect("limits");
+        let kept = Kept::new(&limits, &reached([0.1, 0.0, 0.75]), &[]).expect("limits");
         assert_eq!(kept.broken().as_deref(), Some("the limit of cavity: 0.75 of 0.5 m, 50 % over"));
-        assert!(Kept::new(&Limits::default(), &PerLimit([1.0; 3]), &around).is_none());
+        assert!(Kept::new(&Limits::default(), &PerLimit([1.0; 8]), &around).is_none());
     }
 }

@@ -28,7 +28,7 @@ impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { made_by, design, value, error_bar, worst_run, motion, neighbourhood, .. } = self;
         writeln!(f, "{made_by}")?;
-        writeln!(f, "design        {}", design.words(6))?;
+        writeln!(f, "design        {}", design.words(|_| 6))?;
         let predictable = if self.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());

@@ -1,11 +1,11 @@
 //! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
 
 use super::notes::{self, Goal, LimitNote};
-use super::{DescentNote, FailureNote, Optimum, RunNote, stop_words};
+use super::{DescentNote, FailureNote, Optimum, RunNote, Valley, stop_words};
 use crate::amount::Amount;
+use crate::needs::Needs;
 use crate::summary::how_many;
 use retune_model::Variable;
-use retune_optim::Limit;
 use retune_study::{counted, frequency, rounded, short};
 use std::path::Path;
 
@@ -20,11 +20,17 @@ impl Optimum {
         let mut lines = vec![String::new()];
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
         say(self.headline());
+        self.needs.iter().flat_map(Needs::warnings).for_each(|words| say(format!("  note: {words}")));
         say(format!("  {}", self.compared()));
-        let values = self.damper.words(4).replace(", ", ",");
+        let values = self.damper.words(|variable| self.digits(variable)).replace(", ", ",");
         say(format!("  build    {}", values.replace(' ', HELD).replace(',', ", ")));
-        say(format!("  needs    {}", self.simulation.needs()));
-        say(format!("  there    the structure {}", self.simulation.motion()));
+        let flat: Vec<String> = self.valleys.iter().filter_map(Valley::words).collect();
+        if !flat.is_empty() {
+            say(format!("  flat     {}, each with the others held: at most 0.1 % more", flat.join("; ")));
+        }
+        for (name, words) in self.needs.iter().flat_map(|needs| needs.lines(&self.of)) {
+            say(format!("  {name:<9}{words}"));
+        }
         say(format!("  motion   {}", self.certificate.motion_words()));
         say(format!("  verdict  {}", self.certificate.verdict_words()));
         if let Some(limits) = &self.limits {
@@ -77,6 +83,11 @@ impl Optimum {
             "{others}next: record the motion at the worst frequency with\n  \
              `retune simulate {out} --set omega={omega} --trajectory motion.csv`"
         )
+    }
+
+    /// The digits of a parameter that tell; four of one that was not varied.
+    fn digits(&self, variable: Variable) -> usize {
+        self.valleys.iter().find(|valley| valley.variable == variable).map_or(4, Valley::digits)
     }
 
     fn headline(&self) -> String {
@@ -139,14 +150,15 @@ fn wrapped(text: &str, indent: &str) -> String {
 impl LimitNote {
     pub(super) fn report(&self) -> String {
         let Self { allowed, feasible, proven, active, evaluations, infeasible, .. } = self;
-        let reached = [self.stroke, self.force, self.cavity];
-        let words = Limit::ALL.into_iter().zip(reached).filter_map(|(limit, reached)| {
-            let allowed = allowed.get(limit)?;
-            let active = if active.contains(&limit) { ", active" } else { "" };
+        let words = self.reached.iter().filter_map(|(limit, reached)| {
+            let allowed = allowed.get(*limit)?;
             let over = 100.0 * (reached / allowed - 1.0);
-            let over = if over > 0.0 { format!(", over by {} %", short(over)) } else { String::new() };
-            let active = if over.is_empty() { active } else { "" };
-            Some(format!("{limit} {} of {} {}{over}{active}", short(reached), short(allowed), limit.unit()))
+            let note = match active.contains(limit) {
+                _ if over > 0.0 => format!(", over by {} %", short(over)),
+                true => ", active".to_owned(),
+                false => String::new(),
+            };
+            Some(format!("{limit} {} of {} {}{note}", short(*reached), short(allowed), limit.unit()))
         });
         let words = words.collect::<Vec<_>>().join("; ");
         let evaluations = counted(*evaluations, "evaluation");

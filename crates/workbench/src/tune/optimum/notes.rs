@@ -6,7 +6,7 @@ use super::super::surf::Surf;
 use retune_model::Scene;
 use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, Response, Variable};
 use retune_study::{Search, Study, joined};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The objective, and the ω at which E1max of the best design is reached, rad/s.
 #[derive(Clone, Debug, Serialize)]
@@ -29,10 +29,9 @@ pub(crate) struct Goal {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LimitNote {
     pub(crate) allowed: Limits,
-    /// The largest values in any run of the objective, SI units.
-    pub(crate) stroke: f64,
-    pub(crate) force: f64,
-    pub(crate) cavity: f64,
+    /// The largest value, in any run of the objective, of what has a limit, SI units.
+    #[serde(flatten, serialize_with = "by_name")]
+    pub(crate) reached: Vec<(Limit, f64)>,
     pub(crate) feasible: bool,
     /// Whether it is proven that no design within the bounds keeps the limits: the least D + C exceeds that of the cavity.
     #[serde(rename = "none_exists", skip_serializing_if = "is_false")]
@@ -44,6 +43,11 @@ pub(crate) struct LimitNote {
     /// Designs that were evaluated, and those among them that were found to break a limit.
     pub(crate) evaluations: u64,
     pub(crate) infeasible: u64,
+}
+
+/// As the fields of an object.
+fn by_name<S: Serializer>(reached: &[(Limit, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(reached.iter().map(|(limit, value)| (limit, value)))
 }
 
 /// A parameter that ended on a bound.
@@ -90,9 +94,7 @@ impl LimitNote {
         let counts = || counts.iter().flatten().copied().chain([refined.objective.counts()]);
         (!allowed.is_empty()).then(|| Self {
             allowed,
-            stroke: reached.get(Limit::Stroke),
-            force: reached.get(Limit::Force),
-            cavity: reached.get(Limit::Cavity),
+            reached: allowed.set().map(|limit| (limit, reached.get(limit))).collect(),
             feasible: violation == 0.0,
             proven: allowed.get(Limit::Cavity).is_some_and(|most| least_cavity(search) > most),
             violation,

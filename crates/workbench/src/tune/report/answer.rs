@@ -2,13 +2,14 @@
 
 use super::findings::{Compared, Findings};
 use super::flags::Flag;
-use super::numbers::{amount, compared, digits, four, frequency, millimetres};
+use super::numbers::{amount, compared, digits, four, frequency};
 use crate::html::{Section, Table};
+use crate::needs::{Needs, sized};
 use crate::summary::whose;
 use maud::{Markup, html};
-use retune_model::{Damper, Variable};
-use retune_optim::{Evaluation, Limit, Response, Unusable};
-use retune_study::{counted, over};
+use retune_model::{Damper, Measure, Variable};
+use retune_optim::{Evaluation, Response, Unusable};
+use retune_study::over;
 
 /// The answer in a line.
 pub fn title(findings: &Findings) -> String {
@@ -24,6 +25,7 @@ pub fn title(findings: &Findings) -> String {
 pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Section {
     let body = html! {
         (lead(findings))
+        @for words in findings.optimum.needs.iter().flat_map(Needs::warnings) { p { strong { "Note: " (words) "." } } }
         @if !flags.is_empty() {
             ul.flags { @for flag in flags { li.flag data-flag=(flag.name) { (flag.words) } } }
         }
@@ -89,14 +91,11 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     let none = against(&beside.none);
     let study = against(&beside.study);
     let certificate = findings.certificate;
-    let response = findings.response;
     let verdict = certificate.verdict.map_or("no verdict", |_| findings.optimum.verdict());
     let words = certificate
         .words
         .strip_prefix(verdict)
         .map_or(certificate.words.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
-    let [structure, obstacle] = response.force_max;
-    let impacts = response.impacts;
     let fact = |name: &str, value: &str, more: &str| {
         html! { div { dt { (name) } dd { strong { (value) } @if !more.is_empty() { span.more { (more) } } } } }
     };
@@ -107,18 +106,35 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             (fact("Against no damper", &none.0, &none.1))
             (fact(&format!("Against {}", whose(&findings.study.scene)), &study.0, &study.1))
             (fact("Certificate", verdict, &format!("{words}; {} ± {} {}", quantity.name(), digits(certificate.error_bar, 2), quantity.unit())))
-            (fact("Stroke", &millimetres(response.spring_deflection_max), &format!("largest spring deflection |x2 − x1 − D| at the worst frequency, {window}")))
-            (fact("Contact force", &format!("{} N", four(structure.max(obstacle))), &format!(
-                "{} N on the structure in {}, {} N on the obstacle in {}, {window}",
-                four(structure), counted(impacts[0], "impact"), four(obstacle), counted(impacts[1], "impact")
-            )))
-            (fact("Displacement", &millimetres(response.structure.displacement.value), &format!(
-                "largest |x1| of the structure at the worst frequency, {window}; it accelerates by {} m/s² and loads the ground with {} N",
-                four(response.structure.acceleration.value), four(response.structure.ground_force.value)
-            )))
+            @if let Some(needs) = &findings.optimum.needs {
+                @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
+                    "{what}, from rest on, at {}{}{}", frequency(needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
+                ));
+                (say("Stroke", Measure::Stroke, "largest spring deflection |x2 − x1 − D|"))
+                (say("Contact force", Measure::ContactForce, "largest force on a wall"))
+                (say("Displacement", Measure::Displacement, "largest |x1| of the structure"))
+                (say("Acceleration", Measure::Acceleration, "largest |a1| of the structure"))
+                (say("Force on the ground", Measure::GroundForce, "largest |k1 x1 + c1 v1|"))
+            }
             (fact("Motion", &certificate.motion.regime, &format!("at the worst frequency it {}", certificate.motion.sentence)))
         }
     }
+}
+
+/// What the part of the response has that the objective looks at, where that is less.
+fn own(needs: &Needs, measure: Measure, window: &str) -> String {
+    let own = needs.damper.own(measure);
+    own.map_or(String::new(), |value| format!("; {} in the objective ({window})", sized(measure, value)))
+}
+
+/// The same without a damper and with the best linear one.
+fn others(needs: &Needs, measure: Measure) -> String {
+    let linear =
+        needs.linear.as_ref().map(|linear| format!("; {} with the best TMD", linear.needs.sized(measure)));
+    let damper = matches!(measure, Measure::Stroke | Measure::ContactForce);
+    let none = needs.none.as_ref().filter(|_| !damper);
+    let none = none.map(|none| format!("; {} without a damper", none.sized(measure)));
+    none.unwrap_or_default() + &linear.unwrap_or_default()
 }
 
 /// A parameter of the damper as a study file names it, with its name and its value.
@@ -161,7 +177,7 @@ fn parameters(findings: &Findings) -> Markup {
 fn limits(findings: &Findings) -> Option<Table> {
     let note = findings.optimum.limits.as_ref()?;
     let mut table = Table::new("Limits", &["limit", "largest in any run", "allowed", "unit", "state"]);
-    for (limit, reached) in Limit::ALL.into_iter().zip([note.stroke, note.force, note.cavity]) {
+    for &(limit, reached) in &note.reached {
         let Some(allowed) = note.allowed.get(limit) else { continue };
         let state = match (reached > allowed, note.active.contains(&limit)) {
             (true, _) => "broken",

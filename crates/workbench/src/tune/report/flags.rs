@@ -49,11 +49,10 @@ pub fn flags(findings: &Findings) -> Vec<Flag> {
 
 fn broken(findings: &Findings) -> Option<Flag> {
     let note = findings.optimum.limits.as_ref().filter(|note| !note.feasible)?;
-    let reached = [note.stroke, note.force, note.cavity];
-    let broken: Vec<(Limit, String)> = Limit::ALL
-        .into_iter()
-        .zip(reached)
-        .filter_map(|(limit, reached)| {
+    let broken: Vec<(Limit, String)> = note
+        .reached
+        .iter()
+        .filter_map(|&(limit, reached)| {
             let allowed = note.allowed.get(limit)?;
             let over = four(100.0 * (reached / allowed - 1.0));
             let words =

@@ -11,6 +11,7 @@ use retune_figures::colour::{BLACK, BLUE, GREY, VERMILION};
 use retune_figures::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
 };
+use retune_model::Measure;
 
 /// The curves and their looks.
 fn lines(findings: &Findings) -> [(&'static str, Stroke); 3] {
@@ -29,7 +30,8 @@ struct Curve<'a> {
     label: String,
     unit: &'static str,
     values: &'a [Vec<f64>; 3],
-    worst: f64,
+    /// The largest value that the objective covers, and before it its frequency, rad/s.
+    worst: [f64; 2],
 }
 
 impl<'a> Curve<'a> {
@@ -41,17 +43,20 @@ impl<'a> Curve<'a> {
             label: label(quantity),
             unit: quantity.unit(),
             values: &curves.value,
-            worst: findings.evaluation.worst.largest,
+            worst: [findings.worst_omega(), findings.evaluation.worst.largest],
         }
     }
 
     fn displacement(findings: &Findings, curves: &'a Curves) -> Self {
+        let needs = findings.optimum.needs.as_ref().map(|needs| needs.damper.0.own);
+        let place = needs.map(|own| own.get(Measure::Displacement)).filter(|need| need.value.is_finite());
+        let (omega, there) = (findings.worst_omega(), findings.response.structure.displacement.value);
         Self {
             name: "Displacement amplitude",
             label: "|x1|, mm".to_owned(),
             unit: "mm",
             values: &curves.displacement,
-            worst: 1e3 * findings.response.structure.displacement.value,
+            worst: place.map_or([omega, 1e3 * there], |need| [need.omega, 1e3 * need.value]),
         }
     }
 }
@@ -95,9 +100,8 @@ fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
 }
 
 fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
-    let Curve { name, label, unit, values, worst } = curve;
+    let Curve { name, label, unit, values, worst: [omega, worst] } = curve;
     let lines = lines(findings);
-    let omega = findings.worst_omega();
     let top = values.each_ref().map(|curve| Curves::largest(curve));
     let (high, low) = (
         top.into_iter().fold(0.0, f64::max),

@@ -1,0 +1,167 @@
+//! What a damper needs: the largest value of every measure over all that a goal covers, and where; and the best linear damper beside it.
+
+use super::band::Band;
+use super::evaluation::Run;
+use super::limits::Limits;
+use super::peak_energy::PeakEnergy;
+use super::spec::{Goal, Objective, Response};
+use super::unusable::Unusable;
+use super::watch::{GoesOn, Hooks, Watch, Watched};
+use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
+use retune_model::{Damper, Measure, NonNegative, PerMeasure, Scene, Source, Variable};
+use retune_solver::{Also, Settings};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+/// A largest value, and where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Need {
+    /// The value, in the unit of its measure.
+    pub value: f64,
+    /// The angular frequency of the force there, rad/s.
+    pub omega: f64,
+    /// The stiffness of the structure there, N/m.
+    pub k1: f64,
+}
+
+/// The largest value of each measure, each at its own place: over the band, the stiffnesses, the members and the terms of a goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Needs {
+    /// Over runs from rest, from t = 0 to the end of the window, and over all that the objective looks at.
+    pub whole: PerMeasure<Need>,
+    /// Over what the objective looks at alone: its window, settled or steady motions, or all motions that are found.
+    pub own: PerMeasure<Need>,
+}
+
+/// Samples in the width 2π/T over which a run of length T tells frequencies apart, and the most of a band. An objective with an ensemble or
+/// several stiffnesses, whose runs are many, is looked at on its own samples.
+const PER_WIDTH: f64 = 8.0;
+const MOST: f64 = 801.0;
+
+impl Goal {
+    /// What a scene needs by this goal, regardless of its limits, as long as `goes_on` says so. Peaks between samples are searched, as those
+    /// of the quantity are.
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate_while`].
+    pub fn needs(&self, scene: &Scene, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Needs, Unusable> {
+        let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
+        let end = goal.window.to;
+        goal.objective.for_each_term(&mut |term| {
+            let single = term.ensemble.is_none() && term.k1.is_none();
+            if let Some(band) = term.omega.as_mut().filter(|_| single) {
+                let Band { from, to, samples } = band.of(&scene.primary);
+                let wanted = ((to - from) * end * PER_WIDTH / TAU).ceil().min(MOST);
+                band.samples = samples.max(wanted as usize);
+            }
+        });
+        let own = goal.largest(scene, settings, None, goes_on)?;
+        let mut whole = goal;
+        whole.window.from = 0.0;
+        whole.objective.for_each_term(&mut |term| term.response = Response::Window);
+        let mut all = whole.largest(scene, settings, Some(0.0), goes_on)?;
+        all.0.iter_mut().zip(own.0).for_each(|(all, own)| {
+            if own.value > all.value {
+                *all = own;
+            }
+        });
+        Ok(Needs { whole: all, own })
+    }
+
+    /// The largest value of each measure from a time on, s; without one, of what the objective looks at.
+    fn largest(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        from: Option<f64>,
+        goes_on: GoesOn<'_>,
+    ) -> Result<PerMeasure<Need>, Unusable> {
+        let largest = Mutex::new(PerMeasure([Need { value: f64::NEG_INFINITY, ..Need::default() }; 7]));
+        let keep = |run: Run| {
+            let Scene { primary, forcing, .. } = run.place.scene;
+            let (omega, k1) = (forcing.frequency.get(), primary.stiffness.get());
+            let mut largest = largest.lock().unwrap_or_else(PoisonError::into_inner);
+            for (known, value) in largest.0.iter_mut().zip(run.reached.0) {
+                let found = Need { value, omega, k1 };
+                // Of equal ones the first by ω and k1, whichever thread comes first.
+                let key = |need: &Need| [-need.value, need.omega, need.k1];
+                if key(&found).partial_cmp(&key(known)).is_some_and(std::cmp::Ordering::is_lt) {
+                    *known = found;
+                }
+            }
+        };
+        let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
+        let watched = Watched { also, own: from.is_none(), matters: PerMeasure([f64::NEG_INFINITY; 7]) };
+        let watch = Watch::new(self, scene, settings, watched, Hooks { keep: &keep, goes_on });
+        self.energy(scene, f64::INFINITY, &watch)?;
+        Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The damper of the same mass without walls that this goal is smallest for, regardless of limits and bounds; none where the goal says
+    /// nothing of the structure, or there is no such damper to start from.
+    ///
+    /// A search by the closed form of the steady motion begins at Den Hartog's tuning; one by the goal itself follows, unless that has
+    /// an ensemble.
+    pub fn best_linear(&self, scene: &Scene, settings: &Settings) -> Option<Scene> {
+        let damper = scene.damper?;
+        let quantity = self.objective.quantity();
+        let of_the_structure = !matches!(quantity, Measure::Stroke | Measure::ContactForce);
+        let (Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) = scene.forcing.source else {
+            return None;
+        };
+        let (m1, k1) = (scene.primary.mass.get(), scene.primary.stiffness.get());
+        let (m2, share) = (damper.mass.get(), damper.mass.get() / m1);
+        let k2 = m2 * k1 / m1 / (1.0 + share).powi(2);
+        let c2 = 2.0 * (m2 * k2).sqrt() * (0.375 * share / (1.0 + share).powi(3)).sqrt();
+        if !of_the_structure || k1 == 0.0 {
+            return None;
+        }
+        let plain = Damper {
+            contact: None,
+            rest_distance: NonNegative::default(),
+            clearance: NonNegative::default(),
+            ..damper
+        };
+        let search = |start: [f64; 2], change: &dyn Fn(&mut Objective)| {
+            let mut goal = Self { limits: Limits::default(), ..self.clone() };
+            goal.objective.for_each_term(&mut |term| change(term));
+            let variables = vec![Variable::K2, Variable::C2];
+            let objective = PeakEnergy::new(*scene, plain, variables, goal, *settings);
+            let options = Options {
+                scaling: Scaling::Start,
+                tol_x: 1e-6,
+                tol_fun: 1e-9 * objective.value(&start, f64::INFINITY),
+                max_iter: Some(400),
+                max_fun_evals: Some(400),
+                bounds: vec![Bounds { lower: Some(0.0), upper: None }; 2],
+                ..Options::default()
+            };
+            let value = |x: &[f64], cutoff: f64| objective.value(x, cutoff);
+            let found = minimize(value, &start, options, |_| ControlFlow::Continue(())).ok()?;
+            <[f64; 2]>::try_from(found.x).ok()
+        };
+        let banded = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
+        let closed =
+            banded && !(quantity == Measure::GroundForce && matches!(scene.forcing.source, Source::Base(_)));
+        let mut best = [k2, c2];
+        if closed {
+            let steady = |term: &mut Objective| (term.response, term.ensemble) = (Response::Steady, None);
+            best = search(best, &steady)?;
+        }
+        if !self.objective.is_steady()
+            && self.objective.terms().iter().all(|(_, term)| term.ensemble.is_none())
+        {
+            // A linear damper has one motion.
+            let own = |term: &mut Objective| {
+                if term.response == Response::Motions {
+                    term.response = Response::Settled;
+                }
+            };
+            best = search(best, &own)?;
+        }
+        let [stiffness, damping] = best.map(NonNegative::new);
+        let damper = Damper { stiffness: stiffness.ok()?, damping: damping.ok()?, ..plain };
+        Some(Scene { damper: Some(damper), ..*scene })
+    }
+}

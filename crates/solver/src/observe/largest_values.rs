@@ -1,0 +1,72 @@
+//! The largest values of any of the measures.
+
+use super::displacement_range::DisplacementRange;
+use super::magnitude::Magnitude;
+use super::observer::{Observer, Path};
+use super::quantity::PrimaryEnergy;
+use super::running_maximum::RunningMaximum;
+use super::structure::StructureMotion;
+use crate::linear::steps::Steps;
+use crate::motion::segment::Segment;
+use retune_model::{Coupled, Measure, PerMeasure};
+
+type Motion<'a> = Magnitude<StructureMotion<'a, Coupled, 4>>;
+
+/// The largest values of the measures that are asked for.
+pub struct LargestValues<'a> {
+    energy: Option<RunningMaximum<PrimaryEnergy<'a>>>,
+    motions: [Option<Motion<'a>>; 4],
+    range: Option<DisplacementRange<'a>>,
+}
+
+impl<'a> LargestValues<'a> {
+    /// Watches a structure and its damper for some measures.
+    pub fn new(system: &'a Coupled, measures: PerMeasure<bool>) -> Self {
+        let motion = |measure, quantity: fn(&'a Coupled, f64) -> StructureMotion<'a, Coupled, 4>| {
+            let size = || Magnitude::new(|sign| quantity(system, sign), f64::INFINITY);
+            measures.get(measure).then(size)
+        };
+        let energy = || RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
+        let range = measures.get(Measure::Stroke) || measures.get(Measure::ContactForce);
+        Self {
+            energy: measures.get(Measure::Energy).then(energy),
+            motions: [
+                motion(Measure::Displacement, StructureMotion::displacement),
+                motion(Measure::Velocity, StructureMotion::velocity),
+                motion(Measure::Acceleration, StructureMotion::acceleration),
+                motion(Measure::GroundForce, StructureMotion::ground_force),
+            ],
+            range: range.then(|| DisplacementRange::new(system, f64::INFINITY)),
+        }
+    }
+
+    /// The largest values so far, 0 of what is not watched and before any motion was seen.
+    pub fn values(&self) -> PerMeasure<f64> {
+        let energy = self.energy.as_ref().map_or(0.0, |energy| energy.record().value);
+        let [x1, v1, a1, ground] =
+            self.motions.each_ref().map(|motion| motion.as_ref().map_or(0.0, |size| size.record().value));
+        let [stroke, force] = self
+            .range
+            .as_ref()
+            .map_or([0.0; 2], |range| [range.stroke(), range.force()].map(|largest| largest.value));
+        PerMeasure([energy, x1, v1, a1, ground, stroke, force].map(|value| value.max(0.0)))
+    }
+}
+
+impl Observer<4> for LargestValues<'_> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.energy.segment(segment);
+        self.motions.segment(segment);
+        self.range.segment(segment);
+    }
+    fn path(&mut self, path: &impl Path<4>) {
+        self.energy.path(path);
+        self.motions.path(path);
+        self.range.path(path);
+    }
+    fn steps(&mut self, steps: &Steps<'_, 4>) {
+        self.energy.steps(steps);
+        self.motions.steps(steps);
+        self.range.steps(steps);
+    }
+}

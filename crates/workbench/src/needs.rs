@@ -1,0 +1,286 @@
+//! What a damper needs and what the structure does with it, beside the structure without a damper and with the best linear one: the largest
+//! values over all that an answer covers. Whoever tells of a design tells this.
+
+use crate::amount::Amount;
+use retune_model::{Measure, Scene, Variable};
+use retune_optim::{Goal, Limit, Limits, Need, Response};
+use retune_study::{Search, Study, rounded, short};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+
+/// The part of the value by which what the objective looks at must be below the whole run for both to be told.
+const APART: f64 = 0.01;
+/// The share by which another damper must be better, or the structure move more than without a damper, to be named.
+const BETTER: f64 = 1e-3;
+
+/// What a design needs, and what others need.
+#[derive(Clone, Debug, Serialize)]
+pub struct Needs {
+    /// The design.
+    pub damper: Largest,
+    /// No damper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub none: Option<Largest>,
+    /// The best damper of the same mass without walls, for the same objective, whatever the limits and bounds of the study.
+    #[serde(rename = "TMD", skip_serializing_if = "Option::is_none")]
+    pub linear: Option<Linear>,
+}
+
+/// The largest value of each measure over the band, the stiffnesses, the members and the terms of an objective.
+#[derive(Clone, Copy, Debug)]
+pub struct Largest(pub retune_optim::Needs);
+
+/// The best damper without walls.
+#[derive(Clone, Debug, Serialize)]
+pub struct Linear {
+    /// Its spring, N/m.
+    pub k2: f64,
+    /// Its damping, N·s/m.
+    pub c2: f64,
+    /// The value of the objective.
+    #[serde(flatten)]
+    value: Amount,
+    /// Why the search could not come to it, where it is better than what it came to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    better_but: Option<String>,
+    /// What it needs.
+    pub needs: Largest,
+}
+
+impl Serialize for Largest {
+    /// By the name of each measure: the largest value from rest on with its place; and that of the window, or of the settled motion, where
+    /// this differs by more than 1 %.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Place {
+            value: f64,
+            omega: f64,
+            k1: f64,
+            #[serde(rename = "in_objective", skip_serializing_if = "Option::is_none")]
+            own: Option<f64>,
+        }
+        let mut map = serializer.serialize_map(Some(Measure::ALL.len()))?;
+        for measure in Measure::ALL {
+            let Need { value, omega, k1 } = self.0.whole.get(measure);
+            map.serialize_entry(measure.name(), &Place { value, omega, k1, own: self.own(measure) })?;
+        }
+        map.end()
+    }
+}
+
+impl Largest {
+    /// Of a scene by a goal; none where it cannot be run.
+    pub fn of(goal: &Goal, scene: &Scene, study: &Study) -> Option<Self> {
+        goal.needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
+    }
+
+    /// The largest value of a measure, from rest on.
+    pub fn value(&self, measure: Measure) -> f64 {
+        self.0.whole.get(measure).value
+    }
+
+    /// That of the part of the response that the objective looks at, where it differs by more than 1 %.
+    pub fn own(&self, measure: Measure) -> Option<f64> {
+        let own = self.0.own.get(measure).value;
+        (own.is_finite() && own < (1.0 - APART) * self.value(measure)).then_some(own)
+    }
+
+    /// That value with its unit; lengths of the structure in mm.
+    pub fn sized(&self, measure: Measure) -> String {
+        sized(measure, self.value(measure))
+    }
+
+    /// Where it is, rad/s.
+    pub fn omega(&self, measure: Measure) -> f64 {
+        self.0.whole.get(measure).omega
+    }
+
+    /// A value with its unit and its place: `31.6 m/s² at 5.85 rad/s`.
+    pub fn words(&self, measure: Measure) -> String {
+        let Need { value, omega, .. } = self.0.whole.get(measure);
+        format!("{} at {} rad/s", sized(measure, value), rounded(omega, 4))
+    }
+
+    /// The room and the strength that the damper needs.
+    fn damper_words(&self) -> String {
+        let stroke = self.words(Measure::Stroke);
+        if self.value(Measure::ContactForce) > 0.0 {
+            format!("a stroke of {stroke}, and walls for {}", self.words(Measure::ContactForce))
+        } else {
+            format!("a stroke of {stroke}; it touches no wall")
+        }
+    }
+
+    /// The motion of the structure and its force on the ground.
+    fn structure_words(&self) -> String {
+        let of = |measure| self.words(measure);
+        format!(
+            "moves by {}, accelerates by {} and loads the ground with {}",
+            of(Measure::Displacement),
+            of(Measure::Acceleration),
+            of(Measure::GroundForce)
+        )
+    }
+
+    /// What the objective looks at, where it is less.
+    fn own_words(&self, study: &Study) -> Option<String> {
+        let told = [Measure::Stroke, Measure::ContactForce, Measure::Displacement, Measure::Acceleration];
+        let told = told.into_iter().chain([Measure::GroundForce]);
+        let less = told.filter_map(|measure| {
+            Some(format!("{} {}", short_name(measure), sized(measure, self.own(measure)?)))
+        });
+        let less: Vec<String> = less.collect();
+        let part = match study.objective().terms().first().map(|(_, term)| term.response) {
+            Some(Response::Settled) => "once settled".to_owned(),
+            Some(Response::Steady) => "in the steady motion".to_owned(),
+            Some(Response::Motions) => "over all motions that are found".to_owned(),
+            _ => format!("from {} s on", short(study.window.t0.get())),
+        };
+        (!less.is_empty()).then(|| format!("{part} {}", less.join(", ")))
+    }
+}
+
+/// A value with its unit; lengths of the structure in mm.
+pub(crate) fn sized(measure: Measure, value: f64) -> String {
+    match measure {
+        Measure::Displacement => format!("{} mm", rounded(1e3 * value, 4)),
+        _ => format!("{} {}", rounded(value, 4), measure.unit()),
+    }
+}
+
+fn short_name(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Energy => "E1",
+        Measure::Displacement => "x1",
+        Measure::Velocity => "v1",
+        Measure::Acceleration => "a1",
+        Measure::GroundForce => "ground",
+        Measure::Stroke => "stroke",
+        Measure::ContactForce => "walls",
+    }
+}
+
+impl Needs {
+    /// Of a design that a search found, with its value; none where the design cannot be run.
+    pub fn new(study: &Study, search: &Search, design: &Scene, value: f64) -> Option<Self> {
+        let goal = Goal { limits: Limits::default(), ..study.goal() };
+        let settings = study.solver.settings();
+        let (damper, (none, linear)) = rayon::join(
+            || Largest::of(&goal, design, study),
+            || {
+                let none = Largest::of(&goal, &Scene { damper: None, ..*design }, study);
+                let linear = goal.best_linear(design, &settings).and_then(|scene| {
+                    let found = goal.evaluate(&scene, &settings, f64::INFINITY).ok()?;
+                    let damper = scene.damper?;
+                    let needs = Largest::of(&goal, &scene, study)?;
+                    let better = found.energy < (1.0 - BETTER) * value;
+                    Some(Linear {
+                        k2: damper.stiffness.get(),
+                        c2: damper.damping.get(),
+                        value: Amount::new(study.quantity(), found.energy),
+                        better_but: better.then(|| excluded(study, search, design, &scene, &needs)),
+                        needs,
+                    })
+                });
+                (none, linear)
+            },
+        );
+        Some(Self { damper: damper?, none, linear })
+    }
+
+    /// What a reader must know first: a better damper that the study excludes, and what the damper makes worse.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(Linear { k2, c2, value, better_but: Some(why), needs }) = &self.linear {
+            let (k2, c2) = (rounded(*k2, 4), rounded(*c2, 4));
+            lines.push(format!(
+                "a linear damper of the same mass is better: k2 = {k2} N/m, c2 = {c2} N·s/m has {} {}, a stroke of {} and no \
+                 impacts; {why}",
+                value.quantity.name(),
+                value.words(),
+                sized(Measure::Stroke, needs.value(Measure::Stroke)),
+            ));
+        }
+        let Some(none) = &self.none else { return lines };
+        let measures =
+            [Measure::Displacement, Measure::Velocity, Measure::Acceleration, Measure::GroundForce];
+        for measure in measures {
+            let (own, without) = (self.damper.value(measure), none.value(measure));
+            if own > (1.0 + APART) * without {
+                let linear = self.linear.as_ref().map_or(String::new(), |linear| {
+                    format!(", {} with the best TMD", rounded(linear.needs.value(measure), 3))
+                });
+                lines.push(format!(
+                    "it raises {} from {} (no damper{linear}) to {}",
+                    measure.words(),
+                    rounded(without, 3),
+                    sized(measure, own)
+                ));
+            }
+        }
+        lines
+    }
+
+    /// The lines of an answer: what they are of, and their words.
+    pub fn lines(&self, study: &Study) -> Vec<(&'static str, String)> {
+        let mut lines = vec![
+            ("needs", self.damper.damper_words()),
+            ("there", format!("the structure {}", self.damper.structure_words())),
+        ];
+        lines.extend(self.damper.own_words(study).map(|words| ("", words)));
+        let none = self.none.iter().map(|none| format!("no damper: {}", beside(none, false)));
+        let linear = self.linear.iter().map(|Linear { k2, c2, needs, .. }| {
+            format!("best TMD (k2 {}, c2 {}): {}", rounded(*k2, 4), rounded(*c2, 4), beside(needs, true))
+        });
+        let others: Vec<String> = none.chain(linear).collect();
+        if !others.is_empty() {
+            lines.push(("beside", others.join("; ")));
+        }
+        lines
+    }
+}
+
+/// The values of another damper in a few words.
+fn beside(largest: &Largest, damped: bool) -> String {
+    let of = |measure| format!("{} {}", short_name(measure), sized(measure, largest.value(measure)));
+    let structure = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce].map(of).join(", ");
+    if damped { format!("{structure}, {}", of(Measure::Stroke)) } else { structure }
+}
+
+/// Why a search did not come to a better damper without walls.
+fn excluded(study: &Study, search: &Search, design: &Scene, linear: &Scene, needs: &Largest) -> String {
+    let mut why = Vec::new();
+    let (Some(own), Some(other)) = (design.damper, linear.damper) else { return String::new() };
+    for variable in [Variable::K2, Variable::C2] {
+        let value = variable.get(&other);
+        let place = search.variables.iter().position(|known| *known == variable);
+        match place.and_then(|place| search.options.bounds.get(place)) {
+            None if variable.get(&own) != value => why.push(format!("does not vary {variable}")),
+            Some(bounds) => {
+                let unit = variable.unit();
+                if let Some(upper) = bounds.upper.filter(|upper| value > *upper) {
+                    why.push(format!("bounds {variable} by {} {unit}", short(upper)));
+                }
+                if let Some(lower) = bounds.lower.filter(|lower| value < *lower) {
+                    why.push(format!("bounds {variable} by at least {} {unit}", short(lower)));
+                }
+            }
+            None => {}
+        }
+    }
+    let limits = study.goal().limits;
+    for limit in limits.set() {
+        let reached = if let Limit::Of(measure) = limit {
+            needs.value(measure)
+        } else {
+            2.0 * needs.value(Measure::Stroke)
+        };
+        if limits.get(limit).is_some_and(|allowed| reached > allowed) {
+            why.push(format!("limits {limit}"));
+        }
+    }
+    if !why.is_empty() {
+        return format!("the study excludes it: it {}", why.join(" and "));
+    }
+    "the bounds of the study on k2 and c2 allow it".to_owned()
+}

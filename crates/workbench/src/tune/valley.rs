@@ -1,0 +1,106 @@
+//! How far each parameter of a design may go, the others held, until its value is 0.1 % larger: what its digits are worth.
+
+use super::objective::{kept, searched};
+use rayon::prelude::*;
+use retune_model::Variable;
+use retune_optim::Bounds;
+use retune_store::Journal;
+use retune_study::{Search, Study, rounded};
+use serde::Serialize;
+
+/// The share by which the value may grow.
+const ALLOWED: f64 = 1e-3;
+/// Steps outwards, as shares of the parameter; below the first nothing is told apart.
+const STEPS: [f64; 8] = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 0.9, 9.0];
+/// Halvings of the step that fails.
+const HALVINGS: usize = 5;
+/// A range that is wider than this share of the parameter is told.
+const FLAT: f64 = 0.1;
+
+/// The range of a parameter in which the value of a design is at most 0.1 % larger, as far as was looked; at each step outwards it was.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Valley {
+    pub variable: Variable,
+    /// Smallest and largest value that was found to do.
+    pub from: f64,
+    pub to: f64,
+    /// Whether the last step, to a bound or to ten times the value, did too.
+    pub open: bool,
+    #[serde(skip)]
+    own: f64,
+}
+
+/// Measures it for each varied parameter of a design.
+pub(super) fn measure(study: &Study, search: &Search, design: &[f64], journal: &Journal) -> Vec<Valley> {
+    let objective = searched(study, search, &search.variables);
+    let value = kept(&objective, journal, "valley", || ());
+    let most = (1.0 + ALLOWED) * value(design, f64::INFINITY);
+    let does = |i: usize, x: f64| {
+        let mut other = design.to_vec();
+        other[i] = x;
+        value(&other, most) <= most
+    };
+    let reach = |(i, outwards): (usize, f64)| {
+        let (own, Bounds { lower, upper }) =
+            (design[i], search.options.bounds.get(i).copied().unwrap_or_default());
+        let at = |share: f64| {
+            (own * (1.0 + outwards * share))
+                .clamp(lower.unwrap_or(0.0).max(0.0), upper.unwrap_or(f64::INFINITY))
+        };
+        let (mut good, mut last) = (0.0, None);
+        for share in STEPS {
+            if at(share) == at(good) {
+                break; // at a bound
+            }
+            if !does(i, at(share)) {
+                last = Some(share);
+                break;
+            }
+            good = share;
+        }
+        let open = last.is_none();
+        if let Some(mut bad) = last {
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (good + bad);
+                if does(i, at(middle)) { good = middle } else { bad = middle }
+            }
+        }
+        (at(good), open)
+    };
+    let sides: Vec<(usize, f64)> = (0..design.len()).flat_map(|i| [(i, -1.0), (i, 1.0)]).collect();
+    let found: Vec<(f64, bool)> = sides.into_par_iter().map(reach).collect();
+    let valley = |(i, variable): (usize, &Variable)| {
+        let [(from, _), (to, open)] = [found[2 * i], found[2 * i + 1]];
+        Valley { variable: *variable, from, to, open, own: design[i] }
+    };
+    search.variables.iter().enumerate().map(valley).collect()
+}
+
+impl Valley {
+    /// The digits that tell: rounded to them the parameter stays in its range, at least two and at most six.
+    pub(crate) fn digits(&self) -> usize {
+        let share = (self.own - self.from).min(self.to - self.own) / self.own.abs();
+        // At an end of its range it may go one way only.
+        let share = if share > 0.0 { share } else { (self.to - self.from) / self.own.abs() };
+        if share > 0.0 && share.is_finite() {
+            ((1.0 - (2.0 * share).log10()).ceil() as usize).clamp(2, 6)
+        } else {
+            4
+        }
+    }
+
+    /// A flat direction in words; none of a parameter that matters.
+    pub(crate) fn words(&self) -> Option<String> {
+        let Self { variable, from, to, open, own } = self;
+        let (name, unit) = (variable.symbol(), variable.unit());
+        if to - from <= FLAT * own.abs() {
+            return None;
+        }
+        let [low, high] = [from, to].map(|end| rounded(*end, 2));
+        Some(if *open {
+            format!("any {name} above {low} {unit}")
+        } else {
+            format!("{name} from {low} to {high} {unit}")
+        })
+    }
+}
