@@ -51,7 +51,8 @@ impl Bare {
         }
         let mut worst = Worst::NONE;
         if from < to {
-            Search::new(self, Factors::of_bare(self, to * to), false, measure, [from, to], &mut worst).run();
+            let seen = Seen { worst: &mut worst, share: 1.0, visit: &mut |_| () };
+            Search::new(self, Factors::of_bare(self, to * to), false, measure, [from, to], seen).run();
         } else {
             worst.note(from, self.steady(from).largest(self, from, measure));
         }
@@ -79,16 +80,44 @@ impl Coupled {
 
     /// Largest steady value of a quantity over a band; as [`Self::steady_e1_max`]. The contact force is zero, as long as the damper
     /// touches neither wall.
-    pub fn steady_max(&self, measure: Measure, [from, to]: [f64; 2]) -> Worst {
+    pub fn steady_max(&self, measure: Measure, band: [f64; 2]) -> Worst {
+        self.steady_over(measure, band, 1.0, &mut |_| ())
+    }
+
+    /// The places over a band with at least the share `least` of the largest value of a quantity at which it may be largest for a design
+    /// nearby: every maximum, and the ends of the band.
+    pub fn steady_peaks(&self, measure: Measure, band: [f64; 2], least: f64) -> Vec<Worst> {
+        let mut peaks = Vec::new();
+        let worst = self.steady_over(measure, band, least, &mut |peak| peaks.push(peak));
+        peaks.retain(|peak: &Worst| peak.value >= least * worst.value);
+        peaks
+    }
+
+    fn steady_over(
+        &self,
+        measure: Measure,
+        [from, to]: [f64; 2],
+        share: f64,
+        visit: &mut dyn FnMut(Worst),
+    ) -> Worst {
         let mut worst = Worst::NONE;
         if from < to && measure != Measure::ContactForce {
             let factors = Factors::new(self, to * to);
-            Search::new(self.bare(), factors, true, measure, [from, to], &mut worst).run();
+            let seen = Seen { worst: &mut worst, share, visit };
+            Search::new(self.bare(), factors, true, measure, [from, to], seen).run();
         } else {
             worst.note(from, self.steady(from).largest(self.bare(), from, measure));
+            visit(worst);
         }
         worst
     }
+}
+
+/// What a search keeps: the largest value, and each place that may have at least a share of it.
+struct Seen<'a> {
+    worst: &'a mut Worst,
+    share: f64,
+    visit: &'a mut dyn FnMut(Worst),
 }
 
 struct Search<'a> {
@@ -103,7 +132,7 @@ struct Search<'a> {
     power: i32,
     weight: Option<[f64; 2]>,
     band: [f64; 2],
-    worst: &'a mut Worst,
+    seen: Seen<'a>,
 }
 
 impl<'a> Search<'a> {
@@ -113,7 +142,7 @@ impl<'a> Search<'a> {
         damper: bool,
         measure: Measure,
         band: [f64; 2],
-        worst: &'a mut Worst,
+        seen: Seen<'a>,
     ) -> Self {
         let (force, power, weight) = match bare.source() {
             Source::Force(amplitude) => (amplitude.get(), 0, None),
@@ -121,13 +150,13 @@ impl<'a> Search<'a> {
             Source::Base(base) => (base.get(), 0, Some(ground(bare, factors.unit))),
             Source::Decay(_) => (0.0, 0, None),
         };
-        Self { bare, factors, damper, measure, force, power, weight, band, worst }
+        Self { bare, factors, damper, measure, force, power, weight, band, seen }
     }
 
     /// Looks at every cut of the band, then at every maximum between two cuts that can be higher.
     fn run(&mut self) {
         if self.weight.is_some() && self.measure == Measure::GroundForce {
-            self.worst.note(self.band[0], f64::INFINITY);
+            self.seen.worst.note(self.band[0], f64::INFINITY);
             return;
         }
         let [from, to] = self.band.map(|end| self.factors.end(end));
@@ -155,7 +184,7 @@ impl<'a> Search<'a> {
                 self.factors.piece(b, a)
             };
             let [v, m] = piece.bounds(numerator);
-            if self.value(numerator, v / m) > self.worst.value {
+            if self.value(numerator, v / m) > self.seen.share * self.seen.worst.value {
                 piece.falls(numerator, &mut |s| self.note(&piece, numerator, s));
             }
         }
@@ -164,7 +193,9 @@ impl<'a> Search<'a> {
     fn note(&mut self, piece: &Piece, numerator: Numerator, s: f64) {
         let [from, to] = self.band;
         let frequency = (piece.u(s) * self.factors.unit).sqrt().clamp(from, to);
-        self.worst.note(frequency, self.value(numerator, piece.ratio(numerator, s)));
+        let value = self.value(numerator, piece.ratio(numerator, s));
+        self.seen.worst.note(frequency, value);
+        (self.seen.visit)(Worst { value, frequency });
     }
 
     /// `V` from a cut on to the next.

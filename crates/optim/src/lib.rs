@@ -14,6 +14,7 @@ pub mod objective;
 pub mod search;
 
 pub use objective::band::{Band, worst_over};
+pub use objective::descent::Foot;
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
 pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};

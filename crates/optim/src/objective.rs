@@ -2,10 +2,11 @@
 //!
 //! Read `spec` (the specification in a study), `evaluate` (its value for a scene: an `evaluation`), then its parts: `band` (the worst
 //! over frequencies), `ensemble` (a statistic over small errors), `limits`; `peak_energy`, the function that searches call; and its
-//! derivatives, `gradient` (of the value) and `pieces` (of each of the peaks that it is the largest of). `needs` has the largest value of
-//! every measure.
+//! derivatives, `gradient` (of the value) and `pieces` (of each of the peaks that it is the largest of), by which a `descent` goes down.
+//! `needs` has the largest value of every measure.
 
 pub mod band;
+pub mod descent;
 pub mod ensemble;
 pub mod evaluate;
 pub mod evaluation;

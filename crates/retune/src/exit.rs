@@ -6,7 +6,7 @@ use retune_workbench::Error;
 pub const FAILED: u8 = 1;
 /// The input is wrong, or a file or directory cannot be read or written.
 pub const WRONG: u8 = 2;
-/// No design that keeps the limits: results are written, and there is no verdict.
+/// None found that keeps the limits: the nearest design is written, and there is no verdict.
 pub const INFEASIBLE: u8 = 3;
 /// `verify` could not check everything, and everything it could check holds.
 pub const UNCHECKED: u8 = 4;
@@ -47,7 +47,7 @@ Exit codes:
     0  done; results hold (`verify`)
     1  the computation failed, results do not hold (`verify`), or a line had no value (`evaluate`)
     2  the command line, a study or another file is wrong, or a file cannot be read or written
-    3  no design that keeps the limits was found: the nearest is written, without a verdict
+    3  none found that keeps the limits: the nearest design is written, without a verdict
     4  something cannot be checked, and all that can be holds (`verify`)
   130  stopped by Ctrl-C or SIGTERM; what was computed is kept, and --resume goes on";
 

@@ -182,7 +182,7 @@ pub struct Refine {
     #[serde(rename = "TolFun")]
     #[schemars(range(min = 0.0))]
     pub tol_fun: f64,
-    /// Scaling of the parameters for TolX: false, in their SI units, as in MATLAB; true, divided by their initial values.
+    /// Scaling of the parameters for TolX: false, in their SI units, as in MATLAB; true, divided by their initial values, as always under limits.
     pub scaled: bool,
     /// Maximum number of iterations of a run. Default: 200 for each tuned parameter.
     #[serde(rename = "MaxIter")]

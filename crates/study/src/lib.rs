@@ -53,7 +53,7 @@ pub use kind::Kind;
 pub use per_variable::PerVariable;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
-pub use search::{MOST_GRID_POINTS, Search, check_name, name_from};
+pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
 pub use set::{PARAMETERS, Setting, SettingError};
 pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};
 pub use visible::visible;

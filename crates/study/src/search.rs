@@ -5,7 +5,7 @@ use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
 use super::per_variable::PerVariable;
 use super::rule::Rule;
-use retune_model::Damper;
+use retune_model::{Damper, Design};
 use retune_optim::{Axis, Bounds, Global, Grid, Options, Scaling, Space, Variable};
 
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
@@ -228,8 +228,20 @@ fn options(optimize: &Optimize, bounds: Vec<Bounds>) -> Result<Options, Rule> {
         max_iter: refine.max_iter,
         max_fun_evals: refine.max_fun_evals,
         bounds,
-        scaling: if refine.scaled { Scaling::Start } else { Scaling::None },
+        // A violation in the place of a value has no unit that TolX could be of.
+        scaling: if refine.scaled || !optimize.limits.is_empty() { Scaling::Start } else { Scaling::None },
     })
+}
+
+/// A design moved into the bounds of a search.
+pub fn clipped(at: &Design, optimize: &Optimize) -> PerVariable<f64> {
+    let mut start = PerVariable::default();
+    for &variable in &optimize.vary {
+        let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
+        let value = at.get(variable);
+        *start.get_mut(variable) = Some(value.min(high.unwrap_or(value)).max(low));
+    }
+    start
 }
 
 /// Whether a name may have this character.

@@ -16,7 +16,7 @@ use crate::searches::Searches;
 use crate::{Error, Observer, Request, resolved};
 use retune_model::Measure;
 use retune_optim::Limit;
-use retune_study::{Rule, Setting, Study};
+use retune_study::{Rule, Setting, Study, clipped};
 use serde_json::json;
 
 /// The files of an answer.
@@ -75,7 +75,12 @@ fn one(
     let mut rows = vec![Row::of_optimum("all", name, study, &found)];
     for limit in wishes.limits() {
         let free = wishes.without(limit);
-        let free = if name == "TMD" { free.tmd()? } else { free.ssvi()? };
+        let mut free = if name == "TMD" { free.tmd()? } else { free.ssvi()? };
+        // What a limit costs is measured from a search that is at least as good as that under it.
+        if let Some(optimize) = &mut free.optimize {
+            let start = clipped(&found.found().damper.design, optimize);
+            optimize.starts.push(start);
+        }
         watch.log(&format!("\n{name}, without the limit on {}", limit.words()))?;
         let optimum = searches.tune(&free, &format!("without-{}", limit.name()))?;
         rows.push(Row::of_optimum(&format!("no {}", limit.name()), name, study, &optimum));

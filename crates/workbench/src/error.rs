@@ -89,7 +89,7 @@ pub enum Error {
         /// The parts that cannot be checked.
         problem: String,
     },
-    /// No design keeps the limits: the results are those of the nearest one.
+    /// None found that keeps the limits: the results are those of the nearest design.
     #[error(
         "study {name}: the limits are not kept: {words}; loosen a limit, widen a bound, or look at more designs"
     )]

@@ -15,7 +15,7 @@ pub struct Searches<'a> {
     watch: &'a dyn Observer,
     /// The results made so far.
     pub results: Vec<Directory>,
-    /// The error of the first search that found no design within its limits.
+    /// The error of the first search that found none within its limits.
     pub infeasible: Option<Error>,
 }
 

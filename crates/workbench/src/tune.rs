@@ -2,6 +2,7 @@
 
 pub mod band;
 pub(crate) mod choice;
+pub mod descent;
 pub mod ends;
 pub(crate) mod global;
 pub mod log;
@@ -13,6 +14,7 @@ pub(crate) mod refine;
 mod report;
 pub mod shard;
 pub(crate) mod surf;
+mod tmd;
 pub(crate) mod valley;
 
 pub use optimum::{Found, Optimum, table2_header, table2_row};

@@ -145,6 +145,7 @@ impl PeakEnergy {
             worst: found.energy,
             broken: found.violation,
         });
+        self.counts[1].fetch_add(u64::from(height.broken > 0.0), Relaxed);
         (height, runs.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
@@ -159,6 +160,12 @@ impl PeakEnergy {
     pub fn recall(&self, value: f64) {
         self.counts[0].fetch_add(1, Relaxed);
         self.counts[1].fetch_add(u64::from(value > INFEASIBLE), Relaxed);
+    }
+
+    /// Counts what a descent evaluated in an earlier run of the same search.
+    pub fn recall_all(&self, Counts { evaluations, infeasible }: Counts) {
+        self.counts[0].fetch_add(evaluations, Relaxed);
+        self.counts[1].fetch_add(infeasible, Relaxed);
     }
 
     /// Evaluates a scene with this objective's goal and settings; see [`Goal::evaluate`].

@@ -2,14 +2,15 @@
 //! limit, with their derivatives.
 //!
 //! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
-//! those of the run at its frequency (the envelope theorem).
+//! those of the run at its frequency (the envelope theorem). Those of a steady response are in closed form.
 
+use super::band::Band;
 use super::evaluation::{Place, Run};
 use super::limits::{Limit, widens};
-use super::spec::Goal;
+use super::spec::{Goal, Objective, Response};
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
-use retune_model::{Coupled, Measure, Parameter, Scene, Variable};
+use retune_model::{Coupled, Measure, Parameter, Scene, Variable, Worst};
 use retune_solver::{Settings, Window, gradients};
 
 /// A peak below this share of the largest of its kind cannot soon be the largest.
@@ -20,6 +21,13 @@ const MOST: usize = 12;
 const APART: f64 = 1e-5;
 
 impl Goal {
+    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, and of no motion
+    /// but those from rest and the steady one.
+    pub fn has_pieces(&self) -> bool {
+        let Objective { sum, ensemble, response, .. } = &self.objective;
+        sum.is_empty() && ensemble.is_none() && matches!(response, Response::Window | Response::Steady)
+    }
+
     /// The highest peaks of `runs`, which were made to evaluate `scene`, with their derivatives by `variables`; those that have none, since
     /// their run cannot be followed, are left out. Limits come as shares, 0 where they are just kept.
     pub fn pieces(
@@ -49,7 +57,19 @@ impl Goal {
                 return Vec::new();
             };
             let system = Coupled::new(primary, forcing, damper);
-            let found = gradients(&system, window, settings, measure, &by).unwrap_or_default();
+            let found: Vec<(f64, Vec<f64>)> = if self.objective.response == Response::Steady {
+                let omega = forcing.frequency.get();
+                let band = self.objective.omega.map_or([omega; 2], |band| {
+                    let Band { from, to, .. } = band.of(primary);
+                    [from, to]
+                });
+                let peaks = system.steady_peaks(measure, band, HIGH).into_iter();
+                let by = |at| variables.iter().map(|&by| system.steady_by(measure, by, at)).collect();
+                peaks.map(|Worst { value, frequency }| (value, by(frequency))).collect()
+            } else {
+                let found = gradients(&system, window, settings, measure, &by).unwrap_or_default();
+                found.into_iter().map(|found| (found.at.value, found.by)).collect()
+            };
             let piece = |value: f64, by: Vec<f64>| match limit {
                 None => Piece { is_limit: false, value, slope: by },
                 Some(limit) => Piece {
@@ -58,7 +78,7 @@ impl Goal {
                     slope: by.into_iter().map(|by| by / limit).collect(),
                 },
             };
-            found.into_iter().map(|found| piece(found.at.value, found.by)).collect::<Vec<_>>()
+            found.into_iter().map(|(value, by)| piece(value, by)).collect::<Vec<_>>()
         };
         let mut pieces: Vec<Piece> = peaks.par_iter().flat_map_iter(piece).collect();
         if let (Some(most), Some(damper)) = (self.limits.get(Limit::Cavity), &scene.damper) {

@@ -21,7 +21,7 @@ pub struct Piece {
 
 /// Half of the side of the trust region at first, in coordinates of [`Space`].
 const FIRST: f64 = 0.03;
-/// Most steps that are tried.
+/// Most steps that are tried with a weight.
 const STEPS: usize = 60;
 /// Where a step promises a gain of nothing but the curvature of the functions, the region is about the root of that gain; below this share of
 /// it no step can bring the gain.
@@ -30,8 +30,10 @@ const SMALL: f64 = 0.01;
 const TAKEN: f64 = 0.1;
 const GOOD: f64 = 0.7;
 
-/// By what a limit that is broken by its whole size weighs, as a share of the worst: more than any limit is worth.
+/// By what a limit that is broken by its whole size weighs, as a share of the worst, at first. A descent that ends outside limits goes on with
+/// ten times the weight, up to the largest: near the least that a limit can be, it is worth any amount.
 const WEIGHT: f64 = 20.0;
+const MOST_WEIGHT: f64 = 2e6;
 /// Steps are aimed this far inside limits, as shares of them, so that they are kept and not just met.
 const INSIDE: f64 = 1e-6;
 
@@ -46,13 +48,13 @@ pub struct Height {
 
 impl Height {
     /// Whether it is better: breaks limits by less, or keeps them too and has less.
-    fn is_below(&self, other: &Self) -> bool {
+    pub fn is_below(&self, other: &Self) -> bool {
         self.broken < other.broken || self.broken == other.broken && self.worst < other.worst
     }
 
     /// What steps make smaller, as a share of `of`.
-    fn merit(&self, of: f64) -> f64 {
-        self.worst / of + WEIGHT * self.broken
+    fn merit(&self, of: f64, weight: f64) -> f64 {
+        self.worst / of + weight * self.broken
     }
 }
 
@@ -74,16 +76,20 @@ pub fn minimax<T>(
         return best;
     }
     let (mut x, mut here) = (start.to_vec(), pieces(start, &seen));
-    let (mut radius, mut tried) = (FIRST, 0);
-    while let Some((to, promised)) = step(&here, height.worst, space, &x, radius).filter(|_| tried < STEPS) {
+    let (mut radius, mut tried, mut weight) = (FIRST, 0, WEIGHT);
+    while let Some((to, promised)) = step(&here, height.worst, space, &x, radius, weight) {
         // Within the region the linear functions are wrong by its square.
-        if promised < gain || radius < SMALL * gain.sqrt() {
-            break;
+        if promised < gain || radius < SMALL * gain.sqrt() || tried == STEPS {
+            if height.broken == 0.0 || weight >= MOST_WEIGHT {
+                break;
+            }
+            (radius, tried, weight) = (FIRST, 0, 10.0 * weight);
+            continue;
         }
         tried += 1;
         let cutoff = if here.iter().any(|piece| piece.is_limit) { f64::INFINITY } else { height.worst };
         let (found, seen) = look(&to, cutoff);
-        let brought = (height.merit(height.worst) - found.merit(height.worst)) / promised;
+        let brought = (height.merit(height.worst, weight) - found.merit(height.worst, weight)) / promised;
         if found.is_below(&best.1) {
             best = (to.clone(), found);
         }
@@ -103,11 +109,18 @@ pub fn minimax<T>(
 }
 
 /// The step that is best for the linearised functions, and by how much it lowers their merit; none where there is nothing to go by.
-fn step(pieces: &[Piece], worst: f64, space: &Space, x: &[f64], radius: f64) -> Option<(Vec<f64>, f64)> {
+fn step(
+    pieces: &[Piece],
+    worst: f64,
+    space: &Space,
+    x: &[f64],
+    radius: f64,
+    weight: f64,
+) -> Option<(Vec<f64>, f64)> {
     let (u, slopes) = (space.coordinates(x), space.slopes(x));
     let mut program = Problem::new(OptimizationDirection::Minimize);
     let most = program.add_var(1.0, (0.0, f64::INFINITY));
-    let broken = program.add_var(WEIGHT, (0.0, f64::INFINITY));
+    let broken = program.add_var(weight, (0.0, f64::INFINITY));
     let moves: Vec<_> =
         u.iter().map(|&u| program.add_var(0.0, ((-u).max(-radius), (1.0 - u).min(radius)))).collect();
     let (mut highest, mut most_broken) = (0.0_f64, 0.0_f64);
@@ -124,7 +137,7 @@ fn step(pieces: &[Piece], worst: f64, space: &Space, x: &[f64], radius: f64) -> 
     }
     let found = program.solve().ok()?.into_solution().ok()?;
     let to: Vec<f64> = u.iter().zip(&moves).map(|(u, &along)| u + found.var_value(along)).collect();
-    (highest > 0.0).then(|| (space.point(&to), highest + WEIGHT * most_broken - found.objective()))
+    (highest > 0.0).then(|| (space.point(&to), highest + weight * most_broken - found.objective()))
 }
 
 #[cfg(test)]

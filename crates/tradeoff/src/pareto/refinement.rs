@@ -1,12 +1,10 @@
 //! The descent of one design under a bound.
 
 use retune_model::{Design, Variable};
-use retune_optim::{Side, Space, minimax};
 use retune_store::Journal;
-use retune_study::{Optimize, PerVariable, Search, Study, Sweep};
+use retune_study::{Optimize, PerVariable, Search, Study, Sweep, clipped};
 use retune_workbench::Error;
 use retune_workbench::tune::objective::searched;
-use std::cell::OnceCell;
 
 /// What is done under one bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,11 +16,6 @@ pub(super) struct Under {
     /// The bound, in the unit of the sweep.
     pub bound: f64,
 }
-
-/// Share of E1max below which a step of a descent is not worth its runs.
-const EXACT: f64 = 1e-5;
-/// Where a side of the box ends that has no upper bound: so many times the start, or at one unit.
-const WIDE: f64 = 4.0;
 
 /// The design at the foot of the slope from `start` by the objective and within the bounds of a study; none where there is no way down. The
 /// journal keeps it.
@@ -37,25 +30,11 @@ pub(super) fn descend(
 ) -> Result<Option<Design>, Error> {
     let (study, search, samples) = from(study, start)?;
     let Some(at) = search.given.first() else { return Ok(None) };
-    let side = |(bounds, at): (&retune_optim::Bounds, &f64)| {
-        Side::natural(bounds.lower.unwrap_or(0.0), bounds.upper.unwrap_or((WIDE * at).max(1.0)))
-    };
-    let space = Space(search.options.bounds.iter().zip(at).map(side).collect());
     let of = searched(&study, &search, &search.variables);
-    let found = OnceCell::new();
-    let go = || {
-        found.get_or_init(|| {
-            minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, at, EXACT)
-        })
-    };
     let Under { damper, sweep, bound } = under;
-    let end = (0..at.len()).map(|i| {
-        let stage = format!("{damper} {} {bound} {samples} {i}", sweep.name());
-        journal.value(&stage, at, f64::INFINITY, || go().0[i], |_| ())
-    });
-    let end: Vec<f64> = end.collect();
-    let at = of.damper(&end).ok();
-    Ok(at.map(|damper| Design::of(&damper)))
+    let stage = format!("{damper} {} {bound} {samples}", sweep.name());
+    let foot = retune_workbench::tune::descent::descend(&of, &search, at, journal, &stage);
+    Ok(of.damper(&foot.end.x).ok().map(|damper| Design::of(&damper)))
 }
 
 /// The design at `start` if it has no more than `most` and keeps the limits; none if not. The journal keeps its value.
@@ -93,17 +72,6 @@ fn from(study: &Study, start: &PerVariable<f64>) -> Result<(Study, Search, usize
     }
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
     Ok((study, search, samples))
-}
-
-/// A design moved into the bounds of a search.
-pub(super) fn clipped(at: &Design, optimize: &Optimize) -> PerVariable<f64> {
-    let mut start = PerVariable::default();
-    for &variable in &optimize.vary {
-        let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
-        let value = at.get(variable);
-        *start.get_mut(variable) = Some(value.min(high.unwrap_or(value)).max(low));
-    }
-    start
 }
 
 /// The starts about a design: itself, and each copy with a gap at its lower bound that is this near to it, as a share of the side.

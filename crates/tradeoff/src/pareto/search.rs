@@ -5,11 +5,11 @@
 use super::candidate::{CONTINUED, Candidate};
 use super::descents::Task;
 use super::fronts::{Fronts, GIVEN};
-use super::refinement::{Under, clipped};
+use super::refinement::Under;
 use rayon::prelude::*;
 use retune_model::{Design, Measure};
 use retune_optim::Limit;
-use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep};
+use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep, clipped};
 use retune_workbench::certify::judge;
 use retune_workbench::look::{finer, look};
 use retune_workbench::searches::Searches;

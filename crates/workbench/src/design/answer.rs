@@ -88,7 +88,8 @@ fn build(designed: &[Designed]) -> Vec<String> {
     let feasible: Vec<&Designed> = designed.iter().filter(|damper| damper.feasible).collect();
     let Some(least) = feasible.iter().min_by(|a, b| best(a).total_cmp(&best(b))) else {
         return vec![
-            "Neither damper keeps the limits: loosen one of them, or give the damper more mass.".to_owned(),
+            "None found that keeps the limits, of either damper: loosen one of them, or give the damper more mass."
+                .to_owned(),
         ];
     };
     // A damper without walls is simpler to build and easier to trust.
@@ -135,7 +136,7 @@ fn costs(wishes: &Wishes, designed: &[Designed]) -> Vec<String> {
 /// How sure a design is.
 fn sure(damper: &Designed) -> Option<String> {
     let row = damper.rows.first()?;
-    let kept = if damper.feasible { "" } else { "; no design keeps the limits, this is the nearest" };
+    let kept = if damper.feasible { "" } else { "; none found that keeps the limits, this is the nearest" };
     Some(format!("Certificate of the {}: {}{kept}.", damper.name, row.verdict))
 }
 

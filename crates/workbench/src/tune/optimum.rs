@@ -4,6 +4,7 @@ mod answer;
 pub(crate) mod notes;
 
 use super::choice::PassedOver;
+use super::descent::Descended;
 use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
@@ -50,6 +51,9 @@ pub struct Optimum {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) global: Option<Basins>,
     refine: Refinement,
+    /// Number of refinements; one run more begins at the best TMD.
+    #[serde(skip)]
+    starts: usize,
     pub(crate) failures: FailureNote,
     /// Designs with smaller values that other motions make much worse, if one without was as good.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -127,6 +131,16 @@ struct RunNote {
     iterations: u64,
     func_count: u64,
     stop: Stop,
+    /// The descent by derivatives that went on from there, where it found a better design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    descent: Option<DescentNote>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct DescentNote {
+    #[serde(flatten)]
+    from: Amount,
+    evaluations: u64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -165,7 +179,7 @@ impl Optimum {
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),
             on_edge: surf.map(|surf| notes::on_edge(search, surf)).unwrap_or_default(),
-            limits: LimitNote::new(study, &evaluation, surf, explored, refined),
+            limits: LimitNote::new((study, search), &evaluation, surf, explored, refined),
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
                 best: PerVariable::of(&surf.variables, &surf.point(surf.best)),
@@ -179,6 +193,7 @@ impl Optimum {
                 winner: refined.winner + 1,
                 runs: refined.runs.iter().map(|run| RunNote::new(run, quantity, over)).collect(),
             },
+            starts: refined.starts,
             failures: FailureNote::new(&[
                 surf.map(|surf| &surf.failures),
                 explored.map(|explored| &explored.failures),
@@ -239,7 +254,7 @@ pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
 /// The start of the best run, with its energy whether it keeps the limits or not. A run that ends before its first iteration has
 /// only its end.
 fn start(refined: &Refined) -> Result<Found, Error> {
-    let Run { rows, minimum } = refined.best();
+    let Run { rows, minimum, .. } = refined.best();
     let (x, value) = rows.first().map_or((&minimum.x, minimum.value), |row| (&row.best, row.value));
     let scene = refined.objective.scene(x)?;
     let e1_max = match energy(value) {
@@ -265,6 +280,10 @@ impl RunNote {
             iterations,
             func_count,
             stop: *stop,
+            descent: run.descent.map(|Descended { from, evaluations }| DescentNote {
+                from: Amount::of(quantity, "_before", energy(from)),
+                evaluations,
+            }),
         }
     }
 }

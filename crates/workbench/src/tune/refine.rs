@@ -1,5 +1,6 @@
-//! The fine stage: `fminsearch` from each start, with its log.
+//! The fine stage: `fminsearch` from each start, with its log, and a descent from each end.
 
+use super::descent::{Descended, finish};
 use super::log;
 use super::objective::{kept, searched};
 use crate::Error;
@@ -8,7 +9,7 @@ use crate::summary::MadeBy;
 use retune_model::Variable;
 use retune_optim::{Minimum, PeakEnergy, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
-use retune_study::{Search, Study};
+use retune_study::{Search, Study, counted};
 use std::ops::ControlFlow;
 
 /// All refinements of a study.
@@ -19,14 +20,18 @@ pub struct Refined {
     pub runs: Vec<Run>,
     /// The number of the best run.
     pub winner: usize,
+    /// Number of runs that begin at the starts; one more may begin at the best TMD.
+    pub starts: usize,
 }
 
 /// One refinement.
 pub struct Run {
     /// Its log.
     pub rows: Vec<Row>,
-    /// Its result.
+    /// Its result, at the end of its descent where that is better.
     pub minimum: Minimum,
+    /// The descent that led there.
+    pub descent: Option<Descended>,
 }
 
 impl Refined {
@@ -62,13 +67,28 @@ pub(super) fn refine(
         all.push_line(&format!("{number},{}", log::csv(row, design)))?;
         watch.log(&log::screen(row, design))
     })?;
-    if refined.runs.len() > 1 {
+    if refined.starts > 1 {
         all.finish()?;
+    }
+    for (number, run) in refined.runs.iter().enumerate() {
+        if let Some(Descended { from, evaluations }) = run.descent {
+            let begin = if number < refined.starts {
+                format!("the end of start {}", number + 1)
+            } else {
+                "the best TMD".to_owned()
+            };
+            watch.log(&format!(
+                "descent from {begin}: {} to {} in {}",
+                log::worth(from, study.quantity()),
+                log::worth(run.minimum.value, study.quantity()),
+                counted(evaluations, "evaluation")
+            ))?;
+        }
     }
     Ok(refined)
 }
 
-/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
+/// Refines every start, and goes down from each end. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
 /// keeps values under the name of a stage.
 ///
 /// # Errors
@@ -92,7 +112,9 @@ pub(super) fn each(
         }
         runs.push(run);
     }
-    Ok(Refined { objective, runs, winner })
+    let mut refined = Refined { objective, runs, winner, starts: starts.len() };
+    finish(&mut refined, study, search, (journal, stage))?;
+    Ok(refined)
 }
 
 /// A whole design, in the order of the columns of its tables.
@@ -122,7 +144,7 @@ fn run(
     told?;
     journal.check()?;
     let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;
-    Ok(Run { rows, minimum })
+    Ok(Run { rows, minimum, descent: None })
 }
 
 /// Writes `fminsearch.csv` and `fminsearch.txt` of the run that was chosen.

@@ -1,7 +1,7 @@
 //! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
 
 use super::notes::{self, Goal, LimitNote};
-use super::{FailureNote, Optimum, RunNote, Valley, stop_words};
+use super::{DescentNote, FailureNote, Optimum, RunNote, Valley, stop_words};
 use crate::amount::Amount;
 use crate::needs::Needs;
 use crate::summary::how_many;
@@ -44,16 +44,22 @@ impl Optimum {
     /// How the search went, for the log.
     pub fn search(&self) -> String {
         let winner = self.refine.winner;
-        let RunNote { iterations, func_count, stop, .. } = &self.refine.runs[winner - 1];
-        let mut lines = vec![format!(
-            "\nfminsearch, start {winner} of {}: {} after {}, {}; TolX {:e} is {}",
-            self.refine.runs.len(),
+        let RunNote { iterations, func_count, stop, descent, .. } = &self.refine.runs[winner - 1];
+        let simplex = format!(
+            "fminsearch, start {winner} of {}: {} after {}, {}; TolX {:e} is {}",
+            self.starts,
             stop_words(*stop),
             counted(*iterations, "iteration"),
             counted(*func_count, "evaluation"),
             self.refine.tol_x,
             self.refine.tol_x_mode,
-        )];
+        );
+        let begun = if winner > self.starts { "the best TMD".to_owned() } else { simplex };
+        let descent = descent.map_or_else(String::new, |DescentNote { from, evaluations }| {
+            let from = if from.value.is_nan() { "outside the limits".to_owned() } else { from.words() };
+            format!("; then a descent by derivatives from {from}, {}", counted(evaluations, "evaluation"))
+        });
+        let mut lines = vec![format!("\n{begun}{descent}")];
         lines.extend(self.global.as_ref().map(super::Basins::report));
         lines.join("\n")
     }
@@ -143,17 +149,25 @@ fn wrapped(text: &str, indent: &str) -> String {
 
 impl LimitNote {
     pub(super) fn report(&self) -> String {
-        let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
+        let Self { allowed, feasible, proven, active, evaluations, infeasible, .. } = self;
         let words = self.reached.iter().filter_map(|(limit, reached)| {
             let allowed = allowed.get(*limit)?;
-            let active = if active.contains(limit) { ", active" } else { "" };
-            Some(format!("{limit} {} of {} {}{active}", short(*reached), short(allowed), limit.unit()))
+            let over = 100.0 * (reached / allowed - 1.0);
+            let note = match active.contains(limit) {
+                _ if over > 0.0 => format!(", over by {} %", short(over)),
+                true => ", active".to_owned(),
+                false => String::new(),
+            };
+            Some(format!("{limit} {} of {} {}{note}", short(*reached), short(allowed), limit.unit()))
         });
-        let kept = if *feasible { "limits kept" } else { "NO DESIGN KEEPS THE LIMITS; the nearest" };
-        format!(
-            "{kept}: {}; {infeasible} of {} broke one",
-            words.collect::<Vec<_>>().join("; "),
-            counted(*evaluations, "evaluation")
-        )
+        let words = words.collect::<Vec<_>>().join("; ");
+        let evaluations = counted(*evaluations, "evaluation");
+        if *feasible {
+            format!("limits kept: {words}; {infeasible} of {evaluations} broke one")
+        } else if *proven {
+            format!("NO DESIGN WITHIN THE BOUNDS KEEPS THE LIMITS; the nearest: {words}")
+        } else {
+            format!("NONE FOUND THAT KEEPS THE LIMITS in {evaluations}; the nearest: {words}")
+        }
     }
 }

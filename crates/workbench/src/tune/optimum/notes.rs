@@ -33,6 +33,9 @@ pub(crate) struct LimitNote {
     #[serde(flatten, serialize_with = "by_name")]
     pub(crate) reached: Vec<(Limit, f64)>,
     pub(crate) feasible: bool,
+    /// Whether it is proven that no design within the bounds keeps the limits: the least D + C exceeds that of the cavity.
+    #[serde(rename = "none_exists", skip_serializing_if = "is_false")]
+    pub(crate) proven: bool,
     /// The sum of reached / limit - 1 over the limits that are broken.
     violation: f64,
     /// The limits that are broken, or reached to within 1 %: they determine the optimum.
@@ -79,7 +82,7 @@ impl Goal {
 
 impl LimitNote {
     pub(super) fn new(
-        study: &Study,
+        (study, search): (&Study, &Search),
         evaluation: &Evaluation,
         surf: Option<&Surf>,
         explored: Option<&Explored>,
@@ -93,12 +96,27 @@ impl LimitNote {
             allowed,
             reached: allowed.set().map(|limit| (limit, reached.get(limit))).collect(),
             feasible: violation == 0.0,
+            proven: allowed.get(Limit::Cavity).is_some_and(|most| least_cavity(search) > most),
             violation,
             active: allowed.active(&reached),
             evaluations: counts().map(|counts| counts.evaluations).sum(),
             infeasible: counts().map(|counts| counts.infeasible).sum(),
         })
     }
+}
+
+/// The least D + C within the bounds of a search, m.
+fn least_cavity(search: &Search) -> f64 {
+    let least = |gap: Variable| match search.variables.iter().position(|variable| *variable == gap) {
+        Some(place) => search.options.bounds[place].lower.unwrap_or(0.0),
+        None => gap.get(&search.damper),
+    };
+    least(Variable::D) + least(Variable::C)
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// The parameters in which the best point of the grid lies at its edge, and not on a bound.

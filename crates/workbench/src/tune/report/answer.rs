@@ -16,7 +16,7 @@ pub fn title(findings: &Findings) -> String {
     let (kind, quantity) = (findings.optimum.damper_type, findings.quantity());
     let (name, value) = (quantity.name(), amount(findings.evaluation.energy, quantity));
     if findings.evaluation.violation > 0.0 {
-        return format!("no design keeps the limits; the nearest, a {kind}, has {name} {value}");
+        return format!("none found that keeps the limits; the nearest, a {kind}, has {name} {value}");
     }
     format!("tuned {kind}, {name} {value}")
 }

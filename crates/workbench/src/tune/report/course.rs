@@ -4,6 +4,7 @@ use super::findings::Findings;
 use super::numbers::four;
 use crate::amount::label;
 use crate::html::{Section, Table, figure, link};
+use crate::tune::descent::Descended;
 use crate::tune::log::worth;
 use crate::tune::optimum::stop_words;
 use maud::html;
@@ -18,9 +19,15 @@ pub fn section(findings: &Findings, results: &Directory) -> Section {
     let convergence = results.read("convergence.svg");
     let body = html! {
         p {
-            "The design was found by refinement " (findings.refined.winner + 1) " of " (findings.refined.runs.len()) ", which "
-            (stop_words(winner.stop)) " after " (counted(winner.iterations, "iteration")) " and "
-            (counted(winner.func_count, "evaluation")) ". "
+            @if findings.refined.winner < findings.refined.starts {
+                "The design was found by refinement " (findings.refined.winner + 1) " of " (findings.refined.starts) ", which "
+                (stop_words(winner.stop)) " after " (counted(winner.iterations, "iteration")) " and "
+                (counted(winner.func_count, "evaluation"))
+            } @else { "The design was found from the best TMD" }
+            @if let Some(Descended { from, evaluations }) = findings.refined.best().descent {
+                ", by a descent with derivatives from " (worth(from, findings.quantity())) " in " (counted(evaluations, "evaluation"))
+            }
+            ". "
             @if failures.count == 0 { "Every design could be computed." }
             @else { (counted(failures.count, "design")) " could not be computed." }
         }
@@ -89,7 +96,7 @@ fn starts(findings: &Findings) -> Table {
             four(energy(minimum.value)),
             minimum.iterations.to_string(),
             minimum.func_count.to_string(),
-            stop_words(minimum.stop).to_owned(),
+            if run.descent.is_some() { "descent".to_owned() } else { stop_words(minimum.stop).to_owned() },
         ];
         cells.extend(minimum.x.iter().map(|value| four(*value)));
         table.row(cells);

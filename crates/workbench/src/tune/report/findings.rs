@@ -70,6 +70,9 @@ impl Findings<'_> {
 
     /// Where a refinement began.
     pub fn origin(&self, run: usize) -> &'static str {
+        if run >= self.refined.starts {
+            return "best TMD";
+        }
         let explored = self.explored.map_or(0, |explored| explored.basins.len().min(self.search.starts));
         let ends = [self.on_grid, explored, self.search.given.len()];
         let names = ["grid", "global search", "given"];

@@ -54,7 +54,9 @@ fn broken(findings: &Findings) -> Option<Flag> {
         .iter()
         .filter_map(|&(limit, reached)| {
             let allowed = note.allowed.get(limit)?;
-            let words = format!("{limit} {} of {} {}", four(reached), four(allowed), limit.unit());
+            let over = four(100.0 * (reached / allowed - 1.0));
+            let words =
+                format!("{limit} {} of {} {}, over by {over} %", four(reached), four(allowed), limit.unit());
             (reached > allowed).then_some((limit, words))
         })
         .collect();
@@ -62,7 +64,12 @@ fn broken(findings: &Findings) -> Option<Flag> {
     Some(Flag {
         name: "limits-broken",
         words: format!(
-            "No design that was found keeps the limits; this one comes nearest. Broken: {}. Do not build it as it is.",
+            "{}; this one comes nearest. Broken: {}. Do not build it as it is.",
+            if note.proven {
+                "No design within the bounds keeps the limits".to_owned()
+            } else {
+                format!("None found that keeps the limits in {}", counted(note.evaluations, "evaluation"))
+            },
             words.join("; ")
         ),
         change: Some(format!("a larger limit of {}, or wider bounds", joined(&names, ", "))),

@@ -1,0 +1,77 @@
+//! The descent of a design by the derivatives of its peaks, within the bounds and limits of a search.
+
+use super::limits::ranked;
+use super::peak_energy::{Counts, PeakEnergy};
+use crate::search::fminsearch::Bounds;
+use crate::search::global::Point;
+use crate::search::minimax::{Height, minimax};
+use crate::search::space::{Side, Space};
+use retune_model::Variable;
+use std::cell::Cell;
+
+/// Share of the value below which a step is not worth its runs; of a steady response, which is in closed form, that below which it is rounding.
+const GAIN: f64 = 1e-5;
+const STEADY_GAIN: f64 = 1e-10;
+/// The box of a descent reaches to so many times the start, where the bounds do, so that steps are shares of a parameter and not of a bound
+/// that may be far away. A descent that ends on this side of its box goes on in another one, at most so many times.
+const WIDE: f64 = 4.0;
+const BOXES: usize = 8;
+
+/// The foot of a slope.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Foot {
+    /// The value at the start, as of [`PeakEnergy::value`].
+    pub from: f64,
+    /// The design, and its value.
+    pub end: Point,
+    /// The designs that were evaluated on the way.
+    pub counts: Counts,
+}
+
+impl PeakEnergy {
+    /// Goes down from `start`: of the designs on the way the best, `start` among them. `start` alone where a value has no pieces.
+    pub fn descend(&self, bounds: &[Bounds], start: &[f64]) -> Foot {
+        let counts = [const { Cell::new(0) }; 2];
+        let from = Cell::new(f64::NAN);
+        let look = |x: &[f64], cutoff: f64| {
+            let found = self.look(x, cutoff);
+            counts[0].set(counts[0].get() + 1);
+            counts[1].set(counts[1].get() + u64::from(found.0.broken > 0.0));
+            if from.get().is_nan() {
+                from.set(ranked(found.0.worst, found.0.broken));
+            }
+            found
+        };
+        let gain = if self.goal().objective.is_steady() { STEADY_GAIN } else { GAIN };
+        let (mut at, mut height) = (start.to_vec(), Height { worst: f64::INFINITY, broken: f64::INFINITY });
+        for _ in 0..BOXES {
+            let space = Space((0..at.len()).map(|i| self.side(i, bounds[i], at[i])).collect());
+            let (end, found) = if self.goal().has_pieces() {
+                minimax(look, |x, runs| self.pieces(x, runs), &space, &at, gain)
+            } else {
+                (at.clone(), look(&at, f64::INFINITY).0)
+            };
+            let is_inside =
+                |(i, (side, end)): (usize, (&Side, &f64))| *end < side.to || bounds[i].upper == Some(*end);
+            let is_done = !found.is_below(&height) || space.0.iter().zip(&end).enumerate().all(is_inside);
+            if found.is_below(&height) {
+                (at, height) = (end, found);
+            }
+            if is_done {
+                break;
+            }
+        }
+        let [evaluations, infeasible] = counts.map(Cell::into_inner);
+        let value = ranked(height.worst, height.broken);
+        Foot { from: from.get(), end: Point { x: at, value }, counts: Counts { evaluations, infeasible } }
+    }
+
+    /// A side of the box: the whole range of a gap, which may be zero.
+    fn side(&self, i: usize, Bounds { lower, upper }: Bounds, at: f64) -> Side {
+        let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
+        let is_gap = matches!(self.variables()[i], Variable::D | Variable::C);
+        let wide = if at > low && !(is_gap && high.is_finite()) { WIDE * at } else { high };
+        let most = if wide.is_finite() { wide.min(high) } else { 1.0_f64.max(2.0 * low) };
+        Side::natural(low, most)
+    }
+}

@@ -1,0 +1,94 @@
+//! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD.
+
+use super::refine::{Refined, Run};
+use super::tmd::tmd;
+use crate::Error;
+use rayon::prelude::*;
+use retune_optim::{Counts, Foot, INFEASIBLE, Minimum, PeakEnergy, Point, Procedure, Row, Stop};
+use retune_store::Journal;
+use retune_study::{Search, Study};
+use std::cell::OnceCell;
+
+/// A value that is lower by less than this share is none that a descent has found.
+const GAIN: f64 = 1e-5;
+
+/// What a descent began with, and its work.
+#[derive(Clone, Copy, Debug)]
+pub struct Descended {
+    /// The value at its start.
+    pub from: f64,
+    /// Evaluations that it made.
+    pub evaluations: u64,
+}
+
+/// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
+/// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
+///
+/// # Errors
+/// The journal cannot be written.
+pub(super) fn finish(
+    refined: &mut Refined,
+    study: &Study,
+    search: &Search,
+    (journal, stage): (&Journal, &str),
+) -> Result<(), Error> {
+    let Refined { objective, runs, .. } = refined;
+    let tmd = tmd(study, search);
+    let starts: Vec<&[f64]> = runs.iter().map(|run| run.minimum.x.as_slice()).chain(tmd.as_deref()).collect();
+    let count = runs.len();
+    let foot = |(i, start): (usize, &&[f64])| {
+        let worth_it = i == count || objective.goal().has_pieces();
+        worth_it.then(|| descend(objective, search, start, journal, &format!("{stage} descent")))
+    };
+    let feet: Vec<Option<Foot>> = starts.par_iter().enumerate().map(foot).collect();
+    journal.check()?;
+    let mut feet = feet.into_iter();
+    for (run, foot) in runs.iter_mut().zip(&mut feet) {
+        let Some(Foot { end, counts, from }) = foot else { continue };
+        let least = if from < INFEASIBLE { (1.0 - GAIN) * run.minimum.value } else { run.minimum.value };
+        if end.value < least {
+            (run.minimum.x, run.minimum.value) = (end.x, end.value);
+            run.descent = Some(Descended { from, evaluations: counts.evaluations });
+        }
+    }
+    if let (Some(Foot { from, end: Point { x, value }, counts }), Some(best)) = (feet.flatten().next(), tmd)
+        && value.is_finite()
+    {
+        let row = Row { iteration: 0, func_count: 1, procedure: Procedure::Start, best, value: from };
+        let scaling = search.options.scaling;
+        let minimum = Minimum { x, value, iterations: 0, func_count: 1, stop: Stop::Converged, scaling };
+        let descent = Some(Descended { from, evaluations: counts.evaluations });
+        runs.push(Run { rows: vec![row], minimum, descent });
+    }
+    for (number, run) in refined.runs.iter().enumerate() {
+        if run.minimum.value < refined.runs[refined.winner].minimum.value {
+            refined.winner = number;
+        }
+    }
+    Ok(())
+}
+
+/// [`PeakEnergy::descend`] within the bounds of a search; the journal keeps what it comes to under the name of a stage.
+pub fn descend(
+    objective: &PeakEnergy,
+    search: &Search,
+    start: &[f64],
+    journal: &Journal,
+    stage: &str,
+) -> Foot {
+    let found = OnceCell::new();
+    let foot = || found.get_or_init(|| objective.descend(&search.options.bounds, start));
+    let kept = |name: &str, of: &dyn Fn(&Foot) -> f64| {
+        journal.value(&format!("{stage} {name}"), start, f64::INFINITY, || of(foot()), |_| ())
+    };
+    let x = (0..start.len()).map(|i| kept(&i.to_string(), &|foot| foot.end.x[i])).collect();
+    let [from, value] = [kept("from", &|foot| foot.from), kept("value", &|foot| foot.end.value)];
+    let counts = Counts {
+        evaluations: kept("evaluations", &|foot| foot.counts.evaluations as f64) as u64,
+        infeasible: kept("infeasible", &|foot| foot.counts.infeasible as f64) as u64,
+    };
+    if found.get().is_none() {
+        objective.recall_all(counts);
+    }
+    Foot { from, end: Point { x, value }, counts }
+}

@@ -1,0 +1,89 @@
+//! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
+
+use retune_model::{Damper, Measure, NonNegative, Positive, Variable, den_hartog};
+use retune_optim::{Goal, Limit, PeakEnergy, Response};
+use retune_study::{Search, Study};
+
+/// Points along k2 and along c2 from which the best is taken, from and to these multiples of Den Hartog's.
+const POINTS: usize = 16;
+const RANGE: [[f64; 2]; 2] = [[0.03, 30.0], [0.03, 300.0]];
+/// Gaps without a bound are so many times the stroke.
+const OPEN: f64 = 4.0;
+/// Share of a gap that a stroke may have.
+const FREE: f64 = 0.999;
+
+/// The tuned parameters of that TMD; none of a damper without walls, of one that is tuned as a TMD anyway, or where it cannot be computed.
+pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
+    let goal = study.goal();
+    if search.damper.contact.is_none() || goal.objective.is_steady() {
+        return None;
+    }
+    let gaps = gaps(search, goal.limits.get(Limit::Cavity));
+    let room = FREE * gaps[0].min(gaps[1]);
+    let springs: Vec<usize> = (0..search.variables.len())
+        .filter(|&i| matches!(search.variables[i], Variable::K2 | Variable::C2))
+        .collect();
+    let of = steady(study, search, &springs, room)?;
+    let bounds: Vec<_> = springs.iter().map(|&i| search.options.bounds[i]).collect();
+    let scales = den_hartog(&study.scene.primary, search.damper.mass.get());
+    let at = |number: usize| -> Vec<f64> {
+        let value = |axis: usize| {
+            let which = usize::from(of.variables()[axis] == Variable::C2);
+            let [from, to] = RANGE[which];
+            let step = number / POINTS.pow(axis as u32) % POINTS;
+            let share = step as f64 / (POINTS - 1) as f64;
+            let value = scales[which] * from * (to / from).powf(share);
+            value.max(bounds[axis].lower.unwrap_or(0.0)).min(bounds[axis].upper.unwrap_or(f64::INFINITY))
+        };
+        (0..springs.len()).map(value).collect()
+    };
+    let all = (0..POINTS.pow(springs.len() as u32)).map(at);
+    let best = all.map(|x| (of.value(&x, f64::INFINITY), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let best = of.descend(&bounds, &best).end.x;
+    let stroke =
+        of.evaluate(&of.scene(&best).ok()?, f64::INFINITY).ok()?.reached.get(Limit::Of(Measure::Stroke));
+    let mut tmd: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
+    for (&i, &value) in springs.iter().zip(&best) {
+        tmd[i] = value;
+    }
+    for (variable, gap) in [Variable::D, Variable::C].into_iter().zip(gaps) {
+        if let Some(i) = search.variables.iter().position(|other| *other == variable) {
+            tmd[i] = if gap.is_finite() { gap } else { tmd[i].max(OPEN * stroke) };
+        }
+    }
+    Some(tmd)
+}
+
+/// The steady objective over the spring and the dashpot of the damper without its walls, its stroke at most `room`.
+fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Option<PeakEnergy> {
+    let goal = study.goal();
+    let mut objective = goal.objective;
+    objective.for_each_term(&mut |term| {
+        (term.response, term.starts, term.ensemble) = (Response::Steady, None, None);
+    });
+    let most = goal.limits.get(Limit::Of(Measure::Stroke)).unwrap_or(f64::MAX).min(room);
+    let limits =
+        Positive::new(most).map_or(goal.limits, |most| goal.limits.with(Limit::Of(Measure::Stroke), most));
+    let none = NonNegative::new(0.0).ok()?;
+    let damper = Damper { contact: None, rest_distance: none, clearance: none, ..search.damper };
+    let variables = springs.iter().map(|&i| search.variables[i]).collect();
+    let goal = Goal { objective, limits, ..goal };
+    Some(PeakEnergy::new(study.scene, damper, variables, goal, study.solver.searching()))
+}
+
+/// D and C of the cavity in which the smaller is largest: at their bounds, or as near to half of the cavity's limit as these allow. Infinite
+/// where there is no bound.
+fn gaps(search: &Search, cavity: Option<f64>) -> [f64; 2] {
+    let range = |variable: Variable| {
+        let own = variable.get(&search.damper);
+        let bounds = search.variables.iter().position(|other| *other == variable);
+        bounds.map_or([own, own], |i| {
+            let bounds = search.options.bounds[i];
+            [bounds.lower.unwrap_or(0.0), bounds.upper.unwrap_or(f64::INFINITY)]
+        })
+    };
+    let ([d_low, d], [c_low, c]) = (range(Variable::D), range(Variable::C));
+    let Some(cavity) = cavity.filter(|cavity| d + c > *cavity) else { return [d, c] };
+    let d = d.min((cavity / 2.0).max(cavity - c)).max(d_low);
+    [d, c.min(cavity - d).max(c_low)]
+}
