@@ -230,11 +230,14 @@ impl<S: Forced> Shooting<S> {
         DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)))
     }
 
-    /// The direction of the branch through a solution, of length 1, on the side of `before`.
-    pub fn tangent(&self, at: &Linearised, before: &DVector<f64>) -> Option<DVector<f64>> {
-        let direction = self.bordered(&at.jacobian, before).lu().solve(&self.by_value())?;
+    /// The direction of the branch through a solution, of length 1, on the side of `before`; and the determinant of the equations with that direction
+    /// as their last row, which changes sign where another branch crosses and not at a fold.
+    pub fn tangent(&self, at: &Linearised, before: &DVector<f64>) -> Option<(DVector<f64>, f64)> {
+        let lu = self.bordered(&at.jacobian, before).lu();
+        let direction = lu.solve(&self.by_value())?;
         let length = self.norm(&direction);
-        length.is_finite().then(|| direction / length)
+        // The determinant is linear in its last row, and `before · direction` is 1.
+        length.is_finite().then(|| (direction / length, lu.determinant() * length))
     }
 
     /// The Jacobian with one more row: the plane whose normal is `normal`.
