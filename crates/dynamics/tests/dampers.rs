@@ -63,7 +63,7 @@ fn other(numbers: Numbers, s: &mut Spread) -> Numbers {
 }
 
 /// Most runs and motions of a damper: what is counted is counted along few long branches or many short ones.
-const MOST: usize = 800;
+const MOST: usize = 500;
 
 /// What is counted.
 #[derive(Clone, Copy, Debug, Default)]
@@ -150,13 +150,14 @@ fn unnamed(branch: &Branch) -> Vec<(usize, bool)> {
         EventKind::NeimarkSacker => 2,
         _ => 1,
     };
-    let at_bifurcation = |place: usize| {
+    // At an event rounding decides on which side a motion is.
+    let at_event = |place: usize| {
         place == 0 && branch.ends[0] == End::Halved
             || place == last && branch.ends[1] == End::Halved
-            || branch.events.iter().any(|event| event.place == place && weight(event) > 0)
+            || branch.events.iter().any(|event| event.place == place)
     };
     let outside = |place: usize| branch.points[place].multipliers.iter().filter(|m| m.norm() > 1.0).count();
-    let places: Vec<usize> = (0..=last).filter(|place| !at_bifurcation(*place)).collect();
+    let places: Vec<usize> = (0..=last).filter(|place| !at_event(*place)).collect();
     let steps = places.windows(2).filter_map(|pair| {
         let [a, b] = [pair[0], pair[1]];
         let between = || branch.events.iter().filter(|event| event.place > a && event.place <= b);

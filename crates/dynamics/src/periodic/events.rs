@@ -14,6 +14,8 @@ const PLACED: f64 = 1e-10;
 const GRAZINGS: usize = 6;
 /// What is left, as a share of the step, of a difference that goes to zero as its ends come together. Where more is left, it jumps.
 const CONTINUOUS: f64 = 1e-3;
+/// A difference of motions below this is that of their solutions.
+const ROUNDED: f64 = 1e-10;
 
 /// A kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,5 +153,5 @@ fn change(shooting: &Shooting<impl Forced>, ends: [&Node; 2], mut low: (f64, Nod
         *side = (share, node);
     }
     let distance = |a: &Node, b: &Node| shooting.norm(&(&a.solution.x - &b.solution.x));
-    (distance(&low.1, &high.1) <= CONTINUOUS * distance(ends[0], ends[1])).then_some(high)
+    (distance(&low.1, &high.1) <= f64::max(CONTINUOUS * distance(ends[0], ends[1]), ROUNDED)).then_some(high)
 }

@@ -2,8 +2,8 @@
 
 use super::forced::Forced;
 use super::orbit::Orbit;
-use super::shooting::{Shooting, Solution};
-use nalgebra::{Complex, DVector};
+use super::shooting::{Linearised, Shooting, Solution};
+use nalgebra::{Complex, DVector, Matrix6};
 
 /// A motion on a branch, with the direction of the branch.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl Node {
     ) -> Option<Self> {
         let (direction, crossing) = shooting.tangent(&solution.at, before)?;
         let orbit = Orbit::of(shooting, &solution).ok()?;
-        let [doubling, circle] = on_circle(&orbit);
+        let [doubling, circle] = on_circle(&orbit, &solution.at);
         let tests = [direction[direction.len() - 1], crossing, doubling, circle];
         Some(Self { solution, direction, orbit, tests })
     }
@@ -39,7 +39,7 @@ impl Node {
         let x = shooting.unknowns(&half.repeat(2), value);
         let solution = Solution { at: shooting.linearised(&x).ok()?, x, iterations: 0 };
         let orbit = Orbit::of(shooting, &solution).ok()?;
-        let [doubling, circle] = on_circle(&orbit);
+        let [doubling, circle] = on_circle(&orbit, &solution.at);
         Some(Self { solution, direction, orbit, tests: [0.0, 0.0, doubling, circle] })
     }
 
@@ -69,12 +69,9 @@ impl Node {
 }
 
 /// What changes sign where a multiplier is -1, and where the product of two is 1.
-fn on_circle(orbit: &Orbit) -> [f64; 2] {
-    let one = Complex::new(1.0, 0.0);
-    let all = &orbit.multipliers;
-    let doubling: Complex<f64> = all.iter().map(|multiplier| multiplier + one).product();
-    let circle: Complex<f64> = pairs(orbit).map(|[a, b]| a * b - one).product();
-    [doubling.re, circle.re]
+fn on_circle(orbit: &Orbit, at: &Linearised) -> [f64; 2] {
+    let doubling: Complex<f64> = orbit.multipliers.iter().map(|multiplier| multiplier + 1.0).product();
+    [doubling.re, (at.compound() - Matrix6::identity()).determinant()]
 }
 
 /// All pairs of multipliers.

@@ -16,7 +16,7 @@ use nalgebra::DVector;
 /// The step at the start, the longest and the shortest, in units of the motion's size and of the parameter's span.
 const FIRST: f64 = 2e-3;
 const LONGEST: f64 = 0.02;
-const SHORTEST: f64 = 1e-8;
+const SHORTEST: f64 = 1e-12;
 /// Most steps to one side, and the most periods of unstable motions in a row: long ones in chaos wind on without end.
 const MOST: usize = 3000;
 const UNSTABLE: usize = 600;
