@@ -218,6 +218,12 @@ hunt-branches FREQUENCIES="3001":
     RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture --test-threads 1 | grep -E '^\||^#|^[0-9]+ (settled|of those)' | sed -E 's/^#.*/\n&\n/; s/^[0-9].*/\n&/' > results/robustness/branches.md.tmp
     mv results/robustness/branches.md.tmp results/robustness/branches.md && cat results/robustness/branches.md
 
+# Follow the branches of EACH dampers of twelve families, D = 0, C = 0, light, heavy, hard, soft, other structures: whether each change of stability is named, and branches reach their ends: results/robustness/dampers.md
+hunt-dampers EACH="7":
+    mkdir -p results/robustness
+    RETUNE_DAMPERS={{EACH}} cargo test --release --package retune-dynamics --test dampers invariant -- --nocapture | grep -E '^\|' > results/robustness/dampers.rows
+    cat tests/dampers.md results/robustness/dampers.rows > results/robustness/dampers.md && rm results/robustness/dampers.rows && cat results/robustness/dampers.md
+
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
 fuzz TARGET="numbers" SECONDS="1800":
     cargo +nightly fuzz run --sanitizer none {{TARGET}} -- -max_total_time={{SECONDS}} -timeout=10 -max_len={{ if TARGET == "study" { "4096" } else { "54" } }}

@@ -21,6 +21,7 @@ const MOST: usize = 40;
 fn mark(kind: EventKind) -> Mark {
     match kind {
         EventKind::Fold => Mark { rim: true, ..Mark::new(Shape::Triangle, VERMILION, 5.5) },
+        EventKind::BranchPoint => Mark { rim: true, ..Mark::new(Shape::Disc, ORANGE, 5.0) },
         EventKind::PeriodDoubling => Mark { rim: true, ..Mark::new(Shape::Square, PURPLE, 4.5) },
         EventKind::NeimarkSacker => Mark { rim: true, ..Mark::new(Shape::Disc, GREEN, 5.0) },
         EventKind::Grazing => Mark::new(Shape::Cross, BLACK, 4.0),
@@ -33,14 +34,13 @@ const DRAWN: [Drawn; 2] = [("E1max, J", |orbit| orbit.seen.e1_max), ("stroke, m"
 
 /// The figure.
 pub fn draw(found: &Found) -> Drawing {
-    let kinds = [EventKind::Fold, EventKind::PeriodDoubling, EventKind::NeimarkSacker, EventKind::Grazing];
     let mut legend = vec![
         (Key::Line(STABLE), "stable motions".to_owned()),
         (Key::Line(UNSTABLE), "unstable motions".to_owned()),
         (Key::Mark(REST), "runs from rest".to_owned()),
         (Key::Mark(OTHERS), "runs from other starts".to_owned()),
     ];
-    for kind in kinds {
+    for kind in EventKind::ALL {
         if found.branches.branches.iter().any(|branch| branch.events.iter().any(|event| event.kind == kind)) {
             legend.push((Key::Mark(mark(kind)), kind.name().to_owned()));
         }
@@ -96,8 +96,7 @@ fn chart(found: &Found, (label, value): &Drawn, is_first: bool) -> Chart {
     layers.push(Layer::Marks { points: others, mark: OTHERS });
     layers.push(Layer::Marks { points: rest, mark: REST });
     for branch in branches {
-        for kind in [EventKind::Grazing, EventKind::NeimarkSacker, EventKind::PeriodDoubling, EventKind::Fold]
-        {
+        for kind in EventKind::ALL.into_iter().rev() {
             let own = branch.events.iter().filter(|event| event.kind == kind).take(MOST);
             let points = own.map(|event| (event.orbit.value, value(&event.orbit))).collect();
             layers.push(Layer::Marks { points, mark: mark(kind) });

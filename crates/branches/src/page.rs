@@ -51,9 +51,9 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
     Ok(directory.write("report.html", &document.html())?)
 }
 
-const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions meet and vanish. At a period doubling a motion of twice the \
-    period branches off, at a Neimark-Sacker bifurcation amplitude-modulated ones. At a grazing an impact begins or ends, at no speed; a Hertz \
-    contact is soft enough for the branch to go on.";
+const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions meet and vanish. At a branch point another branch crosses. At a \
+    period doubling a motion of twice the period branches off, at a Neimark-Sacker bifurcation amplitude-modulated ones. At a grazing an impact \
+    begins or ends, at no speed; a Hertz contact is soft enough for the branch to go on.";
 
 /// What was done.
 fn asked(found: &Found) -> String {

@@ -5,6 +5,7 @@ import { css } from "./charts.js";
 // As `retune branches` draws them.
 const MARKS = {
     fold: ["--vermilion", (path, x, y, r) => (path.moveTo(x, y - r), path.lineTo(x + r, y + r), path.lineTo(x - r, y + r), path.closePath())],
+    "branch point": ["--orange", (path, x, y, r) => path.arc(x, y, r, 0, 2 * Math.PI)],
     "period doubling": ["--purple", (path, x, y, r) => path.rect(x - 0.8 * r, y - 0.8 * r, 1.6 * r, 1.6 * r)],
     "Neimark-Sacker": ["--green", (path, x, y, r) => path.arc(x, y, r, 0, 2 * Math.PI)],
     grazing: [null, (path, x, y, r) => (path.moveTo(x - r, y - r), path.lineTo(x + r, y + r), path.moveTo(x - r, y + r), path.lineTo(x + r, y - r))],

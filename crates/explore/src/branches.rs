@@ -16,8 +16,6 @@ const SAMPLES: usize = 31;
 const STARTS: usize = 16;
 /// Most events of one kind that are marked on a branch: a cascade has any number of them.
 const MOST_EVENTS: usize = 40;
-const KINDS: [EventKind; 4] =
-    [EventKind::Fold, EventKind::PeriodDoubling, EventKind::NeimarkSacker, EventKind::Grazing];
 
 /// How far the search is.
 pub fn progress(done: u64) -> Answer {
@@ -85,7 +83,7 @@ fn drawn(answer: Answer, found: &Branches, value: impl Fn(&Orbit) -> f64) -> Ans
 fn events(branch: &Branch, value: impl Fn(&Orbit) -> f64) -> Vec<Value> {
     let of = |kind: EventKind| branch.events.iter().filter(move |event| event.kind == kind).take(MOST_EVENTS);
     let words = |event: &Event| json!([event.kind.name(), event.orbit.value, value(&event.orbit)]);
-    KINDS.into_iter().flat_map(of).map(words).collect()
+    EventKind::ALL.into_iter().flat_map(of).map(words).collect()
 }
 
 fn largest(found: &Largest) -> Value {

@@ -1,7 +1,7 @@
-//! What happens along a branch: folds, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
+//! What happens along a branch: folds, crossings, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
 
 use super::forced::Forced;
-use super::node::{Node, between};
+use super::node::{Node, between, pairs};
 use super::orbit::Orbit;
 use super::shooting::{Linearised, Shooting};
 use nalgebra::Complex;
@@ -14,12 +14,16 @@ const PLACED: f64 = 1e-10;
 const GRAZINGS: usize = 6;
 /// What is left, as a share of the step, of a difference that goes to zero as its ends come together. Where more is left, it jumps.
 const CONTINUOUS: f64 = 1e-3;
+/// A difference of motions below this is that of their solutions.
+const ROUNDED: f64 = 1e-10;
 
 /// A kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventKind {
     /// The branch turns back: a multiplier is 1.
     Fold,
+    /// Another branch of motions of as many periods crosses, as that of motions without symmetry does: a multiplier is 1, and the branch goes on.
+    BranchPoint,
     /// A motion of twice the period branches off: a multiplier is -1.
     PeriodDoubling,
     /// A pair of complex multipliers is on the unit circle: amplitude-modulated motions branch off.
@@ -29,13 +33,27 @@ pub enum EventKind {
 }
 
 impl EventKind {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Fold, Self::BranchPoint, Self::PeriodDoubling, Self::NeimarkSacker, Self::Grazing];
+
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fold => "fold",
+            Self::BranchPoint => "branch point",
             Self::PeriodDoubling => "period doubling",
             Self::NeimarkSacker => "Neimark-Sacker",
             Self::Grazing => "grazing",
+        }
+    }
+
+    /// How many multipliers are on the unit circle.
+    pub const fn multipliers(self) -> usize {
+        match self {
+            Self::Fold | Self::BranchPoint | Self::PeriodDoubling => 1,
+            Self::NeimarkSacker => 2,
+            Self::Grazing => 0,
         }
     }
 }
@@ -53,12 +71,12 @@ pub struct Event {
     pub place: usize,
 }
 
-/// The events between two motions, in their order; none if the motions between them are not one branch. At a wall that is nearly hard many
-/// branches come close together at a grazing, and turn back within a part of a step.
+/// The events between two motions, in their order; none if the motions between them are not one branch, or if multipliers cross the unit circle
+/// at none of them. At a wall that is nearly hard many branches come close together at a grazing, and turn back within a part of a step.
 pub(super) fn located(shooting: &Shooting<impl Forced>, now: &Node, next: &Node) -> Option<Vec<Event>> {
     let mut found: Vec<(f64, Event)> = Vec::new();
-    let kinds = [EventKind::Fold, EventKind::PeriodDoubling, EventKind::NeimarkSacker];
-    for (number, kind) in kinds.into_iter().enumerate() {
+    // A grazing has no test: the impacts tell.
+    for (number, kind) in EventKind::ALL.into_iter().enumerate().take(now.tests.len()) {
         let ends = [now.tests[number], next.tests[number]];
         if ends[0] * ends[1] < 0.0 {
             let (share, node) = root(shooting, [now, next], |node| node.tests[number], ends)?;
@@ -66,6 +84,9 @@ pub(super) fn located(shooting: &Shooting<impl Forced>, now: &Node, next: &Node)
                 found.push((share, event(kind, node)));
             }
         }
+    }
+    if !now.is_told(next, found.iter().map(|(_, event)| event.kind.multipliers())) {
+        return None;
     }
     let mut last = (0.0, now.clone());
     for _ in 0..GRAZINGS {
@@ -86,15 +107,14 @@ fn event(kind: EventKind, node: Node) -> Event {
     Event { kind, orbit: node.orbit, at: node.solution.at, place: 0 }
 }
 
-/// Whether the pair of multipliers nearest to the unit circle is complex; two real ones with the product 1 are no bifurcation.
+/// Whether the pair of multipliers whose product is nearest to 1 is complex; two real ones are no bifurcation.
 fn is_complex(orbit: &Orbit) -> bool {
-    let nearest =
-        |a: &&Complex<f64>, b: &&Complex<f64>| (a.norm() - 1.0).abs().total_cmp(&(b.norm() - 1.0).abs());
-    orbit.multipliers.iter().min_by(nearest).is_some_and(|multiplier| multiplier.im.abs() > 1e-6)
+    let off = |[a, b]: &[Complex<f64>; 2]| (a * b - 1.0).norm();
+    pairs(orbit).min_by(|a, b| off(a).total_cmp(&off(b))).is_some_and(|[a, b]| a.im != 0.0 && b == a.conj())
 }
 
-/// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that stays); none if
-/// the test jumps.
+/// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that
+/// stays); none if the test jumps.
 fn root(
     shooting: &Shooting<impl Forced>,
     ends: [&Node; 2],
@@ -133,5 +153,5 @@ fn change(shooting: &Shooting<impl Forced>, ends: [&Node; 2], mut low: (f64, Nod
         *side = (share, node);
     }
     let distance = |a: &Node, b: &Node| shooting.norm(&(&a.solution.x - &b.solution.x));
-    (distance(&low.1, &high.1) <= CONTINUOUS * distance(ends[0], ends[1])).then_some(high)
+    (distance(&low.1, &high.1) <= f64::max(CONTINUOUS * distance(ends[0], ends[1]), ROUNDED)).then_some(high)
 }

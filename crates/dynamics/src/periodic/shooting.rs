@@ -3,7 +3,7 @@
 use super::forced::{Damped, Flow, Forced, settings_of};
 use crate::parameter::Error;
 use crate::record::weights;
-use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
+use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, Vector4};
 use retune_model::{Coupled, Parameter, Scene};
 use retune_solver::Settings;
 
@@ -230,11 +230,14 @@ impl<S: Forced> Shooting<S> {
         DVector::from_fn(last + 1, |i, _| f64::from(u8::from(i == last)))
     }
 
-    /// The direction of the branch through a solution, of length 1, on the side of `before`.
-    pub fn tangent(&self, at: &Linearised, before: &DVector<f64>) -> Option<DVector<f64>> {
-        let direction = self.bordered(&at.jacobian, before).lu().solve(&self.by_value())?;
+    /// The direction of the branch through a solution, of length 1, on the side of `before`; and the determinant of the equations with that direction
+    /// as their last row, which changes sign where another branch crosses and not at a fold.
+    pub fn tangent(&self, at: &Linearised, before: &DVector<f64>) -> Option<(DVector<f64>, f64)> {
+        let lu = self.bordered(&at.jacobian, before).lu();
+        let direction = lu.solve(&self.by_value())?;
         let length = self.norm(&direction);
-        length.is_finite().then(|| direction / length)
+        // The determinant is linear in its last row, and `before · direction` is 1.
+        length.is_finite().then(|| (direction / length, lu.determinant() * length))
     }
 
     /// The Jacobian with one more row: the plane whose normal is `normal`.
@@ -249,5 +252,18 @@ impl Linearised {
     /// The derivative of the state after all periods by the first one, in units.
     pub fn monodromy(&self) -> Matrix4<f64> {
         self.transitions.iter().fold(Matrix4::identity(), |product, transition| transition * product)
+    }
+
+    /// The second compound of the monodromy matrix: its eigenvalues are the products of two multipliers. As a product of compounds it has those of a large
+    /// and a small one to rounding, which the multipliers themselves have not.
+    pub fn compound(&self) -> Matrix6<f64> {
+        const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+        let minor = |m: &Matrix4<f64>, [i, j]: [usize; 2], [k, l]: [usize; 2]| {
+            m[(i, k)] * m[(j, l)] - m[(i, l)] * m[(j, k)]
+        };
+        let compound = |m: &Matrix4<f64>| Matrix6::from_fn(|row, column| minor(m, PAIRS[row], PAIRS[column]));
+        self.transitions
+            .iter()
+            .fold(Matrix6::identity(), |product, transition| compound(transition) * product)
     }
 }

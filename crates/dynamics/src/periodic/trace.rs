@@ -7,7 +7,7 @@
 
 use super::events::{Event, EventKind, located};
 use super::forced::{Damped, Forced};
-use super::node::{Node, tests};
+use super::node::Node;
 use super::orbit::Orbit;
 use super::settle::least_periods;
 use super::shooting::{Shooting, Solution};
@@ -16,7 +16,7 @@ use nalgebra::DVector;
 /// The step at the start, the longest and the shortest, in units of the motion's size and of the parameter's span.
 const FIRST: f64 = 2e-3;
 const LONGEST: f64 = 0.02;
-const SHORTEST: f64 = 1e-8;
+const SHORTEST: f64 = 1e-12;
 /// Most steps to one side, and the most periods of unstable motions in a row: long ones in chaos wind on without end.
 const MOST: usize = 3000;
 const UNSTABLE: usize = 600;
@@ -28,9 +28,8 @@ const STRAIGHT: f64 = 0.995;
 const ASTRAY: f64 = 0.3;
 /// Halves of a motion nearer than this share of its size are at a period doubling, where two branches meet and Newton's iteration finds either.
 const JOINED: f64 = 1e-4;
-
-/// Two events of a closed branch as near as this share of the range are one.
-const AGAIN: f64 = 1e-8;
+/// Halves nearer than this share of a step are the same: the step has ended on the branch of half the periods.
+const MET: f64 = 0.1;
 
 /// Why a branch was followed no farther.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,15 +93,6 @@ impl<S> Branch<S> {
             && decisive.all(|place| self.points[place].is_stable())
     }
 
-    /// The same with motions before its first.
-    pub(super) fn after(mut self, first: Vec<Orbit>) -> Self {
-        for event in &mut self.events {
-            event.place += first.len();
-        }
-        self.points.splice(..0, first);
-        self
-    }
-
     /// Whether a motion is stable, or the limit of stable ones.
     pub fn is_stable_at(&self, i: usize) -> bool {
         i > 0 && self.is_stable_after(i - 1)
@@ -123,8 +113,7 @@ pub fn trace<S: Forced>(
     if end == End::Closed {
         return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));
     }
-    let back = Node { direction: -&start.direction, ..start.clone() };
-    let back = Node { tests: tests(&back.orbit, &back.direction), ..back };
+    let back = start.clone().turned();
     let (before, begin) = side(shooting, &back, [from, to], goes_on);
     Some(joined(shooting, before, &start, after, [begin, end]))
 }
@@ -147,7 +136,7 @@ type Found = (Orbit, Option<Event>);
 fn side(
     shooting: &Shooting<impl Forced>,
     start: &Node,
-    [from, to]: [f64; 2],
+    range: [f64; 2],
     goes_on: &dyn Fn() -> bool,
 ) -> (Vec<Found>, End) {
     let mut found: Vec<Found> = Vec::new();
@@ -157,17 +146,11 @@ fn side(
         if !goes_on() {
             return (found, End::Ended);
         }
-        let (next, events) = loop {
-            let guess = &now.solution.x + &now.direction * step;
-            let corrected = shooting.correct(&guess, &now.direction);
-            let next = corrected.and_then(|solution| {
-                let astray = shooting.norm(&(&solution.x - &guess)) > ASTRAY * step;
-                if astray || least_periods(shooting, &solution.x) < shooting.periods {
-                    return None;
-                }
-                let next = Node::new(shooting, solution, &now.direction)
-                    .filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)?;
-                located(shooting, &now, &next).map(|events| (next, events))
+        let (next, events, end) = loop {
+            let next = ahead(shooting, &now, step).and_then(|next| {
+                let (node, end) = up_to_end(shooting, [start, &now], next, apart, range)?;
+                let events = located(shooting, &now, &node)?;
+                Some((node, events, end))
             });
             match next {
                 Some(next) => break next,
@@ -182,70 +165,106 @@ fn side(
         if straight && next.solution.iterations <= 4 {
             step = (1.6 * step).min(LONGEST);
         }
-        let turned = events.len();
         found.extend(events.into_iter().map(|event| (event.orbit.clone(), Some(event))));
-        let value = next.orbit.value;
-        if value < from || value > to {
-            let end = at_end(shooting, &now, &next, if value < from { from } else { to });
-            // Events beyond the range do not count.
-            found.retain(|(orbit, _)| orbit.value >= from && orbit.value <= to);
-            found.extend(end.map(|orbit| (orbit, None)));
-            return (found, End::Range);
-        }
-        if joins_half(shooting, &now, &next) {
-            // It turns back there, along itself.
-            for (_, event) in found.iter_mut().rev().take(turned) {
-                event.take_if(|event| event.kind == EventKind::Fold);
-            }
-            return (found, End::Halved);
-        }
-        // Back at the start: nearer than a step, after it was farther away, and in the same direction. Before the branch has turned all the way
-        // round, it is away by more than its last step. A thin isola is not much longer than a step.
-        let (shift, _) = shooting.nearest(&start.solution.x, &next.solution.x);
-        let moved = |x: &DVector<f64>| shooting.moved_on(x, shift);
-        let away = shooting.norm(&(moved(&next.solution.x) - &start.solution.x));
-        let came = shooting.norm(&(&next.solution.x - &now.solution.x));
-        let alike = shooting.inner(&moved(&next.direction), &start.direction) > TURN;
-        if apart > came && away < came && alike {
-            // What lies beyond the start has been found before.
-            let known = |event: &Event| {
-                let same = |(_, other): &&Found| {
-                    other.as_ref().is_some_and(|other| {
-                        other.kind == event.kind
-                            && (other.orbit.value - event.orbit.value).abs() < AGAIN * shooting.span
-                    })
-                };
-                found.iter().filter(same).count() > 1
-            };
-            if found.last().is_some_and(|(_, event)| event.as_ref().is_some_and(known)) {
-                found.pop();
-            }
-            let mut last = start.orbit.clone();
-            last.states.rotate_right(shift);
-            found.push((last, None));
-            return (found, End::Closed);
-        }
         found.push((next.orbit.clone(), None));
+        if let Some(end) = end {
+            return (found, end);
+        }
         unstable = if next.orbit.is_stable() { 0 } else { unstable + shooting.periods };
         if unstable > UNSTABLE {
             return (found, End::Steps);
         }
-        apart = f64::max(apart, away);
+        apart = f64::max(apart, away(shooting, start, &next).1);
         now = next;
     }
     (found, End::Steps)
 }
 
-/// The motion at the end of the range.
-fn at_end(shooting: &Shooting<impl Forced>, now: &Node, next: &Node, value: f64) -> Option<Orbit> {
+/// The motion a step ahead; none if the step is too long.
+fn ahead(shooting: &Shooting<impl Forced>, now: &Node, step: f64) -> Option<Node> {
+    let guess = &now.solution.x + &now.direction * step;
+    let solution = shooting.correct(&guess, &now.direction)?;
+    let astray = shooting.norm(&(&solution.x - &guess)) > ASTRAY * step;
+    // Beside a period doubling its halves differ by little, but not by less than the step.
+    let halved = halves(shooting, &solution.x).is_none_or(|gap| gap.amax() < MET * step);
+    if astray || halved && least_periods(shooting, &solution.x) < shooting.periods {
+        return None;
+    }
+    Node::new(shooting, solution, &now.direction)
+        .filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)
+}
+
+/// The next motion, or the end of the branch where that comes first; none if it cannot be located.
+fn up_to_end(
+    shooting: &Shooting<impl Forced>,
+    [start, now]: [&Node; 2],
+    next: Node,
+    apart: f64,
+    [from, to]: [f64; 2],
+) -> Option<(Node, Option<End>)> {
+    let value = next.orbit.value;
+    if value < from || value > to {
+        return Some((
+            at_value(shooting, [now, &next], if value < from { from } else { to })?,
+            Some(End::Range),
+        ));
+    }
+    // The difference of its halves changes sign where it passes a motion of half its periods, and turns back along itself.
+    let own = halves(shooting, &now.solution.x);
+    if let Some([own, other]) = own.zip(halves(shooting, &next.solution.x)).map(<[_; 2]>::from)
+        && own.dot(&other) < 0.0
+    {
+        let share = own.dot(&own) / (own.dot(&own) - own.dot(&other));
+        return Some((joint(shooting, [now, &next], &own, share)?, Some(End::Halved)));
+    }
+    // Back at the start: it lies between the last motion and the next, which were farther away before and go in the same direction. Before the
+    // branch has turned all the way round, it is away by more than its last step. A thin isola is not much longer than a step.
+    let (shift, away) = away(shooting, start, &next);
+    let came = shooting.norm(&(&next.solution.x - &now.solution.x));
+    let [x, direction] = [&next.solution.x, &next.direction].map(|x| shooting.moved_on(x, shift));
+    let alike = shooting.inner(&direction, &start.direction) > TURN;
+    let passed = shooting.inner(&(x - &start.solution.x), &start.direction) >= 0.0;
+    if apart > came && away < came && alike && passed {
+        return Some((start.clone().moved_back(shooting, shift), Some(End::Closed)));
+    }
+    Some((next, None))
+}
+
+/// By how many segments a motion is to be moved on to come nearest to the start of its branch, and how far it is from that then.
+fn away(shooting: &Shooting<impl Forced>, start: &Node, node: &Node) -> (usize, f64) {
+    let (shift, _) = shooting.nearest(&start.solution.x, &node.solution.x);
+    (shift, shooting.norm(&(shooting.moved_on(&node.solution.x, shift) - &start.solution.x)))
+}
+
+/// The period doubling at a share of the way between two motions, where half the difference of the halves, `own` at the first, is 0. The parameter goes with
+/// the square of that difference.
+fn joint(
+    shooting: &Shooting<impl Forced>,
+    [now, next]: [&Node; 2],
+    own: &DVector<f64>,
+    share: f64,
+) -> Option<Node> {
+    let last = 4 * shooting.segments;
+    let away = halves(shooting, &now.direction)?.dot(own) / own.dot(own);
+    let x = &now.solution.x + (&next.solution.x - &now.solution.x) * share;
+    let mut middle = 0.5 * (x.rows(0, last / 2) + x.rows(last / 2, last / 2));
+    middle = middle.push(now.solution.x[last] - 0.5 * now.direction[last] / away);
+    let half = shooting.of_periods(shooting.periods / 2).in_segments(shooting.segments / 2);
+    let solution = half.correct_at_value(&middle)?;
+    let (states, value) = (half.states(&solution.x), half.value(&solution.x));
+    Node::doubled(shooting, &states, value, now.direction.clone())
+}
+
+/// The motion between two at a value of the parameter.
+fn at_value(shooting: &Shooting<impl Forced>, [now, next]: [&Node; 2], value: f64) -> Option<Node> {
     let [a, b] = [now.orbit.value, next.orbit.value];
     let share = (value - a) / (b - a);
     let mut guess = &now.solution.x + (&next.solution.x - &now.solution.x) * share;
     let last = guess.len() - 1;
     guess[last] = value / shooting.span;
-    let mut orbit = Orbit::of(shooting, &shooting.correct_at_value(&guess)?).ok()?;
-    orbit.value = value;
-    Some(orbit)
+    let mut node = Node::new(shooting, shooting.correct_at_value(&guess)?, &now.direction)?;
+    node.orbit.value = value;
+    Some(node)
 }
 
 /// The difference of the halves of a motion of an even number of periods.
@@ -253,12 +272,6 @@ fn halves(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> Option<DVector<
     let half = 2 * shooting.segments;
     let even = shooting.periods.is_multiple_of(2) && shooting.segments.is_multiple_of(2);
     even.then(|| x.rows(0, half) - x.rows(half, half))
-}
-
-/// Whether a branch has passed a motion of half its periods: the difference of its halves changes sign there.
-fn joins_half(shooting: &Shooting<impl Forced>, now: &Node, next: &Node) -> bool {
-    let [now, next] = [now, next].map(|node| halves(shooting, &node.solution.x));
-    now.zip(next).is_some_and(|(now, next)| now.dot(&next) < 0.0)
 }
 
 /// Both sides as one branch.
