@@ -137,16 +137,21 @@ fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
     let band = study.objective().omega.map(|band| band.of(&scene.primary));
     let band = band.map_or([omega; 2], |band| [band.from, band.to]);
     let none = Bare::new(&scene.primary, &scene.forcing).steady_e1_max(band).value;
-    Ok((none * best_tmd(&scene, damper, band)?).sqrt())
+    Ok((none * best_tmd(&scene, damper, band)?.1).sqrt())
 }
 
-/// The least steady E1max (J) over a band (rad/s) of a TMD with the mass of a damper, k2 and c2 free.
-fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<f64, Error> {
-    let steady = |x: &[f64], _cutoff: f64| {
+/// The TMD with the mass of a damper, k2 and c2 free, that has the least steady E1max over a band (rad/s), and this, J.
+///
+/// # Errors
+/// Nothing can be found.
+pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
+    let tuned = |x: &[f64]| {
         let mut tmd = damper;
-        let set = Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1]));
-        let worst = || Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
-        set.map_or(f64::INFINITY, |()| worst())
+        Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1])).map(|()| tmd)
+    };
+    let steady = |x: &[f64], _cutoff: f64| {
+        let worst = |tmd| Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
+        tuned(x).map_or(f64::INFINITY, worst)
     };
     let start = den_hartog(&scene.primary, damper.mass.get());
     let not_negative = Bounds { lower: Some(0.0), upper: None };
@@ -158,7 +163,8 @@ fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<f64, Error>
         ..Options::default()
     };
     let refuse = |source| Error::Search { source, failures: Failures::default() };
-    Ok(minimize(steady, &start, options, |_| ControlFlow::Continue(())).map_err(refuse)?.value)
+    let found = minimize(steady, &start, options, |_| ControlFlow::Continue(())).map_err(refuse)?;
+    Ok((tuned(&found.x).unwrap_or(damper), found.value))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The results of `track`.
 
 use super::curves::Curve;
+use super::force::Forced;
 use super::range::Threshold;
 use super::trade::Point;
 use super::tuned::Tuned;
@@ -18,6 +19,8 @@ pub struct Tracked {
     pub curves: Vec<Curve>,
     /// For each damper, what counts as half of the work.
     pub thresholds: Vec<Threshold>,
+    /// E1max of the nominal designs under smaller forces.
+    pub forced: Vec<Forced>,
     /// The designs that are kept, by the name of their tuning, with their ranges.
     pub kept: Vec<(&'static str, Point)>,
     /// The designs between the nominal ones and those with the widest ranges.
