@@ -1,5 +1,6 @@
 //! Every table and figure of the paper, reproduced beside its statements, with a verdict on each.
 
+mod again;
 mod begins;
 mod cases;
 mod curves;
@@ -19,26 +20,38 @@ mod plan;
 mod protocols;
 mod ratios;
 mod regimes;
+mod stiff;
 mod surfaces;
 mod table1;
 mod table2;
+mod variants;
 
 pub use describe::describe;
 pub use item::{Grid, Item, Picture, Statement, Verdict};
 pub use kind::KIND;
 pub use plan::{PaperPlan, Plan};
 
+use retune_model::Design;
 use retune_store::Directory;
+use retune_study::Study;
 use retune_workbench::job::{Job, Made};
 use retune_workbench::observer::Quiet;
 use retune_workbench::searches::Searches;
+use retune_workbench::verify::Others;
 use retune_workbench::{Done, Error, Observer, Request};
 
+/// How `verify` computes the verdicts again.
+pub static OTHERS: &Others = &[(&KIND, again::again)];
+
+/// The design that the search of a study comes to.
+type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
 /// The function that makes an item.
-type Maker = fn(&Plan, &mut Searches) -> Result<Item, Error>;
+type Maker = fn(&Plan, &mut Tuner) -> Result<Item, Error>;
+/// The directory of the searches of Table 2.
+const SEARCHES: &str = "table2";
 
 /// Every item, in the order of the page.
-const ITEMS: [(&str, Maker); 8] = [
+const ITEMS: [(&str, Maker); 9] = [
     ("table1", |plan, _| table1::table1(plan)),
     ("table2", table2::table2),
     ("figure2", |plan, _| surfaces::figure2(plan)),
@@ -47,6 +60,7 @@ const ITEMS: [(&str, Maker); 8] = [
     ("figure5", |plan, _| ratios::figure5(plan)),
     ("figure6", |plan, _| energies::figure6(plan)),
     ("figure7", |plan, _| cases::figure7(plan)),
+    (variants::NAME, |plan, _| variants::figures(plan)),
 ];
 
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
@@ -105,7 +119,7 @@ fn kept_or_made(
         }
     }
     let before = searches.results.len();
-    let item = make(plan, searches)?;
+    let item = make(plan, &mut |study| Ok(searches.tune(study, SEARCHES)?.found().damper.design))?;
     if searches.results.len() > before {
         return Ok(item);
     }
@@ -119,11 +133,8 @@ fn write(item: &Item, results: &Directory) -> Result<(), Error> {
     for picture in &item.pictures {
         results.write(&format!("{}.svg", picture.name), &picture.drawing.wide)?;
     }
-    for (i, grid) in item.grids.iter().enumerate() {
-        results.write(&format!("{}-table-{}.csv", item.name, i + 1), &grid.csv())?;
-    }
-    for (name, content) in &item.data {
-        results.write(name, content)?;
+    for (name, text) in item.files() {
+        results.write(&name, &text)?;
     }
     Ok(results.write_json(&statements(&item.name), &item.statements)?)
 }

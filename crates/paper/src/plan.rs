@@ -67,6 +67,8 @@ pub struct Plan<'a> {
     pub tmd: Study,
     /// Who follows.
     pub watch: &'a dyn Observer,
+    /// Whether only verdicts are wanted, on fewer points.
+    pub is_brief: bool,
 }
 
 /// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
@@ -116,7 +118,7 @@ impl<'a> Plan<'a> {
             studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
         // The page has objectives of its own; of the studies it takes the scenes, the window and the solver.
         let [ssvi, tmd] = [ssvi, tmd].map(|row| Study { optimize: None, ..row.study });
-        Ok(Self { file, ssvi, tmd, watch })
+        Ok(Self { file, ssvi, tmd, watch, is_brief: false })
     }
 
     /// The scenes without damper, with SSVI NES and with TMD at a stiffness.
