@@ -1,8 +1,8 @@
 //! `reproduce`, computed again: an item is made again, from the designs that its searches came to, and compared with its files.
 
 use super::item::Item;
+use super::items::{ITEMS, Maker, SEARCHES, statements};
 use super::plan::{PaperPlan, Plan};
-use super::{ITEMS, Maker, SEARCHES, statements};
 use retune_model::Design;
 use retune_study::Study;
 use retune_workbench::Error;

@@ -10,6 +10,7 @@ mod diagrams;
 mod energies;
 mod family;
 mod item;
+mod items;
 mod judgement;
 mod kind;
 mod ladder;
@@ -27,13 +28,13 @@ mod table2;
 mod variants;
 
 pub use describe::describe;
+use items::{ITEMS, Maker, SEARCHES, statements};
+
 pub use item::{Grid, Item, Picture, Statement, Verdict};
 pub use kind::KIND;
 pub use plan::{PaperPlan, Plan};
 
-use retune_model::Design;
 use retune_store::Directory;
-use retune_study::Study;
 use retune_workbench::job::{Job, Made};
 use retune_workbench::observer::Quiet;
 use retune_workbench::searches::Searches;
@@ -42,26 +43,6 @@ use retune_workbench::{Done, Error, Observer, Request};
 
 /// How `verify` computes the verdicts again.
 pub static OTHERS: &Others = &[(&KIND, again::again)];
-
-/// The design that the search of a study comes to.
-type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
-/// The function that makes an item.
-type Maker = fn(&Plan, &mut Tuner) -> Result<Item, Error>;
-/// The directory of the searches of Table 2.
-const SEARCHES: &str = "table2";
-
-/// Every item, in the order of the page.
-const ITEMS: [(&str, Maker); 9] = [
-    ("table1", |plan, _| table1::table1(plan)),
-    ("table2", table2::table2),
-    ("figure2", |plan, _| surfaces::figure2(plan)),
-    ("figure3", |plan, _| curves::figure3(plan)),
-    ("figure4", |plan, _| regimes::figure4(plan)),
-    ("figure5", |plan, _| ratios::figure5(plan)),
-    ("figure6", |plan, _| energies::figure6(plan)),
-    ("figure7", |plan, _| cases::figure7(plan)),
-    (variants::NAME, |plan, _| variants::figures(plan)),
-];
 
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
 ///
@@ -95,11 +76,6 @@ pub fn reproduce(
         }
         Ok(Made { answer: made, report: String::new(), parts: searches.results })
     })
-}
-
-/// The file with the verdicts on the statements of an item.
-fn statements(name: &str) -> String {
-    format!("{name}-statements.json")
 }
 
 /// An item kept by an interrupted run, or made now and kept in case this run is interrupted. One that makes searches is made again:

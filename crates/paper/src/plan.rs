@@ -1,6 +1,6 @@
 //! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
 
-use retune_model::Scene;
+use retune_model::{Design, Scene};
 use retune_solver::{Settings, Window};
 use retune_study::{Kind, PaperStudy, Study, StudyError, read_paper, read_table2};
 use retune_workbench::Error;
@@ -56,6 +56,9 @@ pub struct Range {
     #[schemars(range(min = 2, max = 100_000))]
     pub points: usize,
 }
+
+/// The design that the search of a study comes to.
+pub type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
 
 /// The plan with all that it names.
 pub struct Plan<'a> {

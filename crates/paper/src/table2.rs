@@ -1,10 +1,9 @@
 //! Table 2: both dampers tuned again, and in which sense the paper's rows are optimal.
 
-use super::Tuner;
 use super::item::{Grid, Item, Verdict};
 use super::ladder::{self, Ladder};
 use super::measures::{at_omega, over_band, whole};
-use super::plan::Plan;
+use super::plan::{Plan, Tuner};
 use retune_model::{Design, Scene, Variable};
 use retune_optim::{Failures, Limits, Objective, Response};
 use retune_study::{Coarse, Optimize, PerVariable, Refine, Setting, Study};

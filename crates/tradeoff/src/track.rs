@@ -10,6 +10,7 @@ mod anew;
 mod curves;
 mod draw;
 mod force;
+mod forces;
 mod opening;
 mod page;
 mod range;
@@ -26,6 +27,7 @@ pub use tracked::Tracked;
 pub use trade::Point;
 pub use tuned::{Kept, Tuned, Tuning};
 
+use range::Still;
 use retune_study::{self as study, Setting};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::designs::{Designs, Row};
@@ -35,7 +37,7 @@ use retune_workbench::searches::Searches;
 use retune_workbench::summary::TunedDamper;
 use retune_workbench::{Error, Observer, Request};
 use serde_json::json;
-use tuned::{CURVES, DESIGNS, FORCES, Still};
+use tuned::{CURVES, DESIGNS, FORCES};
 
 /// The files of the retention of tuning.
 pub static KIND: Kind = Kind {

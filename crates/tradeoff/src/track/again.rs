@@ -3,8 +3,8 @@
 use super::anew::label;
 use super::curves::{ANEW, BANDS};
 use super::force::under;
-use super::range::{Threshold, range};
-use super::tuned::{CURVES, DESIGNS, FORCES, Still, Tuning, bare, energy, on_samples, over, still};
+use super::range::{Still, Threshold, range};
+use super::tuned::{CURVES, DESIGNS, FORCES, Tuning, bare, energy, on_samples, over, still};
 use retune_model::Design;
 use retune_study::Study;
 use retune_workbench::Error;

@@ -1,6 +1,7 @@
 //! E1max along k1, with its cliffs: where neighbouring values differ, more stiffnesses are looked at between them, until a jump is narrow.
 
-use super::tuned::{Kept, Still, Tuned, Tuning, bare, energy};
+use super::range::Still;
+use super::tuned::{Kept, Tuned, Tuning, bare, energy};
 use rayon::prelude::*;
 use retune_study::Study;
 

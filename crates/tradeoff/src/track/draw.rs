@@ -1,6 +1,5 @@
 //! The figures of `track`: E1max along k1, the re-tuned designs, and the least E1max against the retention range.
 
-use super::page::is_new;
 use super::tracked::Tracked;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
@@ -167,7 +166,7 @@ pub(super) fn range(tracked: &Tracked, shown: &[usize]) -> Drawing {
     let points: Vec<&Point> = tracked.points.iter().filter(|point| shown.contains(&point.damper)).collect();
     let own = |(tuning, point): &&(&'static str, Point)| {
         let is_paper = *tuning == Tuning::Paper.name();
-        shown.contains(&point.damper) && (!is_paper || is_new(tracked, point.damper, Tuning::Paper))
+        shown.contains(&point.damper) && (!is_paper || tracked.is_new(point.damper, Tuning::Paper))
     };
     let kept: Vec<&(&'static str, Point)> = tracked.kept.iter().filter(own).collect();
     const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);

@@ -3,7 +3,6 @@
 
 use super::curves::Curve;
 use super::force::{Forced, HALF};
-use super::page::joule;
 use super::tracked::Tracked;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
@@ -193,4 +192,9 @@ fn one(tracked: &Tracked, number: usize) -> String {
         words += &format!("; re-tuned for each k1 at most {} J", joule(anew));
     }
     words + "."
+}
+
+/// An energy in words.
+pub(super) fn joule(value: f64) -> String {
+    if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }

@@ -1,8 +1,9 @@
 //! The page of `track`, which begins with its answer. Every number on it is one of the tables beside it.
 
 use super::draw;
-use super::force::{self, Forced, GAPS, HALF};
-use super::opening::{answer, shown};
+use super::force::{Forced, GAPS, HALF};
+use super::forces;
+use super::opening::{answer, joule, shown};
 use super::range::Range;
 use super::tracked::Tracked;
 use super::trade::{Point, front};
@@ -23,7 +24,7 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
     let still =
         tracked.curves.iter().any(|curve| curve.still).then(|| draw::retention(tracked, &shown, true));
     let (path, range) = (draw::path(tracked, &shown), draw::range(tracked, &shown));
-    let force = force::draw(tracked, &shown);
+    let force = forces::draw(tracked, &shown);
     let all =
         [("range.svg", &range), ("retention.svg", &retention), ("path.svg", &path), ("force.svg", &force)];
     for (name, drawing) in all.into_iter().chain(still.iter().map(|still| ("still.svg", still))) {
@@ -109,18 +110,12 @@ fn asked(Tracked { dampers, bounds, .. }: &Tracked) -> String {
     )
 }
 
-/// Whether the design of a tuning is not that of an earlier damper: the paper's may stand in several studies.
-pub(super) fn is_new(tracked: &Tracked, damper: usize, tuning: Tuning) -> bool {
-    let at = tracked.dampers[damper].of(tuning);
-    tuning != Tuning::Paper || tracked.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
-}
-
 /// The values at the stiffnesses that were tuned for.
 fn worst(tracked: &Tracked, shown: &[usize]) -> Block {
     let (dampers, mut rows) = (&tracked.dampers, Vec::new());
     for &number in shown {
         let damper = &dampers[number];
-        for kept in damper.kept.iter().filter(|kept| is_new(tracked, number, kept.tuning)) {
+        for kept in damper.kept.iter().filter(|kept| tracked.is_new(number, kept.tuning)) {
             let mut row = vec![damper.name.clone(), kept.tuning.name().to_owned()];
             row.extend(damper.anew.iter().map(|(k1, _)| joule(damper.energy(&kept.at, *k1))));
             rows.push(row);
@@ -187,7 +182,7 @@ fn ranges(tracked: &Tracked, shown: &[usize]) -> Block {
     };
     let own = |(tuning, point): &&(&'static str, Point)| {
         let is_paper = *tuning == Tuning::Paper.name();
-        shown.contains(&point.damper) && (!is_paper || is_new(tracked, point.damper, Tuning::Paper))
+        shown.contains(&point.damper) && (!is_paper || tracked.is_new(point.damper, Tuning::Paper))
     };
     let mut head = vec!["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "factor"];
     if still {
@@ -250,7 +245,7 @@ fn designs(tracked: &Tracked, shown: &[usize]) -> Block {
     let own = |row: &&Row| {
         let is_it = |damper: &&usize| tracked.dampers[**damper].name == row.damper;
         let is_paper = row.label == Tuning::Paper.name();
-        shown.iter().find(is_it).is_some_and(|damper| !is_paper || is_new(tracked, *damper, Tuning::Paper))
+        shown.iter().find(is_it).is_some_and(|damper| !is_paper || tracked.is_new(*damper, Tuning::Paper))
     };
     let rows = tracked.table.rows.iter().filter(own).map(|row| {
         let [k2, c2, d, c] = design_cells(&row.found.design, 4);
@@ -263,8 +258,4 @@ fn designs(tracked: &Tracked, shown: &[usize]) -> Block {
         head.map(str::to_owned).to_vec(),
         rows.collect(),
     )
-}
-
-pub(super) fn joule(value: f64) -> String {
-    if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }

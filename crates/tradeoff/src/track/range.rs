@@ -4,7 +4,7 @@
 //! design does its work at a k1 if its reduction is at least half of that of the best TMD of the same mass for that k1, with k2 and c2
 //! free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
 
-use super::tuned::on_samples;
+use super::tuned::{on_samples, still};
 use rayon::prelude::*;
 use retune_model::{Bare, Coupled, Damper, Design, Scene, Variable, den_hartog};
 use retune_optim::{Bounds, Failures, Options, Scaling, minimize};
@@ -114,6 +114,26 @@ impl Threshold {
         };
         let ((from, low), (to, high)) = rayon::join(|| end(1.0 / STEP), || end(STEP));
         Some(Range { nominal: self.nominal, from, to, open: [low, high] })
+    }
+}
+
+/// A study whose band stays where the natural frequency of its own structure puts it, whatever k1 becomes, and what counts as half of the
+/// work then.
+#[derive(Debug)]
+pub struct Still {
+    /// The study.
+    pub study: Study,
+    /// The least reduction that counts.
+    pub threshold: Threshold,
+}
+
+impl Still {
+    /// Of a study; none if its band does not move with k1.
+    ///
+    /// # Errors
+    /// As [`Threshold::of`].
+    pub fn of(study: &Study) -> Result<Option<Self>, Error> {
+        still(study).map(|study| Ok(Self { threshold: Threshold::of(&study)?, study })).transpose()
     }
 }
 

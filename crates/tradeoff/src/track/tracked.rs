@@ -4,7 +4,7 @@ use super::curves::Curve;
 use super::force::Forced;
 use super::range::Threshold;
 use super::trade::Point;
-use super::tuned::Tuned;
+use super::tuned::{Tuned, Tuning};
 use retune_study::SpringBounds;
 use retune_workbench::designs::Designs;
 
@@ -27,4 +27,12 @@ pub struct Tracked {
     pub points: Vec<Point>,
     /// All designs as a table.
     pub table: Designs,
+}
+
+impl Tracked {
+    /// Whether the design of a tuning is not that of an earlier damper: the paper's may stand in several studies.
+    pub(super) fn is_new(&self, damper: usize, tuning: Tuning) -> bool {
+        let at = self.dampers[damper].of(tuning);
+        tuning != Tuning::Paper || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
+    }
 }

@@ -4,8 +4,8 @@
 //! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design that was seen). The
 //! front is what no design that was seen dominates, looked at again on the common samples, at the tolerance of the study.
 
-use super::range::{Care, Range, Threshold, range};
-use super::tuned::{Still, Tuned, Tuning};
+use super::range::{Care, Range, Still, Threshold, range};
+use super::tuned::{Tuned, Tuning};
 use retune_model::Design;
 use retune_optim::{Global, PeakEnergy, explore, minimize};
 use retune_study::{Setting, Study};

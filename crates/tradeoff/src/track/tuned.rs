@@ -1,10 +1,8 @@
 //! Dampers tuned for several stiffnesses of the structure.
 
-use super::range::Threshold;
 use retune_model::{Design, NonNegative, Positive, Scene};
 use retune_optim::Stiffnesses;
 use retune_study::Study;
-use retune_workbench::Error;
 use retune_workbench::look::finer;
 
 /// The table of the designs.
@@ -82,26 +80,6 @@ impl Tuned {
     /// E1max of a design at a stiffness (N/m), J, on the common samples; NaN where it cannot be run.
     pub fn energy(&self, at: &Design, k1: f64) -> f64 {
         energy(&self.study, self.samples, at, k1).unwrap_or(f64::NAN)
-    }
-}
-
-/// A study whose band stays where the natural frequency of its own structure puts it, whatever k1 becomes, and what counts as half of the
-/// work then.
-#[derive(Debug)]
-pub struct Still {
-    /// The study.
-    pub study: Study,
-    /// The least reduction that counts.
-    pub threshold: Threshold,
-}
-
-impl Still {
-    /// Of a study; none if its band does not move with k1.
-    ///
-    /// # Errors
-    /// As [`Threshold::of`].
-    pub fn of(study: &Study) -> Result<Option<Self>, Error> {
-        still(study).map(|study| Ok(Self { threshold: Threshold::of(&study)?, study })).transpose()
     }
 }
 
