@@ -101,7 +101,7 @@ def tasks():
     wanted = []
     for row in curves:
         k1, tuning, damper = float(row["k1"]), row["tuning"], row["damper"]
-        if k1 not in (2e4, 3e4, NOMINAL, 5e4, 6e4):
+        if row["band"] != "own" or k1 not in (2e4, 3e4, NOMINAL, 5e4, 6e4):
             continue
         key = {"re-tuned": f"k1 = {k1:g}", "nominal": f"k1 = {NOMINAL:g}"}.get(tuning, tuning)
         of = designs.get((damper, key))

@@ -21,7 +21,9 @@ use retune_solver::{Contacts, Method, Settings};
 pub enum Verdict {
     /// An error of at most [`WORKS`], every impact counted.
     Works,
-    /// An error of at most [`INACCURATE`], and at most one impact, or one in ten, miscounted; any number, if the motion is right.
+    /// An error of at most [`WORKS`], impacts miscounted: those that are missed or found twice are too shallow to matter.
+    Miscounts,
+    /// An error of at most [`INACCURATE`], and at most one impact, or one in ten, miscounted.
     Inaccurate,
     /// An error was returned.
     Says,
@@ -39,6 +41,7 @@ impl Verdict {
     pub const fn name(self) -> &'static str {
         match self {
             Verdict::Works => "works",
+            Verdict::Miscounts => "miscounts",
             Verdict::Inaccurate => "inaccurate",
             Verdict::Says => "says it fails",
             Verdict::Silent => "fails silently",
@@ -50,9 +53,8 @@ impl Verdict {
         let missed = found.abs_diff(expected);
         match () {
             () if error <= WORKS && missed == 0 => Verdict::Works,
-            () if error <= INACCURATE && (error <= WORKS || missed <= 1.max(expected / 10)) => {
-                Verdict::Inaccurate
-            }
+            () if error <= WORKS => Verdict::Miscounts,
+            () if error <= INACCURATE && missed <= 1.max(expected / 10) => Verdict::Inaccurate,
             () => Verdict::Silent,
         }
     }
@@ -71,10 +73,15 @@ pub struct Way {
     pub setting: f64,
 }
 
+/// Most steps of a run.
+pub const MOST_STEPS: u64 = 400_000;
+/// The tolerance of the reference.
+pub const REFERENCE: f64 = 1e-12;
+
 impl Way {
     /// As settings, with a bound on the work.
     pub fn settings(&self) -> Settings {
-        Settings { max_steps: 400_000, ..own::settings(self.method, self.contacts, self.setting) }
+        Settings { max_steps: MOST_STEPS, ..own::settings(self.method, self.contacts, self.setting) }
     }
 }
 
@@ -155,7 +162,7 @@ impl Observer<4> for Durations {
 /// # Errors
 /// The reason why it could not be run.
 pub fn truth(difficulty: &Difficulty) -> Result<Truth, String> {
-    let settings = own::settings(Method::Hybrid, Contacts::Located, 1e-12);
+    let settings = own::settings(Method::Hybrid, Contacts::Located, REFERENCE);
     let case = &difficulty.case;
     let mut durations = Durations::default();
     if let Some(system) = system(&case.scene) {
@@ -189,7 +196,7 @@ pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
     let cause = match (verdict, impacts[0] == impacts[1]) {
         (Verdict::Works, _) => String::new(),
         (_, true) => why(way, truth),
-        (_, false) if error <= WORKS => format!(
+        (Verdict::Miscounts, _) => format!(
             "{counted}, and the motion is right all the same: a contact is shallower than the error of a position, or shorter \
              than a step at whose ends alone it could be seen"
         ),

@@ -16,5 +16,6 @@ pub mod record;
 pub mod reference;
 pub mod savings;
 pub mod scenes;
+pub mod sealed;
 pub mod statistics;
 pub mod text;

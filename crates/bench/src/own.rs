@@ -8,6 +8,7 @@ use retune_solver::observe::Observer;
 use retune_solver::{
     Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError, Window, e1_max, simulate, touch_downs,
 };
+use retune_workbench::verify::methods;
 use std::time::{Duration, Instant};
 
 /// The shortest of several runs, s: after a warm-up 100 runs if one takes less than a millisecond, else fewer.
@@ -30,14 +31,12 @@ pub fn shortest_of<T>(mut run: impl FnMut() -> T) -> f64 {
     (0..wanted).map(|_| timed(&mut once)).fold(Duration::MAX, Duration::min).as_secs_f64()
 }
 
+/// Most steps of a run.
+pub const MOST_STEPS: u64 = 3_000_000;
+
 /// Settings of a method at a tolerance, or at a step.
 pub fn settings(method: Method, contacts: Contacts, setting: f64) -> Settings {
-    let shared = Settings { method, contacts, max_steps: 3_000_000, ..Settings::default() };
-    if method.has_fixed_step() {
-        Settings { step: Some(setting), ..shared }
-    } else {
-        Settings { rtol: setting, atol: setting * 1e-3, ..shared }
-    }
+    methods::settings(method, contacts, setting, MOST_STEPS)
 }
 
 /// All results of one run; the time is that of finding E1max alone.
@@ -50,13 +49,12 @@ pub fn run(case: &Case, settings: &Settings, timed: bool) -> Result<Found, Strin
     let touches = touch_downs(&case.scene, window, settings).map_err(|e| e.to_string())?;
     let seconds =
         if timed { shortest_of(|| e1_max(&case.scene, window, settings, f64::INFINITY)) } else { f64::NAN };
-    let hybrid = settings.method == Method::Hybrid;
     Ok(Found {
         e1_max: response.e1_max.value,
         final_state: response.final_state,
         impacts: touches.len(),
         touches: Some(touches.into_iter().map(|(t, _)| t).collect()),
-        evaluations: response.work.evaluations + if hybrid { response.work.steps } else { 0 },
+        evaluations: methods::evaluations(settings.method, &response),
         seconds,
     })
 }

@@ -1,5 +1,6 @@
 //! One run of one method at one tolerance, and its line in `runs.csv`.
 
+use retune_workbench::verify::methods;
 use std::fmt::Write;
 
 /// The result of a run.
@@ -43,17 +44,15 @@ pub struct Row {
 /// Relative errors of E1max and of the final state (positions weighed by ω), and the largest error of an impact time (s), NaN
 /// where the counts differ.
 pub fn errors(found: &Found, reference: &Found, omega: f64) -> [f64; 3] {
-    let weighed = |y: [f64; 4]| [y[0] * omega, y[1], y[2] * omega, y[3]];
-    let (a, b) = (weighed(found.final_state), weighed(reference.final_state));
-    let norm = |v: [f64; 4]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let state = norm(std::array::from_fn(|i| a[i] - b[i])) / norm(b);
+    let states = [found.final_state, reference.final_state];
+    let [e1, state] = methods::errors([found.e1_max, reference.e1_max], states, omega);
     let times = match (&found.touches, &reference.touches) {
         (Some(a), Some(b)) if a.len() == b.len() => {
             a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         }
         _ => f64::NAN,
     };
-    [(found.e1_max / reference.e1_max - 1.0).abs(), state, times]
+    [e1, state, times]
 }
 
 impl Row {

@@ -7,6 +7,9 @@ use retune_dynamics::{Exponent, Stretch, follow};
 use retune_solver::{Contacts, Method, Settings};
 use std::error::Error;
 
+/// The tolerance of the reference.
+pub const REFERENCE: f64 = 1e-13;
+
 /// The reference of a scene.
 pub struct Reference {
     /// The hybrid at rtol 1e-13.
@@ -28,9 +31,9 @@ impl Reference {
     /// A run that failed.
     pub fn of(case: &Case) -> Result<Self, Box<dyn Error>> {
         let run = |method, rtol| own::run(case, &own::settings(method, Contacts::Located, rtol), false);
-        let found = run(Method::Hybrid, 1e-13)?;
+        let found = run(Method::Hybrid, REFERENCE)?;
         let omega = case.scene.forcing.frequency.get();
-        let [looser, independent] = [run(Method::Hybrid, 1e-12)?, run(Method::Dop853, 1e-13)?]
+        let [looser, independent] = [run(Method::Hybrid, 1e-12)?, run(Method::Dop853, REFERENCE)?]
             .map(|other| errors(&other, &found, omega));
         let stretch = Stretch { settle: 100, observe: 200 };
         let exponent = match case.scene.damper {

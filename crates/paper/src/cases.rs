@@ -102,8 +102,11 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
         draw(plan, case, &scene, &mut item)?;
         let own = plan.ssvi.value_of("R").unwrap_or(f64::NAN);
         let mut variants: Vec<(f64, f64)> = vec![(own, case.omega)];
-        variants.extend(near.map(|shift| (own, case.omega + shift)));
-        variants.extend(RADII.iter().filter(|&&radius| radius != own).map(|&radius| (radius, case.omega)));
+        if !plan.is_brief {
+            variants.extend(near.map(|shift| (own, case.omega + shift)));
+            variants
+                .extend(RADII.iter().filter(|&&radius| radius != own).map(|&radius| (radius, case.omega)));
+        }
         let judged: Vec<Result<Regime, Error>> = variants
             .par_iter()
             .map(|&(radius, omega)| {

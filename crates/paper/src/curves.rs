@@ -57,8 +57,7 @@ pub fn figure3(plan: &Plan) -> Result<Item, Error> {
     });
     item.data.push(("figure3.csv".into(), numbers(header, rows)));
     let climb = |family| {
-        let band = [plan.file.omega.from, plan.file.omega.to];
-        let ladders = |family: &Family| family.scenes.map(|scene| Ladder::climb(plan, &scene, band));
+        let ladders = |family: &Family| family.scenes.map(|scene| Ladder::climb(plan, &scene));
         Detuned { family, ladders: ladders(family) }
     };
     let climbed: Vec<Detuned> = families.iter().map(climb).collect();

@@ -32,6 +32,11 @@ impl Detuned<'_> {
         pick(&self.ladders[NONE]) / pick(&self.ladders[scene])
     }
 
+    /// The share of that of the tuned structure that is left.
+    fn left(&self, tuned: &Self, scene: usize, pick: Pick) -> f64 {
+        self.reduction(scene, pick) / tuned.reduction(scene, pick)
+    }
+
     /// The same on the finest frequencies.
     pub fn finest(&self, scene: usize) -> f64 {
         self.reduction(scene, &Ladder::finest)
@@ -67,6 +72,12 @@ fn decide(item: &mut Item, paper: &str, rule: &str, parts: &[Option<bool>], foun
 
 fn list(families: &[&Detuned], scene: usize) -> String {
     families.iter().map(|f| format!("{:.2}", f.finest(scene))).collect::<Vec<_>>().join(", ")
+}
+
+/// The reductions of some structures beside those of the tuned one.
+fn beside(tuned: &Detuned, families: &[&Detuned]) -> String {
+    let of = |scene: usize| format!("{} (tuned {:.2})", list(families, scene), tuned.finest(scene));
+    format!("reduction, k1 rising: SSVI NES {}; TMD {}", of(SSVI), of(TMD))
 }
 
 fn peaks(tuned: &Family, item: &mut Item) {
@@ -137,9 +148,7 @@ fn at_the_tuned_stiffness(tuned: &Detuned, all: &[&Detuned], item: &mut Item) {
 }
 
 fn stiffer_structures(tuned: &Detuned, softer: &[&Detuned], stiffer: &[&Detuned], item: &mut Item) {
-    let change = |f: &Detuned, scene: usize, pick: Pick| {
-        (f.reduction(scene, pick) / tuned.reduction(scene, pick) - 1.0).abs()
-    };
+    let change = |f: &Detuned, scene: usize, pick: Pick| (f.left(tuned, scene, pick) - 1.0).abs();
     let most = |scene: usize, pick: Pick| stiffer.iter().map(|f| change(f, scene, pick)).fold(0.0, f64::max);
     let least = |scene: usize, pick: Pick| {
         softer.iter().map(|f| change(f, scene, pick)).fold(f64::INFINITY, f64::min)
@@ -149,6 +158,16 @@ fn stiffer_structures(tuned: &Detuned, softer: &[&Detuned], stiffer: &[&Detuned]
     let unchanged = DAMPERS.map(|scene| decided(|pick| most(scene, pick) < least(scene, pick)));
     let identical = decided(|pick| apart(pick) < differ(tuned, pick));
     let finest: Pick = &Ladder::finest;
+    decide(
+        item,
+        "Both dampers maintain their vibration reduction performance when k1 increases (conclusions)",
+        &format!(
+            "The paper gives no number. Holds if at least {} of the tuned reduction is left at every stiffer structure, with both dampers; in part if with one.",
+            percent(RETAINED)
+        ),
+        &DAMPERS.map(|scene| decided(|pick| stiffer.iter().all(|f| f.left(tuned, scene, pick) >= RETAINED))),
+        beside(tuned, stiffer),
+    );
     decide(
         item,
         "With increasing k1 the reduction remains virtually unchanged and identical for SSVI NES and TMD",
@@ -175,30 +194,35 @@ fn softer_structures(tuned: &Detuned, softer: &[&Detuned], all: &[&Detuned], ite
         "When k1 decreases the reduction worsens",
         "Holds if the reduction is smaller at every softer structure than at the tuned one, with both dampers; in part if with one.",
         &worse,
-        format!(
-            "softer: SSVI NES {} (tuned {:.2}); TMD {} (tuned {:.2})",
-            list(softer, SSVI),
-            tuned.finest(SSVI),
-            list(softer, TMD),
-            tuned.finest(TMD)
-        ),
+        beside(tuned, softer),
     );
-    let left =
-        |f: &Detuned, scene: usize, pick: Pick| f.reduction(scene, pick) / tuned.reduction(scene, pick);
     let places: Vec<String> = softer
         .iter()
         .map(|f| {
             format!(
                 "k1 = {} N/m: {:.0} % of the tuned reduction is left to the SSVI NES, {:.0} % to the TMD",
                 stiffness(f.family.k1),
-                100.0 * left(f, SSVI, &Ladder::finest),
-                100.0 * left(f, TMD, &Ladder::finest)
+                100.0 * f.left(tuned, SSVI, &Ladder::finest),
+                100.0 * f.left(tuned, TMD, &Ladder::finest)
             )
         })
         .collect();
-    let greater = decided(|pick| softer.iter().all(|f| left(f, SSVI, pick) < left(f, TMD, pick)));
+    let losses: Vec<String> = softer
+        .iter()
+        .map(|f| {
+            let [ssvi, tmd] = DAMPERS.map(|scene| percent(1.0 - f.left(tuned, scene, &Ladder::finest)));
+            format!(
+                "at k1 = {} N/m the SSVI NES loses {ssvi} of its reduction, the TMD {tmd}",
+                stiffness(f.family.k1)
+            )
+        })
+        .collect();
+    let more =
+        |f: &&Detuned| f.left(tuned, TMD, &Ladder::finest) / f.left(tuned, SSVI, &Ladder::finest) - 1.0;
+    let most = softer.iter().map(more).fold(f64::NEG_INFINITY, f64::max);
+    let greater = decided(|pick| softer.iter().all(|f| f.left(tuned, SSVI, pick) < f.left(tuned, TMD, pick)));
     let similar = decided(|pick| {
-        softer.iter().all(|f| (left(f, SSVI, pick) / left(f, TMD, pick) - 1.0).abs() <= SIMILAR)
+        softer.iter().all(|f| (1.0 - f.left(tuned, SSVI, pick) / f.left(tuned, TMD, pick)).abs() <= SIMILAR)
     });
     decide(
         item,
@@ -210,20 +234,29 @@ fn softer_structures(tuned: &Detuned, softer: &[&Detuned], all: &[&Detuned], ite
     decide(
         item,
         "The deterioration is similar for both dampers, slightly greater for the SSVI NES (conclusions)",
-        "The paper gives no number. Holds if less is left to the SSVI NES at every softer structure, but by no more than a tenth; in part if only one of the two is so.",
+        "The paper gives no number. Holds if less is left to the SSVI NES at every softer structure, but by no more than a tenth of what is left to the TMD; in part if only one of the two is so.",
         &[greater, similar],
-        places.join("; "),
+        format!(
+            "{}: the TMD is left with up to {:.0} % more, where similar means {}",
+            losses.join("; "),
+            100.0 * most,
+            percent(SIMILAR)
+        ),
     );
-    let retained = DAMPERS.map(|scene| decided(|pick| all.iter().all(|f| left(f, scene, pick) >= RETAINED)));
+    let retained =
+        DAMPERS.map(|scene| decided(|pick| all.iter().all(|f| f.left(tuned, scene, pick) >= RETAINED)));
     decide(
         item,
         "Both dampers retain their tuning",
-        "The paper gives no number. Holds if at least nine tenths of the tuned reduction are left at every stiffness, with both dampers; in part if with one.",
+        &format!(
+            "The paper gives no number. Holds if at least {} of the tuned reduction is left at every stiffness, with both dampers; in part if with one.",
+            percent(RETAINED)
+        ),
         &retained,
         format!(
-            "least share left: SSVI NES {:.0} %, TMD {:.0} %",
-            100.0 * all.iter().map(|f| left(f, SSVI, &Ladder::finest)).fold(f64::INFINITY, f64::min),
-            100.0 * all.iter().map(|f| left(f, TMD, &Ladder::finest)).fold(f64::INFINITY, f64::min)
+            "least share left: SSVI NES {:.0} %, TMD {:.0} %: with a threshold at the lower of the two it would hold, between them in part",
+            100.0 * all.iter().map(|f| f.left(tuned, SSVI, &Ladder::finest)).fold(f64::INFINITY, f64::min),
+            100.0 * all.iter().map(|f| f.left(tuned, TMD, &Ladder::finest)).fold(f64::INFINITY, f64::min)
         ),
     );
     let shifts = [NONE, SSVI, TMD].map(|scene| {
@@ -254,6 +287,10 @@ fn softer_structures(tuned: &Detuned, softer: &[&Detuned], all: &[&Detuned], ite
             more[1].omega
         ),
     );
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
 }
 
 /// Shares of what is left that differ by no more than this are similar.

@@ -51,6 +51,9 @@ pub struct Statement {
     pub paper: String,
     /// The criterion for the verdict and its reason: where the paper is only verbal, this says what is measured.
     pub rule: String,
+    /// Whether it is our conjecture about what the paper leaves open, not a statement of the paper: it does not count among these.
+    #[serde(default)]
+    pub conjecture: bool,
     /// The verdict.
     pub verdict: Verdict,
     /// The numbers behind the verdict.
@@ -137,6 +140,12 @@ impl Item {
         }
     }
 
+    /// Its tables and its data: the name and the text of each file.
+    pub fn files(&self) -> Vec<(String, String)> {
+        let table = |(i, grid): (usize, &Grid)| (format!("{}-table-{}.csv", self.name, i + 1), grid.csv());
+        self.grids.iter().enumerate().map(table).chain(self.data.iter().cloned()).collect()
+    }
+
     /// Adds a picture.
     pub fn picture(&mut self, name: &str, drawing: impl Into<Drawing>, caption: &str) {
         let [name, caption] = [name, caption].map(str::to_owned);
@@ -146,7 +155,15 @@ impl Item {
     /// Adds a statement.
     pub fn statement(&mut self, paper: &str, rule: &str, verdict: Verdict, found: String) {
         let [paper, rule] = [paper, rule].map(str::to_owned);
-        self.statements.push(Statement { paper, rule, verdict, found });
+        self.statements.push(Statement { paper, rule, conjecture: false, verdict, found });
+    }
+
+    /// Adds a conjecture of ours.
+    pub fn conjecture(&mut self, ours: &str, rule: &str, verdict: Verdict, found: String) {
+        self.statement(ours, rule, verdict, found);
+        if let Some(last) = self.statements.last_mut() {
+            last.conjecture = true;
+        }
     }
 }
 

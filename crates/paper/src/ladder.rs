@@ -25,11 +25,11 @@ type Pick = fn(&Ladder) -> f64;
 const PICKS: [Pick; 3] = [Ladder::finest, |ladder| ladder.near.least, |ladder| ladder.near.largest];
 
 impl Ladder {
-    /// Of a scene over a band, rad/s.
-    pub fn climb(plan: &Plan, scene: &Scene, band: [f64; 2]) -> Self {
+    /// Of a scene over the frequencies of Figure 3.
+    pub fn climb(plan: &Plan, scene: &Scene) -> Self {
         let rungs = &plan.file.ladder;
-        let near = near(MEMBERS, scene, |scene| sampled(plan, scene, band, middle(rungs)));
-        Self { values: rungs.iter().map(|samples| sampled(plan, scene, band, *samples)).collect(), near }
+        let near = near(MEMBERS, scene, |scene| sampled(plan, scene, middle(rungs)));
+        Self { values: rungs.iter().map(|samples| sampled(plan, scene, *samples)).collect(), near }
     }
 
     /// On the finest frequencies.
@@ -64,12 +64,13 @@ pub fn finest(plan: &Plan) -> usize {
 }
 
 /// The largest on the finest frequencies, J.
-pub fn on_the_finest(plan: &Plan, scene: &Scene, band: [f64; 2]) -> f64 {
-    sampled(plan, scene, band, finest(plan))
+pub fn on_the_finest(plan: &Plan, scene: &Scene) -> f64 {
+    sampled(plan, scene, finest(plan))
 }
 
 /// The largest on evenly spaced frequencies, without a search between them.
-fn sampled(plan: &Plan, scene: &Scene, [from, to]: [f64; 2], samples: usize) -> f64 {
+fn sampled(plan: &Plan, scene: &Scene, samples: usize) -> f64 {
+    let (from, to) = (plan.file.omega.from, plan.file.omega.to);
     let value = |omega: f64| {
         let Ok(frequency) = NonNegative::new(omega) else { return f64::NAN };
         let mut scene = *scene;

@@ -1,5 +1,6 @@
 //! Every table and figure of the paper, reproduced beside its statements, with a verdict on each.
 
+mod again;
 mod begins;
 mod cases;
 mod curves;
@@ -9,6 +10,7 @@ mod diagrams;
 mod energies;
 mod family;
 mod item;
+mod items;
 mod judgement;
 mod kind;
 mod ladder;
@@ -19,11 +21,15 @@ mod plan;
 mod protocols;
 mod ratios;
 mod regimes;
+mod stiff;
 mod surfaces;
 mod table1;
 mod table2;
+mod variants;
 
 pub use describe::describe;
+use items::{ITEMS, Maker, SEARCHES, statements};
+
 pub use item::{Grid, Item, Picture, Statement, Verdict};
 pub use kind::KIND;
 pub use plan::{PaperPlan, Plan};
@@ -32,22 +38,11 @@ use retune_store::Directory;
 use retune_workbench::job::{Job, Made};
 use retune_workbench::observer::Quiet;
 use retune_workbench::searches::Searches;
+use retune_workbench::verify::Others;
 use retune_workbench::{Done, Error, Observer, Request};
 
-/// The function that makes an item.
-type Maker = fn(&Plan, &mut Searches) -> Result<Item, Error>;
-
-/// Every item, in the order of the page.
-const ITEMS: [(&str, Maker); 8] = [
-    ("table1", |plan, _| table1::table1(plan)),
-    ("table2", table2::table2),
-    ("figure2", |plan, _| surfaces::figure2(plan)),
-    ("figure3", |plan, _| curves::figure3(plan)),
-    ("figure4", |plan, _| regimes::figure4(plan)),
-    ("figure5", |plan, _| ratios::figure5(plan)),
-    ("figure6", |plan, _| energies::figure6(plan)),
-    ("figure7", |plan, _| cases::figure7(plan)),
-];
+/// How `verify` computes the verdicts again.
+pub static OTHERS: &Others = &[(&KIND, again::again)];
 
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
 ///
@@ -83,11 +78,6 @@ pub fn reproduce(
     })
 }
 
-/// The file with the verdicts on the statements of an item.
-fn statements(name: &str) -> String {
-    format!("{name}-statements.json")
-}
-
 /// An item kept by an interrupted run, or made now and kept in case this run is interrupted. One that makes searches is made again:
 /// they are resumed.
 fn kept_or_made(
@@ -105,7 +95,7 @@ fn kept_or_made(
         }
     }
     let before = searches.results.len();
-    let item = make(plan, searches)?;
+    let item = make(plan, &mut |study| Ok(searches.tune(study, SEARCHES)?.found().damper.design))?;
     if searches.results.len() > before {
         return Ok(item);
     }
@@ -119,11 +109,8 @@ fn write(item: &Item, results: &Directory) -> Result<(), Error> {
     for picture in &item.pictures {
         results.write(&format!("{}.svg", picture.name), &picture.drawing.wide)?;
     }
-    for (i, grid) in item.grids.iter().enumerate() {
-        results.write(&format!("{}-table-{}.csv", item.name, i + 1), &grid.csv())?;
-    }
-    for (name, content) in &item.data {
-        results.write(name, content)?;
+    for (name, text) in item.files() {
+        results.write(&name, &text)?;
     }
     Ok(results.write_json(&statements(&item.name), &item.statements)?)
 }

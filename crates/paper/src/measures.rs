@@ -3,12 +3,12 @@
 use super::plan::Plan;
 use rayon::prelude::*;
 use retune_model::{Positive, Scene};
-use retune_optim::{Ensemble, FrequencyBand, Goal, Objective, Response, Statistic};
+use retune_optim::{Ensemble, Failures, FrequencyBand, Goal, Objective, Response, Statistic};
 use retune_solver::{Settings, Window};
+use retune_workbench::Error;
 
-/// The band of the worst case, rad/s, and the samples with which designs are compared.
+/// The band for which dampers are tuned, rad/s.
 pub const BAND: [f64; 2] = [5.0, 8.0];
-pub const SAMPLES: usize = 301;
 
 /// Least, median and largest of some energies, J.
 pub struct Spread {
@@ -60,9 +60,18 @@ pub fn whole(plan: &Plan, scene: &Scene) -> f64 {
     energy(scene, &Objective::default(), window, &plan.settings())
 }
 
-/// The worst over the band, in the window.
-pub fn worst(plan: &Plan, scene: &Scene) -> f64 {
-    energy(scene, &over_band(SAMPLES, Response::Window), plan.window(), &plan.settings())
+/// The scene of the TMD with the mass of the paper's, k2 and c2 free, that has the least steady worst over the band at the tuned stiffness.
+pub fn best_tmd(plan: &Plan) -> Result<Scene, Error> {
+    let scene = plan.tmd.scene;
+    let damper = scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))?;
+    Ok(Scene { damper: Some(retune_tradeoff::track::best_tmd(&scene, damper, BAND)?.0), ..scene })
+}
+
+/// Its spring and its damping in words.
+pub fn tmd_words(scene: &Scene) -> String {
+    scene.damper.map_or(String::new(), |damper| {
+        format!("k2 = {:.0} N/m, c2 = {:.0} N·s/m", damper.stiffness.get(), damper.damping.get())
+    })
 }
 
 /// The values of `members` scenes near one, each of whose k1, k2, c2, D and C are off by at most 0.1 %, which is less than the rounding

@@ -1,6 +1,7 @@
 //! The page: every item beside the paper's statements, in one file that needs no network.
 
 use super::item::{Grid, Item, Picture, Statement, Verdict};
+use super::variants;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use retune_figures::Drawing;
 use retune_workbench::html::head;
@@ -11,7 +12,8 @@ const OWN: &str = include_str!("page.css");
 /// The whole page.
 pub fn page(items: &[Item]) -> String {
     let count = |verdict: Verdict| {
-        items.iter().flat_map(|item| &item.statements).filter(|s| s.verdict == verdict).count()
+        let of_paper = items.iter().flat_map(|item| &item.statements).filter(|s| !s.conjecture);
+        of_paper.filter(|s| s.verdict == verdict).count()
     };
     let all = [Verdict::Holds, Verdict::Partly, Verdict::Fails, Verdict::Undecided];
     let [holds, partly, fails, undecided] = all.map(count);
@@ -26,12 +28,19 @@ pub fn page(items: &[Item]) -> String {
                         "Each table and figure of the paper beside what Retune " (env!("CARGO_PKG_VERSION"))
                         " computes, and a verdict on each statement. Of " (holds + partly + fails + undecided) " statements "
                         (holds) " hold, " (partly) " hold in part, " (fails) " do not hold under our settings, and "
-                        (undecided) " cannot be decided: practically equal designs decide them differently."
+                        (undecided) " cannot be decided: practically equal designs decide them differently. What is marked as our conjecture is not counted."
                     }
                     p {
                         "Only the text of the paper was available, not the data of its figures: what a figure shows is taken from the "
                         "words about it. The paper leaves out the radius R and the coefficient q of the contact, the length of a run, the window of its "
-                        "maxima and the tolerances. Ours stand under each item; where a verdict hangs on them, it says so."
+                        "maxima and the tolerances. Ours stand under each item; which verdicts hang on R and on the window stands "
+                        @if items.iter().any(|item| item.name == variants::NAME) { a href={ "#" (variants::NAME) } { "at the end" } } @else { "at the end of the whole page" }
+                        "."
+                    }
+                    p {
+                        "Two samplings of the frequency, each under one name. " b { "Finest" } ": the largest of as many runs over Figure 3's frequencies as the last column of its tables "
+                        "says, with the least and the largest of 21 designs within ±0.1 % beside it; every verdict on a worst case is by this. "
+                        b { "Coarse" } ": 31 frequencies over 5 to 8 rad/s and the peaks between them; by this searches and Figure 2's maps compare designs, no more."
                     }
                     nav { ul { @for item in items { li { a href={ "#" (item.name) } { (item.title) } } } } }
                 }
@@ -69,7 +78,7 @@ fn statement(statement: &Statement) -> Markup {
     };
     html! {
         li class=(class) {
-            span.says { (statement.paper) small.rule { (statement.rule) } }
+            span.says { @if statement.conjecture { b { "Our conjecture: " } } (statement.paper) small.rule { (statement.rule) } }
             span.verdict { (statement.verdict.words()) }
             span.found { (statement.found) }
         }

@@ -1,6 +1,6 @@
 //! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
 
-use retune_model::Scene;
+use retune_model::{Design, Scene};
 use retune_solver::{Settings, Window};
 use retune_study::{Kind, PaperStudy, Study, StudyError, read_paper, read_table2};
 use retune_workbench::Error;
@@ -57,6 +57,9 @@ pub struct Range {
     pub points: usize,
 }
 
+/// The design that the search of a study comes to.
+pub type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
+
 /// The plan with all that it names.
 pub struct Plan<'a> {
     /// As read.
@@ -67,6 +70,8 @@ pub struct Plan<'a> {
     pub tmd: Study,
     /// Who follows.
     pub watch: &'a dyn Observer,
+    /// Whether only verdicts are wanted, on fewer points.
+    pub is_brief: bool,
 }
 
 /// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
@@ -116,7 +121,7 @@ impl<'a> Plan<'a> {
             studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
         // The page has objectives of its own; of the studies it takes the scenes, the window and the solver.
         let [ssvi, tmd] = [ssvi, tmd].map(|row| Study { optimize: None, ..row.study });
-        Ok(Self { file, ssvi, tmd, watch })
+        Ok(Self { file, ssvi, tmd, watch, is_brief: false })
     }
 
     /// The scenes without damper, with SSVI NES and with TMD at a stiffness.

@@ -6,7 +6,7 @@ use super::plan::Plan;
 use rayon::prelude::*;
 use retune_model::Scene;
 use retune_optim::Objective;
-use retune_solver::{Method, Settings, Window, simulate};
+use retune_solver::Window;
 use retune_study::Setting;
 use retune_workbench::Error;
 
@@ -96,8 +96,8 @@ pub fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     item.grids.push(grid);
     let most = all.iter().map(|of| of.inside).max().unwrap_or(0);
     let (best, ours) = (all.first(), all.iter().find(|of| own(of)));
-    item.statement(
-        "The four rows have their energies under some radius, frequency and window",
+    item.conjecture(
+        "the four rows have their energies under some radius, frequency and window",
         "Holds if under one of these protocols each of the four printed energies lies within what designs within ±0.1 % have; in part if the medians are within 2 % (root mean square) under one.",
         match (most, best) {
             (4, _) => Verdict::Holds,
@@ -128,49 +128,4 @@ fn look(plan: &Plan, radius: f64, omega: f64, window: Window) -> Result<Protocol
         rows.push(spread);
     }
     Ok(Protocol { radius, omega, window, rows, misfit: (squares / 4.0).sqrt(), inside })
-}
-
-/// Seconds over which methods are compared, before a chaotic motion has magnified their errors.
-const EARLY: f64 = 10.0;
-/// Tolerances of the methods, looser ones first.
-const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
-/// Error of the state at the end that the methods are compared at, relative.
-const ERROR: f64 = 1e-3;
-
-/// Adds the statement on stiffness: what a stiff method and a general one cost for the same error.
-///
-/// # Errors
-/// A run fails.
-pub fn stiffness(plan: &Plan, item: &mut Item) -> Result<(), Error> {
-    let window = Window { from: 0.0, to: EARLY.min(plan.window().to) };
-    let scene = plan.ssvi.scene;
-    let exact = simulate(&scene, window, &plan.settings())?.final_state;
-    let size = exact.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
-    let cost = |method: Method| -> Result<Option<(f64, u64)>, Error> {
-        for rtol in TOLERANCES {
-            let settings = Settings { method, rtol, atol: 0.01 * rtol, ..plan.settings() };
-            let run = simulate(&scene, window, &settings)?;
-            let error = run.final_state.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if error <= ERROR * size {
-                return Ok(Some((rtol, run.work.evaluations)));
-            }
-        }
-        Ok(None)
-    };
-    let [stiff, general] = [cost(Method::Ode23s)?, cost(Method::Ode45)?];
-    let words = |name: &str, cost: Option<(f64, u64)>| match cost {
-        Some((rtol, evaluations)) => format!("{name} {evaluations} (rtol {rtol:e})"),
-        None => format!("{name} does not come so near at these tolerances"),
-    };
-    let holds = match (stiff, general) {
-        (Some((_, stiff)), Some((_, general))) => stiff < general,
-        (stiff, _) => stiff.is_some(),
-    };
-    item.statement(
-        "The equations are stiff, and integrated with the stiff solver ode23s",
-        "Holds if ode23s needs fewer evaluations of the equations than ode45 for the same error, a thousandth of the state after 10 s, both with contacts located. A contact is short, not stiff: its time scale limits the step of any method that follows it.",
-        Verdict::of(holds),
-        format!("evaluations: {}, {}", words("ode23s", stiff), words("ode45", general)),
-    );
-    Ok(())
 }

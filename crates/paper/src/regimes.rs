@@ -45,7 +45,9 @@ pub fn figure4(plan: &Plan) -> Result<Item, Error> {
     }
     item.grids.push(names(&families, &all));
     item.grids.push(coexisting(&families, &all));
-    item.grids.push(begins(plan, &families, &all)?);
+    if !plan.is_brief {
+        item.grids.push(begins(plan, &families, &all)?);
+    }
     item.data.push(("figure4-regimes.csv".into(), regimes_csv(&families, &all)));
     item.data.push(("figure4-orbits.csv".into(), orbits_csv(&families, &all)));
     statements(&families, &all, &mut item);

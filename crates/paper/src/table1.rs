@@ -3,7 +3,8 @@
 use super::item::{Grid, Item, Verdict};
 use super::measures::{Spread, at_omega, energy, near};
 use super::plan::Plan;
-use super::protocols::{PAPER, protocols, stiffness};
+use super::protocols::{PAPER, protocols};
+use super::stiff::stiffness;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Measure, Scene};

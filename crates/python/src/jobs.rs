@@ -106,7 +106,7 @@ pub fn verify(
             &path,
             sample,
             within,
-            &[retune_tradeoff::OTHERS, retune_branches::OTHERS],
+            &[retune_tradeoff::OTHERS, retune_branches::OTHERS, retune_paper::OTHERS],
             watch,
         )?)
     })

@@ -40,7 +40,7 @@ pub fn run(command: Command) -> Result<(), Error> {
             &results,
             sample as usize,
             within,
-            &[retune_tradeoff::OTHERS, retune_branches::OTHERS],
+            &[retune_tradeoff::OTHERS, retune_branches::OTHERS, retune_paper::OTHERS],
             &all,
         ),
         Command::Certify { design, running } => {

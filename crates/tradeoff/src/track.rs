@@ -3,12 +3,15 @@
 //!
 //! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
 //! more refinement starts at the design of the neighbouring k1. Read `anew` (the searches), `tuned` (what they give), `curves`, `range`,
-//! `trade`, then `page`.
+//! `trade`, `force`, then `page`.
 
 mod again;
 mod anew;
 mod curves;
 mod draw;
+mod force;
+mod forces;
+mod opening;
 mod page;
 mod range;
 mod tracked;
@@ -18,11 +21,13 @@ mod tuned;
 pub use again::again;
 pub use anew::label;
 pub use curves::Curve;
-pub use range::{Range, Threshold};
+pub use force::Forced;
+pub use range::{Range, Threshold, best_tmd};
 pub use tracked::Tracked;
 pub use trade::Point;
 pub use tuned::{Kept, Tuned, Tuning};
 
+use range::Still;
 use retune_study::{self as study, Setting};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::designs::{Designs, Row};
@@ -32,7 +37,7 @@ use retune_workbench::searches::Searches;
 use retune_workbench::summary::TunedDamper;
 use retune_workbench::{Error, Observer, Request};
 use serde_json::json;
-use tuned::{CURVES, DESIGNS};
+use tuned::{CURVES, DESIGNS, FORCES};
 
 /// The files of the retention of tuning.
 pub static KIND: Kind = Kind {
@@ -43,8 +48,11 @@ pub static KIND: Kind = Kind {
         artefact(DESIGNS, Content::Own),
         artefact(CURVES, Content::Own),
         artefact("range.csv", Content::Own),
+        artefact(FORCES, Content::Own),
         artefact("retune.txt", Content::Derived),
         artefact("retention.svg", Content::Derived),
+        artefact("still.svg", Content::Derived),
+        artefact("force.svg", Content::Derived),
         artefact("path.svg", Content::Derived),
         artefact("range.svg", Content::Derived),
         artefact("README.md", Content::Derived),
@@ -85,23 +93,28 @@ pub fn track(
             dampers.push(tuned);
         }
         let table = Designs { column: "tuning", rows: designs, infeasible: searches.infeasible.take() };
-        let curves = curves::curves(&dampers);
         let thresholds: Vec<Threshold> =
             dampers.iter().map(|damper| Threshold::of(&damper.study)).collect::<Result<_, _>>()?;
+        let stills: Vec<Option<Still>> =
+            dampers.iter().map(|damper| Still::of(&damper.study)).collect::<Result<_, _>>()?;
+        let curves = curves::curves(&dampers, &stills);
+        let forced = force::forced(&dampers);
         let (mut kept, mut points) = (Vec::new(), Vec::new());
         for (number, (damper, threshold)) in dampers.iter().zip(&thresholds).enumerate() {
+            let still = stills[number].as_ref();
             for one in &damper.kept {
-                kept.push((one.tuning.name(), Point::new(number, damper, one.at, threshold)));
+                kept.push((one.tuning.name(), Point::new(number, damper, one.at, threshold, still)));
             }
-            points.extend(trade::trade(number, damper, threshold, &searches, watch)?);
+            points.extend(trade::trade(number, damper, (threshold, still), &searches, watch)?);
         }
+        directory.write(FORCES, &force::csv(&dampers, &forced))?;
         directory.write(CURVES, &curves::csv(&dampers, &curves))?;
         directory.write("range.csv", &trade::csv(&dampers, &kept, &points))?;
         table.write("retune", directory)?;
         let bounds = said.k2_bounds;
-        let tracked = Tracked { dampers, bounds, curves, thresholds, kept, points, table };
+        let tracked = Tracked { dampers, bounds, curves, thresholds, forced, kept, points, table };
         page::write(&tracked, directory)?;
-        let report = format!("\n{}\n\n{}", tracked.table.text(), page::answer(&tracked).join("\n"));
+        let report = format!("\n{}\n\n{}", opening::answer(&tracked).join("\n"), tracked.table.text());
         Ok(Made { report, answer: tracked, parts: searches.results })
     })
 }

@@ -20,6 +20,8 @@ pub enum Content {
     Designs,
     /// A row for each value of a parameter: what the runs at it gave.
     Swept,
+    /// A row for each run of a method on a scene: what does not depend on the machine's speed is computed again.
+    Methods,
     /// Contents that only the job itself knows: the crate of the job computes them again.
     Own,
     /// Numbers of the other files as text or figure, the log of a search, the manifest: checked by their hash alone.

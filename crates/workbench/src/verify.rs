@@ -4,6 +4,7 @@
 
 mod files;
 pub mod input;
+pub mod methods;
 pub mod one;
 pub mod report;
 mod several;
@@ -17,6 +18,7 @@ use crate::parts::PARTS;
 use crate::{Error, Observer, certify, resolved, sweep, table2, tune};
 use one::One;
 pub use report::{Check, Report};
+use retune_store::manifest::Manifest;
 use retune_store::{UNFINISHED, manifest};
 use several::Several;
 use std::path::{Path, PathBuf};
@@ -63,11 +65,13 @@ pub fn verify(
 
 /// The kinds of jobs whose results are computed again here.
 static KINDS: [&Kind; 4] = [&tune::KIND, &certify::KIND, &table2::KIND, &sweep::KIND];
+/// Those of the comparison of methods, whose files have names that say little: only where their manifest names them.
+static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
 
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
 fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
-    let known = known(&there, others);
+    let known = known(place, &there, others);
     let plain = |content| matches!(content, Content::Input | Content::Derived);
     if !has(&known, Content::Input) || known.iter().all(|(_, content, _)| plain(*content)) {
         return report.unchecked("no row of these results can be run again by itself");
@@ -81,6 +85,7 @@ fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) 
             Content::Optimum => One::read(place).and_then(|one| one.optimum(name, report)),
             Content::Certificate => One::read(place).and_then(|one| one.certificate(name, report)),
             Content::Designs => Several::read(place).and_then(|all| all.designs(name, most, report)),
+            Content::Methods => methods::methods(place, name, most, report),
             Content::Swept => swept::swept(place, name, most, report),
             Content::Own => again.map_or(Ok(()), |again| again(place, name, most, report)),
         };
@@ -105,9 +110,11 @@ fn look(place: &Path, most: usize, others: &[&Others], report: &mut Report<'_>) 
 type Known<'a> = (&'a str, Content, Option<Again>);
 
 /// The files of a directory that a job makes, in the order of its list.
-fn known<'a>(there: &'a [String], others: &[&Others]) -> Vec<Known<'a>> {
+fn known<'a>(place: &Path, there: &'a [String], others: &[&Others]) -> Vec<Known<'a>> {
     let mut known: Vec<Known> = Vec::new();
-    let ours = KINDS.iter().map(|kind| (*kind, None));
+    let command = Manifest::read(place).and_then(|manifest| manifest.made_by).map(|made| made.command);
+    let compared = COMPARISONS.iter().filter(|kind| command.as_deref() == Some(kind.command));
+    let ours = compared.chain(&KINDS).map(|kind| (*kind, None));
     for (kind, again) in
         ours.chain(others.iter().copied().flatten().map(|(kind, again)| (*kind, Some(*again))))
     {

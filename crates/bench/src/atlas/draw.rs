@@ -2,7 +2,7 @@
 
 use super::{Cell, Verdict, WAYS};
 use crate::panel::Drawn;
-use retune_figures::colour::{Colour, GREEN, ORANGE, SKY, VERMILION};
+use retune_figures::colour::{Colour, GREEN, ORANGE, SKY, VERMILION, YELLOW};
 use retune_figures::{Axis, Chart, Key, Layer, Sheet, Stand, Width, svg, ten_to};
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,9 @@ use std::path::Path;
 const GAP: f64 = 0.4;
 /// Height of a row, pt.
 const ROW: f64 = 11.5;
-const VERDICTS: [Verdict; 4] = [Verdict::Works, Verdict::Inaccurate, Verdict::Says, Verdict::Silent];
+/// All verdicts, the best first.
+pub const VERDICTS: [Verdict; 5] =
+    [Verdict::Works, Verdict::Miscounts, Verdict::Inaccurate, Verdict::Says, Verdict::Silent];
 
 /// A row: group, difficulty, cells.
 pub type Row = (&'static str, &'static str, Vec<Cell>);
@@ -20,6 +22,7 @@ pub type Row = (&'static str, &'static str, Vec<Cell>);
 const fn look(verdict: Verdict) -> (&'static str, Colour, f64) {
     match verdict {
         Verdict::Works => ("✓", GREEN, 0.16),
+        Verdict::Miscounts => ("±", YELLOW, 0.4),
         Verdict::Inaccurate => ("≈", ORANGE, 0.4),
         Verdict::Says => ("!", SKY, 0.4),
         Verdict::Silent => ("✗", VERMILION, 0.85),

@@ -1,15 +1,17 @@
-//! `just accuracy`: every method on every scene at every tolerance, into `results/accuracy/`.
+//! `just accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just accuracy manifest` writes only its
+//! manifest.
 #![allow(clippy::print_stderr)]
 
 use retune_bench::chart::{self, Cost};
 use retune_bench::reading::Measure;
 use retune_bench::record::{Found, Row, csv, errors, parse};
-use retune_bench::reference::Reference;
+use retune_bench::reference::{REFERENCE, Reference};
 use retune_bench::savings::savings;
 use retune_bench::scenes::{Case, cases};
-use retune_bench::{external, own, peers, statistics, text};
+use retune_bench::{external, own, peers, sealed, statistics, text};
 use retune_model::{Coupled, Side};
 use retune_solver::{Contacts, Method};
+use retune_workbench::verify::methods;
 use std::error::Error;
 use std::fs;
 use std::path::Path;
@@ -22,6 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new("results/accuracy");
     fs::create_dir_all(folder)?;
     let cases = cases()?;
+    let seal = || {
+        let plan = methods::plan(REFERENCE, own::MOST_STEPS, std::iter::empty());
+        sealed::seal(folder, &methods::ACCURACY, plan, cases.iter())
+    };
+    if std::env::args().nth(1).as_deref() == Some("manifest") {
+        return seal();
+    }
     fs::write("tests/reference/external/scenes.json", scenes_json(&cases)?)?;
     let references = cases.iter().map(Reference::of).collect::<Result<Vec<_>, _>>()?;
     let table = folder.join("runs.csv");
@@ -55,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         chart::work_precision(&folder.join(format!("{name}.svg")), &cases, &rows, measure, cost)?;
     }
     chart::savings(&folder.join("models.svg"), &savings)?;
-    Ok(())
+    seal()
 }
 
 fn row(

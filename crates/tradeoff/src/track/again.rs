@@ -1,9 +1,10 @@
 //! `track`, computed again: the designs, E1max along k1, the retention ranges.
 
 use super::anew::label;
-use super::curves::ANEW;
-use super::range::{Threshold, range};
-use super::tuned::{CURVES, DESIGNS, Tuning, bare, energy, on_samples, over};
+use super::curves::{ANEW, BANDS};
+use super::force::under;
+use super::range::{Still, Threshold, range};
+use super::tuned::{CURVES, DESIGNS, FORCES, Tuning, bare, energy, on_samples, over, still};
 use retune_model::Design;
 use retune_study::Study;
 use retune_workbench::Error;
@@ -20,7 +21,7 @@ struct Results {
     k1: Vec<f64>,
     designs: Sample,
     /// By the name of a damper, what counts as half of its work; of the ranges alone.
-    thresholds: BTreeMap<String, Threshold>,
+    thresholds: BTreeMap<String, (Threshold, Option<Still>)>,
 }
 
 /// Checks at most `most` rows of a table.
@@ -31,9 +32,10 @@ pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> 
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
     let studies = resolved.studies()?;
-    let threshold = |(damper, study): &(String, Study)| Ok((damper.clone(), Threshold::of(study)?));
+    let threshold =
+        |(damper, study): &(String, Study)| Ok((damper.clone(), (Threshold::of(study)?, Still::of(study)?)));
     let thresholds = match name {
-        DESIGNS | CURVES => BTreeMap::new(),
+        DESIGNS | CURVES | FORCES => BTreeMap::new(),
         _ => studies.iter().map(threshold).collect::<Result<_, Error>>()?,
     };
     let results = Results {
@@ -47,6 +49,7 @@ pub fn again(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> 
     let check = |row: Row| match name {
         DESIGNS => vec![results.design(row)],
         CURVES => vec![results.point(row)],
+        FORCES => results.forced(row),
         _ => results.range(row),
     };
     let checks: Vec<Vec<Option<Check>>> = sample.rows().map(check).collect();
@@ -81,12 +84,18 @@ impl Results {
     /// E1max of a point of a curve.
     fn point(&self, row: Row) -> Option<Check<'_>> {
         let k1 = row.number("k1");
+        let banded = |study: &Study| match row.text("band") {
+            band if band == BANDS[0] => Some(study.clone()),
+            band if band == BANDS[1] => still(study),
+            _ => None,
+        };
         let again: Box<dyn Fn() -> f64 + Sync> = if row.text("tuning") == "none" {
-            let (_, first) = self.studies.first()?;
-            Box::new(move || bare(first, k1).unwrap_or(f64::INFINITY))
+            let study = banded(&self.studies.first()?.1)?;
+            Box::new(move || bare(&study, k1).unwrap_or(f64::INFINITY))
         } else {
-            let (study, at) = (self.study(row)?, self.at(row.text("damper"), row.text("tuning"), k1)?);
-            Box::new(move || energy(study, self.samples, &at, k1).unwrap_or(f64::INFINITY))
+            let at = self.at(row.text("damper"), row.text("tuning"), k1)?;
+            let study = banded(self.study(row)?)?;
+            Box::new(move || energy(&study, self.samples, &at, k1).unwrap_or(f64::INFINITY))
         };
         Some(Check { said: row.number("E1max"), again })
     }
@@ -103,21 +112,39 @@ impl Results {
         self.designs.rows().find(is_it)?.design()
     }
 
-    /// E1max and both ends of the range of a design, where it has one.
+    /// E1max with the nominal design and without a damper under a force.
+    fn forced(&self, row: Row) -> Vec<Option<Check<'_>>> {
+        let both = || {
+            let at = self.at(row.text("damper"), Tuning::Nominal.name(), f64::NAN)?;
+            let study = self.study(row)?;
+            let found = under(study, self.samples, &at, row.text("gaps"), row.number("P"))?;
+            Some(
+                ["E1max", "none"]
+                    .into_iter()
+                    .zip(found)
+                    .map(|(name, again)| Check { said: row.number(name), again: Box::new(move || again) }),
+            )
+        };
+        both().map_or_else(|| vec![None], |checks| checks.map(Some).collect())
+    }
+
+    /// E1max and both ends of the ranges of a design, where it has one.
     fn range(&self, row: Row) -> Vec<Option<Check<'_>>> {
         let check = || {
             let (study, at) = (self.study(row)?, row.design()?);
             let own = study.scene.primary.stiffness.get();
             let e1_max = move || energy(study, self.samples, &at, own).unwrap_or(f64::INFINITY);
             let mut checks = vec![Check { said: row.number("E1max"), again: Box::new(e1_max) }];
-            let threshold = self.thresholds.get(row.text("damper"))?;
+            let (threshold, still) = self.thresholds.get(row.text("damper"))?;
             on_samples(study, self.samples, &at)?;
             let found = range(study, self.samples, &at, threshold);
-            for (name, end) in [("from", found.map(|found| found.from)), ("to", found.map(|found| found.to))]
-            {
-                if !row.text(name).is_empty() || end.is_some() {
-                    let end = end.unwrap_or(f64::INFINITY);
-                    checks.push(Check { said: row.number(name), again: Box::new(move || end) });
+            let kept = still.as_ref().and_then(|of| range(&of.study, self.samples, &at, &of.threshold));
+            for (names, found) in [(["from", "to"], found), (["still_from", "still_to"], kept)] {
+                for (name, end) in names.into_iter().zip([found.map(|of| of.from), found.map(|of| of.to)]) {
+                    if !row.text(name).is_empty() || end.is_some() {
+                        let end = end.unwrap_or(f64::INFINITY);
+                        checks.push(Check { said: row.number(name), again: Box::new(move || end) });
+                    }
                 }
             }
             Some(checks)

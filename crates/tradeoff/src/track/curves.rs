@@ -1,7 +1,9 @@
 //! E1max along k1, with its cliffs: where neighbouring values differ, more stiffnesses are looked at between them, until a jump is narrow.
 
-use super::tuned::{Tuned, Tuning, bare};
+use super::range::Still;
+use super::tuned::{Kept, Tuned, Tuning, bare, energy};
 use rayon::prelude::*;
+use retune_study::Study;
 
 /// Number of equidistant stiffnesses that are looked at first, besides those that were tuned for.
 const ALONG: usize = 61;
@@ -19,12 +21,16 @@ pub struct Curve {
     pub damper: Option<usize>,
     /// How the damper was tuned; none for one that is tuned anew at each stiffness, or where there is no damper.
     pub tuning: Option<Tuning>,
+    /// Whether its band stays where it is at the nominal stiffness, whatever k1 becomes.
+    pub still: bool,
     /// Stiffness, N/m, and E1max, J; NaN where it cannot be run.
     pub points: Vec<(f64, f64)>,
 }
 
 /// The name of the tuning of a curve in the table.
 pub const ANEW: &str = "re-tuned";
+/// The names of a band in the table: that of the study, and one that stays at the nominal k1.
+pub const BANDS: [&str; 2] = ["own", "still"];
 
 impl Curve {
     /// The name of its tuning.
@@ -51,21 +57,33 @@ impl Curve {
     }
 }
 
-/// All curves: without a damper, by the study of the first; then of each damper those that are kept and that which is tuned anew.
-pub fn curves(dampers: &[Tuned]) -> Vec<Curve> {
+/// All curves: without a damper, by the study of the first; then of each damper those that are kept and that which is tuned anew; last those
+/// of the designs that are kept with bands that stay where they are.
+pub fn curves(dampers: &[Tuned], stills: &[Option<Still>]) -> Vec<Curve> {
     let stops: Vec<f64> = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1)).collect();
     let mut all = Vec::new();
-    if let Some(first) = dampers.first() {
-        let value = |k1| bare(&first.study, k1).unwrap_or(f64::NAN);
-        all.push(Curve { damper: None, tuning: None, points: along(&stops, value) });
-    }
+    let stops = &stops;
+    let none = |study: &Study, still| {
+        let points = along(stops, |k1| bare(study, k1).unwrap_or(f64::NAN));
+        Curve { damper: None, tuning: None, still, points }
+    };
+    let kept = |number: usize, study: &Study, still| {
+        let damper = &dampers[number];
+        let curve = move |kept: &Kept| {
+            let value = |k1| energy(study, damper.samples, &kept.at, k1).unwrap_or(f64::NAN);
+            Curve { damper: Some(number), tuning: Some(kept.tuning), still, points: along(stops, value) }
+        };
+        damper.kept.iter().map(curve).collect::<Vec<_>>()
+    };
+    all.extend(dampers.first().map(|first| none(&first.study, false)));
     for (number, damper) in dampers.iter().enumerate() {
-        for kept in &damper.kept {
-            let points = along(&stops, |k1| damper.energy(&kept.at, k1));
-            all.push(Curve { damper: Some(number), tuning: Some(kept.tuning), points });
-        }
+        all.extend(kept(number, &damper.study, false));
         let points = damper.anew.par_iter().map(|(k1, at)| (*k1, damper.energy(at, *k1))).collect();
-        all.push(Curve { damper: Some(number), tuning: None, points });
+        all.push(Curve { damper: Some(number), tuning: None, still: false, points });
+    }
+    all.extend(stills.first().and_then(Option::as_ref).map(|first| none(&first.study, true)));
+    for (number, still) in stills.iter().enumerate() {
+        all.extend(still.iter().flat_map(|still| kept(number, &still.study, true)));
     }
     all
 }
@@ -104,13 +122,14 @@ fn jump(pair: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 /// A row for each point of each curve; what has no value is an empty field.
 pub fn csv(dampers: &[Tuned], curves: &[Curve]) -> String {
-    let mut text = "damper,tuning,k1,E1max\n".to_owned();
+    let mut text = "damper,tuning,band,k1,E1max\n".to_owned();
     for curve in curves {
         let name = curve.damper.and_then(|number| dampers.get(number)).map_or("none", |damper| &damper.name);
         let name = retune_workbench::designs::quoted(name);
         for (k1, value) in &curve.points {
             let value = if value.is_finite() { value.to_string() } else { String::new() };
-            text += &format!("{name},{},{k1},{value}\n", curve.tuning_name());
+            let band = BANDS[usize::from(curve.still)];
+            text += &format!("{name},{},{band},{k1},{value}\n", curve.tuning_name());
         }
     }
     text
@@ -125,7 +144,7 @@ mod tests {
     fn exact_a_cliff_is_enclosed_and_a_slope_is_not() {
         let cliff = 12_345.678;
         let points = along(&[1e4, 2e4], |k1| if k1 < cliff { 1.0 } else { 3.0 + 1e-5 * k1 });
-        let curve = Curve { damper: Some(0), tuning: None, points };
+        let curve = Curve { damper: Some(0), tuning: None, still: false, points };
         let cliffs: Vec<_> = curve.cliffs().collect();
         assert_eq!(cliffs.len(), 1);
         let [(from, low), (to, high)] = cliffs[0];

@@ -1,7 +1,6 @@
 //! The figures of `track`: E1max along k1, the re-tuned designs, and the least E1max against the retention range.
 
-use super::curves::Curve;
-use super::range::Threshold;
+use super::tracked::Tracked;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
 use crate::caption::{made_by, words};
@@ -9,6 +8,8 @@ use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, V
 use retune_figures::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
 };
+use retune_model::Design;
+use retune_study::short;
 
 /// Colours and marks of the dampers.
 const DAMPERS: [(Colour, Shape); 4] =
@@ -16,6 +17,10 @@ const DAMPERS: [(Colour, Shape); 4] =
 const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Short);
 const HALF: Stroke = Stroke::new(GREY, 0.9, Dash::Dots);
 const ANEW: Mark = Mark::new(Shape::Disc, BLUE, 4.0);
+/// A re-tuned design that is above the nominal one.
+const ABOVE: Mark = Mark::new(Shape::Ring, VERMILION, 7.0);
+/// How far above it lies.
+const MORE: f64 = 1e-3;
 
 /// The line of a design that is kept.
 const fn line(tuning: Tuning) -> Stroke {
@@ -26,25 +31,35 @@ const fn line(tuning: Tuning) -> Stroke {
     }
 }
 
-/// E1max against k1: a chart for each damper.
-pub(super) fn retention(dampers: &[Tuned], curves: &[Curve], thresholds: &[Threshold]) -> Drawing {
-    let values = curves.iter().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
+/// E1max against k1: a chart for each damper; with the band of each structure, or with that of the nominal k1.
+pub(super) fn retention(tracked: &Tracked, shown: &[usize], still: bool) -> Drawing {
+    let Tracked { dampers, thresholds, .. } = tracked;
+    let curves = || tracked.curves.iter().filter(move |curve| curve.still == still);
+    let values = curves().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
     let energies = Axis::around("worst E1max, J", Scale::Log, values);
     let none: Vec<(f64, f64)> =
-        curves.iter().filter(|curve| curve.damper.is_none()).flat_map(|curve| curve.points.clone()).collect();
+        curves().filter(|curve| curve.damper.is_none()).flat_map(|curve| curve.points.clone()).collect();
     let k1 = || none.iter().map(|(k1, _)| *k1);
-    let chart = |(number, damper): (usize, &Tuned)| {
+    let mut above: Vec<String> = Vec::new();
+    let mut chart = |&number: &usize| {
+        let damper = &dampers[number];
         let mut layers = vec![Layer::Line { points: none.clone(), stroke: NONE }];
-        if let Some(threshold) = thresholds.get(number) {
+        if let (Some(threshold), false) = (thresholds.get(number), still) {
             layers
                 .push(Layer::Line { points: k1().map(|k1| (k1, threshold.at(k1))).collect(), stroke: HALF });
         }
-        for curve in curves.iter().filter(|curve| curve.damper == Some(number)) {
+        for curve in curves().filter(|curve| curve.damper == Some(number)) {
             let points = curve.points.clone();
             layers.push(match curve.tuning {
                 Some(tuning) => Layer::Line { points, stroke: line(tuning) },
                 None => Layer::Marks { points, mark: ANEW },
             });
+        }
+        let higher = if still { Vec::new() } else { above_nominal(damper) };
+        if !higher.is_empty() {
+            let k1: Vec<String> = higher.iter().map(|(k1, _)| short(*k1)).collect();
+            above.push(format!("{} at {}", damper.name, k1.join(" and ")));
+            layers.push(Layer::Marks { points: higher, mark: ABOVE });
         }
         Chart {
             title: damper.name.clone(),
@@ -54,47 +69,72 @@ pub(super) fn retention(dampers: &[Tuned], curves: &[Curve], thresholds: &[Thres
             height: 170.0,
         }
     };
-    let mut legend = vec![
-        (Key::Line(NONE), "no damper".to_owned()),
-        (Key::Line(HALF), "half of the reduction, in dB, of the best TMD for each k1".to_owned()),
-    ];
+    let charts: Vec<Chart> = shown.iter().map(&mut chart).collect();
+    let mut legend = vec![(Key::Line(NONE), "no damper".to_owned())];
+    if !still {
+        let half = "half of the reduction, in dB, of the best TMD for each k1".to_owned();
+        legend.push((Key::Line(HALF), half));
+    }
     for tuning in Tuning::ALL {
-        if curves.iter().any(|curve| curve.tuning == Some(tuning)) {
+        if curves().any(|curve| curve.tuning == Some(tuning)) {
             legend.push((Key::Line(line(tuning)), tuning.name().to_owned()));
         }
     }
-    legend.push((Key::Mark(ANEW), "re-tuned for each k1".to_owned()));
+    let mut caption = Vec::new();
+    if !still {
+        legend.push((Key::Mark(ANEW), "re-tuned for each k1".to_owned()));
+    }
+    if !above.is_empty() {
+        legend.push((Key::Mark(ABOVE), "re-tuned above nominal".to_owned()));
+        caption.push(format!(
+            "Re-tuned above nominal ({} N/m): the bound on k2 follows k1, so the design for that k1 may not have the spring that the nominal one keeps.",
+            above.join("; ")
+        ));
+    }
+    caption.push(made_by(dampers.first().map(|damper| &damper.study)));
+    let band = if still { "the band of the nominal k1" } else { "each structure's own band" };
     drawing(&Sheet {
         title: "How long a tuning lasts".to_owned(),
         description: format!(
-            "E1max, worst over each structure's own band, against its stiffness k1, a chart for each damper: {}.",
+            "E1max, worst over {band}, against the stiffness k1 of the structure, a chart for each damper: {}.",
             words(&legend)
         ),
-        width: if dampers.len() > 1 { Width::Page } else { Width::Column },
-        charts: dampers.iter().enumerate().map(chart).collect(),
-        columns: dampers.len().min(2),
+        width: if charts.len() > 1 { Width::Page } else { Width::Column },
+        columns: charts.len().min(2),
+        charts,
         stacked: false,
         legend,
-        caption: vec![made_by(dampers.first().map(|damper| &damper.study))],
+        caption,
     })
 }
 
+/// Where tuning anew gives more than the nominal design keeps, as only a bound that follows k1 can make it: k1 and E1max of the re-tuned one.
+fn above_nominal(damper: &Tuned) -> Vec<(f64, f64)> {
+    let Some(nominal) = damper.of(Tuning::Nominal) else { return Vec::new() };
+    let energies = |&(k1, at): &(f64, Design)| (k1, damper.energy(&at, k1), damper.energy(&nominal, k1));
+    let all = damper.anew.iter().map(energies);
+    all.filter(|(_, anew, kept)| *anew > (1.0 + MORE) * kept).map(|(k1, anew, _)| (k1, anew)).collect()
+}
+
 /// k2, c2, D and C of the re-tuned designs against k1.
-pub(super) fn path(dampers: &[Tuned]) -> Drawing {
+pub(super) fn path(tracked: &Tracked, shown: &[usize]) -> Drawing {
+    let dampers: Vec<(usize, &Tuned)> =
+        shown.iter().map(|&number| (number, &tracked.dampers[number])).collect();
     const LABELS: [&str; 4] = ["k2, N/m", "c2, N·s/m", "D, m", "C, m"];
     let chart = |which: usize| {
         let value = |damper: &Tuned| -> Vec<(f64, f64)> {
             damper.anew.iter().map(|(k1, at)| (*k1, at.values()[which])).collect()
         };
-        let top = dampers.iter().flat_map(value).map(|(_, value)| value).fold(0.0, f64::max);
-        let layers = dampers.iter().enumerate().flat_map(|(i, damper)| {
-            let (stroke, mark) = looks(i);
+        let top =
+            dampers.iter().flat_map(|(_, damper)| value(damper)).map(|(_, value)| value).fold(0.0, f64::max);
+        let layers = dampers.iter().flat_map(|(i, damper)| {
+            let (stroke, mark) = looks(*i);
             let points = value(damper);
             // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
             let line = (which < 2).then(|| Layer::Line { points: points.clone(), stroke });
             line.into_iter().chain([Layer::Marks { points, mark }])
         });
-        let k1 = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1));
+        let k1 = dampers.iter().flat_map(|(_, damper)| damper.anew.iter().map(|(k1, _)| *k1));
         Chart {
             title: String::new(),
             x: Axis::linear("k1, N/m", ends(k1)),
@@ -103,8 +143,8 @@ pub(super) fn path(dampers: &[Tuned]) -> Drawing {
             height: 120.0,
         }
     };
-    let key = |(i, damper): (usize, &Tuned)| {
-        let (stroke, mark) = looks(i);
+    let key = |(i, damper): &(usize, &Tuned)| {
+        let (stroke, mark) = looks(*i);
         (Key::Marked(stroke, mark), damper.name.clone())
     };
     drawing(&Sheet {
@@ -115,25 +155,32 @@ pub(super) fn path(dampers: &[Tuned]) -> Drawing {
         charts: (0..4).map(chart).collect(),
         columns: 2,
         stacked: false,
-        legend: dampers.iter().enumerate().map(key).collect(),
-        caption: vec![made_by(dampers.first().map(|damper| &damper.study))],
+        legend: dampers.iter().map(key).collect(),
+        caption: vec![made_by(tracked.dampers.first().map(|damper| &damper.study))],
     })
 }
 
 /// The least E1max at the nominal stiffness against the width of the retention range: the front of each damper as a line.
-pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) -> Drawing {
+pub(super) fn range(tracked: &Tracked, shown: &[usize]) -> Drawing {
+    let dampers = &tracked.dampers;
+    let points: Vec<&Point> = tracked.points.iter().filter(|point| shown.contains(&point.damper)).collect();
+    let own = |(tuning, point): &&(&'static str, Point)| {
+        let is_paper = *tuning == Tuning::Paper.name();
+        shown.contains(&point.damper) && (!is_paper || tracked.is_new(point.damper, Tuning::Paper))
+    };
+    let kept: Vec<&(&'static str, Point)> = tracked.kept.iter().filter(own).collect();
     const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
     let at = |point: &Point| (point.factor(), point.e1_max);
     let mut layers = Vec::new();
     let mut legend = Vec::new();
-    let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(points, damper)).collect();
+    let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(&tracked.points, damper)).collect();
     let dominated =
         points.iter().filter(|point| !fronts[point.damper].iter().any(|other| other.at == point.at));
-    let dominated: Vec<(f64, f64)> = dominated.map(at).collect();
+    let dominated: Vec<(f64, f64)> = dominated.map(|point| at(point)).collect();
     let any_dominated = !dominated.is_empty();
     layers.push(Layer::Marks { points: dominated, mark: DOMINATED });
     for (i, (damper, front)) in dampers.iter().zip(&fronts).enumerate() {
-        if front.is_empty() {
+        if front.is_empty() || !shown.contains(&i) {
             continue;
         }
         let (stroke, mark) = looks(i);
@@ -166,9 +213,14 @@ pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &
     if any_dominated {
         legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
     }
-    let all =
-        || points.iter().chain(kept.iter().map(|(_, point)| point)).filter(|point| point.range.is_some());
-    let right = all().map(Point::factor).fold(0.0, f64::max);
+    let all = || {
+        points
+            .iter()
+            .copied()
+            .chain(kept.iter().map(|(_, point)| point))
+            .filter(|point| point.range.is_some())
+    };
+    let right = all().map(|point| point.factor()).fold(0.0, f64::max);
     let chart = Chart {
         title: String::new(),
         x: Axis::linear(
@@ -196,7 +248,7 @@ pub(super) fn range(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &
 }
 
 /// The line and the mark of a damper.
-fn looks(damper: usize) -> (Stroke, Mark) {
+pub(super) fn looks(damper: usize) -> (Stroke, Mark) {
     let (colour, shape) = DAMPERS[damper % DAMPERS.len()];
     (Stroke::solid(colour), Mark::new(shape, colour, 4.0))
 }

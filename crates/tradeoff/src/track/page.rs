@@ -1,13 +1,17 @@
-//! The page of `track`, and its answer in words. Every number on it is one of the tables beside it.
+//! The page of `track`, which begins with its answer. Every number on it is one of the tables beside it.
 
-use super::curves::Curve;
 use super::draw;
+use super::force::{Forced, GAPS, HALF};
+use super::forces;
+use super::opening::{answer, joule, shown};
+use super::range::Range;
 use super::tracked::Tracked;
 use super::trade::{Point, front};
-use super::tuned::{CURVES, DESIGNS, Tuned, Tuning};
+use super::tuned::{CURVES, DESIGNS, FORCES, Tuned, Tuning};
 use retune_store::Directory;
 use retune_study::{SpringBounds, design_cells, design_words, rounded, short};
 use retune_workbench::Error;
+use retune_workbench::designs::Row;
 use retune_workbench::document::{Block, Document};
 
 /// Writes the page in both forms, and its figures.
@@ -15,63 +19,76 @@ use retune_workbench::document::{Block, Document};
 /// # Errors
 /// A file cannot be written.
 pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Error> {
-    let Tracked { dampers, curves, thresholds, kept, points, .. } = tracked;
-    let retention = draw::retention(dampers, curves, thresholds);
-    let (path, range) = (draw::path(dampers), draw::range(dampers, kept, points));
-    for (name, drawing) in [("retention.svg", &retention), ("path.svg", &path), ("range.svg", &range)] {
+    let shown = shown(tracked);
+    let retention = draw::retention(tracked, &shown, false);
+    let still =
+        tracked.curves.iter().any(|curve| curve.still).then(|| draw::retention(tracked, &shown, true));
+    let (path, range) = (draw::path(tracked, &shown), draw::range(tracked, &shown));
+    let force = forces::draw(tracked, &shown);
+    let all =
+        [("range.svg", &range), ("retention.svg", &retention), ("path.svg", &path), ("force.svg", &force)];
+    for (name, drawing) in all.into_iter().chain(still.iter().map(|still| ("still.svg", still))) {
         directory.write(name, &drawing.wide)?;
     }
     let figure = |name, drawing, words: &str| Block::Figure(name, drawing, words.to_owned());
+    let mut energy = vec![figure(
+        "retention.svg",
+        retention,
+        "E1max, worst over each structure's own band, against its stiffness",
+    )];
+    energy.extend([worst(tracked, &shown), cliffs(tracked, &shown)]);
+    let words = "The same with the band of frequencies where it is at the nominal k1";
+    energy.extend(still.map(|still| figure("still.svg", still, words)));
     let sections = vec![
-        (
-            "energy",
-            "E1max along k1",
-            vec![
-                figure(
-                    "retention.svg",
-                    retention,
-                    "E1max, worst over each structure's own band, against its stiffness",
-                ),
-                worst(tracked),
-                cliffs(tracked),
-            ],
-        ),
         (
             "range",
             "Retention range",
             vec![
-                Block::Words(RULE.to_owned()),
-                ranges(tracked),
                 figure("range.svg", range, "The least E1max at the nominal k1 against the retention range"),
-                Block::List(
-                    dampers.iter().enumerate().map(|(i, damper)| traded(tracked, i, damper)).collect(),
-                ),
+                Block::Words(RULE.to_owned()),
+                ranges(tracked, &shown),
+                Block::List(shown.iter().map(|&i| traded(tracked, i, &tracked.dampers[i])).collect()),
             ],
         ),
         (
+            "force",
+            "A smaller force",
+            vec![
+                figure(
+                    "force.svg",
+                    force,
+                    "E1max of the nominal designs as a share of that without a damper",
+                ),
+                forces(tracked, &shown),
+            ],
+        ),
+        ("energy", "E1max along k1", energy),
+        (
             "designs",
             "Designs",
-            vec![designs(tracked), figure("path.svg", path, "The re-tuned designs against k1")],
+            vec![designs(tracked, &shown), figure("path.svg", path, "The re-tuned designs against k1")],
         ),
         (
             "data",
             "Data",
             vec![Block::Files(
-                [DESIGNS, CURVES, "range.csv", "resolved.json", "manifest.json"].map(str::to_owned).to_vec(),
+                [DESIGNS, CURVES, "range.csv", FORCES, "resolved.json", "manifest.json"]
+                    .map(str::to_owned)
+                    .to_vec(),
             )],
         ),
     ];
     let document = Document {
         title: "How long a tuning lasts".to_owned(),
         command: "retune track",
-        opening: vec![Block::Words(asked(tracked)), Block::List(answer(tracked))],
+        opening: vec![Block::List(answer(tracked)), Block::Words(asked(tracked))],
         sections,
     };
     directory.write("README.md", &document.markdown())?;
     Ok(directory.write("report.html", &document.html())?)
 }
 
-const RULE: &str = "A design does its work at a stiffness k1 if its reduction, 10 lg(E1max without damper / E1max), is at least half of that of the \
+const RULE: &str = "What keeps its work means: a design does its work at a stiffness k1 if its reduction, 10 lg(E1max without damper / E1max), is at least half of that of the \
     best TMD of the same mass for that k1, with k2 and c2 free. The retention range is the interval about the nominal k1 in which it does. It is \
     looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. It is counted by the factor by which k1 may \
     rise and fall, the smaller of its two sides.";
@@ -93,46 +110,12 @@ fn asked(Tracked { dampers, bounds, .. }: &Tracked) -> String {
     )
 }
 
-/// The answer: one line for each damper.
-pub(super) fn answer(tracked: &Tracked) -> Vec<String> {
-    tracked.dampers.iter().enumerate().map(|(i, damper)| one(tracked, i, damper)).collect()
-}
-
-fn one(tracked: &Tracked, number: usize, damper: &Tuned) -> String {
-    let nominal = damper.nominal();
-    let worst = |tuning: Option<Tuning>| {
-        let own = |curve: &&Curve| curve.damper == Some(number) && curve.tuning == tuning;
-        tracked.curves.iter().find(own).and_then(Curve::worst)
-    };
-    let mut words = format!("{}: ", damper.name);
-    if let (Some((k1, kept)), Some(at)) = (worst(Some(Tuning::Nominal)), damper.of(Tuning::Nominal)) {
-        words += &format!(
-            "tuned for k1 = {} N/m it has {} J there and at worst {} J, at {} N/m",
-            short(nominal),
-            joule(damper.energy(&at, nominal)),
-            joule(kept),
-            rounded(k1, 4)
-        );
-    }
-    if let (Some((k1, robust)), Some(at)) = (worst(Some(Tuning::Robust)), damper.of(Tuning::Robust)) {
-        words += &format!(
-            "; k1-robust it has {} J there and at worst {} J, at {} N/m",
-            joule(damper.energy(&at, nominal)),
-            joule(robust),
-            rounded(k1, 4)
-        );
-    }
-    if let Some((_, anew)) = worst(None) {
-        words += &format!("; re-tuned for each k1 at most {} J", joule(anew));
-    }
-    words + "."
-}
-
 /// The values at the stiffnesses that were tuned for.
-fn worst(Tracked { dampers, .. }: &Tracked) -> Block {
-    let mut rows = Vec::new();
-    for damper in dampers {
-        for kept in &damper.kept {
+fn worst(tracked: &Tracked, shown: &[usize]) -> Block {
+    let (dampers, mut rows) = (&tracked.dampers, Vec::new());
+    for &number in shown {
+        let damper = &dampers[number];
+        for kept in damper.kept.iter().filter(|kept| tracked.is_new(number, kept.tuning)) {
             let mut row = vec![damper.name.clone(), kept.tuning.name().to_owned()];
             row.extend(damper.anew.iter().map(|(k1, _)| joule(damper.energy(&kept.at, *k1))));
             rows.push(row);
@@ -149,9 +132,9 @@ fn worst(Tracked { dampers, .. }: &Tracked) -> Block {
 }
 
 /// The cliffs of the curves.
-fn cliffs(Tracked { dampers, curves, .. }: &Tracked) -> Block {
+fn cliffs(Tracked { dampers, curves, .. }: &Tracked, shown: &[usize]) -> Block {
     let mut lines = Vec::new();
-    for curve in curves {
+    for curve in curves.iter().filter(|curve| curve.damper.is_some_and(|damper| shown.contains(&damper))) {
         let (Some(number), Some(tuning)) = (curve.damper, curve.tuning) else { continue };
         let found: Vec<String> = curve
             .cliffs()
@@ -167,9 +150,10 @@ fn cliffs(Tracked { dampers, curves, .. }: &Tracked) -> Block {
             .collect();
         if !found.is_empty() {
             lines.push(format!(
-                "Cliffs of the {}, {}: {}.",
+                "Cliffs of the {}, {}{}: {}.",
                 dampers[number].name,
                 tuning.name(),
+                if curve.still { ", in the band of the nominal k1" } else { "" },
                 found.join("; ")
             ));
         }
@@ -177,27 +161,59 @@ fn cliffs(Tracked { dampers, curves, .. }: &Tracked) -> Block {
     if lines.is_empty() { Block::Words("No cliffs.".to_owned()) } else { Block::List(lines) }
 }
 
-/// The range of each design that is kept.
-fn ranges(Tracked { dampers, kept, .. }: &Tracked) -> Block {
-    let row = |(tuning, point): &(&'static str, Point)| {
-        let [from, to, width] = match point.range {
-            None => ["none", "", ""].map(str::to_owned),
-            Some(range) => {
-                let [low, high] = range.open.map(|open| if open { "> " } else { "" });
-                [
-                    format!("{low}{}", rounded(range.from, 4)),
-                    format!("{high}{}", rounded(range.to, 4)),
-                    rounded(range.factor(), 3),
-                ]
-            }
-        };
-        vec![dampers[point.damper].name.clone(), (*tuning).to_owned(), joule(point.e1_max), from, to, width]
+/// The ranges of each design that is kept.
+fn ranges(tracked: &Tracked, shown: &[usize]) -> Block {
+    let Tracked { dampers, kept, .. } = tracked;
+    let cells = |range: Option<Range>| match range {
+        None => ["none", "", ""].map(str::to_owned),
+        Some(range) => {
+            let [low, high] = range.open.map(|open| if open { "> " } else { "" });
+            let [from, to] =
+                [(low, range.from), (high, range.to)].map(|(open, end)| format!("{open}{}", rounded(end, 4)));
+            [from, to, rounded(range.factor(), 3)]
+        }
     };
-    let head = ["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "factor"];
+    let still = kept.iter().any(|(_, point)| point.still.is_some());
+    let row = |(tuning, point): &(&'static str, Point)| {
+        let mut row = vec![dampers[point.damper].name.clone(), (*tuning).to_owned(), joule(point.e1_max)];
+        row.extend(cells(point.range));
+        row.extend(still.then(|| cells(point.still)).into_iter().flatten());
+        row
+    };
+    let own = |(tuning, point): &&(&'static str, Point)| {
+        let is_paper = *tuning == Tuning::Paper.name();
+        shown.contains(&point.damper) && (!is_paper || tracked.is_new(point.damper, Tuning::Paper))
+    };
+    let mut head = vec!["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "factor"];
+    if still {
+        head.extend(["band kept: from, N/m", "to, N/m", "factor"]);
+    }
     Block::Table(
-        "The retention range of the designs that are kept.".to_owned(),
-        head.map(str::to_owned).to_vec(),
-        kept.iter().map(row).collect(),
+        "The retention range of the designs that are kept; on the right with the band of frequencies where it is at the nominal k1."
+            .to_owned(),
+        head.into_iter().map(str::to_owned).collect(),
+        kept.iter().filter(own).map(row).collect(),
+    )
+}
+
+/// The shares of the nominal designs under forces that halve.
+fn forces(Tracked { dampers, forced, .. }: &Tracked, shown: &[usize]) -> Block {
+    let row = |of: &Forced| {
+        let steps = (0..of.points.len()).step_by(HALF).map(|step| rounded(of.share(step), 3));
+        [dampers[of.damper].name.clone(), GAPS[usize::from(of.proportional)].to_owned()]
+            .into_iter()
+            .chain(steps)
+            .collect()
+    };
+    let mut head = vec!["damper".to_owned(), "D and C".to_owned()];
+    if let Some(first) = forced.first() {
+        head.extend(first.points.iter().step_by(HALF).map(|(force, _)| format!("{} N", rounded(*force, 4))));
+    }
+    Block::Table(
+        "E1max of the nominal designs at the nominal k1 as a share of that without a damper, by the force."
+            .to_owned(),
+        head,
+        forced.iter().filter(|of| shown.contains(&of.damper)).map(row).collect(),
     )
 }
 
@@ -225,8 +241,13 @@ fn traded(Tracked { points, .. }: &Tracked, number: usize, damper: &Tuned) -> St
 }
 
 /// All designs.
-fn designs(Tracked { table, .. }: &Tracked) -> Block {
-    let rows = table.rows.iter().map(|row| {
+fn designs(tracked: &Tracked, shown: &[usize]) -> Block {
+    let own = |row: &&Row| {
+        let is_it = |damper: &&usize| tracked.dampers[**damper].name == row.damper;
+        let is_paper = row.label == Tuning::Paper.name();
+        shown.iter().find(is_it).is_some_and(|damper| !is_paper || tracked.is_new(*damper, Tuning::Paper))
+    };
+    let rows = tracked.table.rows.iter().filter(own).map(|row| {
         let [k2, c2, d, c] = design_cells(&row.found.design, 4);
         vec![row.damper.clone(), row.label.clone(), k2, c2, d, c, joule(row.e1_max), row.verdict.to_owned()]
     });
@@ -237,8 +258,4 @@ fn designs(Tracked { table, .. }: &Tracked) -> Block {
         head.map(str::to_owned).to_vec(),
         rows.collect(),
     )
-}
-
-fn joule(value: f64) -> String {
-    if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }

@@ -4,7 +4,7 @@
 //! design does its work at a k1 if its reduction is at least half of that of the best TMD of the same mass for that k1, with k2 and c2
 //! free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
 
-use super::tuned::on_samples;
+use super::tuned::{on_samples, still};
 use rayon::prelude::*;
 use retune_model::{Bare, Coupled, Damper, Design, Scene, Variable, den_hartog};
 use retune_optim::{Bounds, Failures, Options, Scaling, minimize};
@@ -117,6 +117,26 @@ impl Threshold {
     }
 }
 
+/// A study whose band stays where the natural frequency of its own structure puts it, whatever k1 becomes, and what counts as half of the
+/// work then.
+#[derive(Debug)]
+pub struct Still {
+    /// The study.
+    pub study: Study,
+    /// The least reduction that counts.
+    pub threshold: Threshold,
+}
+
+impl Still {
+    /// Of a study; none if its band does not move with k1.
+    ///
+    /// # Errors
+    /// As [`Threshold::of`].
+    pub fn of(study: &Study) -> Result<Option<Self>, Error> {
+        still(study).map(|study| Ok(Self { threshold: Threshold::of(&study)?, study })).transpose()
+    }
+}
+
 /// The range of a design by the objective of a study, on so many samples of its band.
 pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Threshold) -> Option<Range> {
     let study = on_samples(study, samples, at)?;
@@ -137,16 +157,21 @@ fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
     let band = study.objective().omega.map(|band| band.of(&scene.primary));
     let band = band.map_or([omega; 2], |band| [band.from, band.to]);
     let none = Bare::new(&scene.primary, &scene.forcing).steady_e1_max(band).value;
-    Ok((none * best_tmd(&scene, damper, band)?).sqrt())
+    Ok((none * best_tmd(&scene, damper, band)?.1).sqrt())
 }
 
-/// The least steady E1max (J) over a band (rad/s) of a TMD with the mass of a damper, k2 and c2 free.
-fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<f64, Error> {
-    let steady = |x: &[f64], _cutoff: f64| {
+/// The TMD with the mass of a damper, k2 and c2 free, that has the least steady E1max over a band (rad/s), and this, J.
+///
+/// # Errors
+/// Nothing can be found.
+pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
+    let tuned = |x: &[f64]| {
         let mut tmd = damper;
-        let set = Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1]));
-        let worst = || Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
-        set.map_or(f64::INFINITY, |()| worst())
+        Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1])).map(|()| tmd)
+    };
+    let steady = |x: &[f64], _cutoff: f64| {
+        let worst = |tmd| Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
+        tuned(x).map_or(f64::INFINITY, worst)
     };
     let start = den_hartog(&scene.primary, damper.mass.get());
     let not_negative = Bounds { lower: Some(0.0), upper: None };
@@ -158,7 +183,8 @@ fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<f64, Error>
         ..Options::default()
     };
     let refuse = |source| Error::Search { source, failures: Failures::default() };
-    Ok(minimize(steady, &start, options, |_| ControlFlow::Continue(())).map_err(refuse)?.value)
+    let found = minimize(steady, &start, options, |_| ControlFlow::Continue(())).map_err(refuse)?;
+    Ok((tuned(&found.x).unwrap_or(damper), found.value))
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The results of `track`.
 
 use super::curves::Curve;
+use super::force::Forced;
 use super::range::Threshold;
 use super::trade::Point;
-use super::tuned::Tuned;
+use super::tuned::{Tuned, Tuning};
 use retune_study::SpringBounds;
 use retune_workbench::designs::Designs;
 
@@ -18,10 +19,20 @@ pub struct Tracked {
     pub curves: Vec<Curve>,
     /// For each damper, what counts as half of the work.
     pub thresholds: Vec<Threshold>,
+    /// E1max of the nominal designs under smaller forces.
+    pub forced: Vec<Forced>,
     /// The designs that are kept, by the name of their tuning, with their ranges.
     pub kept: Vec<(&'static str, Point)>,
     /// The designs between the nominal ones and those with the widest ranges.
     pub points: Vec<Point>,
     /// All designs as a table.
     pub table: Designs,
+}
+
+impl Tracked {
+    /// Whether the design of a tuning is not that of an earlier damper: the paper's may stand in several studies.
+    pub(super) fn is_new(&self, damper: usize, tuning: Tuning) -> bool {
+        let at = self.dampers[damper].of(tuning);
+        tuning != Tuning::Paper || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
+    }
 }

@@ -4,7 +4,7 @@
 //! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design that was seen). The
 //! front is what no design that was seen dominates, looked at again on the common samples, at the tolerance of the study.
 
-use super::range::{Care, Range, Threshold, range};
+use super::range::{Care, Range, Still, Threshold, range};
 use super::tuned::{Tuned, Tuning};
 use retune_model::Design;
 use retune_optim::{Global, PeakEnergy, explore, minimize};
@@ -50,13 +50,22 @@ pub struct Point {
     pub e1_max: f64,
     /// Its retention range.
     pub range: Option<Range>,
+    /// The same with the band where it is at the nominal k1, if the band of its study moves.
+    pub still: Option<Range>,
 }
 
 impl Point {
     /// A design of a damper, looked at on the common samples.
-    pub fn new(damper: usize, tuned: &Tuned, at: Design, threshold: &Threshold) -> Self {
+    pub fn new(
+        damper: usize,
+        tuned: &Tuned,
+        at: Design,
+        threshold: &Threshold,
+        still: Option<&Still>,
+    ) -> Self {
         let e1_max = tuned.energy(&at, tuned.nominal());
-        Self { damper, at, e1_max, range: range(&tuned.study, tuned.samples, &at, threshold) }
+        let still = still.and_then(|still| range(&still.study, tuned.samples, &at, &still.threshold));
+        Self { damper, at, e1_max, range: range(&tuned.study, tuned.samples, &at, threshold), still }
     }
 
     /// The factor by which k1 may rise and fall; 1 without a range.
@@ -90,7 +99,7 @@ pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
 pub fn trade(
     number: usize,
     tuned: &Tuned,
-    threshold: &Threshold,
+    (threshold, still): (&Threshold, Option<&Still>),
     searches: &Searches,
     watch: &dyn Observer,
 ) -> Result<Vec<Point>, Error> {
@@ -145,7 +154,7 @@ pub fn trade(
         tuned.name,
         designs.len()
     ))?;
-    Ok(designs.into_iter().map(|at| Point::new(number, tuned, at, threshold)).collect())
+    Ok(designs.into_iter().map(|at| Point::new(number, tuned, at, threshold, still)).collect())
 }
 
 /// What was seen of a damper's designs: E1max at the nominal stiffness, J, and the factor of its range less 1.
@@ -228,13 +237,20 @@ impl Seen<'_> {
 
 /// A row for each design: those that are kept, with their tuning, and those of the front.
 pub fn csv(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) -> String {
-    let mut text = "damper,tuning,k2,c2,D,C,E1max,from,to\n".to_owned();
+    let mut text = "damper,tuning,k2,c2,D,C,E1max,from,to,still_from,still_to\n".to_owned();
     let named = kept.iter().map(|(tuning, point)| (*tuning, point));
     for (tuning, point) in named.chain(points.iter().map(|point| (FRONT, point))) {
         let name = retune_workbench::designs::quoted(&dampers[point.damper].name);
         let values = retune_study::fields(&point.at.values());
-        let ends = point.range.map_or(",".to_owned(), |range| format!("{},{}", range.from, range.to));
-        text += &format!("{name},{tuning},{values},{},{ends}\n", point.e1_max);
+        let ends = |range: Option<Range>| {
+            range.map_or(",".to_owned(), |range| format!("{},{}", range.from, range.to))
+        };
+        text += &format!(
+            "{name},{tuning},{values},{},{},{}\n",
+            point.e1_max,
+            ends(point.range),
+            ends(point.still)
+        );
     }
     text
 }

@@ -9,6 +9,8 @@ use retune_workbench::look::finer;
 pub(super) const DESIGNS: &str = "retune.csv";
 /// The table of the curves.
 pub(super) const CURVES: &str = "retention.csv";
+/// The table of smaller forces.
+pub(super) const FORCES: &str = "force.csv";
 
 /// How a damper came to its design. It keeps this design, whatever k1 becomes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,6 +81,23 @@ impl Tuned {
     pub fn energy(&self, at: &Design, k1: f64) -> f64 {
         energy(&self.study, self.samples, at, k1).unwrap_or(f64::NAN)
     }
+}
+
+/// A study with its band where the natural frequency of its own structure puts it; none if it does not move with k1.
+pub fn still(study: &Study) -> Option<Study> {
+    let mut study = study.clone();
+    let (primary, mut moves) = (study.scene.primary, false);
+    if let Some(optimize) = &mut study.optimize {
+        optimize.objective.for_each_term(&mut |term| {
+            if let Some(band) = term.omega.as_mut().filter(|band| band.relative) {
+                let ends = band.of(&primary);
+                if let (Ok(from), Ok(to)) = (Positive::new(ends.from), Positive::new(ends.to)) {
+                    (band.from, band.to, band.relative, moves) = (from, to, false, true);
+                }
+            }
+        });
+    }
+    moves.then_some(study)
 }
 
 /// E1max by the objective of a study for a design at a stiffness (N/m), J, on so many samples; none where it cannot be run.

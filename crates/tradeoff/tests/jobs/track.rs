@@ -59,16 +59,21 @@ fn contract_retention_begins_at_the_tuned_design() {
     let words = "worst over omega = 1.2 to 1.3 times √(k1/m1), and from the design of the k1 beside it";
     assert!(record.all().contains(words), "{}", record.all());
     let rows = desk.rows("out/retention.csv");
-    assert_eq!(rows[0].join(","), "damper,tuning,k1,E1max");
-    let at = |tuning: &str, k1: &str| -> f64 {
-        let row = rows.iter().find(|row| row[1] == tuning && row[2] == k1).expect("a row");
-        row[3].parse().expect("a number")
+    assert_eq!(rows[0].join(","), "damper,tuning,band,k1,E1max");
+    let at = |tuning: &str, band: &str, k1: &str| -> f64 {
+        let is_it = |row: &&Vec<String>| row[1] == tuning && row[2] == band && row[3] == k1;
+        rows.iter().find(is_it).expect("a row")[4].parse().expect("a number")
     };
-    assert_eq!(at("nominal", "39500"), at("re-tuned", "39500"));
-    let tuned = rows[1..].iter().filter(|row| row[1] == "re-tuned").map(|row| &row[2]);
+    assert_eq!(at("nominal", "own", "39500"), at("re-tuned", "own", "39500"));
+    let tuned = rows[1..].iter().filter(|row| row[1] == "re-tuned").map(|row| &row[3]);
     assert_eq!(tuned.collect::<Vec<_>>(), ["30000", "39500", "50000"]);
     for tuning in ["none", "paper", "k1-robust"] {
         assert!(rows[1..].iter().filter(|row| row[1] == tuning).count() >= 61, "{tuning}");
+    }
+    // A band that stays is the same band at the nominal k1 alone, but for the rounding of its ends.
+    for tuning in ["none", "nominal"] {
+        let ratio = |k1: &str| at(tuning, "still", k1) / at(tuning, "own", k1) - 1.0;
+        assert!(ratio("39500").abs() < 1e-6 && ratio("30000").abs() > 1e-3, "{tuning} {}", ratio("39500"));
     }
     // The neighbour's design, its spring in proportion, is one of the starts.
     let resolved = desk.read_json("out/k1-50000/one/study.json");
@@ -79,8 +84,20 @@ fn contract_retention_begins_at_the_tuned_design() {
     assert_eq!(resolved["optimize"]["starts"][0]["D"], home["D"]);
     let page = desk.read("out/README.md");
     assert!(page.contains("on 5 frequencies") && page.contains("(range.svg)"), "{page}");
+    let place = |words: &str| page.find(words).expect("it stands there");
+    assert!(
+        place("(range.svg)") < place("(retention.svg)")
+            && place("Tuned for the worst") < place("Each design")
+    );
+    // The force of the study comes first, and with it the design's own E1max.
+    let forces = desk.rows("out/force.csv");
+    let home: f64 = forces[1][3].parse().expect("a number");
+    assert_eq!(
+        (forces[1][1].as_str(), forces[1][2].as_str(), home),
+        ("kept", "800", at("nominal", "own", "39500"))
+    );
     assert!(desk.read("out/report.html").contains("</html>"));
-    for figure in ["retention.svg", "path.svg", "range.svg"] {
+    for figure in ["retention.svg", "path.svg", "range.svg", "still.svg", "force.svg"] {
         assert!(desk.read(&format!("out/{figure}")).contains("</svg>"), "{figure}");
     }
 }
@@ -133,6 +150,10 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
         count += 1;
     }
     assert!(count > 10, "{count}");
+    // A linear damper leaves the same share under any force; at home the widest range stands first.
+    assert!(tracked.forced.len() == 1 && tracked.forced[0].is_constant(), "{:?}", tracked.forced);
+    let page = desk.read("out/README.md");
+    assert!(page.starts_with("# How long a tuning lasts\n\n- At equal performance at home"), "{page}");
     let front: Vec<&Point> = tracked
         .points
         .iter()

@@ -13,7 +13,12 @@ use retune_workbench::Silent;
 fn contract_results_are_verified_and_a_changed_digit_is_found() {
     let desk = desk();
     good(track(&request(&desk, "table2.json", "retune"), &[Setting::new("k1", 3e4)], &Silent));
-    a_changed_digit_is_found(&desk, "retune", OTHERS, &["retune.csv", "retention.csv", "range.csv"]);
+    a_changed_digit_is_found(
+        &desk,
+        "retune",
+        OTHERS,
+        &["retune.csv", "retention.csv", "range.csv", "force.csv"],
+    );
     good(pareto(&request(&desk, "fronts.json", "fronts"), &Silent));
     a_changed_digit_is_found(&desk, "fronts", OTHERS, &["k2.csv", "stroke.csv", "front.csv"]);
 }

@@ -1,0 +1,165 @@
+//! The runs of methods on scenes, which the comparison of methods leaves (`crates/bench`), computed again: of each row what does not depend on
+//! the machine's speed. The plan beside them holds the tolerance of the reference, the bound on steps, and the settings behind names.
+
+use super::report::{Check, Report};
+use super::table::{Row, Sample};
+use crate::Error;
+use crate::artefact::{Content, Kind, artefact};
+use crate::resolved::{Resolved, SEVERAL};
+use rayon::prelude::*;
+use retune_model::Scene;
+use retune_solver::{Contacts, Method, Response, Settings, Window, simulate, touch_downs};
+use retune_study::Study;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The files of the comparison of speed and accuracy.
+pub static ACCURACY: Kind = Kind {
+    command: "accuracy",
+    answer: "runs.csv",
+    artefacts: &[
+        artefact(SEVERAL, Content::Input),
+        artefact("runs.csv", Content::Methods),
+        artefact("*.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+    ],
+};
+
+/// The files of the atlas of failures.
+pub static STABILITY: Kind = Kind {
+    command: "stability",
+    answer: "atlas.csv",
+    artefacts: &[
+        artefact(SEVERAL, Content::Input),
+        artefact("atlas.csv", Content::Methods),
+        artefact("*.csv", Content::Derived),
+        artefact("*.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+    ],
+};
+
+/// Settings of a method at a tolerance, or at a step (s).
+pub fn settings(method: Method, contacts: Contacts, setting: f64, max_steps: u64) -> Settings {
+    let shared = Settings { method, contacts, max_steps, ..Settings::default() };
+    if method.has_fixed_step() {
+        Settings { step: Some(setting), ..shared }
+    } else {
+        Settings { rtol: setting, atol: setting * 1e-3, ..shared }
+    }
+}
+
+/// Relative errors of E1max and of the final state (positions weighed by ω, rad/s) against a reference.
+pub fn errors([e1_max, e1_reference]: [f64; 2], states: [[f64; 4]; 2], omega: f64) -> [f64; 2] {
+    let [a, b] = states.map(|y| [y[0] * omega, y[1], y[2] * omega, y[3]]);
+    let norm = |v: [f64; 4]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let state = norm(std::array::from_fn(|i| a[i] - b[i])) / norm(b);
+    [(e1_max / e1_reference - 1.0).abs(), state]
+}
+
+/// Evaluations of a run; of the hybrid, each step counts as one.
+pub fn evaluations(method: Method, response: &Response) -> u64 {
+    response.work.evaluations + if method == Method::Hybrid { response.work.steps } else { 0 }
+}
+
+/// The plan of a comparison: `ways` are names of columns of the table with method, contacts and setting.
+pub fn plan<'a>(
+    reference_rtol: f64,
+    max_steps: u64,
+    ways: impl Iterator<Item = (&'a str, Method, Contacts, f64)>,
+) -> Value {
+    let ways: serde_json::Map<String, Value> = ways
+        .map(|(name, method, contacts, setting)| {
+            (name.to_owned(), json!({ "method": method, "contacts": contacts, "setting": setting }))
+        })
+        .collect();
+    json!({ "reference_rtol": reference_rtol, "max_steps": max_steps, "ways": ways })
+}
+
+/// Checks at most `most` rows of Retune's own runs.
+///
+/// # Errors
+/// The file or the input cannot be read.
+pub fn methods(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+    let resolved = Resolved::read(place)?;
+    let (plan, studies) = (&resolved.plan, resolved.studies()?);
+    let sample = Sample::read(&place.join(name), usize::MAX)?;
+    let own: Vec<(Row, &Study)> = sample
+        .rows()
+        .filter(|row| ["", "retune"].contains(&row.text("program")))
+        .filter_map(|row| Some((row, &studies.iter().find(|(name, _)| name == scene_of(row))?.1)))
+        .collect();
+    let kept = own.len().min(most);
+    let place_of = |i: usize| i * (own.len() - 1) / kept.saturating_sub(1).max(1);
+    let checked: Vec<(Row, &Study)> = (0..kept).map(|i| own[place_of(i)]).collect();
+    let found: Vec<Option<Vec<f64>>> =
+        checked.par_iter().map(|(row, study)| again(plan, *row, study)).collect();
+    let mut checks = Vec::new();
+    for ((row, _), found) in checked.iter().zip(found) {
+        let Some(found) = found else {
+            checks.push(Check::never());
+            continue;
+        };
+        for (name, found) in columns(*row).into_iter().zip(found) {
+            // A run that failed says why, and has no numbers.
+            let said = if row.text(name).is_empty() { f64::INFINITY } else { row.number(name) };
+            checks.push(Check { said, again: Box::new(move || found) });
+        }
+    }
+    report.look(name, &sample.of(checked.len()), &checks)
+}
+
+/// The name of the study of a row.
+fn scene_of(row: Row<'_>) -> &str {
+    if row.text("scene").is_empty() { row.text("difficulty") } else { row.text("scene") }
+}
+
+/// The columns that are computed again.
+fn columns(row: Row) -> [&'static str; 4] {
+    if row.text("scene").is_empty() {
+        ["error", "impacts", "expected_impacts", "evaluations"]
+    } else {
+        ["E1max", "impacts", "expected_impacts", "evaluations"]
+    }
+}
+
+/// The numbers of these columns; none where the row is of no method, infinite where the run fails.
+fn again(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
+    let way = &plan["ways"][row.text("method")];
+    let text = |name: &str| way[name].as_str().unwrap_or_else(|| row.text(name)).to_owned();
+    let method: Method = serde_json::from_value(Value::from(if way.is_null() {
+        row.text("method").to_owned()
+    } else {
+        text("method")
+    }))
+    .ok()?;
+    let contacts = text("contacts");
+    let contacts =
+        if contacts == "exact" { Contacts::Located } else { serde_json::from_value(contacts.into()).ok()? };
+    let setting = way["setting"].as_f64().unwrap_or_else(|| row.number("setting"));
+    let max_steps = plan["max_steps"].as_u64()?;
+    let (scene, window) = (&study.scene, study.window.window());
+    let reference = settings(Method::Hybrid, Contacts::Located, plan["reference_rtol"].as_f64()?, max_steps);
+    let expected = run(scene, window, &reference)?;
+    let found = run(scene, window, &settings(method, contacts, setting, max_steps));
+    let Some((found, impacts)) = found else {
+        let none = if row.text("scene").is_empty() { 0.0 } else { f64::INFINITY };
+        let error = if row.text("scene").is_empty() { f64::NAN } else { f64::INFINITY };
+        return Some(vec![error, none, expected.1 as f64, none]);
+    };
+    let states = [found.final_state, expected.0.final_state];
+    let energies = [found.e1_max.value, expected.0.e1_max.value];
+    let [e1, state] = errors(energies, states, scene.forcing.frequency.get());
+    // The atlas prints its errors to three digits.
+    let first = if row.text("scene").is_empty() {
+        format!("{:.2e}", e1.max(state)).parse().unwrap_or(f64::NAN)
+    } else {
+        found.e1_max.value
+    };
+    Some(vec![first, impacts as f64, expected.1 as f64, evaluations(method, &found) as f64])
+}
+
+/// A run, and its touch-downs.
+fn run(scene: &Scene, window: Window, settings: &Settings) -> Option<(Response, usize)> {
+    let response = simulate(scene, window, settings).ok()?;
+    Some((response, touch_downs(scene, window, settings).ok()?.len()))
+}
