@@ -65,7 +65,7 @@ impl Forced for Duffing {
         states.iter().enumerate().map(flow).collect()
     }
     fn seen(&self, _omega: f64, _periods: usize, _states: &[[f64; 4]]) -> Result<Seen, Error> {
-        Ok(Seen { impacts: String::new(), e1_max: 0.0, displacement: 0.0, stroke: 0.0, force: 0.0 })
+        Ok(Seen::default())
     }
 }
 

@@ -11,7 +11,7 @@ use retune_study::{Study, rounded};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 
-/// Frequencies at which runs are started, and starts at each beside that from rest: as `retune branches` has them if not told otherwise.
+/// Frequencies at which runs are started from rest, and other starts for each: as `retune branches` has them if not told otherwise.
 const SAMPLES: usize = 31;
 const STARTS: usize = 16;
 /// Most events of one kind that are marked on a branch: a cascade has any number of them.
@@ -38,10 +38,7 @@ pub fn follow(
     if !strikes || matches!(study.scene.forcing.source, Source::Decay(_)) {
         return Ok(answer.with("problem", "nothing is struck: there is one motion, the response"));
     }
-    let Some(of) = quantity(study.quantity()) else {
-        let problem = format!("motions are not watched for {}", study.quantity().words());
-        return Ok(answer.with("problem", problem));
-    };
+    let of = quantity(study.quantity());
     let band = band(study);
     let range = [band.from, band.to];
     let plan = Plan {
@@ -97,7 +94,7 @@ fn largest(found: &Largest) -> Value {
         "words": rounded(found.value, 4),
         "omega": found.at,
         "rest": found.from_rest,
-        "share": found.share,
+        "share": found.share.of_starts(),
         "periods": found.orbit.as_ref().map(|orbit| orbit.periods),
         "impacts": found.orbit.as_ref().map(|orbit| &orbit.seen.impacts),
     })

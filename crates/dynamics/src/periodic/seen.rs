@@ -10,7 +10,7 @@ use retune_solver::{Follower, Motion, Phase, Settings};
 use std::f64::consts::TAU;
 
 /// The largest values and the impacts of a periodic motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
     /// empty if none.
@@ -19,6 +19,12 @@ pub struct Seen {
     pub e1_max: f64,
     /// Largest displacement of the structure, m.
     pub displacement: f64,
+    /// Largest speed of the structure, m/s.
+    pub velocity: f64,
+    /// Largest acceleration of the structure, m/s².
+    pub acceleration: f64,
+    /// Largest force on the ground, N.
+    pub ground_force: f64,
     /// The stroke, m.
     pub stroke: f64,
     /// Largest contact force, N.
@@ -35,18 +41,25 @@ pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 
     let share = periods as f64 * TAU / system.bare().frequency() / states.len() as f64;
     let mut follower = Follower::new(&system, settings, share);
     let energy = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
-    let size = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
+    let displacement = Magnitude::new(|sign| StructureMotion::displacement(&system, sign), f64::INFINITY);
+    let velocity = Magnitude::new(|sign| StructureMotion::velocity(&system, sign), f64::INFINITY);
+    let acceleration = Magnitude::new(|sign| StructureMotion::acceleration(&system, sign), f64::INFINITY);
+    let ground = Magnitude::new(|sign| StructureMotion::ground_force(&system, sign), f64::INFINITY);
     let range = DisplacementRange::new(&system, 0.0, f64::INFINITY);
-    let mut all = ((energy, size), (range, TouchDownTimes::default()));
+    let touches = TouchDownTimes::default();
+    let mut all = ((energy, displacement), ((velocity, acceleration), (ground, (range, touches))));
     for (k, &y) in states.iter().enumerate() {
         let start = Motion { t: k as f64 * share, y, phase: Phase::of(&system, &y) };
         follower.propagate(start, (k + 1) as f64 * share, &mut all)?;
     }
-    let ((energy, size), (range, touches)) = all;
+    let ((energy, displacement), ((velocity, acceleration), (ground, (range, touches)))) = all;
     Ok(Seen {
         impacts: turned(touches.0.iter().map(|(_, side)| *side)),
         e1_max: energy.record().value,
-        displacement: size.record().value,
+        displacement: displacement.record().value,
+        velocity: velocity.record().value,
+        acceleration: acceleration.record().value,
+        ground_force: ground.record().value,
         stroke: range.stroke().value.max(0.0),
         force: range.force().value.max(0.0),
     })

@@ -27,9 +27,7 @@ pub(super) fn largest_motion(
     let starts = term.starts.unwrap_or(STARTS);
     let plan = Plan { samples, starts, looks: 1, ..Plan::over(Parameter::Omega, [from, to]) };
     let kinds = [term.quantity, Measure::Stroke, Measure::ContactForce];
-    // A study refuses other quantities for this response.
-    let kinds = kinds.map(|kind| quantity(kind).unwrap_or(|seen| seen.e1_max));
-    let found = motions(scene, plan, settings, &kinds)?;
+    let found = motions(scene, plan, settings, &kinds.map(quantity))?;
     let value = |i: usize| found.largest.get(i).and_then(Option::as_ref).map_or(0.0, |largest| largest.value);
     let at = found.largest.first().and_then(Option::as_ref).map_or(from, |largest| largest.at);
     Ok(Found { at, largest: [0, 1, 2].map(value), settled: found.irregular.is_empty() })
