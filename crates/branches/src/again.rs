@@ -92,11 +92,13 @@ impl Results {
         let value = row.number(self.plan.parameter.symbol());
         let (is_periodic, impacts) = (row.text("motion") == "periodic", row.text("impacts").to_owned());
         let (starts, periods) = (row.text("starts").to_owned(), row.text("periods").to_owned());
+        let number = row.text("start").parse().ok();
         // Beside that from rest.
         let others = row.text("starts_of").parse::<usize>().ok()?.checked_sub(1)?;
         let again = move || {
             let plan = Plan { starts: others, ..self.plan };
-            let Ok(found) = sample(&self.study.scene, plan, &self.study.solver.settings(), value) else {
+            let settings = self.study.solver.settings();
+            let Ok(found) = sample(&self.study.scene, plan, &settings, value, number) else {
                 return f64::INFINITY;
             };
             if !is_periodic {

@@ -18,9 +18,9 @@ pub struct Asked {
     pub from: Option<String>,
     /// Its largest value; by default that of the band of the study, or 1.25 of its own.
     pub to: Option<String>,
-    /// Number of values at which runs are started.
+    /// Number of values at which runs are started from rest.
     pub samples: usize,
-    /// Number of starts at each, beside that from rest.
+    /// Number of other starts for each, over the whole range and the states that the force can reach.
     pub starts: usize,
     /// Runs at each from whose states Newton's iteration is led to motions other than those known.
     pub apart: usize,

@@ -6,6 +6,7 @@ use crate::found::{Found, Margin};
 use crate::remedy::{Remedy, remedies};
 use crate::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
 use crate::words::{joule, kind};
+use retune_dynamics::periodic::look::Attractor;
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, Sample};
 use retune_store::Directory;
 use retune_study::{counted, rounded, short};
@@ -69,13 +70,13 @@ fn asked(found: &Found) -> String {
     let more: String =
         more.map(|(count, what, words)| words.replace('#', &counted(*count as u64, what))).collect();
     format!(
-        "The damper: {damper}. At {} of {symbol} from {} to {} {unit}, runs from rest and from {} are followed until they repeat, and more where \
+        "The damper: {damper}. Runs from rest at {} of {symbol} from {} to {} {unit}, and from {} over all of them, are followed until they repeat, and more where \
          no stable motion is known; the branch of each motion that they settle on is followed to both sides, and from each period doubling at \
          which it gains or loses stability.{more}",
         counted(plan.samples as u64, "value"),
         short(from),
         short(to),
-        counted(plan.starts as u64, "other start"),
+        counted(plan.others() as u64, "other start"),
     )
 }
 
@@ -150,15 +151,8 @@ fn isola(found: &Found, number: usize, branch: &Branch) -> Option<String> {
     let plan = &found.branches.plan;
     let [low, high] = span(branch);
     let most = found.largest[number].as_ref()?;
-    let shares = found.branches.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
-    let [least, greatest] =
-        shares.fold([f64::INFINITY, 0.0], |[low, high], share| [low.min(share), f64::max(high, share)]);
-    let percent = |share: f64| rounded(100.0 * share, 2);
-    let reached = match (percent(least), percent(greatest)) {
-        _ if least > greatest => "no start that was tried ends there".to_owned(),
-        (low, high) if low == high => format!("{low} % of the starts there end on it"),
-        (low, high) => format!("{low} to {high} % of the starts there end on it"),
-    };
+    let share = found.branches.share(number);
+    let reached = format!("{} of {} starts there end on it", share.ends, share.starts);
     Some(format!(
         "Branch {number} is an isola: it exists from {} = {} to {} {} only, apart from all others ({}); up to {} J; {reached}.",
         plan.parameter.symbol(),
@@ -245,23 +239,19 @@ fn events(found: &Found) -> Block {
 
 fn starts(found: &Found) -> String {
     format!(
-        "The starts are spread evenly over the states that the force can reach (a Sobol sequence of {} beside the run from rest). A run that \
+        "The starts are spread evenly over the range and the states that the force can reach somewhere in it (one Sobol sequence of {}). A run that \
          repeats to 1e-4 of its size within 480 periods settles on a periodic motion; any other is irregular.",
-        found.branches.plan.starts
+        found.branches.plan.others()
     )
 }
 
-/// What runs settle on, where it is more than one motion or none that repeats.
+/// What runs settle on, where it is a motion that no run from rest leads to, or none that repeats.
 fn attractors(found: &Found) -> Block {
     let plan = &found.branches.plan;
     let mut rows = Vec::new();
     for sample in &found.branches.samples {
-        if sample.attractors.len() + usize::from(!sample.irregular.is_empty()) < 2
-            && sample.irregular.is_empty()
-        {
-            continue;
-        }
-        for one in &sample.attractors {
+        let is_usual = |one: &Attractor| one.branch.is_some_and(|branch| found.branches.is_reached_from_rest(branch));
+        for one in sample.attractors.iter().filter(|one| !is_usual(one)) {
             rows.push(vec![
                 rounded(sample.value, 6),
                 one.branch.map_or("-".to_owned(), |branch| branch.to_string()),
@@ -291,9 +281,9 @@ fn attractors(found: &Found) -> Block {
         "from rest".to_owned(),
     ];
     let words = if rows.is_empty() {
-        "At every value all starts end on one motion.".to_owned()
+        "All starts end on branches that runs from rest lead to.".to_owned()
     } else {
-        format!("Where starts end on more than one motion, or on none that repeats; {ATTRACTORS} has all.")
+        format!("Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all.")
     };
     Block::Table(words, head.to_vec(), rows)
 }

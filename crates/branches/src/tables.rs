@@ -56,13 +56,14 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
         }
     }
     let mut attractors =
-        format!("{symbol},motion,branch,periods,impacts,starts_of,starts,from_rest,E1max,x1,v1,x2,v2\n");
+        format!("{symbol},start,motion,branch,periods,impacts,starts_of,starts,from_rest,E1max,x1,v1,x2,v2\n");
     for sample in &found.branches.samples {
         let (value, all) = (sample.value, sample.starts);
+        let number = sample.number.map(|number| number.to_string()).unwrap_or_default();
         for one in &sample.attractors {
             let Orbit { periods, seen, states, .. } = &one.orbit;
             attractors += &format!(
-                "{value},periodic,{},{periods},{},{all},{},{},{},{}\n",
+                "{value},{number},periodic,{},{periods},{},{all},{},{},{},{}\n",
                 one.branch.map(|branch| branch.to_string()).unwrap_or_default(),
                 seen.impacts,
                 one.starts,
@@ -74,7 +75,7 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
         if !sample.irregular.is_empty() {
             let most = sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max);
             attractors += &format!(
-                "{value},irregular,,,,{all},{},{},{most},,,,\n",
+                "{value},{number},irregular,,,,{all},{},{},{most},,,,\n",
                 sample.irregular.len(),
                 u8::from(sample.rest_is_irregular)
             );

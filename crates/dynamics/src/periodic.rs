@@ -7,8 +7,8 @@
 //! Read `forced` (what it asks of a system), `shooting` (the equations and their solution), `orbit` (a motion, and `seen` of it), `trace` (a
 //! branch), `events` (its bifurcations), `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs
 //! from many starts do), `largest`, then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
-//! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, and `basins`,
-//! where starts end.
+//! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, `onset`
+//! (from which value of a parameter on a motion is there), and `basins`, where starts end.
 
 pub mod basins;
 mod belongs;
@@ -19,6 +19,7 @@ pub mod forced;
 pub mod largest;
 pub mod look;
 mod node;
+pub mod onset;
 pub mod orbit;
 mod seek;
 pub mod seen;
@@ -34,7 +35,8 @@ pub use events::{Event, EventKind};
 pub use forced::Forced;
 pub use largest::largest;
 pub use look::Sample;
+pub use onset::{Onset, Seed, onset};
 pub use orbit::Orbit;
 pub use shooting::Shooting;
 pub use trace::{Branch, End};
-pub use worst::{Largest, Motions, motions};
+pub use worst::{Largest, Motions, Share, motions};

@@ -11,7 +11,7 @@ use retune_study::{Study, rounded};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 
-/// Frequencies at which runs are started, and starts at each beside that from rest: as `retune branches` has them if not told otherwise.
+/// Frequencies at which runs are started from rest, and other starts for each: as `retune branches` has them if not told otherwise.
 const SAMPLES: usize = 31;
 const STARTS: usize = 16;
 /// Most events of one kind that are marked on a branch: a cascade has any number of them.
@@ -92,7 +92,7 @@ fn largest(found: &Largest) -> Value {
         "words": rounded(found.value, 4),
         "omega": found.at,
         "rest": found.from_rest,
-        "share": found.share,
+        "share": found.share.of_starts(),
         "periods": found.orbit.as_ref().map(|orbit| orbit.periods),
         "impacts": found.orbit.as_ref().map(|orbit| &orbit.seen.impacts),
     })

@@ -43,9 +43,15 @@ pub fn run(command: Command) -> Result<(), Error> {
             &[retune_tradeoff::OTHERS, retune_branches::OTHERS, retune_paper::OTHERS],
             &all,
         ),
-        Command::Certify { design, running } => {
+        Command::Certify { design, json: as_json, running } => {
             let (request, screen) = running.request(&design);
-            certify::certify_file(&request, &screen)?.check_limits()
+            let quiet = Quiet(&screen);
+            let watch: &dyn Observer = if as_json { &quiet } else { &screen };
+            let certificate = certify::certify_file(&request, watch)?;
+            if as_json {
+                screen.line(json(&certificate)?)?;
+            }
+            certificate.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
         Command::Explore { study, port, no_browser } => {

@@ -36,6 +36,34 @@ pub struct Study {
     /// The optimisation: the tuned parameters, their bounds and the search.
     #[serde(default)]
     pub optimize: Option<Optimize>,
+    /// The margins that a robust design has.
+    #[serde(default, skip_serializing_if = "Margins::is_default")]
+    pub certificate: Margins,
+}
+
+/// How far the force and each parameter may be off before another motion has 5 % more than runs from rest, for a design to be called robust;
+/// below that it is on an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Margins {
+    /// Relative increase of P.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub force: f64,
+    /// Relative error of each parameter, up or down.
+    #[schemars(range(min = 0.0, max = 0.1))]
+    pub errors: f64,
+}
+
+impl Default for Margins {
+    fn default() -> Self {
+        Self { force: 0.05, errors: 0.01 }
+    }
+}
+
+impl Margins {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// The time window in which maxima are evaluated. Every run starts from rest at t = 0.

@@ -46,7 +46,7 @@ mod words;
 pub use angular_frequency::{angular_frequency, hertz_and_rpm};
 pub use built_in::is_built_in;
 pub use file::{StudyError, kind_of};
-pub use format::{Coarse, GridAxis, Optimize, Refine, Solver, Span, Study};
+pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
 pub use kind::Kind;

@@ -1,6 +1,6 @@
 //! From a study to its search; the rules between its fields.
 
-use super::format::{GridAxis, Optimize, Solver, Study};
+use super::format::{GridAxis, Margins, Optimize, Solver, Study};
 use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
 use super::per_variable::PerVariable;
@@ -60,6 +60,15 @@ impl Study {
                 value: most.to_string(),
                 allowed: "a finite number above 0",
             });
+        }
+        let Margins { force, errors } = self.certificate;
+        for (field, value, most, allowed) in [
+            ("certificate.force", force, 1.0, "a number from 0 to 1"),
+            ("certificate.errors", errors, 0.1, "a number from 0 to 0.1"),
+        ] {
+            if !(0.0..=most).contains(&value) {
+                return Err(Rule::NotAllowed { field: field.to_owned(), value: value.to_string(), allowed });
+            }
         }
         if !(self.solver.atol >= 0.0 && self.solver.atol.is_finite()) {
             return Err(Rule::Atol { value: self.solver.atol });

@@ -5,7 +5,7 @@
 
 use super::branches::{Branches, Plan, equations, sample};
 use super::look::Sample;
-use super::settle::{LOOKS, NEAR, fastest};
+use super::settle::{LOOKS, NEAR, Starts};
 use crate::parameter::Error;
 use crate::poincare::{PoincareMap, coupled};
 use crate::record::{coordinates, distance};
@@ -32,6 +32,8 @@ pub struct Basins {
 pub struct Plane {
     /// What runs from many starts settle on there.
     pub sample: Sample,
+    /// The speed that the structure reaches without damper, m/s.
+    reach: f64,
     scene: Scene,
     system: Coupled,
     settings: Settings,
@@ -51,13 +53,14 @@ impl Plane {
     ) -> Result<Self, Error> {
         let shooting = equations(scene, &plan, settings)?;
         let scene = shooting.scene_at(value)?;
-        let mut sample = sample(&scene, plan, settings, value)?;
+        let reach = Starts::over(&scene, plan.parameter, [value; 2])?.reach;
+        let mut sample = sample(&scene, plan, settings, value, None)?;
         for one in &mut sample.attractors {
             let own = shooting.of_periods(one.orbit.periods);
             let motion = own.correct_at_value(&own.unknowns(&one.orbit.states, value));
             one.branch = motion.and_then(|motion| known?.holds(&own, &motion));
         }
-        Ok(Self { sample, scene, system: coupled(&scene)?, settings: *shooting.settings() })
+        Ok(Self { sample, reach, scene, system: coupled(&scene)?, settings: *shooting.settings() })
     }
 
     /// The number of the motion that a run ends on, from `x1` (m) and `v1` (m/s) of the structure with the damper at rest in it.
@@ -86,7 +89,7 @@ impl Plane {
     /// # Errors
     /// A run cannot be finished.
     pub fn basins(self, done: impl Fn() + Sync) -> Result<Basins, Error> {
-        let speed = fastest(&self.scene);
+        let speed = self.reach;
         let middle = (SIDE / 2) as f64;
         // Six decimals are enough for a start, and short in a table.
         let place = |reach: f64, i: usize| (1e6 * reach * (i as f64 - middle) / middle).round() / 1e6;

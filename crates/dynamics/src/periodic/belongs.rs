@@ -6,6 +6,7 @@ use super::settle::{SAME, is_same};
 use super::shooting::{Shooting, Solution};
 use super::trace::trace;
 use nalgebra::DVector;
+use std::ops::Range;
 
 /// A branch as far as this from a motion is not tried, in units of the motion's size.
 const FAR: f64 = 0.3;
@@ -16,6 +17,16 @@ const CLOSE: f64 = 1e-2;
 impl Branches {
     /// The number of the branch that a motion lies on; none if it is on none.
     pub fn holds(&self, shooting: &Shooting, motion: &Solution) -> Option<usize> {
+        self.holds_among(shooting, motion, 0..self.branches.len())
+    }
+
+    /// The same among some branches.
+    pub(super) fn holds_among(
+        &self,
+        shooting: &Shooting,
+        motion: &Solution,
+        numbers: Range<usize>,
+    ) -> Option<usize> {
         let value = shooting.value(&motion.x);
         let is_here = |(_, pair, guess): &(usize, &[Orbit], DVector<f64>)| {
             let gap = shooting.nearest(guess, &motion.x).1;
@@ -23,12 +34,12 @@ impl Branches {
                 && (shooting.correct_at_value(guess).is_some_and(|own| is_same(shooting, &own, motion))
                     || gap < CLOSE && leads_to(shooting, motion, pair))
         };
-        self.near(shooting, value).find(is_here).map(|(number, ..)| number)
+        self.near(shooting, value, numbers).find(is_here).map(|(number, ..)| number)
     }
 
     /// The motions of as many periods on all branches at a value.
     pub(super) fn at(&self, shooting: &Shooting, value: f64) -> Vec<Solution> {
-        self.near(shooting, value).filter_map(|(.., guess)| shooting.correct_at_value(&guess)).collect()
+        self.near(shooting, value, 0..self.branches.len()).filter_map(|(.., guess)| shooting.correct_at_value(&guess)).collect()
     }
 
     /// The places at which branches of as many periods pass a value: their numbers, the motions on either side, and that between them.
@@ -36,8 +47,9 @@ impl Branches {
         &'a self,
         shooting: &'a Shooting,
         value: f64,
+        numbers: Range<usize>,
     ) -> impl Iterator<Item = (usize, &'a [Orbit], DVector<f64>)> + 'a {
-        let own = self.branches.iter().enumerate();
+        let own = numbers.map(|number| (number, &self.branches[number]));
         own.filter(|(_, branch)| branch.shooting.periods == shooting.periods).flat_map(
             move |(number, branch)| {
                 let around = move |pair: &&[Orbit]| (pair[0].value - value) * (pair[1].value - value) <= 0.0;

@@ -1,8 +1,8 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
-use super::look::{Reached, Sample, look};
+use super::look::{Reached, Sample, look, look_from};
 use super::orbit::Orbit;
-use super::settle::{MOST_PERIODS, most_energy};
+use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
 use super::trace::{Branch, trace};
@@ -30,9 +30,9 @@ pub struct Plan {
     pub parameter: Parameter,
     /// Its range.
     pub range: [f64; 2],
-    /// Number of its samples at which runs are started.
+    /// Number of its samples at which runs are started from rest.
     pub samples: usize,
-    /// Starts at each, beside that from rest.
+    /// Other starts for each: one set over the whole range and the states that the force can reach.
     pub starts: usize,
     /// Runs at each sample from whose states Newton's iteration is led to motions of one and two periods other than those known.
     pub apart: usize,
@@ -48,7 +48,12 @@ impl Plan {
         Self { parameter, range, samples: 0, starts: 0, apart: 0, fine: 0, looks: 0 }
     }
 
-    /// Starts where runs are started beside the samples.
+    /// Starts over the whole range, beside those from rest.
+    pub const fn others(&self) -> usize {
+        self.samples * self.starts
+    }
+
+    /// Starts at a value where runs are started beside the samples.
     pub(super) const fn fewer_starts(&self) -> usize {
         self.starts.div_ceil(FEWER)
     }
@@ -70,7 +75,7 @@ pub struct Branches {
 /// Who follows a search, and may end it.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
-    /// Called after each sample of the plan.
+    /// Called after each run from rest at a sample of the plan.
     pub done: &'a (dyn Fn() + Sync),
     /// Asked before each run and each motion of a branch: once it is false, no more are made.
     pub goes_on: &'a (dyn Fn() -> bool + Sync),
@@ -85,13 +90,14 @@ impl Default for Watch<'_> {
 /// A range of the parameter.
 pub type Interval = [f64; 2];
 
-/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken.
+/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. At one value, without a range, the
+/// motions are found, and no branches.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
 pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>) -> Result<Branches, Error> {
     let shooting = equations(scene, &plan, settings)?;
-    let mut values = evenly(plan.range[0], plan.range[1], plan.samples);
+    let starts = Starts::over(scene, plan.parameter, plan.range)?;
     let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new(), ended: false };
     let ended = AtomicBool::new(false);
     let goes_on = || {
@@ -100,33 +106,35 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
             false
         }
     };
-    let mut spacings = SPACINGS.iter().take(plan.looks);
-    let mut starts = plan.starts;
-    loop {
-        let first = found.samples.is_empty();
-        let look = |&value: &f64| {
-            let seen = look(&shooting, value, starts, &goes_on);
-            if first {
-                (watch.done)();
-            }
-            seen
-        };
-        let seen: Vec<Result<Reached, Error>> = values.par_iter().map(look).collect();
-        for seen in seen {
-            found.add(&shooting, seen?, &goes_on)?;
-        }
-        if first {
-            for periods in 1..=APART {
-                found.seek_apart(&shooting, periods, &goes_on)?;
-            }
-        }
+    let from_rest = |value: &f64| {
+        let seen = look(&shooting, *value, (&starts, 0), &goes_on);
+        (watch.done)();
+        seen
+    };
+    let [from, to] = plan.range;
+    if from == to {
+        let seen = look(&shooting, from, (&starts, plan.others()), &goes_on)?;
+        found.samples.push(seen.sample(&shooting)?);
+        found.ended = ended.into_inner();
+        return Ok(found);
+    }
+    let values = evenly(from, to, plan.samples);
+    found.add(&shooting, values.par_iter().map(from_rest).collect::<Result<_, Error>>()?, &goes_on)?;
+    let other = |number: usize| look_from(&shooting, &starts, number, &goes_on);
+    let others = (0..plan.others()).into_par_iter().map(other).collect::<Result<_, Error>>()?;
+    found.add(&shooting, others, &goes_on)?;
+    for periods in 1..=APART {
+        found.seek_apart(&shooting, &starts, periods, &goes_on)?;
+    }
+    for spacing in SPACINGS.iter().take(plan.looks) {
         if ended.load(SeqCst) {
             break;
         }
-        let Some(spacing) = spacings.next() else { break };
-        (values, starts) = (found.unseen(*spacing), plan.fewer_starts());
+        let here = |value: &f64| look(&shooting, *value, (&starts, plan.fewer_starts()), &goes_on);
+        let values = found.unseen(*spacing);
+        found.add(&shooting, values.par_iter().map(here).collect::<Result<_, Error>>()?, &goes_on)?;
     }
-    found.seek_from_rest(&shooting, &goes_on)?;
+    found.seek_from_rest(&shooting, &starts, &goes_on)?;
     found.ended = ended.into_inner();
     found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
@@ -140,16 +148,29 @@ pub fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shoo
     let [from, to] = plan.range;
     let middle = plan.parameter.at(*scene, 0.5 * (from + to))?;
     let size = (2.0 * most_energy(&middle)).sqrt().max(f64::MIN_POSITIVE);
-    Ok(Shooting::new(middle, plan.parameter, 1, (to - from, size), settings))
+    let span = if to > from { to - from } else { to };
+    Ok(Shooting::new(middle, plan.parameter, 1, (span, size), settings))
 }
 
-/// What runs settle on at a value of the parameter, without the branches.
+/// What runs settle on at a value of the parameter, without the branches: from rest and other starts there, or from the start of this number
+/// among those over the range.
 ///
 /// # Errors
 /// A scene cannot be run.
-pub fn sample(scene: &Scene, plan: Plan, settings: &Settings, value: f64) -> Result<Sample, Error> {
+pub fn sample(
+    scene: &Scene,
+    plan: Plan,
+    settings: &Settings,
+    value: f64,
+    number: Option<usize>,
+) -> Result<Sample, Error> {
     let shooting = equations(scene, &plan, settings)?;
-    look(&shooting, value, plan.starts, &|| true)?.sample(&shooting, |_, _| None)
+    let starts = Starts::over(scene, plan.parameter, plan.range)?;
+    let seen = match number {
+        Some(number) => look_from(&shooting, &starts, number, &|| true)?,
+        None => look(&shooting, value, (&starts, plan.starts), &|| true)?,
+    };
+    seen.sample(&shooting)
 }
 
 impl Branches {
@@ -160,15 +181,24 @@ impl Branches {
     pub(super) fn add(
         &mut self,
         shooting: &Shooting,
-        seen: Reached,
-        goes_on: &dyn Fn() -> bool,
+        seen: Vec<Reached>,
+        goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
-        if seen.starts > 0 {
-            let sample = seen.sample(shooting, |own, motion| {
-                self.holds(own, motion).or_else(|| self.follow(own, motion, goes_on))
-            })?;
-            self.samples.push(sample);
+        let mut seen: Vec<Reached> = seen.into_iter().filter(|seen| seen.starts > 0).collect();
+        let mut known = 0;
+        loop {
+            // Only of branches that are new since the last round: each motion is held against each branch once.
+            let all = self.branches.len();
+            seen.par_iter_mut().for_each(|seen| {
+                seen.find(shooting, |own, motion| self.holds_among(own, motion, known..all));
+            });
+            known = all;
+            let Some(next) = seen.iter_mut().find_map(Reached::next) else { break };
+            next.branch = self.follow(&shooting.of_periods(next.periods), &next.motion, goes_on);
         }
+        let samples: Result<Vec<Sample>, Error> =
+            seen.into_par_iter().map(|seen| seen.sample(shooting)).collect();
+        self.samples.extend(samples?);
         Ok(())
     }
 
@@ -229,22 +259,7 @@ impl Branches {
 
     /// The parts of the range over which a branch has a stable motion, and those over which none has.
     pub fn stable_and_irregular(&self) -> [Vec<Interval>; 2] {
-        let mut parts: Vec<Interval> = Vec::new();
-        for branch in &self.branches {
-            let pairs = branch.points.windows(2).enumerate();
-            for (_, pair) in pairs.filter(|(i, _)| branch.is_stable_after(*i)) {
-                let [a, b] = [pair[0].value, pair[1].value];
-                parts.push([a.min(b), a.max(b)]);
-            }
-        }
-        parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut stable: Vec<Interval> = Vec::new();
-        for part in parts {
-            match stable.last_mut() {
-                Some(last) if part[0] <= last[1] => last[1] = last[1].max(part[1]),
-                _ => stable.push(part),
-            }
-        }
+        let stable = merged(self.branches.iter().flat_map(stable_parts).collect());
         let [from, to] = self.plan.range;
         let begins = [from].into_iter().chain(stable.iter().map(|part| part[1]));
         let ends = stable.iter().map(|part| part[0]).chain([to]);
@@ -252,4 +267,28 @@ impl Branches {
         let irregular = begins.zip(ends).filter(|(a, b)| b - a > narrow).map(|(a, b)| [a, b]).collect();
         [stable, irregular]
     }
+}
+
+/// The steps of a branch over which its motions are stable.
+fn stable_parts(branch: &Branch) -> impl Iterator<Item = Interval> {
+    let pairs = branch.points.windows(2).enumerate().filter(|(i, _)| branch.is_stable_after(*i));
+    pairs.map(|(_, pair)| [pair[0].value.min(pair[1].value), pair[0].value.max(pair[1].value)])
+}
+
+/// The union of intervals, as intervals apart from each other.
+fn merged(mut parts: Vec<Interval>) -> Vec<Interval> {
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut all: Vec<Interval> = Vec::new();
+    for part in parts {
+        match all.last_mut() {
+            Some(last) if part[0] <= last[1] => last[1] = last[1].max(part[1]),
+            _ => all.push(part),
+        }
+    }
+    all
+}
+
+/// The parts of the range over which a branch has stable motions.
+pub(super) fn stable_ranges(branch: &Branch) -> Vec<Interval> {
+    merged(stable_parts(branch).collect())
 }

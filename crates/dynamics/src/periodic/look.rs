@@ -2,7 +2,7 @@
 
 use super::orbit::Orbit;
 use super::seen::Seen;
-use super::settle::{self, Settled, is_same, settle};
+use super::settle::{Settled, Starts, is_same, settle};
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
 
@@ -24,6 +24,8 @@ pub struct Attractor {
 pub struct Sample {
     /// The value.
     pub value: f64,
+    /// The number of the start among those over the whole range, if it is one of these; else runs from rest and other starts are at this value.
+    pub number: Option<usize>,
     /// The periodic motions, the most frequent first.
     pub attractors: Vec<Attractor>,
     /// What the runs reach that settled on none; the first one that from rest, if it did not.
@@ -34,11 +36,23 @@ pub struct Sample {
     pub starts: usize,
 }
 
+/// A periodic motion that runs settle on.
+pub(super) struct End {
+    pub periods: usize,
+    pub motion: Solution,
+    starts: usize,
+    from_rest: bool,
+    /// The number of its branch, once it is known.
+    pub branch: Option<usize>,
+    /// Whether its branch was followed; if it is on none then, it could not be.
+    followed: bool,
+}
+
 /// What runs settle on at a value of the parameter.
 pub(super) struct Reached {
     value: f64,
-    /// Periods, the motion, how many starts, whether from rest.
-    attractors: Vec<(usize, Solution, usize, bool)>,
+    number: Option<usize>,
+    attractors: Vec<End>,
     irregular: Vec<Seen>,
     rest_is_irregular: bool,
     /// Starts that were made.
@@ -46,29 +60,65 @@ pub(super) struct Reached {
 }
 
 impl Reached {
-    /// Whether a periodic motion is such a one.
-    pub(super) fn is_any(&self, shooting: &Shooting, such: impl Fn(&Shooting, &Solution) -> bool) -> bool {
-        self.attractors.iter().any(|(periods, motion, ..)| such(&shooting.of_periods(*periods), motion))
+    fn nothing(value: f64, number: Option<usize>) -> Self {
+        Self { value, number, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false, starts: 0 }
     }
 
-    /// As a sample, with the branch that each motion is on.
+    /// Adds what a run settles on.
+    fn follow(&mut self, shooting: &Shooting, y: [f64; 4], from_rest: bool) -> Result<(), Error> {
+        self.starts += 1;
+        match settle(shooting, self.value, y)? {
+            Settled::Irregular(values) => {
+                self.irregular.push(values);
+                self.rest_is_irregular |= from_rest;
+            }
+            Settled::On(periods, solution) => {
+                let own = shooting.of_periods(periods);
+                let known = self.attractors.iter_mut().find(|known| is_same(&own, &known.motion, &solution));
+                match known {
+                    Some(known) => known.starts += 1,
+                    None => {
+                        let end = End { periods, motion: solution, starts: 1, from_rest, branch: None, followed: false };
+                        self.attractors.push(end);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a periodic motion is such a one.
+    pub(super) fn is_any(&self, shooting: &Shooting, such: impl Fn(&Shooting, &Solution) -> bool) -> bool {
+        self.attractors.iter().any(|one| such(&shooting.of_periods(one.periods), &one.motion))
+    }
+
+    /// Looks for the branches of those motions whose branch is not known.
+    pub(super) fn find(&mut self, shooting: &Shooting, branch: impl Fn(&Shooting, &Solution) -> Option<usize>) {
+        for one in self.attractors.iter_mut().filter(|one| one.branch.is_none()) {
+            one.branch = branch(&shooting.of_periods(one.periods), &one.motion);
+        }
+    }
+
+    /// The next of these motions whose branch is to be followed; each comes once.
+    pub(super) fn next(&mut self) -> Option<&mut End> {
+        let one = self.attractors.iter_mut().find(|one| one.branch.is_none() && !one.followed)?;
+        one.followed = true;
+        Some(one)
+    }
+
+    /// As a sample.
     ///
     /// # Errors
     /// A scene cannot be run.
-    pub(super) fn sample(
-        self,
-        shooting: &Shooting,
-        mut branch: impl FnMut(&Shooting, &Solution) -> Option<usize>,
-    ) -> Result<Sample, Error> {
-        let Self { value, irregular, rest_is_irregular, starts, .. } = self;
+    pub(super) fn sample(self, shooting: &Shooting) -> Result<Sample, Error> {
+        let Self { value, number, irregular, rest_is_irregular, starts, .. } = self;
         let mut attractors = Vec::new();
-        for (periods, solution, starts, from_rest) in self.attractors {
-            let own = shooting.of_periods(periods);
-            let branch = branch(&own, &solution);
-            attractors.push(Attractor { branch, orbit: Orbit::of(&own, &solution)?, starts, from_rest });
+        for End { periods, motion, starts, from_rest, branch, .. } in self.attractors {
+            let orbit = Orbit::of(&shooting.of_periods(periods), &motion)?;
+            attractors.push(Attractor { branch, orbit, starts, from_rest });
         }
         attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
-        Ok(Sample { value, attractors, irregular, rest_is_irregular, starts })
+        Ok(Sample { value, number, attractors, irregular, rest_is_irregular, starts })
     }
 }
 
@@ -79,34 +129,35 @@ impl Reached {
 pub(super) fn look(
     shooting: &Shooting,
     value: f64,
-    starts: usize,
+    (starts, count): (&Starts, usize),
     goes_on: &dyn Fn() -> bool,
 ) -> Result<Reached, Error> {
     let system = shooting.system(value)?;
-    let scene = shooting.scene_at(value)?;
-    let mut seen =
-        Reached { value, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false, starts: 0 };
-    let all = [system.rest()].into_iter().chain(settle::starts(&system, &scene, starts));
+    let all = [system.rest()].into_iter().chain((0..count).map(|number| starts.state(number, &system)));
+    let mut seen = Reached::nothing(value, None);
     for (number, y) in all.enumerate() {
         if !goes_on() {
             break;
         }
-        seen.starts += 1;
-        let from_rest = number == 0;
-        match settle(shooting, value, y)? {
-            Settled::Irregular(values) => {
-                seen.irregular.push(values);
-                seen.rest_is_irregular |= from_rest;
-            }
-            Settled::On(periods, solution) => {
-                let own = shooting.of_periods(periods);
-                let known = seen.attractors.iter_mut().find(|(_, known, ..)| is_same(&own, known, &solution));
-                match known {
-                    Some((_, _, starts, _)) => *starts += 1,
-                    None => seen.attractors.push((periods, solution, 1, from_rest)),
-                }
-            }
-        }
+        seen.follow(shooting, y, number == 0)?;
+    }
+    Ok(seen)
+}
+
+/// From one of the starts over the range, if it goes on.
+///
+/// # Errors
+/// A scene cannot be run.
+pub(super) fn look_from(
+    shooting: &Shooting,
+    starts: &Starts,
+    number: usize,
+    goes_on: &dyn Fn() -> bool,
+) -> Result<Reached, Error> {
+    let value = starts.value(number);
+    let mut seen = Reached::nothing(value, Some(number));
+    if goes_on() {
+        seen.follow(shooting, starts.state(number, &shooting.system(value)?), false)?;
     }
     Ok(seen)
 }

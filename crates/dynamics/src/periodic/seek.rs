@@ -3,7 +3,7 @@
 use super::branches::Branches;
 use super::deflate::another;
 use super::look::{Sample, look};
-use super::settle;
+use super::settle::Starts;
 use super::shooting::{Shooting, Solution};
 use crate::parameter::{Error, evenly};
 use crate::poincare::{Periods, orbit};
@@ -22,11 +22,12 @@ impl Branches {
     pub(super) fn seek_from_rest(
         &mut self,
         shooting: &Shooting,
+        starts: &Starts,
         goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
         let [from, to] = self.plan.range;
         let unknown = |branches: &Self, value: f64| -> Result<bool, Error> {
-            let seen = look(shooting, value, 0, goes_on)?;
+            let seen = look(shooting, value, (starts, 0), goes_on)?;
             Ok(seen.is_any(shooting, |own, motion| branches.holds(own, motion).is_none()))
         };
         let values = evenly(from, to, self.plan.fine);
@@ -34,7 +35,8 @@ impl Branches {
         for (value, _) in values.into_iter().zip(seen?).filter(|(_, is_unknown)| *is_unknown) {
             // The branch through one of them may hold the next.
             if unknown(self, value)? {
-                self.add(shooting, look(shooting, value, self.plan.fewer_starts(), goes_on)?, goes_on)?;
+                let seen = look(shooting, value, (starts, self.plan.fewer_starts()), goes_on)?;
+                self.add(shooting, vec![seen], goes_on)?;
             }
         }
         Ok(())
@@ -48,6 +50,7 @@ impl Branches {
     pub(super) fn seek_apart(
         &mut self,
         shooting: &Shooting,
+        starts: &Starts,
         periods: usize,
         goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
@@ -55,10 +58,10 @@ impl Branches {
         let near = Periods { settle: PASSED - periods, record: periods };
         let others = |sample: &Sample| -> Result<Vec<Solution>, Error> {
             let value = sample.value;
-            let (system, scene) = (own.system(value)?, own.scene_at(value)?);
+            let system = own.system(value)?;
             let mut known = self.solutions(shooting, periods, value);
             let mut found = Vec::new();
-            for y in settle::starts(&system, &scene, self.plan.apart) {
+            for y in (0..self.plan.apart).map(|number| starts.state(number, &system)) {
                 let from = Motion { t: 0.0, y, phase: Phase::of(&system, &y) };
                 let (run, _) = orbit(&system, value, from, near, own.settings())?;
                 let start = own.unknowns(&run.samples, value);
@@ -69,7 +72,8 @@ impl Branches {
             }
             Ok(found)
         };
-        let found: Result<Vec<Vec<Solution>>, Error> = self.samples.par_iter().map(others).collect();
+        let found: Result<Vec<Vec<Solution>>, Error> = 
+            self.samples.par_iter().filter(|sample| sample.number.is_none()).map(others).collect();
         for motion in found?.into_iter().flatten() {
             if self.holds(&own, &motion).is_none() {
                 self.follow(&own, &motion, goes_on);

@@ -3,17 +3,23 @@
 use super::forced::Forced;
 use super::seen::{Seen, seen};
 use super::shooting::{Shooting, Solution};
-use crate::parameter::Error;
+use crate::parameter::{Error, evenly};
 use crate::poincare::PoincareMap;
 use crate::record::{coordinates, distance};
 use nalgebra::DVector;
-use retune_model::{Bare, Coupled, Scene};
+use retune_model::{Bare, Coupled, Parameter, Scene, Side};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings};
 use std::f64::consts::TAU;
 
 /// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
 pub(super) const LOOKS: [usize; 4] = [60, 120, 240, 480];
+/// Periods of the force at resonance whose energy counts as reached.
+const AT_RESONANCE: f64 = 60.0;
+/// Values at which it is looked at.
+const REACHED: usize = 129;
+/// Points of a Sobol sequence.
+const LENGTH: usize = 1 << 16;
 /// Most periods after which a motion may repeat.
 pub const MOST_PERIODS: usize = 12;
 /// A run that repeats to this share of its size is near enough for Newton's iteration.
@@ -104,35 +110,63 @@ fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)
 }
 
 /// The energy that the structure reaches without damper, J: in its steady motion, or, where that takes longer, at resonance from rest within
-/// the periods before the first look. Without damping there is no steady motion at resonance.
+/// some periods. Without damping there is no steady motion at resonance.
 pub(super) fn most_energy(scene: &Scene) -> f64 {
     let bare = Bare::new(&scene.primary, &scene.forcing);
     let omega = bare.frequency();
-    bare.steady(omega).e1_max.min(bare.resonant_energy(LOOKS[0] as f64 * TAU / omega))
+    bare.steady(omega).e1_max.min(bare.resonant_energy(AT_RESONANCE * TAU / omega))
 }
 
-/// The speed that the structure reaches without damper, m/s.
-pub fn fastest(scene: &Scene) -> f64 {
-    (2.0 * most_energy(scene) / scene.primary.mass.get()).sqrt()
+/// Where runs are started: anywhere that the force can bring the structure without damper, somewhere in a range of a parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Starts {
+    /// The largest speed of the structure there, m/s.
+    pub reach: f64,
+    range: [f64; 2],
 }
 
-/// A start for each of `count` numbers of a Sobol sequence, over the states that the force can reach: the structure within what it does
-/// without damper ([`fastest`]), the damper between its walls.
-pub fn starts(system: &Coupled, scene: &Scene, count: usize) -> Vec<[f64; 4]> {
-    let reach = fastest(scene);
-    let omega = scene.forcing.frequency.get();
-    let [near, far] = [system.wall(retune_model::Side::Primary), system.wall(retune_model::Side::Obstacle)];
-    let (near, far) = if system.has_walls() {
-        (near, far.min(near + 10.0 * reach / omega))
-    } else {
-        (system.rest_distance() - 3.0 * reach / omega, system.rest_distance() + 3.0 * reach / omega)
-    };
-    let sobol = |i: usize, dimension: u32| f64::from(sobol_burley::sample(i as u32, dimension, 1));
-    (0..count)
-        .map(|i| {
-            let signed = |dimension: u32| 2.0 * sobol(i, dimension) - 1.0;
-            let x1 = reach / omega * signed(0);
-            [x1, reach * signed(1), x1 + near + (far - near) * sobol(i, 2), 2.0 * reach * signed(3)]
-        })
-        .collect()
+impl Starts {
+    /// Over a range of a parameter.
+    ///
+    /// # Errors
+    /// A value in the range is out of the parameter's.
+    pub fn over(scene: &Scene, parameter: Parameter, range: [f64; 2]) -> Result<Self, Error> {
+        let [from, to] = range;
+        let natural = scene.primary.natural_frequency();
+        let resonance = match parameter {
+            Parameter::Omega => natural,
+            Parameter::K1 => scene.primary.mass.get() * scene.forcing.frequency.get().powi(2),
+            _ => from,
+        };
+        let mut most = 0.0;
+        for value in evenly(from, to, REACHED).into_iter().chain([resonance.clamp(from, to)]) {
+            most = f64::max(most, most_energy(&parameter.at(*scene, value)?));
+        }
+        Ok(Self { reach: (2.0 * most / scene.primary.mass.get()).sqrt(), range })
+    }
+
+    /// The value of the parameter of a start: a Sobol sequence covers values and states at once.
+    pub fn value(&self, number: usize) -> f64 {
+        let [from, to] = self.range;
+        from + (to - from) * sobol(number, 0)
+    }
+
+    /// The state of a start: the structure within its reach, the damper between its walls.
+    pub fn state(&self, number: usize, system: &Coupled) -> [f64; 4] {
+        let (reach, omega) = (self.reach, system.bare().frequency());
+        let [near, far] = [system.wall(Side::Primary), system.wall(Side::Obstacle)];
+        let (near, far) = if system.has_walls() {
+            (near, far.min(near + 10.0 * reach / omega))
+        } else {
+            (system.rest_distance() - 3.0 * reach / omega, system.rest_distance() + 3.0 * reach / omega)
+        };
+        let signed = |dimension: u32| 2.0 * sobol(number, dimension) - 1.0;
+        let x1 = reach / omega * signed(1);
+        [x1, reach * signed(2), x1 + near + (far - near) * sobol(number, 3), 2.0 * reach * signed(4)]
+    }
+}
+
+/// A coordinate of a point of a Sobol sequence; each sequence has [`LENGTH`] points.
+fn sobol(number: usize, dimension: u32) -> f64 {
+    f64::from(sobol_burley::sample((number % LENGTH) as u32, dimension, 1 + (number / LENGTH) as u32))
 }

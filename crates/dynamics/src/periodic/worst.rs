@@ -1,7 +1,7 @@
 //! The largest value of a quantity over all motions of a scene in a range of a parameter: exact on branches of stable periodic motions, and of
 //! runs where none is known.
 
-use super::branches::{Branches, Interval, Plan, Watch, branches, sample};
+use super::branches::{Branches, Interval, Plan, Watch, branches, stable_ranges};
 use super::largest::largest;
 use super::look::{Attractor, Sample};
 use super::orbit::Orbit;
@@ -24,8 +24,26 @@ pub struct Largest {
     pub orbit: Option<Orbit>,
     /// Whether runs from rest that were made end on its branch, or did not settle either.
     pub from_rest: bool,
-    /// The largest share of the starts at one value of the parameter that end on its branch.
-    pub share: f64,
+    /// Who gets there.
+    pub share: Share,
+}
+
+/// How many starts end on a motion or its branch, of those that were made where it is stable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Those that end there.
+    pub ends: usize,
+    /// All of them.
+    pub starts: usize,
+    /// The least and the largest value of the parameter at which it is stable.
+    pub within: Interval,
+}
+
+impl Share {
+    /// As a number; 0 where no start was made.
+    pub fn of_starts(&self) -> f64 {
+        if self.starts == 0 { 0.0 } else { self.ends as f64 / self.starts as f64 }
+    }
 }
 
 /// What motions there are in a range.
@@ -62,36 +80,43 @@ pub fn motions(
     settings: &Settings,
     quantities: &[fn(&Seen) -> f64],
 ) -> Result<Motions, Error> {
-    let [from, to] = plan.range;
-    if from == to {
-        let found = sample(scene, plan, settings, from)?;
-        let covered = if found.attractors.is_empty() { 0.0 } else { 1.0 };
-        let of = |quantity: &fn(&Seen) -> f64| found.largest(*quantity);
-        let largest: Vec<_> = quantities.iter().map(of).collect();
-        let runs = largest.first().cloned().flatten().filter(|_| covered == 0.0);
-        let irregular = runs.map(|runs| ([from, to], runs.value)).into_iter().collect();
-        return Ok(Motions { largest, covered, irregular });
+    Ok(Motions::of(&branches(scene, plan, settings, Watch::default())?, quantities))
+}
+
+impl Motions {
+    /// Of what was found.
+    pub fn of(found: &Branches, quantities: &[fn(&Seen) -> f64]) -> Self {
+        let [from, to] = found.plan.range;
+        let largest = quantities.iter().map(|quantity| found.largest(*quantity)).collect();
+        if from == to {
+            let is_stable = found.samples.iter().any(|sample| !sample.attractors.is_empty());
+            let runs = found.samples.iter().flat_map(|sample| &sample.irregular);
+            let runs = quantities.first().and_then(|quantity| runs.map(quantity).max_by(f64::total_cmp));
+            let irregular = runs.filter(|_| !is_stable).map(|runs| ([from, to], runs)).into_iter().collect();
+            return Self { largest, covered: f64::from(u8::from(is_stable)), irregular };
+        }
+        let [stable, irregular] = found.stable_and_irregular();
+        let covered = stable.iter().map(|[low, high]| high - low).sum::<f64>() / (to - from);
+        let irregular = irregular.into_iter().filter(|[low, high]| high - low > NARROW * (to - from));
+        let irregular = irregular.map(|[low, high]| {
+            let within = |sample: &&Sample| sample.value >= low && sample.value <= high;
+            let runs = found.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
+            ([low, high], quantities.first().map_or(0.0, |quantity| runs.map(quantity).fold(0.0, f64::max)))
+        });
+        Self { largest, covered, irregular: irregular.collect() }
     }
-    let found = branches(scene, plan, settings, Watch::default())?;
-    let [stable, irregular] = found.stable_and_irregular();
-    let covered = stable.iter().map(|[low, high]| high - low).sum::<f64>() / (to - from);
-    let irregular = irregular.into_iter().filter(|[low, high]| high - low > NARROW * (to - from));
-    let irregular = irregular.map(|[low, high]| {
-        let within = |sample: &&Sample| sample.value >= low && sample.value <= high;
-        let runs = found.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
-        ([low, high], quantities.first().map_or(0.0, |quantity| runs.map(quantity).fold(0.0, f64::max)))
-    });
-    Ok(Motions {
-        largest: quantities.iter().map(|quantity| found.largest(*quantity)).collect(),
-        covered,
-        irregular: irregular.collect(),
-    })
+}
+
+/// How wide a motion that a share of all starts lead to must be, as a share of a range, for the probability that none of so many starts,
+/// independent and even over the range, leads there to be `missed`: `(1 - share width)^starts = missed`.
+pub fn width_missed(starts: usize, share: f64, missed: f64) -> f64 {
+    (1.0 - missed.powf(1.0 / starts as f64)) / share
 }
 
 impl Sample {
     /// The largest value at this sample.
     fn largest(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
-        let share = |starts: usize| starts as f64 / self.starts as f64;
+        let share = |ends: usize| Share { ends, starts: self.starts, within: [self.value; 2] };
         let periodic = self.attractors.iter().map(|Attractor { orbit, starts, from_rest, .. }| Largest {
             value: quantity(&orbit.seen),
             at: self.value,
@@ -99,19 +124,14 @@ impl Sample {
             from_rest: *from_rest,
             share: share(*starts),
         });
-        periodic.chain(self.irregular(quantity)).max_by(|a, b| a.value.total_cmp(&b.value))
-    }
-
-    /// The largest value of the runs that did not settle.
-    fn irregular(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
-        let most = self.irregular.iter().map(quantity).max_by(f64::total_cmp)?;
-        Some(Largest {
+        let irregular = self.irregular.iter().map(quantity).max_by(f64::total_cmp).map(|most| Largest {
             value: most,
             at: self.value,
             orbit: None,
             from_rest: self.rest_is_irregular,
-            share: self.irregular.len() as f64 / self.starts as f64,
-        })
+            share: share(self.irregular.len()),
+        });
+        periodic.chain(irregular).max_by(|a, b| a.value.total_cmp(&b.value))
     }
 }
 
@@ -121,6 +141,27 @@ impl Branches {
         let all =
             self.samples.iter().flat_map(|sample| sample.attractors.iter().map(move |one| (sample, one)));
         all.filter(move |(_, one)| one.branch == Some(number))
+    }
+
+    /// How many of the starts over the range, where a branch has stable motions, end on it.
+    pub fn share(&self, number: usize) -> Share {
+        let ranges = stable_ranges(&self.branches[number]);
+        let is_within = |value: f64| ranges.iter().any(|[low, high]| (*low..=*high).contains(&value));
+        let all = self.samples.iter().filter(|sample| sample.number.is_some() && is_within(sample.value));
+        let ends = |sample: &&Sample| sample.attractors.iter().any(|one| one.branch == Some(number));
+        let within = ranges.iter().fold([f64::MAX, f64::MIN], |[low, high], part| [low.min(part[0]), high.max(part[1])]);
+        Share { ends: all.clone().filter(ends).count(), starts: all.count(), within }
+    }
+
+    /// The same of the runs that do not settle, over the part of the range without a stable motion in which one is.
+    fn irregular_share(&self, one: Largest) -> Largest {
+        let [_, irregular] = self.stable_and_irregular();
+        let Some([low, high]) = irregular.into_iter().find(|[low, high]| (*low..=*high).contains(&one.at)) else {
+            return one;
+        };
+        let all = self.samples.iter().filter(|sample| (low..=high).contains(&sample.value));
+        let ends = all.clone().map(|sample| sample.irregular.len()).sum();
+        Largest { share: Share { ends, starts: all.map(|sample| sample.starts).sum(), within: [low, high] }, ..one }
     }
 
     /// Whether a run from rest that was made settles on a branch.
@@ -138,20 +179,20 @@ impl Branches {
         let all = self.largest_of_each(quantity).into_iter().enumerate();
         let on_branches = all.filter_map(|(number, orbit)| {
             let orbit = orbit?;
-            let shares = self.on(number).map(|(sample, one)| one.starts as f64 / sample.starts as f64);
             Some(Largest {
                 value: quantity(&orbit.seen),
                 at: orbit.value,
                 from_rest: self.is_reached_from_rest(number),
-                share: shares.fold(0.0, f64::max),
+                share: self.share(number),
                 orbit: Some(orbit),
             })
         });
         let others = self.samples.iter().flat_map(|sample| {
-            // A motion whose branch could not be followed counts where it was met.
+            // A motion whose branch could not be followed counts where it was met, and so does one that does not repeat.
             let alone = sample.attractors.iter().any(|one| one.branch.is_none());
-            [if alone { sample.largest(quantity) } else { None }, sample.irregular(quantity)]
+            (alone || !sample.irregular.is_empty()).then(|| sample.largest(quantity)).flatten()
         });
-        on_branches.chain(others.flatten()).max_by(|a, b| a.value.total_cmp(&b.value))
+        let others = others.map(|one| if one.orbit.is_none() { self.irregular_share(one) } else { one });
+        on_branches.chain(others).max_by(|a, b| a.value.total_cmp(&b.value))
     }
 }

@@ -72,11 +72,11 @@ class Result(Found):
 class Certificate(Found):
     """How far a design can be relied on; ``certificate.json`` as ``data``."""
 
-    #: The verdict: "robust", "edge", "sensitive" or "single chaotic realisation"; None if limits are broken.
+    #: The verdict: "robust", "edge", "from rest only", "sensitive" or "single chaotic realisation"; None if limits are broken.
     verdict: str | None
     #: The verdict in words.
     words: str
-    #: Largest numerical error of the value, in its unit.
+    #: Largest difference between the methods and tolerances of the convergence study, in the unit of the value.
     error_bar: float
 
     def __init__(self, data: dict[str, Any]) -> None:
@@ -85,7 +85,7 @@ class Certificate(Found):
         self.error_bar = float("nan") if data["error_bar"] is None else float(data["error_bar"])
 
     def _rows(self) -> list[list[object]]:
-        return [["verdict", self.words], ["numerical error at most", self.error_bar], ["motion", self.data["motion"].get("regime")]]
+        return [["verdict", self.words], ["methods differ by", self.error_bar], ["motion", self.data["motion"].get("regime")]]
 
 
 def asked(

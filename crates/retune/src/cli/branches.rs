@@ -21,10 +21,10 @@ pub struct Branches {
     /// Its largest value [default: of the band of the study, or 1.25 of its own]
     #[arg(long, value_name = "B")]
     pub to: Option<String>,
-    /// Number of values at which runs are started
+    /// Number of values at which runs are started from rest
     #[arg(long, value_name = "N", default_value_t = Asked::default().samples)]
     pub samples: usize,
-    /// Number of starts at each, beside that from rest
+    /// Number of other starts for each, spread over the whole range and the states that the force can reach
     #[arg(long, value_name = "N", default_value_t = Asked::default().starts)]
     pub starts: usize,
     /// Number of runs at each from whose states Newton's iteration is led to motions of one and two periods other than those known

@@ -1,14 +1,16 @@
 //! The contents of a certificate.
 
 mod limits;
+mod margin;
 mod measured;
 mod motions;
 mod text;
 mod verdict;
 
 pub use limits::{Kept, Near};
+pub use margin::{Error as ParameterError, Margin, Other};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
-pub use motions::{Another, Irregular, Motions, periodic};
+pub use motions::{Another, Irregular, MISSED, Motions, SHARE, periodic};
 pub use verdict::{Judged, Verdict};
 
 use crate::Error;
@@ -28,7 +30,7 @@ pub struct Certificate {
     /// The objective's value.
     #[serde(flatten)]
     pub(crate) value: Amount,
-    /// Largest difference of a run of the convergence study to the worst run, or of `finer` to the value.
+    /// Largest difference of a run of the convergence study to the worst run: how far the methods agree.
     pub(crate) error_bar: f64,
     pub(crate) predictable: bool,
     /// null where the design breaks a limit.
@@ -50,6 +52,9 @@ pub struct Certificate {
     /// Every motion that was found, from rest and from other starts, where the damper can strike and the force has a period.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) motions: Option<Motions>,
+    /// How far the force and the parameters may be off before another motion has 5 % more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) margin: Option<Margin>,
     pub(crate) sensitivity: Vec<Sensitivity>,
     pub(crate) neighbourhood: Neighbourhood,
 }
@@ -62,6 +67,9 @@ pub struct Short {
     error_bar: f64,
     #[serde(skip)]
     quantity: Measure,
+    /// Methods and tolerances that are compared.
+    #[serde(skip)]
+    methods: usize,
     predictable: bool,
     regime: String,
     exponent: f64,
@@ -74,9 +82,10 @@ impl Short {
     /// The verdict in words, with the error bar.
     pub fn verdict_words(&self) -> String {
         if !self.error_bar.is_finite() {
-            return format!("{} (numerical error unknown)", self.words);
+            return format!("{} (not computed by all methods)", self.words);
         }
-        format!("{} (numerical error at most {:.0e} {})", self.words, self.error_bar, self.quantity.unit())
+        let Self { words, methods, error_bar, quantity, .. } = self;
+        format!("{words} ({methods} methods and tolerances differ by {error_bar:.1e} {})", quantity.unit())
     }
 
     /// Whether the value is one of many that practically equal designs have.
@@ -110,7 +119,7 @@ impl Certificate {
     pub(super) fn new(study: &Study, damper: &Damper, own: &Evaluation, measured: Measured) -> Self {
         let value = Amount::new(study.quantity(), own.energy);
         let Judged { error_bar, predictable, verdict, words } = measured.judged(value);
-        let Measured { worst_run, convergence, finer, motion, motions, sensitivity, neighbourhood, limits } =
+        let Measured { worst_run, convergence, finer, motion, motions, margin, sensitivity, neighbourhood, limits } =
             measured;
         Self {
             made_by: MadeBy::new(study),
@@ -120,16 +129,22 @@ impl Certificate {
             predictable,
             verdict,
             words,
-            rule: verdict::rule(value.quantity, limits.is_some()),
+            rule: verdict::rule(value.quantity, limits.is_some(), study.certificate),
             limits,
             worst_run,
             convergence,
             finer,
             motion,
             motions,
+            margin,
             sensitivity,
             neighbourhood,
         }
+    }
+
+    /// The force up to which no other motion has 5 % more, as a multiple of its own; 0 where that was not looked at.
+    pub(crate) fn safe_to(&self) -> f64 {
+        self.margin.as_ref().map_or(0.0, |margin| margin.safe_to)
     }
 
     /// Whether it has all measurements. One of [`judge`](crate::certify::judge) lacks the motions from other starts where the verdict was
@@ -149,7 +164,8 @@ impl Certificate {
     /// The short form.
     pub fn short(&self) -> Short {
         let Self { verdict, words, error_bar, value, predictable, motion, .. } = self.clone();
+        let methods = self.convergence.len();
         let Motion { regime, exponent, sentence, .. } = motion;
-        Short { verdict, words, error_bar, quantity: value.quantity, predictable, regime, exponent, sentence }
+        Short { verdict, words, error_bar, quantity: value.quantity, methods, predictable, regime, exponent, sentence }
     }
 }

@@ -73,14 +73,15 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
     };
     let limits = Kept::new(&goal.limits, &own.reached, &near);
     let mut measured =
-        Measured { worst_run, convergence, finer, motion, motions: None, sensitivity, neighbourhood, limits };
+        Measured { worst_run, convergence, finer, motion, motions: None, margin: None, sensitivity, neighbourhood, limits };
     let so_far = measured.judged(Amount::new(quantity, own.energy)).verdict;
     let decide = matches!(so_far, Some(Verdict::Robust | Verdict::Edge));
     if (decide || others == OtherStarts::Always)
-        && let Some((motions, reached)) = coexisting(&study.scene, &own, &goal, &settings)?
+        && let Some(found) = coexisting(&study.scene, &own, &goal, &settings, study.certificate)?
     {
-        near.push(Near { at: "on a motion from another start".to_owned(), neighbour: false, reached });
-        measured.motions = Some(motions);
+        let at = "on a motion from another start".to_owned();
+        near.push(Near { at, neighbour: false, reached: found.reached });
+        (measured.motions, measured.margin) = (Some(found.motions), found.margin);
         measured.limits = Kept::new(&goal.limits, &own.reached, &near);
     }
     Ok(Certificate::new(study, damper, &own, measured))
@@ -131,7 +132,8 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
 /// `near`.
 fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Vec<Sensitivity> {
     let omega = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none()).then_some("omega");
-    let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(omega);
+    let force = ["P", "imbalance", "base"];
+    let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(force).chain(omega);
     let known =
         names.filter_map(|name| Some((name, study.value_of(name)?))).filter(|(_, value)| *value != 0.0);
     let known: Vec<(&'static str, f64)> = known.collect();

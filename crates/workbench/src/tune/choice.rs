@@ -32,18 +32,26 @@ impl PassedOver {
     }
 }
 
-/// The place of the choice among designs in the order of their values: the first that is robust; else the first of which no other motion is much
-/// worse than that from rest; else the first.
-fn place(verdicts: &[Option<Verdict>]) -> usize {
-    let rank = |verdict: Option<Verdict>| match verdict {
-        Some(Verdict::Robust) => 0,
-        Some(Verdict::FromRest) => 2,
-        _ => 1,
+/// Margins of the force that differ by less than this, as multiples of it, are as good.
+const SAME_MARGIN: f64 = 0.01;
+
+/// The place of the choice among designs in the order of their values: the first that is robust, of these the one with the largest margin of the
+/// force; else the first of which no other motion is much worse than that from rest; else the first.
+fn place(all: &[(Option<Verdict>, f64)]) -> usize {
+    let rank = |(verdict, safe_to): (Option<Verdict>, f64)| match verdict {
+        Some(Verdict::Robust) => (0, -(safe_to / SAME_MARGIN).round()),
+        Some(Verdict::FromRest) => (2, 0.0),
+        _ => (1, 0.0),
     };
-    (0..verdicts.len()).min_by_key(|&i| rank(verdicts[i])).unwrap_or(0)
+    let order = |a: &usize, b: &usize| {
+        let [(a, far), (b, farther)] = [rank(all[*a]), rank(all[*b])];
+        a.cmp(&b).then(far.total_cmp(&farther))
+    };
+    (0..all.len()).min_by(order).unwrap_or(0)
 }
 
-/// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, and of those the best. The certificate of the
+/// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
+/// margin of the force, and of those the best. The certificate of the
 /// choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
 ///
 /// # Errors
@@ -73,15 +81,11 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
         Ok(Study { scene, ..study.clone() })
     };
     for number in order {
-        let certificate = judge(&of(number)?)?;
-        let is_robust = certificate.verdict == Some(Verdict::Robust);
-        seen.push((number, certificate));
-        if is_robust {
-            break;
-        }
+        seen.push((number, judge(&of(number)?)?));
     }
-    let verdicts: Vec<Option<Verdict>> = seen.iter().map(|(_, certificate)| certificate.verdict).collect();
-    let chosen = place(&verdicts);
+    let all: Vec<(Option<Verdict>, f64)> =
+        seen.iter().map(|(_, certificate)| (certificate.verdict, certificate.safe_to())).collect();
+    let chosen = place(&all);
     let passed = seen.iter().take(chosen).map(|(number, certificate)| PassedOver {
         start: number + 1,
         design: PerVariable::of(refined.objective.variables(), &refined.runs[*number].minimum.x),
@@ -100,13 +104,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn contract_the_best_robust_design_is_chosen() {
+    fn contract_the_robust_design_with_the_largest_margin_is_chosen() {
         use Verdict::{FromRest, Robust, Sensitive};
-        let choice = |verdicts: &[Verdict]| place(&verdicts.iter().copied().map(Some).collect::<Vec<_>>());
-        assert_eq!(choice(&[Sensitive, FromRest, Robust]), 2);
-        assert_eq!(choice(&[FromRest, Sensitive, Sensitive]), 1);
-        assert_eq!(choice(&[FromRest, FromRest]), 0);
-        assert_eq!(choice(&[Robust]), 0);
-        assert_eq!(place(&[Some(FromRest), None]), 1);
+        let choice = |all: &[(Verdict, f64)]| {
+            place(&all.iter().map(|(verdict, safe_to)| (Some(*verdict), *safe_to)).collect::<Vec<_>>())
+        };
+        assert_eq!(choice(&[(Sensitive, 0.0), (FromRest, 1.0), (Robust, 1.05)]), 2);
+        assert_eq!(choice(&[(FromRest, 1.0), (Sensitive, 0.0), (Sensitive, 0.0)]), 1);
+        assert_eq!(choice(&[(FromRest, 1.0), (FromRest, 1.0)]), 0);
+        assert_eq!(choice(&[(Robust, 1.101), (Robust, 1.104), (Robust, 1.19), (Robust, 1.191)]), 2);
+        assert_eq!(place(&[(Some(FromRest), 1.0), (None, 0.0)]), 1);
     }
 }

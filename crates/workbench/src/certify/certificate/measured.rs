@@ -1,6 +1,7 @@
 //! The measurements that a certificate is made from.
 
 use super::limits::Kept;
+use super::margin::Margin;
 use super::motions::Motions;
 use crate::amount::Amount;
 use retune_dynamics::{Kind, Regime};
@@ -80,6 +81,7 @@ pub struct Measured {
     pub finer: Option<f64>,
     pub motion: Motion,
     pub motions: Option<Motions>,
+    pub margin: Option<Margin>,
     pub sensitivity: Vec<Sensitivity>,
     pub neighbourhood: Neighbourhood,
     pub limits: Option<Kept>,

@@ -6,16 +6,27 @@ use retune_model::Measure;
 use retune_study::{counted, rounded, short};
 use serde::Serialize;
 
+/// The share of starts, and the probability, for which it is said how wide a motion may be that is missed.
+pub const SHARE: f64 = 0.3;
+pub const MISSED: f64 = 0.01;
+
 /// Every motion of the design that was found over the band, from rest and from other starts.
 #[derive(Clone, Debug, Serialize)]
 pub struct Motions {
-    /// The band, rad/s, and the stiffness of the structure, N/m: that of the worst run.
+    /// The band, rad/s, and the stiffness of the structure, N/m, for which the largest value is most above that of the runs from rest.
     pub from: f64,
     pub to: f64,
     pub k1: f64,
-    /// Frequencies at which runs were started, and starts at each beside that from rest.
+    /// All stiffnesses at which motions were looked for.
+    pub k1_of: Vec<f64>,
+    /// Frequencies at which runs were started from rest, and other starts over the band.
     pub samples: usize,
     pub starts: usize,
+    /// A motion on which 30 % of the starts end is missed with a probability below 1 % if it is wider than this, rad/s.
+    pub width_missed: f64,
+    /// The value of the runs from rest that it is compared with.
+    #[serde(skip)]
+    pub from_rest: f64,
     /// The share of the band over which a stable periodic motion is known.
     pub covered: f64,
     /// The largest value; null where nothing was found.
@@ -36,8 +47,9 @@ pub struct Another {
     pub impacts: String,
     /// Whether a run from rest leads to it, or to its branch elsewhere in the band.
     pub from_rest: bool,
-    /// The largest share of the starts at one frequency that end on it or on its branch.
-    pub share: f64,
+    /// How many starts end on it or on its branch, of those that were made where that is stable.
+    pub ends: usize,
+    pub starts: usize,
 }
 
 /// A part of the band without a known stable motion.
@@ -64,7 +76,8 @@ impl Another {
             periods: found.orbit.as_ref().map(|orbit| orbit.periods),
             impacts: found.orbit.as_ref().map(|orbit| orbit.seen.impacts.clone()).unwrap_or_default(),
             from_rest: found.from_rest,
-            share: found.share,
+            ends: found.share.ends,
+            starts: found.share.starts,
         }
     }
 
@@ -77,14 +90,10 @@ impl Another {
 
     /// How it is reached.
     pub fn reached(&self) -> String {
-        let share = match 100.0 * self.share {
-            0.0 => "no start that was made ends".to_owned(),
-            share => format!("up to {} % of the starts end", rounded(share, 2)),
-        };
         if self.from_rest {
             "runs from rest lead there".to_owned()
         } else {
-            format!("{share} there, none from rest")
+            format!("{} of {} starts where it is stable end there, none from rest", self.ends, self.starts)
         }
     }
 }
@@ -105,6 +114,33 @@ impl Motions {
             }
         };
         let covered = rounded(100.0 * self.covered, 3);
-        format!("stable periodic ones are known over {covered} % of the band; {largest}{irregular}")
+        let Self { from, to, k1_of, samples, starts, .. } = self;
+        let k1: Vec<String> = k1_of.iter().map(|k1| short(*k1)).collect();
+        let over = if from == to {
+            format!("at {} rad/s", short(*from))
+        } else {
+            format!("and {samples} from rest over {} to {} rad/s", short(*from), short(*to))
+        };
+        let k1 = k1.join(", ");
+        format!("by {starts} starts {over}, k1 = {k1} N/m: stable periodic ones are known over {covered} % of the band; {largest}{irregular}")
+    }
+
+    /// What the starts may miss.
+    pub fn missed(&self) -> String {
+        if self.from == self.to {
+            return format!("{} starts at one frequency", self.starts);
+        }
+        format!(
+            "a motion on which {} % of the starts end is missed by {} starts with a probability below {} % if it is wider than {} rad/s",
+            100.0 * SHARE,
+            self.starts,
+            100.0 * MISSED,
+            rounded(self.width_missed, 2)
+        )
+    }
+
+    /// The largest value as a share of that of the runs from rest.
+    pub fn ratio(&self) -> f64 {
+        self.largest.as_ref().map_or(0.0, |one| one.value.value / self.from_rest)
     }
 }

@@ -19,7 +19,7 @@ fn bar(error: f64, quantity: Measure) -> String {
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { words, error_bar, quantity, regime, exponent, .. } = self;
-        write!(f, "certificate: {words}\n  {} ± {}, ", quantity.name(), bar(*error_bar, *quantity))?;
+        write!(f, "certificate: {words}\n  methods differ by {}, ", bar(*error_bar, *quantity))?;
         write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
     }
 }
@@ -33,7 +33,9 @@ impl std::fmt::Display for Certificate {
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());
         let said = |value: f64| said(value, quantity);
-        writeln!(f, "{name:<14}{} ± {}, {predictable}", said(value), bar(*error_bar, quantity))?;
+        let methods = self.convergence.len();
+        let bar = bar(*error_bar, quantity);
+        writeln!(f, "{name:<14}{}, {predictable}: {methods} methods and tolerances differ by {bar}", said(value))?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let (omega, k1) = (short(*omega), short(*k1));
@@ -44,12 +46,16 @@ impl std::fmt::Display for Certificate {
             writeln!(f, "  {method:<14}{digits}")?;
         }
         if let Some(finer) = self.finer {
-            writeln!(f, "finer band    {} with {FINER} times the samples", said(finer))?;
+            writeln!(f, "samples       the value is a lower bound; {} with {FINER} times the samples", said(finer))?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
         if let Some(motions) = &self.motions {
             writeln!(f, "motions       {}", motions.words())?;
+            writeln!(f, "              {}", motions.missed())?;
+        }
+        if let Some(margin) = &self.margin {
+            writeln!(f, "margin        {}", margin.words())?;
         }
         writeln!(f, "exponent      {exponent:.4} ± {exponent_error:.4} /s, the largest Lyapunov exponent")?;
         writeln!(

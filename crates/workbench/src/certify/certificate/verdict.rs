@@ -1,9 +1,9 @@
 //! The verdict of a certificate, and its rule.
 
-use super::measured::{Measured, Neighbourhood, Sensitivity};
+use super::measured::{FINER, Measured, Neighbourhood, Sensitivity};
 use crate::amount::{Amount, measured};
 use retune_model::Measure;
-use retune_study::short;
+use retune_study::{Margins, short};
 use serde::Serialize;
 
 /// Largest error bar of a predictable value, as a share of it.
@@ -22,7 +22,7 @@ pub enum Verdict {
     /// Small errors change little, but other starts, or frequencies between the samples, lead to a motion with much more.
     #[serde(rename = "from rest only")]
     FromRest,
-    /// Small errors change the value little, but break a limit.
+    /// Small errors change the value little, but break a limit, or bring a motion with much more from other starts.
     Edge,
     /// Small errors change much, in a regular way or at an edge.
     Sensitive,
@@ -58,8 +58,7 @@ pub struct Judged {
 impl Measured {
     /// What they say of a design with this value.
     pub fn judged(&self, value: Amount) -> Judged {
-        let missed = self.finer.map_or(0.0, |finer| (finer - value.value).abs());
-        let error_bar = self.convergence.iter().map(|run| run.error(&self.worst_run)).fold(missed, f64::max);
+        let error_bar = self.convergence.iter().map(|run| run.error(&self.worst_run)).fold(0.0, f64::max);
         let predictable = is_predictable(error_bar, self.worst_run.value.value);
         let (verdict, words) = judge(value, error_bar, predictable, self);
         Judged { error_bar, predictable, verdict, words }
@@ -107,6 +106,11 @@ fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -
     if !narrow {
         return (Verdict::Sensitive, format!("sensitive: {near}"));
     }
+    if let Some(finer) = all.finer.filter(|finer| !small(finer - own)) {
+        let finer = if finer.is_finite() { measured(finer, quantity) } else { NONE.to_owned() };
+        let words = format!("robust on the samples of the study only: {FINER} times as many have {finer}; {near}");
+        return (Verdict::FromRest, words);
+    }
     // The parameter whose error of 1 % raises E1max most.
     let worst = sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
     let said = worst.map_or(String::new(), |Sensitivity { parameter, worst, worst_at_percent, .. }| {
@@ -122,23 +126,36 @@ fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -
         Some(worst) if worst.worst > (1.0 + SENSITIVE) * own => {
             (Verdict::Sensitive, format!("sensitive: {said}, {} times as much", short(worst.worst / own)))
         }
-        _ => match all.motions.as_ref().and_then(|motions| motions.largest.as_ref()) {
-            Some(other) if other.value.value > (1.0 + WIDE) * own => {
-                let motion = other.words();
-                let words = if other.from_rest {
-                    format!(
-                        "robust on the runs of the study only: {said}; but runs from rest between its samples, or longer ones, lead to {motion}"
-                    )
-                } else {
-                    format!("robust from rest only: {said}; but a motion has {motion}; {}", other.reached())
-                };
-                (Verdict::FromRest, words)
-            }
-            other => {
-                let others = if other.is_some() { "; no motion from other starts has 5 % more" } else { "" };
-                (Verdict::Robust, format!("robust: at worst {said}{others}"))
-            }
-        },
+        _ => judge_motions(all, &said),
+    }
+}
+
+/// The verdict on the other motions of a design that is robust from rest; `said` is what the worst of its errors does.
+fn judge_motions(all: &Measured, said: &str) -> (Verdict, String) {
+    let Some(motions) = &all.motions else {
+        return (Verdict::Robust, format!("robust: at worst {said}; other starts not looked at"));
+    };
+    if let Some(other) = motions.largest.as_ref().filter(|_| motions.ratio() > 1.0 + WIDE) {
+        let motion = other.words();
+        let words = if other.from_rest {
+            format!(
+                "robust on the runs of the study only: {said}; but runs from rest between its samples, or longer ones, lead to {motion}"
+            )
+        } else {
+            format!("robust from rest only: {said}; but a motion has {motion}; {}", other.reached())
+        };
+        return (Verdict::FromRest, words);
+    }
+    match all.margin.as_ref() {
+        Some(margin) if margin.is_short() => {
+            (Verdict::Edge, format!("on the edge of another motion: {}; from rest, {said}", margin.words()))
+        }
+        margin => {
+            let margin = margin.map_or(String::new(), |margin| format!("; {}", margin.words()));
+            let starts = motions.starts;
+            let words = format!("robust: at worst {said}; none of {starts} starts leads to 5 % more{margin}");
+            (Verdict::Robust, words)
+        }
     }
 }
 
@@ -157,19 +174,24 @@ pub(super) fn between(low: f64, high: f64, quantity: Measure) -> String {
 }
 
 /// The rule in words; `limits` says whether the study has limits.
-pub fn rule(quantity: Measure, limits: bool) -> String {
+pub fn rule(quantity: Measure, limits: bool, Margins { force, errors }: Margins) -> String {
     let name = quantity.name();
-    let edge = if limits {
-        "; edge: as robust, but a neighbour, 1 % of one parameter, or a sample more of the band breaks a limit; no verdict: the \
-         design itself breaks one"
+    let limits = if limits {
+        ", or a neighbour, 1 % of one parameter, or a sample more of the band breaks a limit; no verdict: the design itself breaks one"
     } else {
         ""
     };
+    let edge = format!(
+        "edge: as robust, but a motion with {} % more is there for {} % more force or with an error of {} % of one parameter{limits}",
+        100.0 * WIDE,
+        100.0 * force,
+        100.0 * errors
+    );
     format!(
-        "wide: the error bar, or the width of the middle 90 % of the neighbours, is above {} % of {name}; single chaotic realisation: wide, and the \
+        "wide: the difference of methods, or the width of the middle 90 % of the neighbours, is above {} % of {name}; single chaotic realisation: wide, and the \
          motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sensitive: \
          wide, or 1 % of one parameter raises {name} by more than {} %; from rest only: none of these, but a motion from \
-         another start or between the samples has {} % more; robust: none of these{edge}. predictable: the error bar is at \
+         another start or between the samples has {} % more; {edge}; robust: none of these. predictable: methods differ by at \
          most {} % of the worst run's {name}",
         100.0 * WIDE,
         100.0 * SENSITIVE,
