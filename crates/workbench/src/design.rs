@@ -15,7 +15,6 @@ use crate::look::look;
 use crate::searches::Searches;
 use crate::{Error, Observer, Request, resolved};
 use retune_model::Measure;
-use retune_optim::Limit;
 use retune_study::{Rule, Setting, Study, clipped};
 use serde_json::json;
 
