@@ -178,6 +178,12 @@ hunt-repeats SCENES="42000":
     RETUNE_REPEATS={{SCENES}} cargo test --package retune-solver --test repeats -- --nocapture | grep -E '^\|' > results/robustness/repeats.rows
     cat tests/repeats.md results/robustness/repeats.rows > results/robustness/repeats.md && rm results/robustness/repeats.rows && cat results/robustness/repeats.md
 
+# Compare what is told of designs with runs at 2001 frequencies, DAMPERS random structures and dampers of two kinds: results/robustness/needs.md
+hunt-needs DAMPERS="50":
+    mkdir -p results/robustness
+    RETUNE_NEEDS={{DAMPERS}} cargo test --release --package retune-optim --test needs reference_ -- --nocapture | grep -E '^\|' > results/robustness/needs.rows
+    cat tests/needs.md results/robustness/needs.rows > results/robustness/needs.md && rm results/robustness/needs.rows && cat results/robustness/needs.md
+
 # Compare what a search of peaks between 31 samples finds with 1201 samples, DAMPERS dampers of two kinds: results/robustness/peaks.md
 hunt-peaks DAMPERS="3000":
     mkdir -p results/robustness

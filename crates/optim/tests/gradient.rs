@@ -140,7 +140,13 @@ fn reference_compositions() {
 #[test]
 fn reference_broken_limits() {
     let [stroke, force, cavity] = [0.2, 1e4, 0.3].map(|limit| Some(positive(limit)));
-    let limits = Limits { stroke, force, cavity, from: NonNegative::new(1.0).ok() };
+    let limits = Limits {
+        stroke,
+        contact_force: force,
+        cavity,
+        from: NonNegative::new(1.0).ok(),
+        ..Limits::default()
+    };
     // No contact at the end, which would cut the largest force off; and the largest values come before the window.
     let window = Window { from: 8.2, to: 8.3 };
     for omega in [None, band(31)] {

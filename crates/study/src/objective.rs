@@ -129,11 +129,24 @@ pub(super) fn check_energy(study: &Study) -> Result<(), Rule> {
     }
 }
 
-/// Checks the rules that serde cannot; `end` is the end of the run, s.
+/// Checks the rules that serde cannot, for an objective and a forcing; `end` is the end of the run, s.
 ///
 /// # Errors
 /// The [`Rule`] that is broken.
-pub(super) fn check_limits(limits: &Limits, end: f64) -> Result<(), Rule> {
+pub(super) fn check_limits(
+    limits: &Limits,
+    objective: &Objective,
+    forcing: &Forcing,
+    end: f64,
+) -> Result<(), Rule> {
+    let steady = objective.terms().iter().any(|(_, term)| term.response == Response::Steady);
+    if let (Some(most), Source::Base(_), true) = (limits.ground_force, forcing.source, steady) {
+        return Err(Rule::NotAllowed {
+            field: "optimize.limits.ground_force".to_owned(),
+            value: most.get().to_string(),
+            allowed: "another response: on a moving base this quantity has no closed form here",
+        });
+    }
     match limits.from {
         Some(from) if from.get() >= end => Err(Rule::NotAllowed {
             field: "optimize.limits.from".to_owned(),

@@ -48,6 +48,9 @@ class Result(Found):
     fun: float
     #: Whether it keeps the limits.
     success: bool
+    #: For "damper", "none" and the best linear "TMD" the largest value of each measure over all that the answer covers, from rest on, with its
+    #: place: ``result.needs["damper"]["a1max"]["value"]``, ``["omega"]``, ``["k1"]``; empty where the design cannot be run.
+    needs: dict[str, Any]
     #: The directory of the results; ``report.html`` is the page to open first.
     out: Path
     problem: Problem
@@ -58,6 +61,7 @@ class Result(Found):
         self.x = np.array([self.data[name] for name in problem.names])
         self.fun = float(self.data[problem.quantity[0]])
         self.success = self.data["certificate"]["verdict"] is not None
+        self.needs = self.data.get("needs") or {}
 
     def _rows(self) -> list[list[object]]:
         quantity, unit = self.problem.quantity
