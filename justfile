@@ -190,6 +190,13 @@ hunt-peaks DAMPERS="3000":
     RETUNE_PEAKS={{DAMPERS}} cargo test --release --package retune-optim --test peaks -- --nocapture | grep -E '^\|' > results/robustness/peaks.rows
     cat tests/peaks.md results/robustness/peaks.rows > results/robustness/peaks.md && rm results/robustness/peaks.rows && cat results/robustness/peaks.md
 
+# Hold searches under limits against SciPy's differential evolution with twenty times the evaluations, TMDS and SSVIS random structures (needs numpy and scipy for python3): results/robustness/limits.md
+hunt-limits TMDS="300" SSVIS="40":
+    cargo build --release --package retune
+    mkdir -p results/robustness
+    python3 tests/limits.py target/release/retune {{TMDS}} {{SSVIS}} > results/robustness/limits.rows
+    cat tests/limits.md results/robustness/limits.rows > results/robustness/limits.md && rm results/robustness/limits.rows && cat results/robustness/limits.md
+
 # Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
 test-settled SCENES="4000":
     RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture

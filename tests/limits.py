@@ -9,8 +9,10 @@ rows of results/robustness/limits.md; `just hunt-limits` puts them behind tests/
     python3 tests/limits.py target/release/retune TMDS SSVIS
 """
 
+import concurrent.futures
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -144,11 +146,14 @@ def main():
     retune, *counts = sys.argv[1:]
     for kind, count in zip(WORSE, map(int, counts)):
         rows = []
-        for number in range(count):
-            found, other, evaluations = one(retune, kind, number)
-            rows.append((found, other, evaluations))
-            if found is None and other is not None or None not in (found, other) and found > (1 + WORSE[kind]) * other:
-                print(f"{kind} {number}: {found} for {other}", file=sys.stderr, flush=True)
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            for number, row in enumerate(pool.map(lambda number: one(retune, kind, number), range(count))):
+                found, other, _ = row
+                rows.append(row)
+                if found is None and other is not None or None not in (found, other) and found > (1 + WORSE[kind]) * other:
+                    print(f"{kind} {number}: {found} for {other}", file=sys.stderr, flush=True)
+        if not rows:
+            continue
         both = [found / other - 1 for found, other, _ in rows if None not in (found, other)]
         share = WORSE[kind]
         cells = [

@@ -5,7 +5,7 @@ mod scenes;
 
 use retune_model::{NonNegative, Positive};
 use retune_optim::{
-    FrequencyBand, Goal, Limits, Objective, PeakEnergy, Scale, Side, Space, Variable, minimax,
+    FrequencyBand, Goal, Limits, Objective, PeakEnergy, Response, Scale, Side, Space, Variable, minimax,
 };
 use retune_solver::{Settings, Window};
 use scenes::TMD;
@@ -67,4 +67,38 @@ fn regress_a_descent_ends_in_the_kink() {
     let (x, found) = minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, &start, 1e-8);
     assert!(found.worst < 434.97, "{found:?} at {x:?}");
     assert_eq!(x[0], 400.0);
+}
+
+/// The slopes of the peaks of a steady response, at each of its two peaks and of the stroke, against differences.
+#[test]
+fn exact_steady_slopes_are_differences_of_the_closed_form() {
+    let limits = Limits { stroke: Some(positive(0.3)), ..Limits::default() };
+    let goal = objective(limits).goal().clone();
+    let steady = Objective { response: Response::Steady, ..goal.objective.clone() };
+    let goal = Goal { objective: steady, ..goal };
+    let variables = vec![Variable::K2, Variable::C2];
+    let of = PeakEnergy::new(TMD.scene(), TMD.damper(), variables, goal, Settings::default());
+    let at = [2083.0, 100.0];
+    let sorted = |x: &[f64]| {
+        let (_, runs) = of.look(x, f64::INFINITY);
+        let mut pieces = of.pieces(x, &runs);
+        pieces.sort_by(|a, b| a.is_limit.cmp(&b.is_limit).then(b.value.total_cmp(&a.value)));
+        pieces
+    };
+    let pieces = sorted(&at);
+    let energies = pieces.iter().filter(|piece| !piece.is_limit).count();
+    assert!(energies >= 2 && pieces.len() > energies, "{pieces:?}");
+    for (i, own) in at.iter().enumerate() {
+        let step = 1e-5 * own;
+        let beside = [1.0, -1.0].map(|sign| {
+            let mut x = at;
+            x[i] += sign * step;
+            sorted(&x)
+        });
+        for (number, piece) in pieces.iter().enumerate() {
+            let difference = (beside[0][number].value - beside[1][number].value) / (2.0 * step);
+            let error = (piece.slope[i] - difference).abs() * own / (1.0 + piece.value.abs());
+            assert!(error < 1e-5, "parameter {i} of piece {number}: {} {difference}", piece.slope[i]);
+        }
+    }
 }

@@ -100,7 +100,7 @@ fn contract_a_failed_run_exits_with_1_not_2() {
     assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
 }
 
-/// As long as no design keeps the limits: by the search, by one that is finished already, and by the certificate.
+/// As long as none is found that keeps the limits: by the search, by one that is finished already, and by the certificate.
 #[test]
 fn contract_limits_that_no_design_keeps_exit_with_3() {
     let desk = Desk::new();
@@ -111,7 +111,7 @@ fn contract_limits_that_no_design_keeps_exit_with_3() {
     desk.write_json("none.json", &study);
     let Answer { code, stdout, stderr } = desk.run(&["optimize", "none.json", "--quiet"]);
     let stdout = flat(&stdout);
-    assert!(stdout.contains("NO DESIGN KEEPS THE LIMITS; the nearest: stroke "), "{stdout}");
+    assert!(stdout.contains("NONE FOUND THAT KEEPS THE LIMITS in "), "{stdout}");
     let words = "no verdict, for the design breaks the limit of stroke: ";
     assert!(stdout.contains(&format!("verdict {words}")), "{stdout}");
     assert_eq!(code, Some(3));

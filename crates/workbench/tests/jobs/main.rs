@@ -8,6 +8,7 @@ mod design;
 mod desk;
 mod evaluate;
 mod interrupted;
+mod limits;
 mod links;
 mod motions;
 mod observers;
