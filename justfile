@@ -322,7 +322,7 @@ lint:
     python3 tests/imports.py
     cargo clippy --all-targets -- -D warnings
 
-# Speed against accuracy of every method and peer, on six scenes, into results/accuracy
+# Speed against accuracy of every method and peer, on six scenes, into results/accuracy (`just accuracy manifest`: only what `verify` reads)
 accuracy *OPTIONS:
     cargo run --profile bench -p retune-bench --features integrators --bin accuracy "$@"
 
@@ -332,7 +332,7 @@ accuracy-external:
     python3 tests/reference/external/scipy_methods.py
     cargo run --profile bench -p retune-bench --features integrators --bin accuracy draw
 
-# Where methods fail, and how, into results/stability
+# Where methods fail, and how, into results/stability (`just stability manifest`: only what `verify` reads)
 stability *OPTIONS:
     cargo run --profile bench -p retune-bench --bin stability "$@"
 

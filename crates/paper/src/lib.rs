@@ -117,7 +117,9 @@ fn write(item: &Item, results: &Directory) -> Result<(), Error> {
 
 /// The verdicts of an item, for the screen.
 fn report(item: &Item) -> String {
-    let lines =
-        item.statements.iter().map(|s| format!("\n  {:<14} {} ({})", s.verdict.words(), s.paper, s.found));
+    let lines = item.statements.iter().map(|s| {
+        let whose = if s.conjecture { "our conjecture: " } else { "" };
+        format!("\n  {:<14} {whose}{} ({})", s.verdict.words(), s.paper, s.found)
+    });
     format!("{}{}", item.title, lines.collect::<String>())
 }

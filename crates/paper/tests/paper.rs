@@ -4,10 +4,12 @@
 mod desk;
 #[path = "../../workbench/tests/jobs/observers.rs"]
 mod observers;
+#[path = "../../workbench/tests/jobs/verified.rs"]
+mod verified;
 
 use desk::{Desk, committed};
 use observers::{Record, good, refused};
-use retune_paper::reproduce;
+use retune_paper::{OTHERS, reproduce};
 use retune_store::Error as StoreError;
 use retune_study::StudyError;
 use retune_workbench::{Error, Request, Silent};
@@ -100,6 +102,12 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     }
     assert_eq!(page.matches("class=\"verdict\"").count(), verdicts);
     assert!(verdicts >= 20, "{verdicts}");
+    let conjectures = page.matches("<b>Our conjecture: </b>").count();
+    assert_eq!(conjectures, 2);
+    assert!(page.contains(&format!("Of {} statements", verdicts - conjectures)), "conjectures do not count");
+    let settings = desk.read("one/figures-table-1.csv");
+    let head = "figure,statement,R = 0.1 m,R = 0.5 m,R = 2 m,R = 5 m,R = 10 m,0 to 10 s,2.5 to 10 s\n";
+    assert!(settings.starts_with(head) && settings.lines().count() > 20, "{settings}");
     assert!(said.trim_end().ends_with("table2-table-2.csv"), "{said}");
 }
 
@@ -124,6 +132,7 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     let names = [
         "figure5.svg",
         "figure6-statements.json",
+        "figure6-table-1.csv",
         "figure6.csv",
         "figure6.svg",
         "manifest.json",
@@ -159,6 +168,31 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     let table = desk.read("tables/table2-table-1.csv");
     assert!(table.contains("SSVI NES,the paper's,215,232,0.06,0.36,"), "{table}");
     assert!(table.contains("TMD,the paper's,600,262,2.08,4.7,"), "{table}");
+}
+
+/// What an item says is made again, from the designs of its searches, and a digit or a verdict that was changed is found.
+#[test]
+fn contract_items_are_made_again_and_a_change_is_found() {
+    let desk = small();
+    good(reproduce(&request(&desk, "out"), Some("figure6"), &Silent));
+    let said = verified::holds(&desk, "out", 1, OTHERS);
+    let line = "figure6-statements.json with its tables and data made again: the same to the last bit";
+    assert!(said.contains(line), "{said}");
+    for (name, from, to) in [
+        ("figure6-statements.json", "\"verdict\": \"holds\"", "\"verdict\": \"fails\""),
+        ("figure6-table-1.csv", "TMD", "TMB"),
+        ("figure6.csv", "0,0,", "0,1,"),
+    ] {
+        let file = format!("out/{name}");
+        let whole = desk.read(&file);
+        assert!(whole.contains(from), "{name}: {whole}");
+        desk.write(&file, whole.replacen(from, to, 1));
+        let verified::End::Not(problem) = verified::look(&desk, "out", 1, 0.0, OTHERS).1 else {
+            panic!("{name}: it holds")
+        };
+        assert!(problem.contains("figure6-statements.json, 1 differs"), "{problem}");
+        desk.write(&file, whole);
+    }
 }
 
 /// A figure that is made again keeps the others in the manifest.
