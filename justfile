@@ -197,6 +197,12 @@ hunt-limits TMDS="300" SSVIS="40":
     python3 tests/limits.py target/release/retune {{TMDS}} {{SSVIS}} > results/robustness/limits.rows
     cat tests/limits.md results/robustness/limits.rows > results/robustness/limits.md && rm results/robustness/limits.rows && cat results/robustness/limits.md
 
+# Look at designs that certificates call robust from eight times as many starts, DESIGNS of each of three families: results/robustness/robust.md
+hunt-robust DESIGNS="100":
+    mkdir -p results/robustness
+    RETUNE_ROBUST={{DESIGNS}} cargo test --release --package retune-workbench --test robust -- --nocapture --ignored | grep -E '^\|' > results/robustness/robust.rows
+    cat tests/robust.md results/robustness/robust.rows > results/robustness/robust.md && rm results/robustness/robust.rows && cat results/robustness/robust.md
+
 # Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
 test-settled SCENES="4000":
     RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture

@@ -25,17 +25,18 @@ const NEAR: f64 = 0.02;
 /// Golden sections about the least of them.
 const SECTIONS: usize = 30;
 
-/// Looks for it. None where the answer is not along ω, nothing has an amplitude, or there is such a motion already.
+/// Looks for it. None where the answer is not along ω, or nothing has an amplitude. Where there is such a motion already, nothing above the own force is
+/// tried.
 ///
 /// # Errors
 /// A scene cannot be run.
 pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
     let plan = found.branches.plan;
     let own = Parameter::P.of(&found.study.scene).filter(|own| *own > 0.0);
-    let Some(own) = own.filter(|_| plan.parameter == Parameter::Omega && others(found).next().is_none())
-    else {
-        return Ok(None);
-    };
+    let Some(own) = own.filter(|_| plan.parameter == Parameter::Omega) else { return Ok(None) };
+    if others(found).next().is_some() {
+        return Ok(Some(Margin { own, birth: None, tried: own }));
+    }
     let first_birth = |force: f64| -> Result<Option<(f64, Orbit)>, Error> {
         let scene = Parameter::P.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
         let there = branches(&scene, plan, &found.study.solver.settings(), Watch::default())?;
@@ -104,13 +105,17 @@ impl Margin {
     pub fn words(&self) -> String {
         let Self { own, birth, tried } = self;
         match birth {
+            None if tried == own => {
+                "A motion that no run from rest leads to, with much more energy, is there at the scene's own force already: it has no margin."
+                    .to_owned()
+            }
             None => format!(
                 "No isola was found up to {} times the force, {} N.",
                 retune_study::short(tried / own),
                 retune_study::short(*tried)
             ),
             Some((omega, birth)) => format!(
-                "Up to {} times the force, {} N, there is no isola; with more, one begins at omega = {} rad/s, {} J ({} \
+                "Up to {} times the force, {} N, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
                  periods, impacts {}).",
                 retune_study::rounded(birth.value / own, 6),
                 retune_study::rounded(birth.value, 8),

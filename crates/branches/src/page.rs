@@ -250,7 +250,8 @@ fn attractors(found: &Found) -> Block {
     let plan = &found.branches.plan;
     let mut rows = Vec::new();
     for sample in &found.branches.samples {
-        let is_usual = |one: &Attractor| one.branch.is_some_and(|branch| found.branches.is_reached_from_rest(branch));
+        let is_usual =
+            |one: &Attractor| one.branch.is_some_and(|branch| found.branches.is_reached_from_rest(branch));
         for one in sample.attractors.iter().filter(|one| !is_usual(one)) {
             rows.push(vec![
                 rounded(sample.value, 6),
@@ -283,7 +284,9 @@ fn attractors(found: &Found) -> Block {
     let words = if rows.is_empty() {
         "All starts end on branches that runs from rest lead to.".to_owned()
     } else {
-        format!("Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all.")
+        format!(
+            "Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all."
+        )
     };
     Block::Table(words, head.to_vec(), rows)
 }

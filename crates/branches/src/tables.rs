@@ -55,8 +55,9 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
             );
         }
     }
-    let mut attractors =
-        format!("{symbol},start,motion,branch,periods,impacts,starts_of,starts,from_rest,E1max,x1,v1,x2,v2\n");
+    let mut attractors = format!(
+        "{symbol},start,motion,branch,periods,impacts,starts_of,starts,from_rest,E1max,x1,v1,x2,v2\n"
+    );
     for sample in &found.branches.samples {
         let (value, all) = (sample.value, sample.starts);
         let number = sample.number.map(|number| number.to_string()).unwrap_or_default();

@@ -30,9 +30,11 @@ fn on_isola(omega: f64) -> Option<(Shooting, Solution)> {
     let scene = shooting.scene_at(omega).expect("a scene");
     let system = shooting.system(omega).expect("a system");
     let starts = Starts::over(&scene, Parameter::Omega, [omega; 2]).expect("starts");
-    (0..16).map(|number| starts.state(number, &system)).find_map(|y| match settle(&shooting, omega, y).expect("a run") {
-        Settled::On(2, solution) => Some((shooting.of_periods(2), solution)),
-        _ => None,
+    (0..16).map(|number| starts.state(number, &system)).find_map(|y| {
+        match settle(&shooting, omega, y).expect("a run") {
+            Settled::On(2, solution) => Some((shooting.of_periods(2), solution)),
+            _ => None,
+        }
     })
 }
 

@@ -64,8 +64,11 @@ fn reference_robust_beside_a_harder_look() {
     let draws: u32 = std::env::var("RETUNE_ROBUST").map_or(2, |count| count.parse().expect("a number"));
     let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/ssvi-isola.json");
     let study = retune_study::read(&studies).expect("a study");
-    let families: [(&str, Draw); 3] =
-        [("within 10 % of designs in results", perturbed), ("the wider gap anywhere", far_gap), ("other structures", structure)];
+    let families: [(&str, Draw); 3] = [
+        ("within 10 % of designs in results", perturbed),
+        ("the wider gap anywhere", far_gap),
+        ("other structures", structure),
+    ];
     println!("| family | designs | robust | edge | from rest only | other | false | median time, s |");
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (family, (name, draw)) in families.into_iter().enumerate() {
@@ -77,7 +80,8 @@ fn reference_robust_beside_a_harder_look() {
                 dimension += 1;
                 f64::from(sobol_burley::sample(number, dimension, 100 + family as u32))
             };
-            let settings: Vec<Setting> = draw(&mut u).into_iter().map(|(name, value)| Setting::new(name, value)).collect();
+            let settings: Vec<Setting> =
+                draw(&mut u).into_iter().map(|(name, value)| Setting::new(name, value)).collect();
             let Ok(study) = study.with(&settings) else { continue };
             let begun = Instant::now();
             let Ok(certificate) = judge(&study) else { continue };
@@ -108,6 +112,7 @@ fn hard(study: &Study) -> f64 {
     let [samples, starts] = HARD;
     let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
     let plan = Plan { samples, starts, looks: SPACINGS.len(), ..over };
-    let found = motions(&study.scene, plan, &study.solver.settings(), &[|seen| seen.e1_max]).expect("motions");
+    let found =
+        motions(&study.scene, plan, &study.solver.settings(), &[|seen| seen.e1_max]).expect("motions");
     found.largest[0].as_ref().map_or(0.0, |largest| largest.value)
 }

@@ -39,7 +39,9 @@ impl Branches {
 
     /// The motions of as many periods on all branches at a value.
     pub(super) fn at(&self, shooting: &Shooting, value: f64) -> Vec<Solution> {
-        self.near(shooting, value, 0..self.branches.len()).filter_map(|(.., guess)| shooting.correct_at_value(&guess)).collect()
+        self.near(shooting, value, 0..self.branches.len())
+            .filter_map(|(.., guess)| shooting.correct_at_value(&guess))
+            .collect()
     }
 
     /// The places at which branches of as many periods pass a value: their numbers, the motions on either side, and that between them.

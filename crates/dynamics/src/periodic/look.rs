@@ -61,7 +61,14 @@ pub(super) struct Reached {
 
 impl Reached {
     fn nothing(value: f64, number: Option<usize>) -> Self {
-        Self { value, number, attractors: Vec::new(), irregular: Vec::new(), rest_is_irregular: false, starts: 0 }
+        Self {
+            value,
+            number,
+            attractors: Vec::new(),
+            irregular: Vec::new(),
+            rest_is_irregular: false,
+            starts: 0,
+        }
     }
 
     /// Adds what a run settles on.
@@ -78,7 +85,14 @@ impl Reached {
                 match known {
                     Some(known) => known.starts += 1,
                     None => {
-                        let end = End { periods, motion: solution, starts: 1, from_rest, branch: None, followed: false };
+                        let end = End {
+                            periods,
+                            motion: solution,
+                            starts: 1,
+                            from_rest,
+                            branch: None,
+                            followed: false,
+                        };
                         self.attractors.push(end);
                     }
                 }
@@ -93,7 +107,11 @@ impl Reached {
     }
 
     /// Looks for the branches of those motions whose branch is not known.
-    pub(super) fn find(&mut self, shooting: &Shooting, branch: impl Fn(&Shooting, &Solution) -> Option<usize>) {
+    pub(super) fn find(
+        &mut self,
+        shooting: &Shooting,
+        branch: impl Fn(&Shooting, &Solution) -> Option<usize>,
+    ) {
         for one in self.attractors.iter_mut().filter(|one| one.branch.is_none()) {
             one.branch = branch(&shooting.of_periods(one.periods), &one.motion);
         }

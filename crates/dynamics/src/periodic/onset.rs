@@ -8,9 +8,9 @@ use super::trace::trace;
 use retune_model::Parameter;
 
 /// Motions of a branch from which the parameter is changed.
-const SEEDS: usize = 9;
+const SEEDS: usize = 7;
 /// The unit of the parameter on the way, as a share of its value: steps are at most a fiftieth of this.
-const SPAN: f64 = 0.25;
+const SPAN: f64 = 0.5;
 /// Parabolas through the three lowest values, towards the least.
 const PARABOLAS: usize = 3;
 
@@ -36,11 +36,15 @@ pub struct Onset {
 impl Branches {
     /// Some stable motions along ω that count, of each branch that has any, and each motion whose branch is not known.
     pub fn seeds(&self, shooting: &Shooting, counts: impl Fn(&Orbit) -> bool) -> Vec<Vec<Seed>> {
-        let seed = |orbit: &Orbit| Seed { shooting: shooting.of_periods(orbit.periods), orbit: orbit.clone() };
+        let seed =
+            |orbit: &Orbit| Seed { shooting: shooting.of_periods(orbit.periods), orbit: orbit.clone() };
         let of_branches = self.branches.iter().map(|branch| {
             let all = 0..branch.points.len();
-            let all: Vec<&Orbit> =
-                all.filter(|i| branch.is_stable_at(*i)).map(|i| &branch.points[i]).filter(|orbit| counts(orbit)).collect();
+            let all: Vec<&Orbit> = all
+                .filter(|i| branch.is_stable_at(*i))
+                .map(|i| &branch.points[i])
+                .filter(|orbit| counts(orbit))
+                .collect();
             let last = all.len().saturating_sub(1);
             let mut places: Vec<usize> = (0..SEEDS).map(|i| i * last / (SEEDS - 1)).collect();
             places.dedup();
@@ -48,7 +52,8 @@ impl Branches {
             seeds.sort_by(|a, b| a.orbit.value.total_cmp(&b.orbit.value));
             seeds
         });
-        let alone = self.samples.iter().flat_map(|sample| &sample.attractors).filter(|one| one.branch.is_none());
+        let alone =
+            self.samples.iter().flat_map(|sample| &sample.attractors).filter(|one| one.branch.is_none());
         let alone = alone.map(|one| &one.orbit).filter(|orbit| counts(orbit)).map(|orbit| vec![seed(orbit)]);
         of_branches.chain(alone).filter(|seeds| !seeds.is_empty()).collect()
     }
@@ -86,7 +91,12 @@ impl Seed {
     }
 
     /// The least value of a parameter down to `to` at which it is there and counts.
-    fn onset(&self, parameter: Parameter, to: f64, counts: &(dyn Fn(&Orbit) -> bool + Sync)) -> Option<Onset> {
+    fn onset(
+        &self,
+        parameter: Parameter,
+        to: f64,
+        counts: &(dyn Fn(&Orbit) -> bool + Sync),
+    ) -> Option<Onset> {
         let points = self.along(parameter, to)?.into_iter().filter(counts);
         let orbit = points.min_by(|a, b| a.value.total_cmp(&b.value))?;
         Some(Onset { value: orbit.value, omega: self.orbit.value, orbit })
@@ -111,8 +121,12 @@ pub fn onset(
     let mut all: Vec<(Onset, &Seed)> =
         seeds.iter().filter_map(|seed| Some((seed.onset(parameter, to, counts)?, seed))).collect();
     for _ in 0..PARABOLAS {
-        let Some(least) = (0..all.len()).min_by(|a, b| all[*a].0.value.total_cmp(&all[*b].0.value)) else { break };
-        let Some(omega) = least.checked_sub(1).and_then(|first| lowest(all.get(first..first + 3)?)) else { break };
+        let Some(least) = (0..all.len()).min_by(|a, b| all[*a].0.value.total_cmp(&all[*b].0.value)) else {
+            break;
+        };
+        let Some(omega) = least.checked_sub(1).and_then(|first| lowest(all.get(first..first + 3)?)) else {
+            break;
+        };
         let seed = all[least].1;
         let Some(next) = seed.at(omega).and_then(|seed| seed.onset(parameter, to, counts)) else { break };
         if !(next.value > to && next.value < all[least].0.value) {

@@ -72,7 +72,7 @@ impl Branches {
             }
             Ok(found)
         };
-        let found: Result<Vec<Vec<Solution>>, Error> = 
+        let found: Result<Vec<Vec<Solution>>, Error> =
             self.samples.par_iter().filter(|sample| sample.number.is_none()).map(others).collect();
         for motion in found?.into_iter().flatten() {
             if self.holds(&own, &motion).is_none() {

@@ -149,19 +149,25 @@ impl Branches {
         let is_within = |value: f64| ranges.iter().any(|[low, high]| (*low..=*high).contains(&value));
         let all = self.samples.iter().filter(|sample| sample.number.is_some() && is_within(sample.value));
         let ends = |sample: &&Sample| sample.attractors.iter().any(|one| one.branch == Some(number));
-        let within = ranges.iter().fold([f64::MAX, f64::MIN], |[low, high], part| [low.min(part[0]), high.max(part[1])]);
+        let within = ranges
+            .iter()
+            .fold([f64::MAX, f64::MIN], |[low, high], part| [low.min(part[0]), high.max(part[1])]);
         Share { ends: all.clone().filter(ends).count(), starts: all.count(), within }
     }
 
     /// The same of the runs that do not settle, over the part of the range without a stable motion in which one is.
     fn irregular_share(&self, one: Largest) -> Largest {
         let [_, irregular] = self.stable_and_irregular();
-        let Some([low, high]) = irregular.into_iter().find(|[low, high]| (*low..=*high).contains(&one.at)) else {
+        let Some([low, high]) = irregular.into_iter().find(|[low, high]| (*low..=*high).contains(&one.at))
+        else {
             return one;
         };
         let all = self.samples.iter().filter(|sample| (low..=high).contains(&sample.value));
         let ends = all.clone().map(|sample| sample.irregular.len()).sum();
-        Largest { share: Share { ends, starts: all.map(|sample| sample.starts).sum(), within: [low, high] }, ..one }
+        Largest {
+            share: Share { ends, starts: all.map(|sample| sample.starts).sum(), within: [low, high] },
+            ..one
+        }
     }
 
     /// Whether a run from rest that was made settles on a branch.

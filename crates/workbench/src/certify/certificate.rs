@@ -119,8 +119,17 @@ impl Certificate {
     pub(super) fn new(study: &Study, damper: &Damper, own: &Evaluation, measured: Measured) -> Self {
         let value = Amount::new(study.quantity(), own.energy);
         let Judged { error_bar, predictable, verdict, words } = measured.judged(value);
-        let Measured { worst_run, convergence, finer, motion, motions, margin, sensitivity, neighbourhood, limits } =
-            measured;
+        let Measured {
+            worst_run,
+            convergence,
+            finer,
+            motion,
+            motions,
+            margin,
+            sensitivity,
+            neighbourhood,
+            limits,
+        } = measured;
         Self {
             made_by: MadeBy::new(study),
             design: TunedDamper::of(damper),
@@ -166,6 +175,16 @@ impl Certificate {
         let Self { verdict, words, error_bar, value, predictable, motion, .. } = self.clone();
         let methods = self.convergence.len();
         let Motion { regime, exponent, sentence, .. } = motion;
-        Short { verdict, words, error_bar, quantity: value.quantity, methods, predictable, regime, exponent, sentence }
+        Short {
+            verdict,
+            words,
+            error_bar,
+            quantity: value.quantity,
+            methods,
+            predictable,
+            regime,
+            exponent,
+            sentence,
+        }
     }
 }

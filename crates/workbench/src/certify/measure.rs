@@ -72,8 +72,17 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
         phase,
     };
     let limits = Kept::new(&goal.limits, &own.reached, &near);
-    let mut measured =
-        Measured { worst_run, convergence, finer, motion, motions: None, margin: None, sensitivity, neighbourhood, limits };
+    let mut measured = Measured {
+        worst_run,
+        convergence,
+        finer,
+        motion,
+        motions: None,
+        margin: None,
+        sensitivity,
+        neighbourhood,
+        limits,
+    };
     let so_far = measured.judged(Amount::new(quantity, own.energy)).verdict;
     let decide = matches!(so_far, Some(Verdict::Robust | Verdict::Edge));
     if (decide || others == OtherStarts::Always)

@@ -81,32 +81,34 @@ pub(super) fn coexisting(
     }
     let measure = goal.objective.quantity();
     let force = Parameter::P.of(scene).filter(|force| *force > 0.0);
-    let mut times = vec![1.0, 1.0 + needed.force, MORE];
-    times.retain(|times| *times == 1.0 || force.is_some() && *times > 1.0);
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let asked: Vec<(usize, f64)> = (0..places.len()).flat_map(|i| times.iter().map(move |times| (i, *times))).collect();
-    let at = |&(i, times): &(usize, f64)| Ok((i, places[i].at(times, settings)?));
-    let found: Result<Vec<(usize, AtForce)>, Unusable> = asked.par_iter().map(at).collect();
-    let (mut here, more): (Vec<_>, Vec<_>) = found?.into_iter().partition(|(_, found)| found.times == 1.0);
-    let mut margin = force.map(|_| Margin {
-        needed_force: 1.0 + needed.force,
-        forces: times[1..].to_vec(),
-        safe_to: times[times.len() - 1],
-        other: None,
-        needed_percent: 100.0 * needed.errors,
-        parameters: Vec::new(),
-    });
+    let look = |times: f64| {
+        let all: Result<Vec<_>, Unusable> =
+            places.par_iter().map(|place| place.at(times, settings)).collect();
+        all
+    };
+    let first = 1.0 + needed.force;
+    let (mut here, more) = if force.is_some() && first > 1.0 {
+        let (here, more) = rayon::join(|| look(1.0), || look(first));
+        (here?, more?)
+    } else {
+        (look(1.0)?, Vec::new())
+    };
+    let is_safe = |(place, found): (&Place, &AtForce)| {
+        found.branches.largest(quantity(measure)).is_none_or(|one| one.value <= MUCH * place.from_rest)
+    };
+    let mut margin = force.filter(|_| places.iter().zip(&here).all(is_safe)).map(|_| Margin::new(&needed));
     if let Some(margin) = &mut margin {
-        for (i, found) in &more {
-            for seed in places[*i].lower(found, measure, needed.errors, settings, margin)? {
-                here.iter_mut().filter(|(place, _)| place == i).for_each(|(_, found)| found.branches.adopt(&seed));
-            }
+        let mut there = margin.lower(&places, &more, measure, settings)?;
+        if margin.other.is_none() && first < MORE {
+            margin.safe_to = MORE;
+            margin.forces.push(MORE);
+            there.extend(margin.lower(&places, &look(MORE)?, measure, settings)?);
         }
+        there.iter().for_each(|(i, seed)| here[*i].branches.adopt(seed));
     }
     let mut reached = own.reached;
     let mut all = Vec::new();
-    for (i, AtForce { branches, .. }) in &here {
+    for (place, AtForce { branches, .. }) in places.iter().zip(&here) {
         let kinds: Vec<_> = [measure].iter().chain(&Measure::ALL).map(|measure| quantity(*measure)).collect();
         let found = retune_dynamics::periodic::Motions::of(branches, &kinds);
         for (measure, largest) in Measure::ALL.into_iter().zip(found.largest.iter().skip(1)) {
@@ -114,7 +116,7 @@ pub(super) fn coexisting(
             let value = largest.as_ref().map_or(0.0, |largest| largest.value);
             reached.set(limit, f64::max(reached.get(limit), value));
         }
-        all.push(places[*i].motions(measure, &found));
+        all.push(place.motions(measure, &found));
     }
     let mut k1_of: Vec<f64> = places.iter().map(|place| place.scene.primary.stiffness.get()).collect();
     k1_of.sort_by(f64::total_cmp);
@@ -130,8 +132,11 @@ fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> 
     let mut places = Vec::new();
     for (_, term) in &terms {
         let alone = Goal { objective: (*term).clone(), limits: Limits::default(), ..goal.clone() };
-        let from_rest =
-            if terms.len() == 1 { own.energy } else { alone.evaluate(scene, settings, f64::INFINITY)?.energy };
+        let from_rest = if terms.len() == 1 {
+            own.energy
+        } else {
+            alone.evaluate(scene, settings, f64::INFINITY)?.energy
+        };
         let own_k1 = scene.primary.stiffness.get();
         let k1 = match &term.k1 {
             None => vec![own_k1],
@@ -157,8 +162,7 @@ fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> 
 
 impl Place {
     fn plan(&self) -> Plan {
-        let starts = self.starts;
-        Plan { samples: SAMPLES, starts, looks: SPACINGS.len(), ..Plan::over(Parameter::Omega, self.band) }
+        Plan { samples: SAMPLES, starts: self.starts, ..Plan::over(Parameter::Omega, self.band) }
     }
 
     /// The motions for a multiple of the force.
@@ -169,7 +173,9 @@ impl Place {
         } else {
             self.goal.evaluate(&scene, settings, f64::INFINITY)?.energy
         };
-        let branches = branches(&scene, self.plan(), settings, Watch::default())?;
+        // Irregular windows are sampled densely at the own force alone: runs there take longest.
+        let plan = Plan { looks: if times == 1.0 { SPACINGS.len() } else { 0 }, ..self.plan() };
+        let branches = branches(&scene, plan, settings, Watch::default())?;
         Ok(AtForce { times, from_rest, branches })
     }
 
@@ -179,12 +185,12 @@ impl Place {
         &self,
         found: &AtForce,
         measure: Measure,
-        errors: f64,
         settings: &Settings,
         margin: &mut Margin,
     ) -> Result<Vec<Seed>, Unusable> {
         let of = quantity(measure);
         let own = Parameter::P.of(&self.scene).unwrap_or_default();
+        let errors = 0.01 * margin.needed_percent;
         // As a power of the force between the two that are known.
         let power = (found.from_rest / self.from_rest).ln() / found.times.ln();
         let much = move |times: f64| MUCH * self.from_rest * times.powf(power);
@@ -193,7 +199,8 @@ impl Place {
         let largest = found.branches.largest(of);
         if let Some(one) = largest.filter(|one| one.orbit.is_none() && one.value > much(found.times)) {
             // It cannot be followed: it may begin anywhere above the force that was looked at before.
-            let before = margin.forces.iter().copied().filter(|times| *times < found.times).fold(1.0, f64::max);
+            let before =
+                margin.forces.iter().copied().filter(|times| *times < found.times).fold(1.0, f64::max);
             let value = Amount::new(measure, one.value);
             let other = Other { value, omega: one.at, k1, periods: None, impacts: String::new() };
             margin.lower_to(before, other);
@@ -221,8 +228,10 @@ impl Place {
             for parameter in PARAMETERS {
                 let Some(value) = parameter.of(&self.scene).filter(|value| *value > 0.0) else { continue };
                 let at = |error: &f64| {
-                    let moved: Vec<Seed> =
-                        seeds.par_iter().filter_map(|seed| seed.moved(parameter, value * (1.0 + error))).collect();
+                    let moved: Vec<Seed> = seeds
+                        .par_iter()
+                        .filter_map(|seed| seed.moved(parameter, value * (1.0 + error)))
+                        .collect();
                     let onset = begins(&moved).filter(|moved| moved.value <= own)?;
                     Some((*error, onset))
                 };
@@ -254,13 +263,44 @@ impl Place {
             width_missed: (to - from) * width_missed(starts, SHARE, MISSED),
             from_rest: self.from_rest,
             covered: found.covered,
-            largest: found.largest.first().and_then(Option::as_ref).map(|largest| Another::new(quantity, largest)),
+            largest: found
+                .largest
+                .first()
+                .and_then(Option::as_ref)
+                .map(|largest| Another::new(quantity, largest)),
             irregular: irregular.collect(),
         }
     }
 }
 
 impl Margin {
+    /// Before any motion is found.
+    fn new(needed: &Margins) -> Self {
+        Self {
+            needed_force: 1.0 + needed.force,
+            forces: vec![1.0 + needed.force],
+            safe_to: 1.0 + needed.force,
+            other: None,
+            needed_percent: 100.0 * needed.errors,
+            parameters: Vec::new(),
+        }
+    }
+
+    /// Lowers it by what is found at more force; gives the motions that are there at the own force, each with the number of its place.
+    fn lower(
+        &mut self,
+        places: &[Place],
+        found: &[AtForce],
+        measure: Measure,
+        settings: &Settings,
+    ) -> Result<Vec<(usize, Seed)>, Unusable> {
+        let mut there = Vec::new();
+        for (i, (place, found)) in places.iter().zip(found).enumerate() {
+            there.extend(place.lower(found, measure, settings, self)?.into_iter().map(|seed| (i, seed)));
+        }
+        Ok(there)
+    }
+
     /// A motion that begins at a multiple of the force.
     fn lower_to(&mut self, times: f64, other: Other) {
         if times < self.safe_to {

@@ -3,7 +3,7 @@
 use crate::desk::{Desk, committed, number, studies, tiny};
 use crate::observers::good;
 use crate::{found, request};
-use retune_study::{Setting, Study};
+use retune_study::{Margins, Setting, Study};
 use retune_workbench::Silent;
 use retune_workbench::certify::certify;
 use retune_workbench::tune::tune;
@@ -15,7 +15,6 @@ fn isola() -> Study {
     retune_study::read(&studies().join("ssvi-isola.json")).expect("a study")
 }
 
-/// With 40 mm more D it is gone (28.1 mm at the frequency of its largest energy, a little more beside it).
 #[test]
 fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
     let certificate = good(certify(&isola()));
@@ -26,12 +25,38 @@ fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
     let largest = &seen["motions"]["largest"];
     assert!((number(largest, "/E1max") - 735.639).abs() < 1e-3, "{largest}");
     assert!((number(largest, "/omega") - 5.98192).abs() < 1e-4 && largest["from_rest"] == false, "{largest}");
-    assert!(largest["periods"] == 2 && (0.1..0.4).contains(&number(largest, "/share")), "{largest}");
+    let share = number(largest, "/ends") / number(largest, "/starts");
+    assert!(largest["periods"] == 2 && (0.25..0.5).contains(&share), "{largest}");
     assert!((0.9..1.0).contains(&number(&seen, "/motions/covered")), "{said}");
     assert!(said.contains("a motion has 735.639 J at omega = 5.98192 rad/s (2 periods, impacts "), "{said}");
-    let safe = isola().with(&[Setting::new("D", 0.607_212_882_590_035_9 + 0.04)]).expect("a study");
-    let safe = json!(good(certify(&safe)));
-    assert_eq!(safe["verdict"], "robust", "{}", safe["words"]);
+}
+
+/// With 44 mm more D the isola is gone, and back for a quarter of a per cent more force, or as much less D: an edge that runs at the design's own
+/// force alone do not show. With smaller margins asked for, it is robust.
+#[test]
+fn regress_a_design_beside_the_birth_of_an_isola_is_on_an_edge() {
+    let at = [
+        ("k2", 584.6096238462073),
+        ("c2", 95.01688820226694),
+        ("D", 0.6511167192459107),
+        ("C", 0.029018702541945184),
+    ];
+    let design = isola().with(&at.map(|(name, value)| Setting::new(name, value))).expect("a study");
+    let seen = json!(good(certify(&design)));
+    assert_eq!(seen["verdict"], "edge", "{}", seen["words"]);
+    let margin = &seen["margin"];
+    let safe_to = number(margin, "/safe_to");
+    assert!((1.0023..1.0026).contains(&safe_to), "{margin}");
+    let d = margin["parameters"].as_array().and_then(|all| all.iter().find(|one| one["parameter"] == "D"));
+    assert!((-0.3..-0.2).contains(&number(d.expect("D"), "/percent")), "{margin}");
+    let words = seen["words"].as_str().expect("words");
+    assert!(
+        words.starts_with("on the edge of another motion: safe to 1.0024 P; from there on a motion has "),
+        "{words}"
+    );
+    let mut loose = design;
+    loose.certificate = Margins { force: 0.002, errors: 0.001 };
+    assert_eq!(json!(good(certify(&loose)))["verdict"], "robust");
 }
 
 /// A window that ends before the motion has settled misses what the same run reaches later: no other start is needed for it.

@@ -63,7 +63,9 @@ impl Margin {
     /// In words.
     pub fn words(&self) -> String {
         let safe = percent_down(self.safe_to);
-        let Some(other) = &self.other else { return format!("safe to {safe} P, where none with 5 % more is found") };
+        let Some(other) = &self.other else {
+            return format!("safe to {safe} P, where none with 5 % more is found");
+        };
         let mut words = format!("safe to {safe} P; from there on a motion has {}", other.words());
         for Error { parameter, percent, other } in &self.parameters {
             words += &format!("; {parameter} off by {} % brings {}", rounded(*percent, 2), other.words());

@@ -122,7 +122,9 @@ impl Motions {
             format!("and {samples} from rest over {} to {} rad/s", short(*from), short(*to))
         };
         let k1 = k1.join(", ");
-        format!("by {starts} starts {over}, k1 = {k1} N/m: stable periodic ones are known over {covered} % of the band; {largest}{irregular}")
+        format!(
+            "by {starts} starts {over}, k1 = {k1} N/m: stable periodic ones are known over {covered} % of the band; {largest}{irregular}"
+        )
     }
 
     /// What the starts may miss.

@@ -35,7 +35,11 @@ impl std::fmt::Display for Certificate {
         let said = |value: f64| said(value, quantity);
         let methods = self.convergence.len();
         let bar = bar(*error_bar, quantity);
-        writeln!(f, "{name:<14}{}, {predictable}: {methods} methods and tolerances differ by {bar}", said(value))?;
+        writeln!(
+            f,
+            "{name:<14}{}, {predictable}: {methods} methods and tolerances differ by {bar}",
+            said(value)
+        )?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let (omega, k1) = (short(*omega), short(*k1));
@@ -46,7 +50,11 @@ impl std::fmt::Display for Certificate {
             writeln!(f, "  {method:<14}{digits}")?;
         }
         if let Some(finer) = self.finer {
-            writeln!(f, "samples       the value is a lower bound; {} with {FINER} times the samples", said(finer))?;
+            writeln!(
+                f,
+                "samples       the value is a lower bound; {} with {FINER} times the samples",
+                said(finer)
+            )?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;

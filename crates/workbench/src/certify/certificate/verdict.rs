@@ -108,7 +108,8 @@ fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -
     }
     if let Some(finer) = all.finer.filter(|finer| !small(finer - own)) {
         let finer = if finer.is_finite() { measured(finer, quantity) } else { NONE.to_owned() };
-        let words = format!("robust on the samples of the study only: {FINER} times as many have {finer}; {near}");
+        let words =
+            format!("robust on the samples of the study only: {FINER} times as many have {finer}; {near}");
         return (Verdict::FromRest, words);
     }
     // The parameter whose error of 1 % raises E1max most.
