@@ -38,7 +38,7 @@ fn main() {
         met(whole <= 120.0)
     );
     println!("response at 31 and at 301 frequencies: {:.1} ms and {:.1} ms", over(31), over(301));
-    let look = median(|| drop(motion::look(&study, None, 900)));
+    let look = median(|| drop(motion::look(&study, [50.0, 100.0], 900)));
     println!("run, time series and last periods: {look:.1} ms");
     let (run, series) = (
         median(|| drop(simulate(&study, None))),

@@ -1,6 +1,6 @@
 //! Every periodic motion over the band, stable or not, that runs from many starts lead to: what the curves of runs from rest do not show.
 
-use crate::limits::MOST_MOTIONS;
+use crate::limits::{MOST_MOTIONS, of_periods};
 use crate::protocol::Answer;
 use crate::response::{Stale, band};
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
@@ -50,7 +50,7 @@ pub fn follow(
         done: &|| send(progress(1 + done.fetch_add(1, SeqCst))),
         goes_on: &|| !is_stale() && made.fetch_add(1, SeqCst) < MOST_MOTIONS,
     };
-    let found = branches(&study.scene, plan, &study.solver.settings(), watch);
+    let found = branches(&study.scene, plan, &of_periods(study), watch);
     if is_stale() {
         return Err(Stale);
     }

@@ -1,5 +1,6 @@
 //! What kind of motion a run settles to; where it is irregular, how far its neighbours spread.
 
+use crate::limits::{of_periods, rows};
 use crate::motion::{CRESTS, period};
 use crate::protocol::Answer;
 use crate::response::Stale;
@@ -8,7 +9,7 @@ use rayon::prelude::*;
 use retune_dynamics::record::state;
 use retune_dynamics::{Kind, Record, Regime, Stretch, classify, follow};
 use retune_optim::Ensemble;
-use retune_solver::{Rows, Sample, Window, trajectory};
+use retune_solver::{Sample, Window, trajectory};
 use retune_study::{Study, rounded};
 
 /// Neighbours of an irregular motion: k1, k2, c2, D and C within 0.1 %. Each begins at a crest of the force, as the motion itself.
@@ -23,7 +24,7 @@ pub fn kind(study: &Study) -> (Answer, bool) {
         let label = if scene.forcing.frequency.get() == 0.0 { "free decay" } else { "1T, linear" };
         return (answer.with("label", label).with("irregular", false), false);
     }
-    let record = match follow(scene, None, Stretch::default(), &study.solver.settings()) {
+    let record = match follow(scene, None, Stretch::default(), &of_periods(study)) {
         Ok(record) => record,
         Err(error) => return (answer.with("label", "unknown").with("problem", error.to_string()), false),
     };
@@ -84,6 +85,7 @@ pub fn spread(
     let window = Window { from: span[0], to: span[1] };
     let columns = columns.min(400);
     let interval = ((span[1] - span[0]) / (4 * columns) as f64).min(period(study) / 24.0);
+    let Ok(rows) = rows(span, interval, true) else { return Ok(Answer::new("spread").with("members", 0)) };
     let member = |i: u32| {
         if is_stale() {
             return Err(Stale);
@@ -91,7 +93,6 @@ pub fn spread(
         let Ok((scene, _)) = NEIGHBOURS.member(&study.scene, i) else { return Ok(None) };
         let mut spread = Spread::new(span, columns);
         let visit = &mut |row: &Sample| spread.push(row.t, row.e1);
-        let rows = Rows { interval, events: true };
         let run = trajectory(&scene, window, &settings, rows, visit);
         let peak = retune_solver::e1_max(&scene, study.window.window(), &settings, f64::INFINITY);
         Ok(run.ok().zip(peak.ok()).map(|((), peak)| (spread, peak.value)))

@@ -15,7 +15,7 @@
 //! let start = Start::read(None)?;
 //! let place = Place { damper: Hung::Ssvi, set: [("k2".to_owned(), 300.0)].into() };
 //! let study = start.at(&place).map_err(|refused| refused.problem)?;
-//! let shown = motion::look(&study, None, 800).map_err(|refused| refused.problem)?;
+//! let shown = motion::look(&study, [50.0, 100.0], 800).map_err(|refused| refused.problem)?;
 //! assert!(shown.get("text").and_then(|text| text.as_str()).is_some_and(|text| text.contains("E1max")));
 //!
 //! // The rules are those of study files.

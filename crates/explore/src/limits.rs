@@ -1,6 +1,7 @@
 //! What bounds the work of one message. A study may ask for more in a file; a page that follows a slider may not.
 
 use crate::refused::Refused;
+use retune_solver::{Rows, Settings};
 use retune_study::Study;
 use std::f64::consts::TAU;
 
@@ -15,7 +16,13 @@ pub const MOST_PERIODS: f64 = 4000.0;
 /// Seconds of a run.
 pub const MOST_SECONDS: f64 = 20_000.0;
 /// Steps of a run.
-pub const MOST_STEPS: u64 = 1_000_000;
+pub const MOST_STEPS: u64 = 500_000;
+/// Steps of a period of the force, where a run goes from period to period.
+pub const MOST_STEPS_OF_A_PERIOD: u64 = 2_000;
+/// Rows of a motion, beside those of its contacts and maxima.
+pub const MOST_ROWS: f64 = 200_000.0;
+/// Parts of a run of which a page may show one.
+pub const MOST_PARTS: f64 = 1e6;
 /// Frequencies of a response curve.
 pub const MOST_SAMPLES: usize = 601;
 /// Runs behind one value of an objective that is tuned from the page.
@@ -24,6 +31,46 @@ pub const MOST_RUNS: usize = 20_000;
 pub const MOST_MOTIONS: u64 = 20_000;
 /// Evaluations of a tuning.
 pub const MOST_EVALUATIONS: u64 = 20_000;
+
+/// The span that is shown, s: within the run, and the window where it is beyond the end of the run or none was asked for.
+///
+/// # Errors
+/// It is too short a part of the run.
+pub fn shown(study: &Study, asked: Option<[f64; 2]>) -> Result<[f64; 2], Refused> {
+    let [t0, end] = [study.window.t0.get(), study.window.end.get()];
+    let [from, to] = asked.map_or([t0, end], |[from, to]| [from, to.min(end)]);
+    if from >= to {
+        return Ok([t0, end]);
+    }
+    if asked.is_some() && to - from < end / MOST_PARTS {
+        let least = end / MOST_PARTS;
+        return Err(Refused::of(
+            "span",
+            format!("{from} to {to} s is too short to be shown: at least {least} s"),
+        ));
+    }
+    Ok([from, to])
+}
+
+/// The moments of a motion over a span, an `interval` apart.
+///
+/// # Errors
+/// There are too many of them.
+pub fn rows([from, to]: [f64; 2], interval: f64, events: bool) -> Result<Rows, Refused> {
+    let rows = (to - from) / interval;
+    if rows <= MOST_ROWS {
+        return Ok(Rows { interval, events });
+    }
+    let problem =
+        format!("{rows:.0} rows from {from} to {to} s are too many for this page: at most {MOST_ROWS}");
+    Err(Refused::of("span", problem))
+}
+
+/// The settings of runs that go from period to period, each of which may take so many steps as a whole run otherwise.
+pub fn of_periods(study: &Study) -> Settings {
+    let settings = study.solver.settings();
+    Settings { max_steps: settings.max_steps.min(MOST_STEPS_OF_A_PERIOD), ..settings }
+}
 
 /// The study with no more steps than a message may ask for.
 ///

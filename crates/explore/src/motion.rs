@@ -1,11 +1,12 @@
 //! One run as the page shows it: the figures of `retune simulate`, time series for the screen, the last periods for the drawing and the
 //! phase portrait, and the state at each crest of the force.
 
+use crate::limits::rows;
 use crate::protocol::Answer;
 use crate::refused::Refused;
 use crate::thin::{Thin, Thinning};
 use retune_model::Coupled;
-use retune_solver::{Moment, Rows, Sample, Window, trajectory};
+use retune_solver::{Moment, Sample, Window, trajectory};
 use retune_study::{Study, rounded};
 use retune_workbench::simulate::{Simulation, simulate};
 use serde_json::{Value, json};
@@ -32,10 +33,8 @@ pub fn period(study: &Study) -> f64 {
 ///
 /// # Errors
 /// The run fails, with the time reached.
-pub fn look(study: &Study, span: Option<[f64; 2]>, columns: usize) -> Result<Answer, Refused> {
+pub fn look(study: &Study, span: [f64; 2], columns: usize) -> Result<Answer, Refused> {
     let Window { from: t0, to: end } = study.window.window();
-    let [from, to] = span.unwrap_or([t0, end]).map(|t| t.min(end));
-    let span = if from < to { [from, to] } else { [t0, end] };
     // Each is a run of its own; two at a time, because a page waits for them.
     let (series, (simulation, drawn, crests)) =
         rayon::join(|| series(study, span, columns), || (simulate(study, None), drawn(study), crests(study)));
@@ -64,10 +63,10 @@ pub fn look(study: &Study, span: Option<[f64; 2]>, columns: usize) -> Result<Ans
 fn visit(
     study: &Study,
     [from, to]: [f64; 2],
-    rows: Rows,
+    (interval, events): (f64, bool),
     visit: &mut dyn FnMut(&Sample),
 ) -> Result<(), Refused> {
-    let settings = study.solver.settings();
+    let (settings, rows) = (study.solver.settings(), rows([from, to], interval, events)?);
     trajectory(&study.scene, Window { from, to }, &settings, rows, visit).map_err(Refused::whole)
 }
 
@@ -77,22 +76,23 @@ fn visit(
 /// The run fails.
 pub fn series(study: &Study, span: [f64; 2], columns: usize) -> Result<(Thin<5>, Vec<f64>), Refused> {
     let interval = ((span[1] - span[0]) / (SHARP * columns as f64)).min(period(study) / ROWS);
-    let (mut series, mut contacts) = (Thinning::new(span, columns), Vec::new());
-    visit(study, span, Rows { interval, events: true }, &mut |row: &Sample| {
+    let (mut series, mut contacts) = (Thinning::new(span, columns), Thinning::new(span, columns));
+    visit(study, span, (interval, true), &mut |row: &Sample| {
         let [x1, _, x2, _] = row.state;
         series.push(row.t, [x1, x2 - x1, row.e1, row.forces[0], row.forces[1]]);
         if row.moment == Moment::ForceMax {
-            contacts.extend([row.t, x2 - x1]);
+            contacts.push(row.t, [x2 - x1]);
         }
     })?;
-    Ok((series.finish(), contacts))
+    let Thin { t, columns: [places] } = contacts.finish();
+    Ok((series.finish(), t.into_iter().zip(places).flat_map(|(t, place)| [t, place]).collect()))
 }
 
 /// The last periods: t, x1, v1, x2 - x1, v2 - v1.
 fn drawn(study: &Study) -> Result<[Vec<f64>; 5], Refused> {
     let (period, end) = (period(study), study.window.end.get());
     let mut columns: [Vec<f64>; 5] = Default::default();
-    visit(study, [(end - DRAWN * period).max(0.0), end], Rows::every(period / FINE), &mut |row: &Sample| {
+    visit(study, [(end - DRAWN * period).max(0.0), end], (period / FINE, false), &mut |row: &Sample| {
         let [x1, v1, x2, v2] = row.state;
         columns
             .iter_mut()
@@ -108,7 +108,7 @@ fn crests(study: &Study) -> Result<[Vec<f64>; 4], Refused> {
     let mut columns: [Vec<f64>; 4] = Default::default();
     let first = (study.window.t0.get() / period).ceil() * period;
     if study.scene.forcing.frequency.get() > 0.0 && first < end {
-        visit(study, [first, end], Rows::every(period), &mut |row: &Sample| {
+        visit(study, [first, end], (period, false), &mut |row: &Sample| {
             let [x1, v1, x2, v2] = row.state;
             columns.iter_mut().zip([x1, v1, x2 - x1, v2 - v1]).for_each(|(column, value)| column.push(value));
         })?;

@@ -1,8 +1,9 @@
 //! One page: its messages come in, answers go out. The latest message of a kind wins; work for an older one ends at its next run.
 
 use crate::kind::{kind, spread};
+use crate::limits::shown;
 use crate::motion::look;
-use crate::protocol::{Answer, Message, Place, read};
+use crate::protocol::{Answer, Message, Place, What, read};
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, Stale, bare, worst};
 use crate::start::Start;
@@ -32,6 +33,7 @@ struct Mail {
     look: Option<Look>,
     pins: [Option<Place>; 2],
     tune: Option<Place>,
+    write: Option<(Place, What, [Option<Place>; 2])>,
     ended: bool,
 }
 
@@ -120,10 +122,11 @@ impl Session<'_> {
             Message::Stop {} => {
                 self.tuned.fetch_add(1, SeqCst);
             }
-            Message::Write { place, what, pins } => match texts::written(self.start, &place, what, &pins) {
-                Ok(answer) => self.send(answer),
-                Err(refused) => self.send(refused.into()),
-            },
+            Message::Write { place, what, pins } => {
+                let mut mail = self.mail();
+                mail.write = Some((place, what, pins));
+                self.shown.fetch_add(1, SeqCst);
+            }
         }
         self.bell.notify_all();
     }
@@ -146,13 +149,15 @@ impl Session<'_> {
         enum Work {
             Look(Look),
             Pin(usize, Place),
+            Write(Place, What, [Option<Place>; 2]),
         }
         // Messages are counted while the mail is held, and so is the count read that tells whether there was another since.
         let work = |mail: &mut Mail| {
             let pin = |mail: &mut Mail| {
                 (0..2).find_map(|slot| mail.pins[slot].take().map(|place| Work::Pin(slot, place)))
             };
-            let work = mail.look.take().map(Work::Look).or_else(|| pin(mail))?;
+            let write = mail.write.take().map(|(place, what, pins)| Work::Write(place, what, pins));
+            let work = write.or_else(|| mail.look.take().map(Work::Look)).or_else(|| pin(mail))?;
             Some((work, self.shown.load(SeqCst)))
         };
         let mut known = Known::default();
@@ -160,6 +165,14 @@ impl Session<'_> {
             let Some((work, count)) = self.wait(work) else { return };
             let is_stale = || self.shown.load(SeqCst) != count;
             match work {
+                // Only with its page: a slider that moves on does not end what is to be saved.
+                Work::Write(place, what, pins) => {
+                    let has_gone = || self.mail().ended;
+                    match texts::written(self.start, &place, what, &pins, &has_gone) {
+                        Ok(answer) => self.send(answer),
+                        Err(refused) => self.send(refused.into()),
+                    }
+                }
                 Work::Look(look) => {
                     if self.look(&look, &mut known, &is_stale).is_err() {
                         self.mail().look.get_or_insert(look);
@@ -177,11 +190,11 @@ impl Session<'_> {
     /// The motion at once, then what takes longer.
     fn look(
         &self,
-        look: &Look,
+        asked: &Look,
         known: &mut Known,
         is_stale: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Stale> {
-        let Look { id, place, span, columns, branches: follows } = look;
+        let Look { id, place, span, columns, branches: follows } = asked;
         let send = |answer: Answer| match is_stale() {
             true => Err(Stale),
             false => {
@@ -193,10 +206,12 @@ impl Session<'_> {
             Ok(study) => study,
             Err(refused) => return send(refused.into()),
         };
-        match crate::motion::look(&study, *span, *columns) {
-            Ok(answer) => send(answer)?,
-            Err(refused) => return send(refused.into()),
-        }
+        let (span, answer) =
+            match shown(&study, *span).and_then(|span| Ok((span, look(&study, span, *columns)?))) {
+                Ok(found) => found,
+                Err(refused) => return send(refused.into()),
+            };
+        send(answer)?;
         let design = at_no_frequency(&study);
         // What the page will be sent of this design replaces what it has of another, in part or as a whole.
         known.response.take_if(|of| *of != design);
@@ -229,7 +244,6 @@ impl Session<'_> {
             send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
             known.response = Some(design.clone());
         }
-        let span = span.unwrap_or([study.window.t0.get(), study.window.end.get()]);
         if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
             send(spread(&study, span, *columns, is_stale)?)?;
             known.spread = Some((study.clone(), span));
@@ -253,7 +267,8 @@ impl Session<'_> {
 
     fn pin(&self, slot: usize, place: &Place, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<(), Stale> {
         let whose = ["A", "B"][slot];
-        let found = self.start.at(place).and_then(|study| Ok((look(&study, None, 1)?, study)));
+        let found =
+            self.start.at(place).and_then(|study| Ok((look(&study, shown(&study, None)?, 1)?, study)));
         let study = match found {
             Ok((run, study)) => {
                 let answer = Answer::new("pinned").with("whose", whose);

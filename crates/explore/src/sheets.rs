@@ -1,7 +1,7 @@
 //! Figures to take away: those of the page, drawn as the figures of all results are.
 
 use crate::refused::Refused;
-use crate::response::{CURVES, Curve, bare};
+use crate::response::{CURVES, Curve, Stale, bare};
 use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
 use retune_solver::Window;
@@ -61,17 +61,25 @@ pub fn motion(study: &Study) -> Result<String, Refused> {
 }
 
 /// The response over the band, beside that without a damper and those of the pinned designs A and B.
-pub fn response(study: &Study, pins: [Option<Study>; 2]) -> String {
+///
+/// # Errors
+/// The work has become stale.
+pub fn response(
+    study: &Study,
+    pins: [Option<Study>; 2],
+    is_stale: &(dyn Fn() -> bool + Sync),
+) -> Result<String, Stale> {
     let pins: Vec<((&str, Stroke), Study)> =
         PINNED.into_iter().zip(pins).filter_map(|(name, pin)| Some((name, pin?))).collect();
     let mut shown = vec![(NONE, "no damper".to_owned(), bare(study))];
     shown.extend(pins.iter().map(|((name, stroke), pin)| (*stroke, (*name).to_owned(), pin.clone())));
     shown.push((NOW, "this damper".to_owned(), study.clone()));
-    let curve = |study: &Study| -> Vec<(f64, f64)> {
-        let found = Curve::of(study).over(CURVES[1], &|| false);
-        found.map_or_else(|_| Vec::new(), |[omega, values]| omega.into_iter().zip(values).collect())
+    let curve = |study: &Study| -> Result<Vec<(f64, f64)>, Stale> {
+        let [omega, values] = Curve::of(study).over(CURVES[1], is_stale)?;
+        Ok(omega.into_iter().zip(values).collect())
     };
-    let curves: Vec<Vec<(f64, f64)>> = shown.iter().map(|(_, _, study)| curve(study)).collect();
+    let curves =
+        shown.iter().map(|(_, _, study)| curve(study)).collect::<Result<Vec<Vec<(f64, f64)>>, Stale>>()?;
     let top =
         curves.iter().flatten().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
     let lines =
@@ -82,7 +90,7 @@ pub fn response(study: &Study, pins: [Option<Study>; 2]) -> String {
     let name = study.quantity().name();
     let designs = pins.iter().map(|((name, _), pin)| format!("{name}: {}", words(pin)));
     let caption = [words(study)].into_iter().chain(designs).chain([MadeBy::new(study).to_string()]);
-    svg(&Sheet {
+    Ok(svg(&Sheet {
         title: format!("{name} over frequency"),
         description: format!("{name} over the band, with the damper and without. {}", words(study)),
         width: Width::Column,
@@ -98,7 +106,7 @@ pub fn response(study: &Study, pins: [Option<Study>; 2]) -> String {
         stacked: false,
         legend: shown.iter().map(|(stroke, words, _)| (Key::Line(*stroke), words.clone())).collect(),
         caption: caption.collect(),
-    })
+    }))
 }
 
 fn words(study: &Study) -> String {

@@ -4,7 +4,7 @@ use crate::limits::bounded;
 use crate::protocol::{Answer, Hung, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
-use retune_model::{Damper, NonNegative, Variable};
+use retune_model::{Contact, Damper, NonNegative, Variable};
 use retune_study::{PARAMETERS, Rule, Setting, Study, StudyError};
 use serde::Serialize;
 use serde_json::json;
@@ -72,12 +72,13 @@ impl Start {
         let none = || StudyError::Rule { file: "ssvi.json".to_owned(), rule: Rule::NoDamper };
         let other = default.scene.damper.ok_or_else(none)?;
         let study = study.unwrap_or(default);
-        // What the study's damper lacks is that of the paper's.
+        // The gaps that the study's damper lacks are those of the paper's; its walls follow its mass.
         let own = study.scene.damper.unwrap_or(other);
         let damper = if own.contact.is_some() {
             own
         } else {
-            let Damper { rest_distance, clearance, contact, .. } = other;
+            let Damper { rest_distance, clearance, .. } = other;
+            let contact = Contact::for_mass(own.mass).ok();
             Damper { rest_distance, clearance, contact, ..own }
         };
         Ok(Self { study, file, damper })

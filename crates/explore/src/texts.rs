@@ -2,6 +2,7 @@
 
 use crate::protocol::{Answer, Place, What};
 use crate::refused::Refused;
+use crate::response::Stale;
 use crate::sheets;
 use crate::start::Start;
 use retune_study::Study;
@@ -15,12 +16,13 @@ const MOST_ROWS: f64 = 200_000.0;
 /// A place in a form; of figures the response has the pinned designs, too.
 ///
 /// # Errors
-/// A study file could not have these numbers, or the run fails.
+/// A study file could not have these numbers, the run fails, or the work has become stale.
 pub fn written(
     start: &Start,
     place: &Place,
     what: What,
     pins: &[Option<Place>; 2],
+    is_stale: &(dyn Fn() -> bool + Sync),
 ) -> Result<Answer, Refused> {
     let name = start.study().name();
     let (file, text) = match what {
@@ -31,7 +33,11 @@ pub fn written(
         What::Picture => (format!("{name}-motion.svg"), sheets::motion(&start.at(place)?)?),
         What::Response => {
             let [a, b] = pins.each_ref().map(|pin| pin.as_ref().map(|place| start.at(place)).transpose());
-            (format!("{name}-response.svg"), sheets::response(&start.at(place)?, [a?, b?]))
+            (
+                format!("{name}-response.svg"),
+                sheets::response(&start.at(place)?, [a?, b?], is_stale)
+                    .map_err(|Stale| Refused::whole("the page has gone"))?,
+            )
         }
     };
     Ok(Answer::new("written").with("what", what).with("file", file).with("text", text))

@@ -1,13 +1,16 @@
 //! Rows of a motion thinned to the columns of pixels that show them. Every peak stays: of the rows in a column of pixels those remain at
 //! which some quantity is largest or smallest, and the first and the last.
 
+/// Rows that wait until their column of pixels is whole.
+const MOST_WAITING: usize = 4096;
+
 /// Rows of `N` quantities over time.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Thin<const N: usize> {
     /// The times, s.
     pub t: Vec<f64>,
     /// The quantities, each as a column.
-    pub columns: Vec<Vec<f64>>,
+    pub columns: [Vec<f64>; N],
 }
 
 /// Thins rows as they come.
@@ -23,7 +26,7 @@ pub struct Thinning<const N: usize> {
 impl<const N: usize> Thinning<N> {
     /// For a span of time, s, that is `columns` pixels wide.
     pub fn new([from, to]: [f64; 2], columns: usize) -> Self {
-        let kept = Thin { t: Vec::new(), columns: vec![Vec::new(); N] };
+        let kept = Thin { t: Vec::new(), columns: [const { Vec::new() }; N] };
         let width = (to - from) / columns.max(1) as f64;
         Self { from, width, column: 0.0, rows: Vec::new(), kept }
     }
@@ -35,6 +38,10 @@ impl<const N: usize> Thinning<N> {
             self.keep();
             self.column = column;
         }
+        if self.rows.len() == MOST_WAITING {
+            let stays = self.stays();
+            self.rows = stays.into_iter().map(|row| self.rows[row]).collect();
+        }
         self.rows.push((t, row));
     }
 
@@ -44,8 +51,9 @@ impl<const N: usize> Thinning<N> {
         self.kept
     }
 
-    fn keep(&mut self) {
-        let Some(last) = self.rows.len().checked_sub(1) else { return };
+    /// The rows of this column of pixels that stay.
+    fn stays(&self) -> Vec<usize> {
+        let Some(last) = self.rows.len().checked_sub(1) else { return Vec::new() };
         let mut stays = vec![0, last];
         for quantity in 0..N {
             let value = |row: &usize| self.rows[*row].1[quantity];
@@ -54,7 +62,11 @@ impl<const N: usize> Thinning<N> {
         }
         stays.sort_unstable();
         stays.dedup();
-        for (t, row) in stays.into_iter().map(|row| self.rows[row]) {
+        stays
+    }
+
+    fn keep(&mut self) {
+        for (t, row) in self.stays().into_iter().map(|row| self.rows[row]) {
             self.kept.t.push(t);
             self.kept.columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
         }

@@ -1,6 +1,6 @@
 //! The damper and the surfaces that it may strike.
 
-use crate::{NonNegative, PoissonRatio, Positive, hertz_stiffness};
+use crate::{NonNegative, OutOfRange, PoissonRatio, Positive, hertz_stiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -118,6 +118,28 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// The walls of a damper for which none are given: the surfaces of the paper's damper of 60 kg, their moduli in proportion to the mass
+    /// (kg). A contact then lasts as long, and is as deep, as one of the paper's at the same speed.
+    ///
+    /// # Errors
+    /// A modulus is beyond the numbers.
+    pub fn for_mass(mass: Positive) -> Result<Self, OutOfRange> {
+        let young = |paper: f64| Positive::new(paper * (mass.get() / 60.0));
+        let (steel, soft) = (PoissonRatio::new(0.3)?, PoissonRatio::new(0.4)?);
+        Ok(Self {
+            radius: Positive::new(2.0)?,
+            coefficient: Positive::new(0.318)?,
+            young_1: young(2.1e11)?,
+            poisson_1: steel,
+            young_2: young(2.21e7)?,
+            poisson_2: soft,
+            young_3: young(2.1e11)?,
+            poisson_3: steel,
+            young_4: young(2.05e7)?,
+            poisson_4: soft,
+        })
+    }
+
     /// Hertz stiffnesses `[K1, K3]` of the contacts with the primary structure and with the obstacle, N/m^1.5.
     pub fn stiffness(&self) -> [f64; 2] {
         let pair =

@@ -52,6 +52,7 @@ mod measure;
 mod regularised;
 mod scene;
 mod sensitivity;
+mod settling;
 mod steady;
 mod value;
 

@@ -85,12 +85,13 @@ def main() -> None:
         structure,
         rt.TMD(60, k2=1900, c2=150),
         P=800,
+        window=(50, 100),
         band=(5, 8),
         vary=["k2", "c2"],
         bounds={"k2": (500, 4000), "c2": (10, 1000)},
         response="steady",
     )
-    ssvi = rt.Problem(structure, rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36), P=800, omega=6.28, vary=list(bounds), bounds=bounds)
+    ssvi = rt.Problem(structure, rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36), P=800, omega=6.28, window=(50, 100), vary=list(bounds), bounds=bounds)
 
     print("What the Python package costs, and what it saves: `just test-python && just bench-python`\n")
     print(f"retune {rt.__version__}, Python {platform.python_version()}, numpy {np.__version__}, SciPy {scipy.__version__}")

@@ -20,6 +20,7 @@ PROBLEM = rt.Problem(
     rt.Structure(m1=1000, c1=452, k1=3.95e4),
     rt.TMD(60, k2=1900, c2=150),
     P=800,
+    window=(50, 100),
     band=(5, 8),
     vary=["k2", "c2"],
     bounds={"k2": (500, 4000), "c2": (10, 1000)},

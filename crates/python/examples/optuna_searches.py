@@ -9,6 +9,7 @@ problem = rt.Problem(
     rt.Structure(m1=1000, c1=452, k1=3.95e4),
     rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36),
     P=800,
+    window=(50, 100),
     omega=6.28,
     vary=["k2", "c2", "D", "C"],
     bounds={"k2": (10, 600), "c2": (1, 1000), "D": (0, 1), "C": (0, 2)},

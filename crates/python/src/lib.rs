@@ -31,7 +31,7 @@ mod _core {
     #[pymodule_export]
     use crate::motion::{run, sweep};
     #[pymodule_export]
-    use crate::problem::Core;
+    use crate::problem::{Core, contact};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

@@ -44,6 +44,7 @@ def ssvi() -> rt.Problem:
         rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36),
         P=800,
         omega=6.28,
+        window=(50, 100),
         vary=["k2", "c2", "D", "C"],
         bounds={"k2": (10, 600), "c2": (1, 1000), "D": (0, 1), "C": (0, 2)},
         limits={"stroke": 0.35, "contact_force": 2e4},

@@ -210,3 +210,60 @@ def test_contract_an_array_that_changes_meanwhile_is_not_read(ssvi: rt.Problem) 
     for batch in batches:
         same = (batch.value == before.value) | np.isinf(batch.value)
         assert same.all(), "each row is the design as it was, or not a number at all"
+
+
+class Broken:
+    """An array that fails inside, as a wrong index does."""
+
+    def __array__(self, *_: Any, **__: Any) -> np.ndarray:
+        return np.arange(3)[np.array([7])]
+
+    def __float__(self) -> float:
+        raise IndexError("index 7 is out of bounds")
+
+    def __iter__(self) -> Any:
+        raise KeyError("missing")
+
+
+@pytest.mark.parametrize(
+    ("call", "field"),
+    [
+        (lambda p: p(Broken()), "x"),
+        (lambda p: p.evaluate(Broken()), "x"),
+        (lambda p: p.gradient(Broken()), "x"),
+        (lambda p: p.batch(Broken()), "X"),
+        (lambda p: p.simulate(k1=Broken()), "k1"),
+        (lambda p: p.simulate(interval=Broken()), "interval"),
+        (lambda p: p.at(k1=Broken()), "k1"),
+        (lambda p: p.sweep(k1=Broken()), "k1"),
+        (lambda p: rt.Problem(STRUCTURE, None, P=1, window=Broken()), "window"),
+        (lambda p: rt.Problem(STRUCTURE, None, P=1, window=(1,)), "window"),
+        (lambda p: rt.Problem(STRUCTURE, None, P=1, band=(5,)), "band"),
+        (lambda p: rt.Problem(STRUCTURE, None, P=1, bounds={"k2": 3}), "optimize.bounds.k2"),
+        (lambda p: rt.SSVI(Broken(), k2=1, c2=1, D=1, C=1), "m2"),
+    ],
+)
+def test_contract_an_object_that_raises_is_refused_by_its_argument(ssvi: rt.Problem, call: Any, field: str) -> None:
+    with pytest.raises(rt.StudyError, match=field) as caught:
+        call(ssvi)
+    assert caught.value.field == field
+    with pytest.raises(TypeError, match="structure"):
+        rt.Problem(Broken(), None, P=1)  # type: ignore[arg-type]
+
+
+def test_contract_a_window_follows_the_structure() -> None:
+    omega = 2 * np.pi * 0.3
+    building = rt.Structure(m1=2e5, c1=2 * 0.01 * 2e5 * omega, k1=2e5 * omega**2)
+    problem = rt.Problem(building, None, P=1000)
+    settled = problem.simulate().maxima["E1max"]
+    steady = 0.5 * 2e5 * (1000 / (2 * 0.01 * 2e5 * omega)) ** 2
+    assert settled == pytest.approx(steady, rel=3e-3)
+    with pytest.warns(UserWarning, match="the slowest transient still has 38.97 % of its start"):
+        early = rt.Problem(building, None, P=1000, window=(50, 100))
+    assert early.simulate().maxima["E1max"] < 0.8 * settled
+
+
+def test_contract_walls_that_are_not_given_follow_the_mass() -> None:
+    assert rt.SSVI(60, k2=1, c2=1, D=1, C=1).contact == rt.Contact()
+    light = rt.SSVI(0.1, k2=1, c2=1, D=1, C=1).contact
+    assert light is not None and light.R == 2 and light.E2 == pytest.approx(2.21e7 * 0.1 / 60, rel=1e-15)

@@ -1,8 +1,9 @@
-//! How many steps a run may take.
+//! How much work a run may be.
 
 use crate::error::{Remedy, SolverError};
+use crate::response::Work;
 
-/// Steps after which the progress of a run is checked.
+/// Steps, or evaluations, after which the progress of a run is checked.
 const LOOK: u64 = 1 << 18;
 
 /// With fewer steps than this the rate of a run is unknown: the remedy is a higher limit.
@@ -10,6 +11,13 @@ const FEW: u64 = 1000;
 
 /// A run that would need more than this many times its limit is given up. Less may be a burst of contacts that ends.
 const HOPELESS: f64 = 100.0;
+
+/// Steps of flight that take as long as an evaluation of the equations, with its share of what is done at each step: with the default
+/// limit of 20 million steps no run takes more than some seconds, whether in flight (0.4 s), in contact or by a general method.
+const STEPS_OF_AN_EVALUATION: u64 = 4;
+
+/// Evaluations that a run may make however few steps it may take.
+const LEAST_EVALUATIONS: u64 = 5_000_000;
 
 /// How a run chooses its steps.
 #[derive(Clone, Copy, Debug)]
@@ -41,44 +49,58 @@ impl Pace {
 
 /// The number of steps that a stretch of a run may take, and the progress that they must make.
 ///
-/// The number of steps that a bouncing damper needs is not known beforehand. So a run is refused once it has used up its steps, and
-/// after 262,144 steps if at its present rate it would need a hundred times its limit (or a hundred times 262,144, if the limit is
-/// lower). Raising `max_steps` raises both.
+/// The number of steps that a bouncing damper needs is not known beforehand. So a run is refused once it has used up its steps or made
+/// a quarter as many evaluations (of the equations of contact, or by a method that chooses its steps; at least 5 million), and after 262,144 of either if at its present
+/// rate it would need a hundred times its limit (or a hundred times 262,144, if the limit is lower). Raising `max_steps` raises all.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     pace: Pace,
     limit: u64,
-    /// Steps before this stretch.
-    begun: u64,
+    /// Work before this stretch.
+    begun: Work,
     span: [f64; 2],
 }
 
 impl Budget {
-    /// The budget of a run of at most `limit` steps, of which `begun` have been taken, on the stretch from `span[0]` to
-    /// `span[1]`, s.
-    pub fn new(pace: Pace, limit: u64, begun: u64, span: [f64; 2]) -> Self {
+    /// The budget of a run of at most `limit` steps on the stretch from `span[0]` to `span[1]`, s, before which it has done the work
+    /// `begun`.
+    pub fn new(pace: Pace, limit: u64, begun: Work, span: [f64; 2]) -> Self {
         Self { pace, limit, begun, span }
     }
 
-    /// Checks a run that has reached `t` (s) after `steps` steps.
+    /// Checks a run that has reached `t` (s).
     ///
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`].
     #[inline(always)]
-    pub fn check(&self, steps: u64, t: f64) -> Result<(), SolverError> {
-        if steps > self.limit || steps - self.begun > LOOK { self.look(steps, t) } else { Ok(()) }
+    pub fn check(&self, work: &Work, t: f64) -> Result<(), SolverError> {
+        let Work { steps, evaluations, .. } = *work;
+        let is_long = steps - self.begun.steps > LOOK || evaluations - self.begun.evaluations > LOOK;
+        if steps > self.limit || is_long { self.look(work, t) } else { Ok(()) }
     }
 
     #[cold]
-    fn look(&self, steps: u64, t: f64) -> Result<(), SolverError> {
+    fn look(&self, work: &Work, t: f64) -> Result<(), SolverError> {
         let Self { pace, limit, begun, span: [from, to] } = *self;
-        let (taken, come) = ((steps - begun) as f64, (t - from).max(0.0));
-        let needed = taken * ((to - from) / come);
-        if steps - begun > FEW && needed > HOPELESS * limit.max(LOOK) as f64 {
+        let Work { steps, evaluations, .. } = *work;
+        let (taken, come) = ((steps - begun.steps) as f64, (t - from).max(0.0));
+        let rest = (to - from) / come;
+        let needed = taken * rest;
+        let most_evaluations = (limit / STEPS_OF_AN_EVALUATION).max(LEAST_EVALUATIONS);
+        let evaluated = (evaluations - begun.evaluations) as f64 * rest;
+        let hopeless =
+            needed > HOPELESS * limit.max(LOOK) as f64 || evaluated > HOPELESS * most_evaluations as f64;
+        if steps - begun.steps > FEW && hopeless {
             let remedy = pace.remedy(to, come / taken);
             return Err(SolverError::TooSlow { t, steps, needed, limit, remedy });
         }
-        if steps > limit { Err(SolverError::TooManySteps { t, limit }) } else { Ok(()) }
+        if steps > limit {
+            Err(SolverError::TooManySteps { t, limit, evaluations: None })
+        } else if evaluations > most_evaluations {
+            Err(SolverError::TooManySteps { t, limit, evaluations: Some(most_evaluations) })
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -86,22 +108,44 @@ impl Budget {
 mod tests {
     use super::*;
 
+    fn steps(steps: u64) -> Work {
+        Work { steps, ..Work::default() }
+    }
+
+    /// A step of a contact or of a general method takes as long as fifty of flight.
+    #[test]
+    fn contract_evaluations_are_work_too() {
+        let work = |evaluations| Work { steps: 400_000, evaluations, ..Work::default() };
+        let budget = Budget::new(FLIGHT, 20_000_000, steps(0), [0.0, 100.0]);
+        assert_eq!(budget.check(&work(5_000_000), 50.0), Ok(()));
+        let spent = SolverError::TooManySteps { t: 50.0, limit: 20_000_000, evaluations: Some(5_000_000) };
+        assert_eq!(budget.check(&work(5_000_001), 50.0), Err(spent));
+        let found = budget.check(&work(1_000_000), 0.19);
+        assert!(matches!(found, Err(SolverError::TooSlow { .. })), "526 million: {found:?}");
+        assert_eq!(budget.check(&work(1_000_000), 0.21), Ok(()));
+        // A low limit on steps is one on steps.
+        assert_eq!(
+            Budget::new(FLIGHT, 500_000, steps(0), [0.0, 100.0]).check(&work(4_999_999), 50.0),
+            Ok(())
+        );
+    }
+
     const FLIGHT: Pace = Pace::Flight { step: 1e-5, fastest: "k2/m2" };
 
     #[test]
     fn contract_a_run_is_refused_when_its_steps_are_spent_or_cannot_suffice() {
-        let budget = Budget::new(FLIGHT, 1_000_000, 0, [10.0, 20.0]);
-        assert_eq!(budget.check(1_000_000, 10.2), Ok(()));
-        let spent = SolverError::TooManySteps { t: 19.0, limit: 1_000_000 };
-        assert_eq!(budget.check(1_000_001, 19.0), Err(spent));
+        let budget = Budget::new(FLIGHT, 1_000_000, steps(0), [10.0, 20.0]);
+        assert_eq!(budget.check(&steps(1_000_000), 10.2), Ok(()));
+        let spent = SolverError::TooManySteps { t: 19.0, limit: 1_000_000, evaluations: None };
+        assert_eq!(budget.check(&steps(1_000_001), 19.0), Err(spent));
         // 300,000 steps for 10 s / 334 are 100.2 million for all of it.
-        assert_eq!(budget.check(300_000, 10.0 + 10.0 / 333.0), Ok(()));
-        let found = budget.check(300_000, 10.0 + 10.0 / 334.0);
+        assert_eq!(budget.check(&steps(300_000), 10.0 + 10.0 / 333.0), Ok(()));
+        let found = budget.check(&steps(300_000), 10.0 + 10.0 / 334.0);
         assert!(matches!(found, Err(SolverError::TooSlow { needed, .. }) if needed > 1e8), "{found:?}");
-        let still = budget.check(300_000, 10.0);
+        let still = budget.check(&steps(300_000), 10.0);
         assert!(matches!(still, Err(SolverError::TooSlow { needed: f64::INFINITY, .. })), "{still:?}");
         // Too early to tell.
-        assert_eq!(budget.check(1000, 10.0), Ok(()));
+        assert_eq!(budget.check(&steps(1000), 10.0), Ok(()));
     }
 
     #[test]
@@ -123,18 +167,21 @@ mod tests {
     /// The progress of a stretch is judged by its own steps, not by those before it.
     #[test]
     fn contract_a_budget_counts_the_steps_of_its_stretch() {
-        let budget = Budget::new(FLIGHT, 1_000_000, 200_000, [10.0, 20.0]);
-        assert_eq!(budget.check(200_000 + LOOK, 10.0), Ok(()), "too early to tell");
-        assert!(budget.check(200_001 + LOOK, 10.0).is_err(), "no way made");
+        let budget = Budget::new(FLIGHT, 1_000_000, steps(200_000), [10.0, 20.0]);
+        assert_eq!(budget.check(&steps(200_000 + LOOK), 10.0), Ok(()), "too early to tell");
+        assert!(budget.check(&steps(200_001 + LOOK), 10.0).is_err(), "no way made");
         // 300,000 steps for 10 s / 333 are 99.9 million for all of it, whatever came before.
-        assert_eq!(budget.check(500_000, 10.0 + 10.0 / 333.0), Ok(()));
-        assert!(budget.check(500_000, 10.0 + 10.0 / 334.0).is_err());
+        assert_eq!(budget.check(&steps(500_000), 10.0 + 10.0 / 333.0), Ok(()));
+        assert!(budget.check(&steps(500_000), 10.0 + 10.0 / 334.0).is_err());
     }
 
     /// A limit that is too low for any run leads to `TooManySteps`, which advises a higher one.
     #[test]
     fn contract_few_steps_are_no_evidence_of_a_slow_run() {
-        let budget = Budget::new(FLIGHT, 3, 0, [0.0, 100.0]);
-        assert_eq!(budget.check(4, 0.0), Err(SolverError::TooManySteps { t: 0.0, limit: 3 }));
+        let budget = Budget::new(FLIGHT, 3, steps(0), [0.0, 100.0]);
+        assert_eq!(
+            budget.check(&steps(4), 0.0),
+            Err(SolverError::TooManySteps { t: 0.0, limit: 3, evaluations: None })
+        );
     }
 }

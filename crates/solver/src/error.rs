@@ -34,12 +34,21 @@ pub enum SolverError {
         t: f64,
     },
     /// The run needs more steps than it may take.
-    #[error("the run needed more than {limit} steps (t = {} s); raise max_steps", plain(*.t))]
+    #[error(
+        "the run needed more than {} (t = {} s); raise max_steps",
+        match evaluations {
+            None => format!("{limit} steps"),
+            Some(most) => format!("{most} evaluations of its equations, of which max_steps = {limit} allows no more"),
+        },
+        plain(*.t)
+    )]
     TooManySteps {
         /// Time reached, s.
         t: f64,
         /// The limit.
         limit: u64,
+        /// The limit on evaluations that follows from it, if it was that (see [`Budget`](crate::Budget)).
+        evaluations: Option<u64>,
     },
     /// The run would need many times the steps that it may take (see [`Budget`](crate::Budget)).
     #[error(
@@ -67,7 +76,7 @@ pub enum SolverError {
     /// The motion has more energy than the force can have supplied, or its maximum lies outside the window.
     #[error(
         "the motion cannot be: an energy of {} J at {} s, in a run to t = {} s whose force can give {} J; \
-         the parameters are too far apart to be computed", plain(*.value), plain(*.time), plain(*.t), plain(*.most)
+         its digits are lost: the parameters are too far apart, or rtol, atol or the step do not suit them", plain(*.value), plain(*.time), plain(*.t), plain(*.most)
     )]
     Implausible {
         /// End of the run, s.

@@ -79,7 +79,7 @@ pub struct Settings {
     /// Longest step, s, of every method but the hybrid (MATLAB's `MaxStep`); `None` for a tenth of the run. A method of fixed
     /// step takes this one; `None` for [`Settings::FIXED_STEP`].
     pub step: Option<f64>,
-    /// Most steps a run may take before it is refused as [`SolverError::TooManySteps`](crate::SolverError::TooManySteps).
+    /// Most steps a run may take, or a quarter as many evaluations (see [`Budget`](crate::Budget)), before it is refused as [`SolverError::TooManySteps`](crate::SolverError::TooManySteps).
     pub max_steps: u64,
 }
 

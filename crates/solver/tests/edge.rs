@@ -286,6 +286,23 @@ fn exact_a_vanishing_damper_leaves_the_bare_structure() {
     }
 }
 
+/// A run of many million evaluations took a minute where nobody had asked for one: steps alone are no measure of work.
+#[test]
+fn regress_no_run_works_for_minutes_unasked() {
+    let window = Window { from: 50.0, to: 100.0 };
+    let (light, stiff) = (Numbers { m1: 0.00024, ..SSVI }, Numbers { k1: 5e16, ..SSVI });
+    for (numbers, method) in [(light, Method::Dop853), (stiff, Method::Dop853), (stiff, Method::Ode45)] {
+        let settings = Settings { method, ..Settings::default() };
+        let found = simulate(&numbers.scene(), window, &settings).map(|found| found.work);
+        let ended = match found {
+            Err(SolverError::TooSlow { steps, .. }) => steps < 100_000, // of seven evaluations and more
+            Err(SolverError::TooManySteps { evaluations, .. }) => evaluations == Some(5_000_000),
+            _ => false,
+        };
+        assert!(ended, "{method:?}: {found:?}");
+    }
+}
+
 /// Bad corners give a typed error, and give it soon.
 #[test]
 fn contract_errors_are_typed() {
@@ -296,7 +313,8 @@ fn contract_errors_are_typed() {
         for scene in [SSVI.scene(), TMD.scene(), Numbers { omega: 1e4, ..SSVI }.bare_scene()] {
             let error = simulate(&scene, Window { from: 0.0, to: 1e6 }, &settings);
             let Err(
-                SolverError::TooManySteps { t, limit: 1000 } | SolverError::TooSlow { t, limit: 1000, .. },
+                SolverError::TooManySteps { t, limit: 1000, .. }
+                | SolverError::TooSlow { t, limit: 1000, .. },
             ) = error
             else {
                 panic!("{error:?}")

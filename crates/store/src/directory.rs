@@ -11,6 +11,7 @@ use crate::lock::Lock;
 use crate::manifest::{MadeBy, NAME, file_sha256};
 use crate::order::{Extent, Order};
 use crate::pending::{self, Pending};
+use crate::plain;
 use crate::unfinished::{self, JOURNAL, UNFINISHED, Unfinished};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -74,10 +75,14 @@ impl Directory {
     }
 
     /// The directory `name` below this one, for a search that is part of the work.
-    pub fn part(&self, name: &str) -> PathBuf {
+    ///
+    /// # Errors
+    /// A symbolic link stands in its place.
+    pub fn part(&self, name: &str) -> Result<PathBuf, Error> {
+        let part = plain::below(&self.path, name).map_err(|source| self.refused(source))?;
         self.journal.note_part(name);
         self.parts.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
-        self.path.join(name)
+        Ok(part)
     }
 
     /// The directories below that the work has made results in.

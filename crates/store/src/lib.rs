@@ -33,7 +33,7 @@ mod lock;
 pub mod manifest;
 pub mod order;
 mod pending;
-mod plain;
+pub mod plain;
 pub mod seal;
 mod unfinished;
 

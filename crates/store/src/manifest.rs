@@ -8,9 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
+use std::io::{BufRead, BufReader};
+use std::path::{Component, Path};
 
 /// Its name.
 pub const NAME: &str = "manifest.json";
@@ -53,10 +52,38 @@ pub struct MadeBy {
 
 impl Manifest {
     /// Reads the manifest of a directory, if there is one.
-    pub fn read(place: &Path) -> Option<Self> {
-        let mut text = String::new();
-        plain::open(&place.join(NAME)).ok()?.read_to_string(&mut text).ok()?;
-        serde_json::from_str(&text).ok()
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn read(place: &Path) -> Result<Option<Self>, Error> {
+        let text = plain::text(&place.join(NAME)).ok();
+        let Some(manifest) = text.and_then(|text| serde_json::from_str::<Self>(&text).ok()) else {
+            return Ok(None);
+        };
+        manifest.check(place)?;
+        Ok(Some(manifest))
+    }
+
+    /// Checks that all that the manifest of `place` names is there: files in it, parts below it.
+    ///
+    /// # Errors
+    /// A name leads elsewhere.
+    pub fn check(&self, place: &Path) -> Result<(), Error> {
+        let refuse = |field: &str, problem: &str| Error::Input {
+            path: place.join(NAME),
+            source: std::io::Error::other(format!("{field}: {problem}")),
+        };
+        for (field, files) in [("files", &self.files), ("earlier", &self.earlier)] {
+            let is_plain =
+                |name: &&String| Path::new(name).components().eq([Component::Normal(name.as_ref())]);
+            if let Some(name) = files.keys().find(|name| !is_plain(name)) {
+                return Err(refuse(field, &format!("`{name}` is not the name of a file in this directory")));
+            }
+        }
+        for name in &self.parts {
+            plain::below(place, name).map_err(|error| refuse("parts", &error.to_string()))?;
+        }
+        Ok(())
     }
 
     /// The identity of the work that made the results.
@@ -71,20 +98,18 @@ impl Manifest {
     /// Whether the file `name` in the directory `place` of this manifest is unchanged since Retune made it.
     pub fn has_made(&self, place: &Path, name: &str) -> bool {
         let made = [&self.files, &self.earlier].map(|files| files.get(name));
-        let path = place.join(name);
         made.iter().any(Option::is_some)
-            && plain::is_there(&path).unwrap_or(false)
-            && file_sha256(&path).is_ok_and(|found| made.contains(&Some(&found)))
+            && file_sha256(&place.join(name)).is_ok_and(|found| made.contains(&Some(&found)))
     }
 }
 
-/// SHA-256 of a file, in hexadecimal.
+/// SHA-256 of a plain file, in hexadecimal.
 ///
 /// # Errors
 /// It cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, Error> {
     let refuse = |source| Error::Input { path: path.to_owned(), source };
-    let mut file = BufReader::with_capacity(1 << 16, File::open(path).map_err(refuse)?);
+    let mut file = BufReader::with_capacity(1 << 16, plain::open(path).map_err(refuse)?);
     let mut hash = Sha256::new();
     loop {
         let part = file.fill_buf().map_err(refuse)?;

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::identity::Identity;
 use crate::manifest::{MadeBy, Manifest, NAME};
 use crate::plain;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// The treatment of unfinished work that is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,7 +60,8 @@ impl Order {
     /// Whether a run may put its results, which `is_ours` names, into `place`.
     ///
     /// # Errors
-    /// [`Error::Standing`] if there are results that it may not replace; [`Error::Protected`] if its own study file would be replaced.
+    /// [`Error::Standing`] if there are results that it may not replace; [`Error::Protected`] if its own study file would be replaced;
+    /// [`Error::Input`] if the manifest leads out of the directory.
     pub fn may_replace(
         &self,
         place: &Path,
@@ -68,7 +69,7 @@ impl Order {
         identity: &Identity,
         is_ours: impl Fn(&str) -> bool,
     ) -> Result<(), Error> {
-        let manifest = Manifest::read(place);
+        let manifest = Manifest::read(place)?;
         let by_hand = |name: &String| match &manifest {
             Some(manifest) => name != NAME && !manifest.has_made(place, name),
             None => true,
@@ -154,12 +155,6 @@ pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error>
 fn is_same(one: &Path, other: &Path) -> bool {
     let [one, other] = [one, other].map(|path| path.canonicalize().ok());
     one.is_some() && one == other
-}
-
-/// Whether the relative path `name` stays below its directory.
-pub fn is_below(name: &str) -> bool {
-    let mut parts = Path::new(name).components().peekable();
-    parts.peek().is_some() && parts.all(|part| matches!(part, Component::Normal(_)))
 }
 
 /// The first few names.

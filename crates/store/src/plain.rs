@@ -1,8 +1,9 @@
 //! Opening files at names that others can guess: only plain files, never what a symbolic link points to, a pipe or a device.
 
 use std::fs::{File, OpenOptions};
+use std::io::Read;
 use std::io::{Error, ErrorKind, Result};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// Opens a plain file to read it.
 ///
@@ -11,6 +12,42 @@ use std::path::Path;
 pub fn open(path: &Path) -> Result<File> {
     is_there(path)?;
     without_links(OpenOptions::new().read(true)).open(path)
+}
+
+/// Reads a plain file as text.
+///
+/// # Errors
+/// As [`open`]; or it is no text.
+pub fn text(path: &Path) -> Result<String> {
+    let mut text = String::new();
+    open(path)?.read_to_string(&mut text)?;
+    Ok(text)
+}
+
+/// The path of `name`, which a file says, below `directory`: of plain names, none of them a symbolic link.
+///
+/// # Errors
+/// It would lead elsewhere: it is absolute or empty, it has `..`, or a part of it is a symbolic link.
+pub fn below(directory: &Path, name: &str) -> Result<PathBuf> {
+    let elsewhere = |why: &str| Error::new(ErrorKind::InvalidData, format!("`{name}` {why}"));
+    let mut path = directory.to_owned();
+    let mut parts = Path::new(name).components().peekable();
+    if parts.peek().is_none() {
+        return Err(elsewhere("is no name"));
+    }
+    for part in parts {
+        let Component::Normal(part) = part else {
+            return Err(elsewhere("leads out of this directory: only names below it are allowed"));
+        };
+        path.push(part);
+        if path.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
+            let link = path.display();
+            return Err(elsewhere(&format!(
+                "leads through {link}, a symbolic link, and Retune follows none"
+            )));
+        }
+    }
+    Ok(path)
 }
 
 /// Opens a plain file with `options`, which may make one.

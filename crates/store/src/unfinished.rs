@@ -6,7 +6,7 @@ use crate::identity::Identity;
 use crate::journal::{self, Damage, Found, Journal, Known};
 use crate::lock::Lock;
 use crate::manifest::{Manifest, NAME};
-use crate::order::{Begin, is_below};
+use crate::order::Begin;
 use crate::plain;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
@@ -31,7 +31,8 @@ impl Unfinished {
     /// Looks for unfinished work in a directory, and whether a run of this identity may go on with it.
     ///
     /// # Errors
-    /// There is some and `begin` neither resumes nor discards it, or it is of another work, or its journal cannot be attributed.
+    /// There is some and `begin` neither resumes nor discards it, or it is of another work, or its journal cannot be attributed or
+    /// leads out of the directory.
     pub fn find(place: &Path, begin: Begin, identity: &Identity) -> Result<Self, Error> {
         let unfinished = place.join(UNFINISHED);
         let path = unfinished.join(JOURNAL);
@@ -43,6 +44,9 @@ impl Unfinished {
             Found::Unclear(problem) => return Err(Error::Journal { path, problem }),
             Found::Work(of, known, damage) => (of, *known, damage),
         };
+        for part in &known.parts {
+            plain::below(place, part).map_err(refuse)?;
+        }
         let kept = known.lines + known.parts.iter().map(|part| kept(&place.join(part), &of)).sum::<u64>();
         if begin == Begin::Restart {
             return Ok(Self::Anew(known.parts));
@@ -171,9 +175,9 @@ pub fn remove_results(place: &Path, with_unfinished: bool) -> std::io::Result<()
         }
         remove(&unfinished)?;
     }
-    if let Some(manifest) = Manifest::read(place) {
+    if let Ok(Some(manifest)) = Manifest::read(place) {
         let files = manifest.files.keys().chain(manifest.earlier.keys()).collect::<BTreeSet<_>>();
-        for name in files.into_iter().filter(|name| is_below(name) && manifest.has_made(place, name)) {
+        for name in files.into_iter().filter(|name| manifest.has_made(place, name)) {
             std::fs::remove_file(place.join(name))?;
         }
         if plain::is_there(&place.join(NAME))? {

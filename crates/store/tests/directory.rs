@@ -107,3 +107,64 @@ fn regress_what_a_killed_process_left_of_a_manifest_is_removed() {
     finish(results, "1,2\n").expect("results");
     assert_eq!(left.map(|path| path.exists()), [false, true, true]);
 }
+
+/// Names in a manifest and in a journal are not this program's own words: whoever gives results away can have written them.
+#[cfg(unix)]
+#[test]
+fn contract_names_that_lead_elsewhere_are_refused_and_what_is_there_stays() {
+    let desk = tempfile::tempdir().expect("a directory");
+    let (ours, theirs, identity) =
+        (desk.path().join("ours"), desk.path().join("theirs"), Identity::of("study"));
+    let precious = theirs.join("precious");
+    for place in [&ours, &precious] {
+        finish(open(place, &order(Begin::New), &identity).expect("a directory"), "x\n1\n").expect("results");
+    }
+    std::os::unix::fs::symlink(&theirs, ours.join("a")).expect("a link");
+    let told = std::fs::read_to_string(ours.join(manifest::NAME)).expect("a manifest");
+    let absolute = precious.display().to_string();
+    let sha = manifest::file_sha256(&precious.join(TABLE)).expect("a file");
+    let files = |name: &str| {
+        let mut said: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+        said["files"][name] = sha.clone().into();
+        said.to_string()
+    };
+    let parts = |name: &str| {
+        let mut said: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+        said["parts"] = [name].into();
+        said.to_string()
+    };
+    let elsewhere = ["a/precious", "../theirs/precious", "a", "", absolute.as_str()];
+    let of_parts = elsewhere.map(|name| ("parts", parts(name)));
+    let of_files =
+        ["a/precious/table.csv", "../theirs/precious/table.csv", ""].map(|name| ("files", files(name)));
+    for (field, said) in of_parts.into_iter().chain(of_files) {
+        std::fs::write(ours.join(manifest::NAME), &said).expect("a manifest");
+        let tried = open(&ours, &order(Begin::New), &identity).and_then(|found| finish(found, "x\n2\n"));
+        let Err(Error::Input { path, source }) = tried else { panic!("{field} {said}: {tried:?}") };
+        assert_eq!(path, ours.join(manifest::NAME));
+        assert!(source.to_string().starts_with(&format!("{field}: `")), "{source}");
+        assert_eq!(std::fs::read_to_string(precious.join(TABLE)).expect("their table"), "x\n1\n", "{said}");
+    }
+    std::fs::write(ours.join(manifest::NAME), &told).expect("a manifest");
+
+    // A run that is stopped leaves a journal with its parts; a link that is put there later leads nowhere either.
+    for (name, link) in [("b/precious", "b"), ("../theirs/precious", "c")] {
+        let first = open(&ours, &order(Begin::Restart), &identity).expect("results to replace");
+        value(&first, 0.5);
+        first.journal().note_part(name);
+        drop(first);
+        std::os::unix::fs::symlink(&theirs, ours.join(link)).expect("a link");
+        for begin in [Begin::Resume, Begin::Restart] {
+            let tried = open(&ours, &order(begin), &identity).and_then(|found| finish(found, "x\n2\n"));
+            assert!(
+                matches!(&tried, Err(Error::Input { path, .. }) if path.ends_with("journal")),
+                "{tried:?}"
+            );
+            assert_eq!(std::fs::read_to_string(precious.join(TABLE)).expect("their table"), "x\n1\n");
+        }
+        std::fs::remove_dir_all(ours.join("unfinished")).expect("the work");
+    }
+    let own = open(&ours, &order(Begin::New), &identity).expect("results to replace");
+    assert!(own.part("a/new").is_err() && own.part("../new").is_err());
+    assert_eq!(own.part("inner/new").expect("a part"), ours.join("inner/new"));
+}

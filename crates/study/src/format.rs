@@ -28,7 +28,8 @@ pub struct Study {
     pub name: Option<String>,
     /// The primary structure, its excitation, and the damper.
     pub scene: Scene,
-    /// The time window in which maxima are evaluated.
+    /// The time window in which maxima are evaluated; or "settled".
+    #[schemars(with = "crate::window::Said")]
     pub window: Span,
     /// The numerical integration of the motion.
     #[serde(default)]
@@ -96,7 +97,7 @@ pub struct Solver {
     /// Absolute tolerance of the local error of a step, m and m/s (adaptive methods only, except the hybrid).
     #[schemars(range(min = 0.0))]
     pub atol: f64,
-    /// Maximum number of steps of a run.
+    /// Maximum number of steps of a run; of evaluations of its equations, in contact or by a general method, a quarter of it, at least 5 million.
     pub max_steps: u64,
 }
 

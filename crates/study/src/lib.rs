@@ -41,6 +41,7 @@ mod search;
 mod set;
 mod table2;
 mod visible;
+mod window;
 mod words;
 
 pub use angular_frequency::{angular_frequency, hertz_and_rpm};

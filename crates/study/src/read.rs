@@ -6,6 +6,7 @@ use super::format::Study;
 use super::kind::Kind;
 use super::rule::Rule;
 use super::search::name_from;
+use super::window;
 use retune_model::{Design, NonNegative, Positive};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -126,7 +127,8 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
 /// As [`read`].
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
-    let mut study: Study = parse(text, file)?;
+    let settled = window::resolved(text).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
+    let mut study: Study = parse(settled.as_deref().unwrap_or(text), file)?;
     let stem = Path::new(file).file_stem().map(|stem| name_from(&stem.to_string_lossy()));
     study.name = study.name.or(stem);
     study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;

@@ -43,6 +43,7 @@ pub fn study(study: &Study) -> String {
         lines.push(format!("tunes {} from {}", joined(&search.variables, ", "), starts(&search)));
         lines.extend(goal(study));
     }
+    lines.extend(study.transient());
     lines.join("\n  ")
 }
 

@@ -67,7 +67,7 @@ impl Resolved {
     pub fn read(place: &Path) -> Result<Self, Error> {
         let path = place.join(SEVERAL);
         let refuse = |source| retune_store::Error::Input { path: path.clone(), source };
-        let text = std::fs::read_to_string(&path).map_err(refuse)?;
+        let text = retune_store::plain::text(&path).map_err(refuse)?;
         Ok(serde_json::from_str(&text).map_err(|error| refuse(error.into()))?)
     }
 

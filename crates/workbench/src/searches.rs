@@ -37,7 +37,7 @@ impl<'a> Searches<'a> {
     pub fn tune(&mut self, study: &Study, place: &str) -> Result<Optimum, Error> {
         let name =
             if place.is_empty() { study.name().to_owned() } else { format!("{place}/{}", study.name()) };
-        let (optimum, results) = optimize(study, &self.directory.part(&name), self.order, self.watch)?;
+        let (optimum, results) = optimize(study, &self.directory.part(&name)?, self.order, self.watch)?;
         self.results.push(results);
         self.infeasible = self.infeasible.take().or(optimum.check_limits().err());
         Ok(optimum)

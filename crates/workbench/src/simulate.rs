@@ -37,7 +37,7 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
     if let Some(Trajectory { file, interval, .. }) = trajectory {
         write_trajectory(study, file, interval)?;
     }
-    Ok(Simulation::of(Summary::new(study, study.scene, &response)))
+    Ok(Simulation::of(Summary::new(study, study.scene, &response), study.transient()))
 }
 
 /// One run as the command line shows it: its summary, and the same in the units and the ratio that engineers ask for.
@@ -53,18 +53,22 @@ pub struct Simulation {
     rpm: f64,
     /// As [`Summary::transmissibility`].
     transmissibility: Option<f64>,
+    /// What is to be known of the transient in the window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transient: Option<String>,
 }
 
 impl Simulation {
-    fn of(summary: Summary) -> Self {
+    fn of(summary: Summary, transient: Option<String>) -> Self {
         let [hertz, rpm] = hertz_and_rpm(summary.omega());
-        Self { hertz, rpm, transmissibility: summary.transmissibility(), summary }
+        Self { hertz, rpm, transmissibility: summary.transmissibility(), transient, summary }
     }
 }
 
 impl std::fmt::Display for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.summary.fmt(f)
+        self.summary.fmt(f)?;
+        self.transient.iter().try_for_each(|words| write!(f, "\nnote        {words}"))
     }
 }
 

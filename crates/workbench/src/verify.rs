@@ -137,17 +137,20 @@ fn is_result(place: &Path) -> bool {
     [manifest::NAME, resolved::ONE].iter().any(|name| place.join(name).exists())
 }
 
-/// A directory, if there are files in it, and those below with files, sorted.
+/// A directory, if there are files in it, and those below with files, sorted. No link is followed.
 fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
     let mut inner = Vec::new();
     for entry in std::fs::read_dir(path)? {
-        inner.push(entry?.path());
+        let entry = entry?;
+        inner.push((entry.path(), entry.file_type()?.is_dir()));
     }
-    if inner.iter().any(|path| path.is_file() && !files::is_hidden(path)) {
+    if inner.iter().any(|(path, is_directory)| !is_directory && !files::is_hidden(path)) {
         places.push(path.to_owned());
     }
     // The shares of a grid are the input of a merge, not results.
-    inner.retain(|path| path.is_dir() && !path.ends_with(UNFINISHED) && !path.ends_with(PARTS));
+    inner.retain(|(path, is_directory)| {
+        *is_directory && !path.ends_with(UNFINISHED) && !path.ends_with(PARTS)
+    });
     inner.sort();
-    inner.iter().try_for_each(|path| collect(path, places))
+    inner.iter().try_for_each(|(path, _)| collect(path, places))
 }

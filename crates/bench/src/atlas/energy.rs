@@ -59,7 +59,7 @@ fn lossless() -> Result<Coupled, Box<dyn Error>> {
 /// A value out of range.
 pub fn drift(method: Method, contacts: Contacts, setting: f64) -> Result<Drift, Box<dyn Error>> {
     let system = lossless()?;
-    let settings = Settings { max_steps: 4_000_000, ..own::settings(method, contacts, setting) };
+    let settings = Settings { max_steps: 48_000_000, ..own::settings(method, contacts, setting) };
     let start = [0.0, 0.0, SSVI.d, SPEED];
     let mut seen = Touched(0);
     let end = own::follow(&system, start, PATIENCE, &settings, &mut seen);

@@ -78,7 +78,7 @@ pub fn rigid(scene: &Scene, to: f64) -> Result<Rigid, Box<dyn Error>> {
         bounce(masses, &mut y);
         now = Motion { t, y, phase: Phase::Leaving(side) };
     }
-    Err(Box::new(SolverError::TooManySteps { t: now.t, limit: 10_000 }))
+    Err(Box::new(SolverError::TooManySteps { t: now.t, limit: 10_000, evaluations: None }))
 }
 
 /// The two-sided SSVI with its contacts 10^n times as stiff, 10 s.

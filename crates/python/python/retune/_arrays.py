@@ -9,7 +9,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from retune._errors import StudyError
+from retune._errors import Error, StudyError
+
+
+def refused(error: Exception, name: str, wanted: str) -> StudyError:
+    """What an object that raises becomes, whatever it raises: the exception of the argument that it was given as."""
+    return StudyError(f"{name}: {type(error).__name__}: {error}: give {wanted}", name)
+
+
+def scalar(value: Any, name: str) -> float:
+    """A number."""
+    try:
+        return float(value)
+    except (Error, MemoryError):
+        raise
+    except Exception as error:
+        raise refused(error, name, "a number") from error
+
+
+def pair(values: Any, name: str) -> tuple[Any, Any]:
+    """Two of anything: a window, a band, bounds."""
+    try:
+        first, second = values
+    except (Error, MemoryError):
+        raise
+    except Exception as error:
+        raise refused(error, name, "two numbers") from error
+    return first, second
 
 
 def floats(values: Any, name: str) -> NDArray[np.float64]:
@@ -19,14 +45,23 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
         if array.dtype.kind not in "biufO":
             raise StudyError(f"{name}: {array.dtype} is not allowed here: give real numbers", name)
         return np.require(array, np.float64, ["C", "A"])
-    except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, StudyError):
-            raise
-        raise StudyError(f"{name}: {error}: give real numbers", name) from error
+    except (Error, MemoryError):
+        raise
+    except Exception as error:
+        raise refused(error, name, "real numbers") from error
 
 
 def plain(value: Any, path: str = "") -> Any:
     """A value as JSON can hold it: numpy's numbers and arrays become Python's, and what no study may have is refused by its path."""
+    try:
+        return _plain(value, path)
+    except (Error, MemoryError):
+        raise
+    except Exception as error:
+        raise refused(error, path, "a number, a text, a list or a mapping") from error
+
+
+def _plain(value: Any, path: str) -> Any:
     if isinstance(value, Mapping):
         return {str(key): plain(item, f"{path}.{key}".lstrip(".")) for key, item in value.items()}
     if isinstance(value, np.ndarray):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from retune import _core, _show
-from retune._arrays import plain
+from retune._arrays import floats, pair, plain, scalar
 from retune._run import Run, simulate
 from retune._scene import SSVI, TMD, Structure
 from retune._table import Table
@@ -72,7 +73,8 @@ class Problem(_core.Core):
     - ``P`` (N), ``imbalance`` (kg m) or ``base`` (m) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
       the natural frequency of the structure, or the end of the band that is nearest to it. ``start`` is a state (``x1``, ``v1``, ``x2``,
       ``v2``) for a free decay instead.
-    - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0.
+    - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0. "settled": from when the slowest transient
+      with the walls open has 0.1 % of its start, for 50 periods of the force.
     - ``vary`` names the tuned parameters, of k2, c2, D, C and m2; ``bounds`` gives each its smallest and largest value.
     - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
       "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
@@ -92,7 +94,7 @@ class Problem(_core.Core):
         base: float | None = None,
         start: Mapping[str, float] | None = None,
         omega: float | None = None,
-        window: tuple[float, float] = (50.0, 100.0),
+        window: tuple[float, float] | str = "settled",
         vary: Sequence[str] | None = None,
         bounds: Mapping[str, tuple[float, float | None]] | None = None,
         band: tuple[float, float] | None = None,
@@ -109,12 +111,20 @@ class Problem(_core.Core):
         solver: Mapping[str, Any] | None = None,
         name: str = "problem",
     ) -> Self:
+        if not isinstance(structure, Structure):
+            raise TypeError(f"structure: {type(structure).__name__} is not allowed here: give a retune.Structure")
+        if damper is not None and not isinstance(damper, (TMD, SSVI)):
+            raise TypeError(f"damper: {type(damper).__name__} is not allowed here: give a retune.TMD, a retune.SSVI or None")
+        if band is not None:
+            band = pair(band, "band")
         if omega is None and start is None:
             natural = math.sqrt(structure.k1 / structure.m1)
-            omega = min(max(natural, band[0]), band[1]) if band is not None else natural
+            omega = min(max(natural, scalar(band[0], "band")), scalar(band[1], "band")) if band is not None else natural
         frequencies = None if band is None else given({"from": band[0], "to": band[1], "samples": samples})
+        span = window if isinstance(window, str) else dict(zip(("t0", "T"), pair(window, "window")))
         goal = {**(objective or {}), **given({"omega": frequencies, "response": response, "quantity": quantity})}
-        open_ended = {key: [low, None if high == math.inf else high] for key, (low, high) in (bounds or {}).items()}
+        limited = {key: pair(both, f"optimize.bounds.{key}") for key, both in (bounds or {}).items()}
+        open_ended = {key: [low, None if high is math.inf or high == math.inf else high] for key, (low, high) in limited.items()}
         search = given({"surf": surf, "coarse": coarse, "global": global_search, "starts": starts, "refine": refine, "limits": limits})
         optimize = {"vary": vary, "bounds": open_ended, "objective": goal, **search}
         study = {
@@ -124,11 +134,14 @@ class Problem(_core.Core):
                 "forcing": given({"P": P, "imbalance": imbalance, "base": base, "start": start, "omega": omega}),
                 "damper": None if damper is None else damper._study(),
             },
-            "window": {"t0": window[0], "T": window[1]},
+            "window": span,
             "solver": solver or {},
             "optimize": None if vary is None else optimize,
         }
-        return super().__new__(cls, json.dumps(plain(study)))
+        problem = super().__new__(cls, json.dumps(plain(study)))
+        if (words := problem._transient()) is not None:
+            warnings.warn(words, stacklevel=2)
+        return problem
 
     @classmethod
     def from_study(cls, study: str | os.PathLike[str] | Mapping[str, Any]) -> Self:
@@ -151,6 +164,8 @@ class Problem(_core.Core):
     def evaluate(self, x: ArrayLike) -> Evaluation:
         """Everything that the objective finds for a design."""
         found = self._evaluation(x)
+        if found["unsettled"]:
+            warnings.warn(f"{found['unsettled']} of {found['runs']} runs did not settle: their largest values are those of the window", stacklevel=2)
         quantity, unit = self.quantity
         return Evaluation(quantity=quantity, unit=unit, largest=found.pop(quantity), **found)
 
@@ -193,14 +208,14 @@ class Problem(_core.Core):
         if len(over) != 1:
             raise TypeError("give one parameter and its values, for instance omega=numpy.linspace(5, 8, 301)")
         ((name, values),) = over.items()
-        columns, units = _core.sweep(self, x, name, np.atleast_1d(np.asarray(values)), objective, threads)
+        columns, units = _core.sweep(self, x, name, np.atleast_1d(floats(values, name)), objective, threads)
         return Table(columns, dict(units))
 
     def at(self, x: ArrayLike | None = None, **changes: float) -> Problem:
         """The same problem with another design as its own, or with other numbers (``k1=30000``)."""
         text = self._text() if x is None else self._tuned(x)
         problem = rebuilt(Problem, text, None)
-        return rebuilt(Problem, problem._changed(list(changes.items())), None) if changes else problem
+        return rebuilt(Problem, problem._changed([(key, scalar(value, key)) for key, value in changes.items()]), None) if changes else problem
 
     def __eq__(self, other: object) -> bool:
         """Whether both are the same study."""

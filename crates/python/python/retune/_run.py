@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from retune import _core, _show
+from retune._arrays import scalar
 from retune._table import Table, axes
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class Run:
 
 
 def simulate(problem: _core.Core, x: ArrayLike | None, interval: float, changes: Mapping[str, float]) -> Run:
-    motion, events, moments, maxima = _core.run(problem, x, interval, list(changes.items()))
+    motion, events, moments, maxima = _core.run(problem, x, scalar(interval, "interval"), [(key, scalar(value, key)) for key, value in changes.items()])
     events["moment"] = np.array(moments, dtype=object)
     return Run(Table(motion, UNITS), Table(events, UNITS), json.loads(maxima))
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, ClassVar
 
 from retune import _core, _show
-from retune._arrays import plain
+from retune._arrays import plain, scalar
 from retune._errors import StudyError
 
 #: Symbols, their SI units and what they are.
@@ -109,7 +110,8 @@ class TMD(Part):
 class SSVI(Part):
     """A single-sided vibro-impact nonlinear energy sink: ``m2`` (kg), ``k2`` (N/m), ``c2`` (N s/m), ``D`` and ``C`` (m), ``contact``.
 
-    ``retune.compare`` finds all but ``m2`` itself where they are left out.
+    ``retune.compare`` finds all but ``m2`` itself where they are left out. Without a ``contact`` it has the walls of the paper's damper of
+    60 kg, their moduli in proportion to ``m2``: a contact lasts as long as one of the paper's at the same speed.
     """
 
     title: ClassVar[str] = "SSVI NES"
@@ -118,9 +120,13 @@ class SSVI(Part):
     c2: float | None = field(default=None, kw_only=True)
     D: float | None = field(default=None, kw_only=True)
     C: float | None = field(default=None, kw_only=True)
-    contact: Contact = field(default_factory=Contact, kw_only=True)
+    contact: Contact | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        if self.contact is None:
+            mass = scalar(self.m2, "m2")
+            chosen = Contact(**json.loads(_core.contact(mass))) if 0 < mass < math.inf else Contact()
+            object.__setattr__(self, "contact", chosen)
         _check(None, {"k2": 0, "c2": 0, "D": 0, "C": 0, **self._study()})
 
     def _study(self) -> dict[str, Any]:

@@ -6,5 +6,6 @@ mod common;
 mod documents;
 mod evaluate;
 mod interrupted;
+mod numbers;
 mod refused;
 mod schema;

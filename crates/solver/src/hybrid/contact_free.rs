@@ -58,7 +58,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     }
 
     fn budget(&self, to: f64) -> Budget {
-        Budget::new(self.flow.pace(), self.max_steps, self.work.steps, [self.now.t, to])
+        Budget::new(self.flow.pace(), self.max_steps, self.work, [self.now.t, to])
     }
 
     fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
@@ -83,7 +83,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 self.now = *step.ends()[1];
             }
             self.work.steps += steps.count().max(1) as u64;
-            budget.check(self.work.steps, now.t)?;
+            budget.check(&self.work, now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }

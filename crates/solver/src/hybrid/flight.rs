@@ -51,7 +51,7 @@ impl Hybrid<'_> {
             let careful = seen < LANES;
             steps.keep(seen);
             self.work.steps += seen as u64 + u64::from(careful);
-            self.budget.check(self.work.steps, now.t)?;
+            self.budget.check(&self.work, now.t)?;
             if seen > 0 {
                 observer.steps(&steps);
                 now = steps.knot(seen);

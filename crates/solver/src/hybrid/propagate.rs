@@ -21,7 +21,7 @@ impl Hybrid<'_> {
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
-        self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work.steps, [from.t, to]);
+        self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work, [from.t, to]);
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });

@@ -68,7 +68,7 @@ impl<'a> Hybrid<'a> {
         Self {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
-            budget: Budget::new(flow.pace(), max_steps, 0, [0.0; 2]),
+            budget: Budget::new(flow.pace(), max_steps, Work::default(), [0.0; 2]),
             flow,
             contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],

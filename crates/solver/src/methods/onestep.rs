@@ -46,7 +46,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             contact: Side::BOTH.into_iter().find(|&side| z[side as usize] > 0.0),
             leaving: false,
             resting: z.map(|z| z == 0.0),
-            budget: Budget::new(Pace::Steps, settings.max_steps, 0, [t; 2]),
+            budget: Budget::new(Pace::Steps, settings.max_steps, Work::default(), [t; 2]),
             work: Work { evaluations: 1, ..Work::default() },
         }
     }
@@ -71,7 +71,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         observer: &mut impl Observer<N>,
     ) -> Result<(), SolverError> {
         let span = [self.now.t, to];
-        self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.work.steps, span);
+        self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.work, span);
         while self.now.t < to && !observer.satisfied() {
             let t = self.now.t;
             let (h, attempt) = self.accepted::<M>(to)?;
@@ -142,7 +142,10 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
                 && error <= self.tolerance.rtol
             {
                 self.work.steps += 1;
-                self.budget.check(self.work.steps, t)?;
+                // Equal steps are known beforehand, and cheap: only they are counted.
+                let fixed = self.settings.method.has_fixed_step();
+                let spent = Work { evaluations: if fixed { 0 } else { self.work.evaluations }, ..self.work };
+                self.budget.check(&spent, t)?;
                 let growth = 1.0 / (1.25 * (error / self.tolerance.rtol).powf(M::POWER)).max(0.2);
                 self.h = Some(if failed { h } else { h * growth });
                 return Ok((h, attempt));

@@ -166,9 +166,8 @@ impl Anything {
     fn check_energy(&self, e1: f64) {
         let most = (self.scene.forcing.amplitude().map_or(0.0, |(_, p)| p.get()) * self.window.to).powi(2)
             / (2.0 * self.scene.primary.mass.get());
-        if self.settings.method == Method::Hybrid {
-            assert!(e1 <= most * (1.0 + 1e-6), "E1max {e1} J of at most {most} J: {self:?}");
-        }
+        let error = if self.settings.method == Method::Hybrid { 1e-6 } else { 1.0 };
+        assert!(e1 <= most * (1.0 + error), "E1max {e1} J of at most {most} J: {self:?}");
     }
 
     fn check_error(&self, error: &SolverError) {

@@ -19,7 +19,7 @@ impl Directory {
         let mut earlier = BTreeMap::new();
         let mut made_by = self.made_by();
         let mut parts = self.parts();
-        if let Some(old) = Manifest::read(&self.path) {
+        if let Some(old) = Manifest::read(&self.path)? {
             // Files that this run does not replace stay listed: as part of the results if they are of the same work, else as earlier.
             let same = old.identity() == self.identity;
             let whole = old.files.into_iter().map(|(name, sha)| (same, name, sha));
@@ -51,7 +51,7 @@ impl Directory {
     /// # Errors
     /// A file cannot be read or written.
     pub fn amend_manifest(&self) -> Result<(), Error> {
-        let Some(mut manifest) = Manifest::read(&self.path) else { return Ok(()) };
+        let Some(mut manifest) = Manifest::read(&self.path)? else { return Ok(()) };
         manifest.files.extend(self.new_files()?);
         self.write_json(NAME, &manifest)
     }
@@ -59,7 +59,7 @@ impl Directory {
     /// Whether `path` holds the complete results of this work, `file` among them.
     pub fn is_finished(path: &Path, identity: &Identity, file: &str) -> bool {
         let is_made = |made: Manifest| made.identity() == *identity && made.files.contains_key(file);
-        Manifest::read(path).is_some_and(is_made) && !Self::is_unfinished(path)
+        Manifest::read(path).ok().flatten().is_some_and(is_made) && !Self::is_unfinished(path)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::entries::{names, sync_directory};
 use crate::error::Error;
 use crate::identity::json_text;
 use crate::manifest::{Manifest, NAME, file_sha256};
-use crate::order::{Extent, is_below};
+use crate::order::Extent;
 use crate::pending::Pending;
 use crate::{plain, unfinished};
 use std::collections::BTreeSet;
@@ -35,10 +35,10 @@ impl Directory {
         for name in new {
             File::open(self.unfinished.join(name))?.sync_all()?;
         }
-        let old = Manifest::read(&self.path);
+        let old = Manifest::read(&self.path).map_err(std::io::Error::other)?;
         let mut standing = names(&self.path)?;
         standing.retain(|name| old.as_ref().is_some_and(|old| old.has_made(&self.path, name)));
-        if let Some(mut between) = Manifest::read(&self.unfinished) {
+        if let Some(mut between) = Manifest::read(&self.unfinished).map_err(std::io::Error::other)? {
             for name in &standing {
                 let sha = file_sha256(&self.path.join(name)).map_err(std::io::Error::other)?;
                 between.earlier.insert(name.clone(), sha);
@@ -76,8 +76,10 @@ impl Directory {
     /// Removes Retune's files from directories below that are no longer part of the work.
     fn remove_parts(&self, earlier: &BTreeSet<String>, with_unfinished: bool) -> std::io::Result<()> {
         let now = self.parts();
-        for name in earlier.difference(&now).filter(|name| is_below(name)) {
-            unfinished::remove_results(&self.path.join(name), with_unfinished)?;
+        for name in earlier.difference(&now) {
+            // A link that was put there since the manifest was read leads to what is not ours.
+            let Ok(part) = plain::below(&self.path, name) else { continue };
+            unfinished::remove_results(&part, with_unfinished)?;
             let mut above = Path::new(name).parent();
             while let Some(name) = above.filter(|name| !name.as_os_str().is_empty()) {
                 let _ = std::fs::remove_dir(self.path.join(name)); // it stays if anything else is in it

@@ -21,12 +21,21 @@ pub(super) fn answer(wishes: &Wishes, designed: &[Designed], out: &Path) -> Stri
         .into_iter()
         .chain(costs(wishes, designed))
         .chain(designed.iter().filter_map(sure))
+        .chain(walls(wishes))
         .chain([studies]);
     let broken = textwrap::Options::new(80).subsequent_indent("  ");
     let words: Vec<String> = words.map(|line| textwrap::fill(&line, &broken)).collect();
     let structure = textwrap::fill(&structure(wishes), &broken);
     let table: Vec<String> = table.collect();
     format!("{structure}\n\n{}\n\n{}", table.join("\n"), words.join("\n"))
+}
+
+/// The walls that were chosen: whoever builds the damper has others.
+fn walls(wishes: &Wishes) -> Option<String> {
+    let [k1, k3] = wishes.contact().ok()?.stiffness().map(|stiffness| rounded(stiffness, 3));
+    Some(format!(
+        "Walls were not given: the paper's, in proportion to the mass (K = {k1} and {k3} N/m^1.5); write your own into the studies."
+    ))
 }
 
 fn structure(wishes: &Wishes) -> String {

@@ -4,15 +4,12 @@
 //! structure without a damper.
 
 use crate::Error;
-use retune_model::{Bare, Scene, den_hartog};
+use retune_model::{Bare, Contact, Positive, Scene, den_hartog};
 use retune_study::read::from_text;
 use retune_study::{Rule, Study};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
-
-/// The colliding surfaces of the paper: steel on a soft layer.
-const PAPERS_CONTACT: &str = include_str!("contact.json");
 
 /// What is asked of a design. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -206,8 +203,23 @@ impl Wishes {
         json!({ "from": self.band[0], "to": self.band[1], "samples": 31 })
     }
 
-    /// A study of 100 periods of the structure, the first half of which passes before maxima are taken. The colliding surfaces are the
-    /// paper's.
+    /// The walls of the damper: nobody who asks for a design has them yet.
+    ///
+    /// # Errors
+    /// There are none for its mass.
+    pub fn contact(&self) -> Result<Contact, Error> {
+        let refuse = |_| Error::Rule {
+            name: "design".to_owned(),
+            rule: Rule::NotAllowed {
+                field: "--mass".to_owned(),
+                value: self.mass.to_string(),
+                allowed: "a mass above 0",
+            },
+        };
+        Positive::new(self.mass).and_then(Contact::for_mass).map_err(refuse)
+    }
+
+    /// A study of 100 periods of the structure, the first half of which passes before maxima are taken.
     fn study(
         &self,
         name: &str,
@@ -220,7 +232,6 @@ impl Wishes {
             optimize["limits"] = json!({ "stroke": stroke, "from": 50.0 * period });
         }
         let bare = self.bare()?;
-        let contact: Value = serde_json::from_str(PAPERS_CONTACT).unwrap_or_default();
         let study = json!({
             "name": name,
             "scene": {
@@ -228,7 +239,7 @@ impl Wishes {
                 "forcing": bare.forcing,
                 "damper": {
                     "m2": self.mass, "k2": k2, "c2": c2, "D": d, "C": c,
-                    "contact": contact
+                    "contact": self.contact()?
                 }
             },
             "window": { "t0": 50.0 * period, "T": 100.0 * period },

@@ -107,7 +107,8 @@ fn solvers() -> Vec<SolverError> {
         SolverError::TooFast { t: 100.0, h: 1e-17, remedy: Remedy::Slower("c2/m2") },
         SolverError::TooFast { t: 1e20, h: 0.1, remedy: Remedy::ShorterRun },
         SolverError::Contact { t: 1.5 },
-        SolverError::TooManySteps { t: 1.5, limit: 1000 },
+        SolverError::TooManySteps { t: 1.5, limit: 1000, evaluations: None },
+        SolverError::TooManySteps { t: 1.5, limit: 20_000_000, evaluations: Some(5_000_000) },
         SolverError::TooSlow {
             t: 1e-9,
             steps: 262_145,

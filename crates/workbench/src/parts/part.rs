@@ -5,9 +5,8 @@ use crate::{Error, Observer, Progress};
 use retune_store::identity::{Identity, hexadecimal};
 use retune_store::journal::{grid_text, grid_value};
 use retune_store::seal::Seal;
-use retune_store::{Begin, Directory, Extent, Journal, Order};
+use retune_store::{Begin, Directory, Extent, Journal, Order, plain};
 use sha2::{Digest, Sha256};
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -216,7 +215,7 @@ pub fn list(parts: &Path) -> Result<Vec<PathBuf>, Error> {
 pub fn read(path: &Path, mut visit: impl FnMut(usize, f64)) -> Result<Head, Error> {
     let refuse = |source| retune_store::Error::Input { path: path.to_owned(), source };
     let broken = |problem: &str| Error::Part { path: path.to_owned(), problem: problem.to_owned() };
-    let mut lines = BufReader::new(File::open(path).map_err(refuse)?);
+    let mut lines = BufReader::new(plain::open(path).map_err(refuse)?);
     let mut hash = Sha256::new();
     let mut line = Vec::new();
     let mut next = |line: &mut Vec<u8>| -> Result<bool, Error> {

@@ -14,8 +14,11 @@ use std::path::Path;
 /// # Errors
 /// The directory cannot be read.
 pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<Vec<String>, Error> {
-    let there = names(place)?;
+    let (there, links) = names(place)?;
     compare(place, &there, report)?;
+    for name in links {
+        report.unchecked(&format!("{name} is a symbolic link, and Retune follows none"))?;
+    }
     Ok(there)
 }
 
@@ -27,7 +30,10 @@ fn compare(place: &Path, there: &[String], report: &mut Report<'_>) -> Result<()
     }
     let manifest = text(place, manifest::NAME).map(|text| serde_json::from_str::<Manifest>(&text));
     let manifest = match manifest {
-        Ok(Ok(manifest)) => manifest,
+        Ok(Ok(manifest)) => match manifest.check(place) {
+            Ok(()) => manifest,
+            Err(error) => return report.fail(manifest::NAME, &error.to_string()),
+        },
         Ok(Err(error)) => return report.fail(manifest::NAME, &format!("is no manifest: {error}")),
         Err(error) => return report.fail(manifest::NAME, &error.to_string()),
     };
@@ -82,16 +88,19 @@ pub fn is_hidden(path: &Path) -> bool {
     path.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'))
 }
 
-/// The names of the files in a directory but the manifest, sorted.
-fn names(place: &Path) -> Result<Vec<String>, Error> {
+/// The names of the files in a directory but the manifest, sorted; and those of the symbolic links.
+fn names(place: &Path) -> Result<(Vec<String>, Vec<String>), Error> {
     let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
-    let mut names = Vec::new();
+    let (mut names, mut links) = (Vec::new(), Vec::new());
     for entry in std::fs::read_dir(place).map_err(refuse)? {
-        let path = entry.map_err(refuse)?.path();
-        if path.is_file() && !is_hidden(&path) && !path.ends_with(manifest::NAME) {
-            names.extend(path.file_name().map(|name| name.to_string_lossy().into_owned()));
+        let entry = entry.map_err(refuse)?;
+        let (path, kind) = (entry.path(), entry.file_type().map_err(refuse)?);
+        let list = if kind.is_symlink() { &mut links } else { &mut names };
+        if !kind.is_dir() && !is_hidden(&path) && !path.ends_with(manifest::NAME) {
+            list.push(entry.file_name().to_string_lossy().into_owned());
         }
     }
     names.sort();
-    Ok(names)
+    links.sort();
+    Ok((names, links))
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 /// It cannot be read.
 pub fn text(place: &Path, name: &str) -> Result<String, Error> {
     let path = place.join(name);
-    Ok(std::fs::read_to_string(&path).map_err(|source| retune_store::Error::Input { path, source })?)
+    Ok(retune_store::plain::text(&path).map_err(|source| retune_store::Error::Input { path, source })?)
 }
 
 /// A JSON file of results.

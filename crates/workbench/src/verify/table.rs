@@ -28,7 +28,10 @@ impl Sample {
     pub fn read(path: &Path, most: usize) -> Result<Self, Error> {
         let refuse =
             |error: csv::Error| retune_store::Error::Input { path: path.to_owned(), source: error.into() };
-        let open = || csv::ReaderBuilder::new().flexible(true).from_path(path).map_err(refuse);
+        let open = || match retune_store::plain::open(path) {
+            Ok(file) => Ok(csv::ReaderBuilder::new().flexible(true).from_reader(file)),
+            Err(error) => Err(refuse(error.into())),
+        };
         let mut table = open()?;
         let names = table.headers().map_err(refuse)?.clone();
         let mut record = csv::StringRecord::new();

@@ -48,7 +48,7 @@ fn contact(draw: &mut Draw) -> (Coupled, Side, Knot<4>) {
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.regularised_contact(side);
     let regularised = equations.regularise(&touch.y);
-    let budget = Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]);
+    let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
     let (limits, mut work) = ((1e-13, budget), Work::default());
     match integrate(equations, touch, regularised, 1e9, limits, &mut work, &mut Unobserved) {
         Ok(End::LiftOff(end)) => end,
@@ -115,7 +115,7 @@ impl Observer<4> for Compare<'_> {
         {
             let mut find = Find { t: seen.t, y: None };
             let mut work = Work::default();
-            let limits = (1e-13, Budget::new(Pace::Steps, 100_000, 0, [0.0, 1e9]));
+            let limits = (1e-13, Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]));
             let _ =
                 integrate(equations, &self.touch, regularised, seen.t + 1e-9, limits, &mut work, &mut find);
             let y = find.y.expect("the time is within the contact");

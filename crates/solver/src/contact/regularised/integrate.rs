@@ -125,15 +125,14 @@ impl Contact {
                 if !y.iter().all(|v| v.is_finite()) {
                     return Err(SolverError::NonFinite { t });
                 }
-                // Rejected steps count as work too.
-                self.budget.check(work.steps + work.rejected, t)?;
+                self.budget.check(work, t)?;
                 if plan.h < self.shortest {
                     return Err(SolverError::Contact { t });
                 }
                 continue;
             }
             work.steps += 1;
-            self.budget.check(work.steps, t)?;
+            self.budget.check(work, t)?;
             let (mut next, mut length) = (tried.y, h);
             if let Some(wall) = wall {
                 (next, length) = (wall, to_wall(&wall));

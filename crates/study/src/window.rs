@@ -1,0 +1,161 @@
+//! A window that follows the structure: `"window": "settled"`.
+
+use crate::Rule;
+use crate::format::Span;
+use retune_model::{NonNegative, Positive, Scene, Source};
+use serde::Deserialize;
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+/// Share of the slowest transient that is left where a settled window begins.
+pub const LEFT: f64 = 1e-3;
+/// Share of the slowest transient above which maxima hold it.
+const MATTERS: f64 = 1e-2;
+/// Periods of the force in a settled window.
+const PERIODS: f64 = 50.0;
+/// Periods of the force before it, at most.
+const MOST_PERIODS: f64 = 10_000.0;
+
+impl Span {
+    /// The window that begins once the slowest transient of a scene, with its walls open, is below [`LEFT`] of its start, and lasts 50
+    /// periods of the force; of a free decay, until then.
+    ///
+    /// # Errors
+    /// Nothing damps the scene enough.
+    pub fn settled(scene: &Scene) -> Result<Self, Rule> {
+        let rate = scene.slowest_decay();
+        let period = TAU / scene.forcing.frequency.get();
+        let until = -LEFT.ln() / rate;
+        let decays = matches!(scene.forcing.source, Source::Decay(_));
+        let span = if decays { [0.0, until] } else { [until, until + PERIODS * period] };
+        let [t0, end] = [NonNegative::new(span[0]).ok(), NonNegative::new(span[1]).ok()];
+        match (t0, end.and_then(|end| Positive::new(end.get()).ok())) {
+            (Some(t0), Some(end)) if decays || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
+            _ => Err(Rule::NotAllowed {
+                field: "window".to_owned(),
+                value: format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
+                allowed: "a scene that settles in 10,000 periods of its force: give t0 and T, or more damping",
+            }),
+        }
+    }
+}
+
+/// Where a study says that its window is settled, its text with the numbers of that window, on the same lines.
+///
+/// # Errors
+/// As [`Span::settled`].
+pub fn resolved(text: &str) -> Result<Option<String>, Rule> {
+    #[derive(Deserialize)]
+    struct Part {
+        window: Value,
+        scene: Scene,
+    }
+    let part = serde_json::from_str::<Part>(text).ok().filter(|part| part.window == "settled");
+    let (Some(Part { scene, .. }), Some(place)) = (part, place(text)) else { return Ok(None) };
+    let Span { t0, end } = Span::settled(&scene)?;
+    let window = format!("{{ \"t0\": {}, \"T\": {} }}", t0.get(), end.get());
+    Ok(Some(format!("{}{window}{}", &text[..place.start], &text[place.end..])))
+}
+
+/// Where the text has the word behind the field `window`.
+fn place(text: &str) -> Option<std::ops::Range<usize>> {
+    const WORD: &str = "\"settled\"";
+    text.match_indices("\"window\"").find_map(|(at, field)| {
+        let rest = text[at + field.len()..].trim_start().strip_prefix(':')?.trim_start();
+        let start = text.len() - rest.len();
+        rest.starts_with(WORD).then_some(start..start + WORD.len())
+    })
+}
+
+impl crate::Study {
+    /// A sentence on the transient that maxima in the window hold, if its share matters.
+    pub fn transient(&self) -> Option<String> {
+        let (rate, t0) = (self.scene.slowest_decay(), self.window.t0.get());
+        let left = (-rate * t0).exp();
+        let decays = matches!(self.scene.forcing.source, Source::Decay(_));
+        let windowed = self.objective().response == retune_optim::Response::Window;
+        if t0 == 0.0 || decays || !windowed || left < MATTERS {
+            return None; // the whole run is asked for, or what is long after its start
+        }
+        let later = match Span::settled(&self.scene) {
+            Ok(span) => format!("\"window\": \"settled\" begins at {:.4} s", span.t0.get()),
+            Err(_) => "nothing damps it".to_owned(),
+        };
+        Some(format!(
+            "at t0 = {t0} s the slowest transient still has {:.2} % of its start, and maxima in the window hold it: {later}",
+            100.0 * left
+        ))
+    }
+}
+
+/// What a study may say of its window.
+#[derive(schemars::JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "for the schema alone")]
+pub enum Said {
+    /// From t0 to T.
+    Span(Span),
+    /// In a word.
+    Word(Word),
+}
+
+/// A window in a word.
+#[derive(schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[expect(dead_code, reason = "for the schema alone")]
+pub enum Word {
+    /// From when the slowest transient of the scene, with its walls open, is below 0.1 % of its start, for 50 periods of the force.
+    Settled,
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::from_text;
+    use serde_json::json;
+
+    /// A building of 0.3 Hz with 1 % of damping, and a window in a word or in numbers.
+    fn building(window: &serde_json::Value) -> String {
+        let omega = 2.0 * std::f64::consts::PI * 0.3;
+        let primary = json!({ "m1": 2e5, "c1": 2.0 * 0.01 * 2e5 * omega, "k1": 2e5 * omega * omega });
+        let scene = json!({ "primary": primary, "forcing": { "P": 1000.0, "omega": omega } });
+        serde_json::to_string_pretty(&json!({ "scene": scene, "window": window })).expect("JSON")
+    }
+
+    #[test]
+    fn exact_a_settled_window_begins_when_a_thousandth_is_left() {
+        let study = from_text(&building(&json!("settled")), "building").expect("a study");
+        let (t0, end) = (study.window.t0.get(), study.window.end.get());
+        // Of exp(-0.01 ω t) a thousandth is left; then 50 periods of 1 / 0.3 s.
+        let expected = 1000f64.ln() / (0.01 * 0.6 * std::f64::consts::PI);
+        assert!(
+            (t0 / expected - 1.0).abs() < 1e-12 && ((end - t0) * 0.3 / 50.0 - 1.0).abs() < 1e-12,
+            "{t0} {end}"
+        );
+        assert_eq!(study.transient(), None);
+        let resolved = serde_json::to_string(&study.resolved()).expect("JSON");
+        assert_eq!(from_text(&resolved, "building").expect("a study").window, study.window);
+    }
+
+    #[test]
+    fn contract_a_window_that_holds_the_transient_says_so() {
+        let said = |window| from_text(&building(&window), "building").expect("a study").transient();
+        let words = said(json!({ "t0": 50, "T": 100 })).expect("a sentence");
+        assert!(
+            words.starts_with("at t0 = 50 s the slowest transient still has 38.97 % of its start"),
+            "{words}"
+        );
+        assert_eq!(said(json!({ "t0": 0, "T": 100 })), None, "the whole run was asked for");
+        assert_eq!(said(json!({ "t0": 300, "T": 400 })), None);
+    }
+
+    #[test]
+    fn contract_what_never_settles_is_refused_with_the_field() {
+        let scene = json!({ "primary": { "m1": 1, "c1": 0, "k1": 1 }, "forcing": { "P": 1, "omega": 1 } });
+        let text = json!({ "scene": scene, "window": "settled" }).to_string();
+        let error = from_text(&text, "mine").expect_err("no damping").to_string();
+        assert!(
+            error.starts_with("mine: window: settled, of a scene whose slowest transient decays by 0 1/s"),
+            "{error}"
+        );
+    }
+}
