@@ -69,6 +69,32 @@ fn exact_violations_are_shares_of_the_limits() {
     assert_eq!(seen.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.42]);
 }
 
+/// Every measure can be limited, to what the whole run from rest has of it.
+#[test]
+fn exact_each_measure_is_limited_by_what_the_run_has_of_it() {
+    let scene = SSVI.scene();
+    let run = simulate(&scene, Window { from: 0.0, ..WINDOW }, &Settings::default()).expect("a run");
+    let structure = run.structure;
+    let [displacement, velocity, acceleration, ground] =
+        [structure.displacement, structure.velocity, structure.acceleration, structure.ground_force]
+            .map(|largest| largest.value);
+    let force = run.force_max[0].max(run.force_max[1]);
+    let most =
+        [run.e1_max.value, displacement, velocity, acceleration, ground, run.spring_deflection_max, force];
+    for (measure, most) in Measure::ALL.into_iter().zip(most) {
+        let limit = Limit::Of(measure);
+        let limits = Limits::default().with(limit, positive(most / 1.25));
+        let found = evaluate(&Goal { limits, ..WINDOW.into() }, &scene, f64::INFINITY);
+        assert!((found.violation - 0.25).abs() < 1e-7, "{limit}: {}", found.violation);
+        // Stroke and contact force are of one observer, and come together.
+        let of_the_damper = |measure| matches!(measure, Measure::Stroke | Measure::ContactForce);
+        let mut others = Measure::ALL
+            .into_iter()
+            .filter(|other| *other != measure && !(of_the_damper(measure) && of_the_damper(*other)));
+        assert!(others.all(|other| found.reached.get(Limit::Of(other)) == 0.0), "{limit}");
+    }
+}
+
 #[test]
 fn exact_a_steady_stroke_is_limited_in_closed_form() {
     let stroke = TMD.coupled().steady_stroke_max([5.0, 8.0]).value;

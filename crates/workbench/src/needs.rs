@@ -143,6 +143,7 @@ impl Largest {
 /// A value with its unit; lengths of the structure in mm.
 pub(crate) fn sized(measure: Measure, value: f64) -> String {
     match measure {
+        _ if !value.is_finite() => "without bound".to_owned(),
         Measure::Displacement => format!("{} mm", rounded(1e3 * value, 4)),
         _ => format!("{} {}", rounded(value, 4), measure.unit()),
     }
@@ -208,12 +209,12 @@ impl Needs {
             let (own, without) = (self.damper.value(measure), none.value(measure));
             if own > (1.0 + APART) * without {
                 let linear = self.linear.as_ref().map_or(String::new(), |linear| {
-                    format!(", {} with the best TMD", rounded(linear.needs.value(measure), 3))
+                    format!(", {} with the best TMD", linear.needs.sized(measure))
                 });
                 lines.push(format!(
                     "it raises {} from {} (no damper{linear}) to {}",
                     measure.words(),
-                    rounded(without, 3),
+                    sized(measure, without),
                     sized(measure, own)
                 ));
             }

@@ -36,8 +36,8 @@ pub struct Needs {
 
 /// Samples in the width 2π/T over which a run of length T tells frequencies apart, and the most of a band. An objective with an ensemble or
 /// several stiffnesses, whose runs are many, is looked at on its own samples.
-const PER_WIDTH: f64 = 8.0;
-const MOST: f64 = 801.0;
+const PER_WIDTH: f64 = 16.0;
+const MOST: f64 = 1601.0;
 
 impl Goal {
     /// What a scene needs by this goal, regardless of its limits, as long as `goes_on` says so. Peaks between samples are searched, as those
