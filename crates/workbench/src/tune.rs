@@ -157,6 +157,7 @@ fn search_and_write(
     let starts = ends::starts(search, &on_grid, explored.as_ref());
     let on_grid = on_grid.len();
     let mut refined = refine::refine(study, search, &starts, results, watch)?;
+    descent::finish(&mut refined, study, search, (results.journal(), "fminsearch"), watch)?;
     results.journal().check()?;
     let (certificate, passed_over) = choice::choose(study, &mut refined)?;
     refine::write_winner(study, &refined, results)?;

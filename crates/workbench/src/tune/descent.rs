@@ -1,25 +1,17 @@
 //! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD.
 
-use super::refine::{Refined, Run};
+use super::log::worth;
+use super::refine::{Descended, Refined, Run};
 use super::tmd::tmd;
-use crate::Error;
+use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_optim::{Counts, Foot, INFEASIBLE, Minimum, PeakEnergy, Point, Procedure, Row, Stop};
 use retune_store::Journal;
-use retune_study::{Search, Study};
+use retune_study::{Search, Study, counted};
 use std::cell::OnceCell;
 
 /// A value that is lower by less than this share is none that a descent has found.
 const GAIN: f64 = 1e-5;
-
-/// What a descent began with, and its work.
-#[derive(Clone, Copy, Debug)]
-pub struct Descended {
-    /// The value at its start.
-    pub from: f64,
-    /// Evaluations that it made.
-    pub evaluations: u64,
-}
 
 /// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
 /// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
@@ -31,6 +23,7 @@ pub(super) fn finish(
     study: &Study,
     search: &Search,
     (journal, stage): (&Journal, &str),
+    watch: &dyn Observer,
 ) -> Result<(), Error> {
     let Refined { objective, runs, .. } = refined;
     let tmd = tmd(study, search);
@@ -64,6 +57,16 @@ pub(super) fn finish(
         if run.minimum.value < refined.runs[refined.winner].minimum.value {
             refined.winner = number;
         }
+        let Some(Descended { from, evaluations }) = run.descent else { continue };
+        let begin = match number {
+            number if number < refined.starts => format!("the end of start {}", number + 1),
+            _ => "the best TMD".to_owned(),
+        };
+        let [from, to] = [from, run.minimum.value].map(|value| worth(value, study.quantity()));
+        watch.log(&format!(
+            "descent from {begin}: {from} to {to} in {}",
+            counted(evaluations, "evaluation")
+        ))?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! The ends of a search that is a part of a larger job: the designs that it comes to, without a directory, files or a certificate of its own.
 
+use super::descent::finish;
 use super::global::{Basins, Explored, global};
 use super::refine::each;
 use crate::{Error, Observer};
@@ -29,7 +30,8 @@ pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer)
     let explored = global(study, &search, (journal, place), watch)?;
     let stage = format!("{place}fminsearch");
     let starts = starts(&search, &[], explored.as_ref());
-    let refined = each(study, &search, &starts, (journal, &stage), |_, _, _| Ok(()))?;
+    let mut refined = each(study, &search, &starts, (journal, &stage), |_, _, _| Ok(()))?;
+    finish(&mut refined, study, &search, (journal, &stage), watch)?;
     let whole = |tuned: &PerVariable<f64>, of: &Design| {
         Design::new(|variable| tuned.get(variable).unwrap_or_else(|| of.get(variable))).ok()
     };

@@ -2,9 +2,9 @@
 
 mod answer;
 pub(crate) mod notes;
+mod run;
 
 use super::choice::PassedOver;
-use super::descent::Descended;
 use super::global::{Basins, Explored};
 use super::refine::{Refined, Run};
 use super::surf::Surf;
@@ -15,9 +15,10 @@ use crate::certify::Short;
 use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
-use retune_model::{Measure, Variable};
-use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, energy};
+use retune_model::Variable;
+use retune_optim::{Evaluation, Failures, Scaling, Stop, energy};
 use retune_study::{PerVariable, Search, Study, design_cells, short};
+use run::RunNote;
 use serde::Serialize;
 
 /// The best design and how it was found. SI units.
@@ -118,29 +119,6 @@ struct Refinement {
     /// The number, from 1, of the start that gave the optimum.
     winner: usize,
     runs: Vec<RunNote>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct RunNote {
-    start: PerVariable<f64>,
-    #[serde(flatten)]
-    at_start: Amount,
-    found: PerVariable<f64>,
-    #[serde(flatten)]
-    value: Amount,
-    iterations: u64,
-    func_count: u64,
-    stop: Stop,
-    /// The descent by derivatives that went on from there, where it found a better design.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    descent: Option<DescentNote>,
-}
-
-#[derive(Clone, Copy, Debug, Serialize)]
-struct DescentNote {
-    #[serde(flatten)]
-    from: Amount,
-    evaluations: u64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -262,30 +240,6 @@ fn start(refined: &Refined) -> Result<Found, Error> {
         known => known,
     };
     Ok(Found { damper: TunedDamper::of(&refined.objective.damper(x)?), e1_max })
-}
-
-impl RunNote {
-    fn new(run: &Run, quantity: Measure, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
-        let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
-        let (start, at_start) = match run.rows.first() {
-            Some(row) => (over(&row.best), energy(row.value)),
-            None => (PerVariable::default(), f64::NAN),
-        };
-        let (iterations, func_count) = (*iterations, *func_count);
-        Self {
-            start,
-            at_start: Amount::of(quantity, "_start", at_start),
-            found: over(x),
-            value: Amount::new(quantity, energy(*value)),
-            iterations,
-            func_count,
-            stop: *stop,
-            descent: run.descent.map(|Descended { from, evaluations }| DescentNote {
-                from: Amount::of(quantity, "_before", energy(from)),
-                evaluations,
-            }),
-        }
-    }
 }
 
 impl FailureNote {

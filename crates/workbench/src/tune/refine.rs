@@ -1,6 +1,5 @@
-//! The fine stage: `fminsearch` from each start, with its log, and a descent from each end.
+//! The fine stage: `fminsearch` from each start, with its log.
 
-use super::descent::{Descended, finish};
 use super::log;
 use super::objective::{kept, searched};
 use crate::Error;
@@ -9,7 +8,7 @@ use crate::summary::MadeBy;
 use retune_model::Variable;
 use retune_optim::{Minimum, PeakEnergy, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
-use retune_study::{Search, Study, counted};
+use retune_study::{Search, Study};
 use std::ops::ControlFlow;
 
 /// All refinements of a study.
@@ -32,6 +31,15 @@ pub struct Run {
     pub minimum: Minimum,
     /// The descent that led there.
     pub descent: Option<Descended>,
+}
+
+/// What a descent began with, and its work.
+#[derive(Clone, Copy, Debug)]
+pub struct Descended {
+    /// The value at its start.
+    pub from: f64,
+    /// Evaluations that it made.
+    pub evaluations: u64,
 }
 
 impl Refined {
@@ -70,25 +78,10 @@ pub(super) fn refine(
     if refined.starts > 1 {
         all.finish()?;
     }
-    for (number, run) in refined.runs.iter().enumerate() {
-        if let Some(Descended { from, evaluations }) = run.descent {
-            let begin = if number < refined.starts {
-                format!("the end of start {}", number + 1)
-            } else {
-                "the best TMD".to_owned()
-            };
-            watch.log(&format!(
-                "descent from {begin}: {} to {} in {}",
-                log::worth(from, study.quantity()),
-                log::worth(run.minimum.value, study.quantity()),
-                counted(evaluations, "evaluation")
-            ))?;
-        }
-    }
     Ok(refined)
 }
 
-/// Refines every start, and goes down from each end. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
+/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
 /// keeps values under the name of a stage.
 ///
 /// # Errors
@@ -112,9 +105,7 @@ pub(super) fn each(
         }
         runs.push(run);
     }
-    let mut refined = Refined { objective, runs, winner, starts: starts.len() };
-    finish(&mut refined, study, search, (journal, stage))?;
-    Ok(refined)
+    Ok(Refined { objective, runs, winner, starts: starts.len() })
 }
 
 /// A whole design, in the order of the columns of its tables.
