@@ -9,7 +9,6 @@ use retune_dynamics::periodic::branches::{Plan, Watch};
 use retune_dynamics::periodic::{Branch, End, Event, EventKind, Orbit, branches};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
-use std::time::Instant;
 
 /// A family: its name, and how a member is drawn.
 type Family = (&'static str, fn(&mut Spread) -> Numbers);
@@ -175,20 +174,20 @@ fn invariant_each_change_of_stability_is_named() {
     let wished = std::env::var("RETUNE_DAMPERS").ok();
     let (each, most) = wished.map_or((1, 60), |count| (count.parse().expect("a number"), MOST));
     println!(
-        "| dampers | | branches | doubled | closed | motions | unnamed: first four of doubled | closing | elsewhere | at a grazing | Neimark-Sacker | false | ends | lost | stopped | slowest, s |"
+        "| dampers | | branches | doubled | closed | motions | unnamed: first four of doubled | closing | elsewhere | at a grazing | Neimark-Sacker | false | ends | lost | stopped |"
     );
-    println!("| --- |{}", " ---: |".repeat(15));
-    let row = |name: &str, dampers: usize, count: &Count, slowest: f64| {
+    println!("| --- |{}", " ---: |".repeat(14));
+    let row = |name: &str, dampers: usize, count: &Count| {
         let Count { branches, points, doubled, closed, unnamed: [first, closing, elsewhere], .. } = *count;
         let Count { grazing, circles, false_circles, ends, lost, stopped, .. } = *count;
         println!(
-            "| {name} | {dampers} | {branches} | {doubled} | {closed} | {points} | {first} | {closing} | {elsewhere} | {grazing} | {circles} | {false_circles} | {ends} | {lost} | {stopped} | {slowest:.1} |"
+            "| {name} | {dampers} | {branches} | {doubled} | {closed} | {points} | {first} | {closing} | {elsewhere} | {grazing} | {circles} | {false_circles} | {ends} | {lost} | {stopped} |"
         );
     };
-    let (mut all, mut longest) = (Count::default(), 0.0_f64);
+    let mut all = Count::default();
     for (number, (name, draw)) in FAMILIES.into_iter().enumerate() {
         let mut spread = Spread::new(100 + number as u64);
-        let (mut own, mut slowest) = (Count::default(), 0.0_f64);
+        let mut own = Count::default();
         for _ in 0..each {
             let numbers = draw(&mut spread);
             let natural = (numbers.k1 / numbers.m1).sqrt();
@@ -197,16 +196,13 @@ fn invariant_each_change_of_stability_is_named() {
             let asked = AtomicUsize::new(0);
             let goes_on = || asked.fetch_add(1, SeqCst) < most;
             let watch = Watch { goes_on: &goes_on, ..Watch::default() };
-            let begun = Instant::now();
             let found = branches(&numbers.scene(), plan, &Settings::default(), watch).expect("branches");
-            slowest = slowest.max(begun.elapsed().as_secs_f64());
             found.branches.iter().for_each(|branch| own.add(&Count::of(branch)));
         }
-        row(name, each, &own, slowest);
+        row(name, each, &own);
         all.add(&own);
-        longest = longest.max(slowest);
     }
-    row("all", each * FAMILIES.len(), &all, longest);
+    row("all", each * FAMILIES.len(), &all);
     assert!(all.branches > 0);
     assert_eq!((all.unnamed, all.false_circles), ([0; 3], 0));
 }
