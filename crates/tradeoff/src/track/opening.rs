@@ -126,10 +126,7 @@ fn robust(tracked: &Tracked, shown: &[usize]) -> Option<String> {
     let parts: Vec<String> = parts.collect();
     let k1 = tracked.dampers.first()?.anew.len();
     (!parts.is_empty()).then(|| {
-        format!(
-            "Tuned for the worst over all {k1} k1, the least that is left at worst is {}.",
-            parts.join("; ")
-        )
+        format!("Tuned for the worst over all {k1} k1 (k1-robust), E1max is at worst: {}.", parts.join("; "))
     })
 }
 

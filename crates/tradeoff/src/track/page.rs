@@ -88,10 +88,10 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
     Ok(directory.write("report.html", &document.html())?)
 }
 
-const RULE: &str = "What keeps its work means: a design does its work at a stiffness k1 if its reduction, 10 lg(E1max without damper / E1max), is at least half of that of the \
-    best TMD of the same mass for that k1, with k2 and c2 free. The retention range is the interval about the nominal k1 in which it does. It is \
-    looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. It is counted by the factor by which k1 may \
-    rise and fall, the smaller of its two sides.";
+const RULE: &str = "A damper does its work at a stiffness k1 if its reduction, 10 lg(E1max without damper / E1max), is at least half of that of the \
+    best TMD of the same mass for that k1, with k2 and c2 free. It keeps its work over its retention range, the interval about the nominal k1 in \
+    which it does. The range is looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. It is \
+    counted by the factor by which k1 may rise and fall, the smaller of its two sides.";
 
 /// What was compared.
 fn asked(Tracked { dampers, bounds, .. }: &Tracked) -> String {
