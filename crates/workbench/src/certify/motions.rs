@@ -153,10 +153,13 @@ impl Place {
     /// The motions for a multiple of the force.
     fn at(&self, times: f64, settings: &Settings) -> Result<AtForce, Unusable> {
         let scene = with_force(&self.scene, times)?;
+        // A steady motion whose damper reaches a wall there has no value: that of the linear one is compared with.
+        let power = if self.goal.objective.quantity() == Measure::Energy { 2 } else { 1 };
+        let linear = self.from_rest * times.powi(power);
         let from_rest = if times == 1.0 {
             self.from_rest
         } else {
-            self.goal.evaluate(&scene, settings, f64::INFINITY)?.energy
+            self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.energy)
         };
         // Irregular windows are sampled densely at the own force alone: runs there take longest.
         let plan = Plan { looks: if times == 1.0 { SPACINGS.len() } else { 0 }, ..self.plan() };
