@@ -242,3 +242,15 @@ fn regress_starts_at_the_resonance_of_an_undamped_structure_settle() {
         }
     }
 }
+
+/// Of so many independent starts none falls onto a motion with the probability that is said, for the width that is said.
+#[test]
+fn exact_the_width_of_a_motion_that_starts_miss() {
+    for (starts, share, missed) in [(496, 0.3, 0.01), (16, 0.05, 0.5), (1, 1.0, 0.25)] {
+        let width = retune_dynamics::periodic::worst::width_missed(starts, share, missed);
+        let probability = (1.0 - share * width).powi(starts as i32);
+        assert!((probability / missed - 1.0).abs() < 1e-12, "{probability} {missed}");
+    }
+    let narrow = 3.0 * retune_dynamics::periodic::worst::width_missed(496, 0.3, 0.01);
+    assert!((narrow - 0.0924).abs() < 1e-4, "{narrow}");
+}

@@ -1,6 +1,7 @@
 //! `certify`: the reliability of a design's E1max. Its error bar, its sensitivity to small errors, the type of motion, a verdict.
 
 mod certificate;
+mod margin;
 mod measure;
 mod motions;
 

@@ -1,13 +1,12 @@
-//! The motions of a design beside those from rest, over the band of its objective and for every stiffness of it: at its own force, and at more force,
-//! from where they are followed back.
+//! The motions of a design beside those from rest, over the band of its objective and for every stiffness of it, at its own force and at more.
 
-use super::certificate::{Another, Irregular, MISSED, Margin, Motions, Other, ParameterError, SHARE};
+use super::certificate::{Another, Irregular, MISSED, Margin, Motions, SHARE};
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::Error;
-use retune_dynamics::periodic::branches::{Plan, SPACINGS, equations};
+use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::worst::{quantity, width_missed};
-use retune_dynamics::periodic::{Branches, Onset, Seed, Watch, branches, onset};
+use retune_dynamics::periodic::{Branches, Watch, branches};
 use retune_model::{Measure, NonNegative, Parameter, Scene, Source};
 use retune_optim::{Evaluation, Goal, Limit, Limits, PerLimit, Stiffnesses, Unusable};
 use retune_solver::Settings;
@@ -19,20 +18,7 @@ const STARTS: usize = 16;
 /// A force at which motions are looked for beside that of the margin that is needed, so that margins can be compared.
 const MORE: f64 = 1.2;
 /// A motion counts that has by this factor more than the runs from rest.
-const MUCH: f64 = 1.05;
-/// How far forces are followed down, as a share of the own: below it, for where a motion begins says how a parameter moves that.
-const DOWN: f64 = 0.9;
-/// The parameters whose errors are tried.
-const PARAMETERS: [Parameter; 8] = [
-    Parameter::K1,
-    Parameter::C1,
-    Parameter::M2,
-    Parameter::K2,
-    Parameter::C2,
-    Parameter::D,
-    Parameter::C,
-    Parameter::R,
-];
+pub(super) const MUCH: f64 = 1.05;
 
 /// What was found.
 pub(super) struct Found {
@@ -44,20 +30,20 @@ pub(super) struct Found {
 }
 
 /// Where motions are looked for: a band and a stiffness of a term of the objective.
-struct Place {
-    scene: Scene,
+pub(super) struct Place {
+    pub scene: Scene,
     goal: Goal,
     band: [f64; 2],
     starts: usize,
     /// The value of the runs from rest.
-    from_rest: f64,
+    pub from_rest: f64,
 }
 
 /// The motions at a place for a force.
-struct AtForce {
-    times: f64,
-    from_rest: f64,
-    branches: Branches,
+pub(super) struct AtForce {
+    pub times: f64,
+    pub from_rest: f64,
+    pub branches: Branches,
 }
 
 /// Finds them, with the largest value of every measure over all. None where there is nothing to find: the force has no period, or the damper strikes nothing.
@@ -161,88 +147,25 @@ fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> 
 }
 
 impl Place {
-    fn plan(&self) -> Plan {
+    pub fn plan(&self) -> Plan {
         Plan { samples: SAMPLES, starts: self.starts, ..Plan::over(Parameter::Omega, self.band) }
     }
 
     /// The motions for a multiple of the force.
     fn at(&self, times: f64, settings: &Settings) -> Result<AtForce, Unusable> {
         let scene = with_force(&self.scene, times)?;
+        // A steady motion whose damper reaches a wall there has no value: that of the linear one is compared with.
+        let power = if self.goal.objective.quantity() == Measure::Energy { 2 } else { 1 };
+        let linear = self.from_rest * times.powi(power);
         let from_rest = if times == 1.0 {
             self.from_rest
         } else {
-            self.goal.evaluate(&scene, settings, f64::INFINITY)?.energy
+            self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.energy)
         };
         // Irregular windows are sampled densely at the own force alone: runs there take longest.
         let plan = Plan { looks: if times == 1.0 { SPACINGS.len() } else { 0 }, ..self.plan() };
         let branches = branches(&scene, plan, settings, Watch::default())?;
         Ok(AtForce { times, from_rest, branches })
-    }
-
-    /// Follows the motions that have much more at a larger force back: lowers the margin to where the first of them begins, and gives those that are
-    /// there at the own force.
-    fn lower(
-        &self,
-        found: &AtForce,
-        measure: Measure,
-        settings: &Settings,
-        margin: &mut Margin,
-    ) -> Result<Vec<Seed>, Unusable> {
-        let of = quantity(measure);
-        let own = Parameter::P.of(&self.scene).unwrap_or_default();
-        let errors = 0.01 * margin.needed_percent;
-        // As a power of the force between the two that are known.
-        let power = (found.from_rest / self.from_rest).ln() / found.times.ln();
-        let much = move |times: f64| MUCH * self.from_rest * times.powf(power);
-        let counts = |orbit: &retune_dynamics::periodic::Orbit| of(&orbit.seen) > much(orbit.value / own);
-        let k1 = self.scene.primary.stiffness.get();
-        let largest = found.branches.largest(of);
-        if let Some(one) = largest.filter(|one| one.orbit.is_none() && one.value > much(found.times)) {
-            // It cannot be followed: it may begin anywhere above the force that was looked at before.
-            let before =
-                margin.forces.iter().copied().filter(|times| *times < found.times).fold(1.0, f64::max);
-            let value = Amount::new(measure, one.value);
-            let other = Other { value, omega: one.at, k1, periods: None, impacts: String::new() };
-            margin.lower_to(before, other);
-        }
-        let scene = with_force(&self.scene, found.times)?;
-        let shooting = equations(&scene, &self.plan(), settings)?;
-        let seeds = found.branches.seeds(&shooting, |orbit| of(&orbit.seen) > much(found.times));
-        let other = |onset: &Onset| Other {
-            value: Amount::new(measure, of(&onset.orbit.seen)),
-            omega: onset.omega,
-            k1,
-            periods: Some(onset.orbit.periods),
-            impacts: onset.orbit.seen.impacts.clone(),
-        };
-        let begins = |seeds: &[Seed]| onset(seeds, Parameter::P, DOWN * own, &counts);
-        let onsets: Vec<Option<Onset>> = seeds.par_iter().map(|seeds| begins(seeds)).collect();
-        let mut there = Vec::new();
-        for (seeds, onset) in seeds.iter().zip(onsets) {
-            let Some(onset) = onset else { continue };
-            margin.lower_to(onset.value / own, other(&onset));
-            if onset.value <= own {
-                there.extend(seeds.iter().filter_map(|seed| seed.moved(Parameter::P, own)));
-                continue;
-            }
-            for parameter in PARAMETERS {
-                let Some(value) = parameter.of(&self.scene).filter(|value| *value > 0.0) else { continue };
-                let at = |error: &f64| {
-                    let moved: Vec<Seed> = seeds
-                        .par_iter()
-                        .filter_map(|seed| seed.moved(parameter, value * (1.0 + error)))
-                        .collect();
-                    let onset = begins(&moved).filter(|moved| moved.value <= own)?;
-                    Some((*error, onset))
-                };
-                for (error, moved) in [-errors, errors].iter().filter_map(at) {
-                    // The force at which it begins falls all but evenly over so small an error.
-                    let share = (onset.value - own) / (onset.value - moved.value);
-                    margin.add(parameter.symbol(), 100.0 * error * share, other(&moved));
-                }
-            }
-        }
-        Ok(there)
     }
 
     fn motions(&self, quantity: Measure, found: &retune_dynamics::periodic::Motions) -> Motions {
@@ -273,54 +196,7 @@ impl Place {
     }
 }
 
-impl Margin {
-    /// Before any motion is found.
-    fn new(needed: &Margins) -> Self {
-        Self {
-            needed_force: 1.0 + needed.force,
-            forces: vec![1.0 + needed.force],
-            safe_to: 1.0 + needed.force,
-            other: None,
-            needed_percent: 100.0 * needed.errors,
-            parameters: Vec::new(),
-        }
-    }
-
-    /// Lowers it by what is found at more force; gives the motions that are there at the own force, each with the number of its place.
-    fn lower(
-        &mut self,
-        places: &[Place],
-        found: &[AtForce],
-        measure: Measure,
-        settings: &Settings,
-    ) -> Result<Vec<(usize, Seed)>, Unusable> {
-        let mut there = Vec::new();
-        for (i, (place, found)) in places.iter().zip(found).enumerate() {
-            there.extend(place.lower(found, measure, settings, self)?.into_iter().map(|seed| (i, seed)));
-        }
-        Ok(there)
-    }
-
-    /// A motion that begins at a multiple of the force.
-    fn lower_to(&mut self, times: f64, other: Other) {
-        if times < self.safe_to {
-            (self.safe_to, self.other) = (times, Some(other));
-        }
-    }
-
-    /// A motion that an error of a parameter brings; the least error of each is kept.
-    fn add(&mut self, parameter: &'static str, percent: f64, other: Other) {
-        let known = self.parameters.iter().position(|one| one.parameter == parameter);
-        let one = ParameterError { parameter, percent, other };
-        match known {
-            None => self.parameters.push(one),
-            Some(i) if percent.abs() < self.parameters[i].percent.abs() => self.parameters[i] = one,
-            Some(_) => {}
-        }
-    }
-}
-
-fn with_force(scene: &Scene, times: f64) -> Result<Scene, Unusable> {
+pub(super) fn with_force(scene: &Scene, times: f64) -> Result<Scene, Unusable> {
     let force = Parameter::P.of(scene).unwrap_or_default();
     if times == 1.0 { Ok(*scene) } else { Ok(Parameter::P.at(*scene, times * force).map_err(Error::from)?) }
 }
