@@ -46,7 +46,7 @@ pub fn shown(study: &Study, asked: Option<[f64; 2]>) -> Result<[f64; 2], Refused
         let least = end / MOST_PARTS;
         return Err(Refused::of(
             "span",
-            format!("{from} to {to} s is too short to be shown: at least {least} s"),
+            format!("{from:e} to {to:e} s is too short to be shown: at least {least} s"),
         ));
     }
     Ok([from, to])

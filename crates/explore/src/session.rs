@@ -18,7 +18,6 @@ use std::time::Duration;
 const DRAWN: Duration = Duration::from_millis(12);
 const RESTED: Duration = Duration::from_millis(60);
 
-/// What a page asked to look at.
 struct Look {
     id: u64,
     place: Place,
@@ -27,7 +26,6 @@ struct Look {
     branches: bool,
 }
 
-/// What waits: at most one message of each kind.
 #[derive(Default)]
 struct Mail {
     look: Option<Look>,
@@ -167,11 +165,8 @@ impl Session<'_> {
             match work {
                 // Only with its page: a slider that moves on does not end what is to be saved.
                 Work::Write(place, what, pins) => {
-                    let has_gone = || self.mail().ended;
-                    match texts::written(self.start, &place, what, &pins, &has_gone) {
-                        Ok(answer) => self.send(answer),
-                        Err(refused) => self.send(refused.into()),
-                    }
+                    let written = texts::written(self.start, &place, what, &pins, &|| self.mail().ended);
+                    self.send(written.unwrap_or_else(Answer::from));
                 }
                 Work::Look(look) => {
                     if self.look(&look, &mut known, &is_stale).is_err() {
@@ -202,16 +197,15 @@ impl Session<'_> {
                 Ok(())
             }
         };
-        let study = match self.start.at(place) {
-            Ok(study) => study,
+        let found = self.start.at(place).and_then(|study| {
+            let span = shown(&study, *span)?;
+            Ok((look(&study, span, *columns)?, span, study))
+        });
+        let (motion, span, study) = match found {
+            Ok(found) => found,
             Err(refused) => return send(refused.into()),
         };
-        let (span, answer) =
-            match shown(&study, *span).and_then(|span| Ok((span, look(&study, span, *columns)?))) {
-                Ok(found) => found,
-                Err(refused) => return send(refused.into()),
-            };
-        send(answer)?;
+        send(motion)?;
         let design = at_no_frequency(&study);
         // What the page will be sent of this design replaces what it has of another, in part or as a whole.
         known.response.take_if(|of| *of != design);
@@ -267,16 +261,16 @@ impl Session<'_> {
 
     fn pin(&self, slot: usize, place: &Place, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<(), Stale> {
         let whose = ["A", "B"][slot];
+        let answer = Answer::new("pinned").with("whose", whose);
         let found =
             self.start.at(place).and_then(|study| Ok((look(&study, shown(&study, None)?, 1)?, study)));
         let study = match found {
             Ok((run, study)) => {
-                let answer = Answer::new("pinned").with("whose", whose);
                 self.send(answer.with("figures", run.get("figures")).with("text", run.get("text")));
                 study
             }
             Err(Refused { problem, .. }) => {
-                self.send(Answer::new("pinned").with("whose", whose).with("problem", problem));
+                self.send(answer.with("problem", problem));
                 return Ok(());
             }
         };

@@ -5,6 +5,7 @@ use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use crate::watch::{caught, on_pool, watched};
 use pyo3::prelude::*;
+use retune_model::{Contact, Positive};
 use retune_store::Begin;
 use retune_workbench::design::Wishes;
 use retune_workbench::job::Done;
@@ -171,4 +172,12 @@ pub fn branches(
             Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
         }
     })
+}
+
+/// The walls of a damper of so many kg for which none are given, as JSON.
+#[pyfunction]
+pub fn contact(mass: f64) -> PyResult<String> {
+    let contact = Positive::new(mass).and_then(Contact::for_mass);
+    let contact = contact.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
+    Ok(json(&contact)?)
 }

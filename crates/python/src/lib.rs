@@ -27,11 +27,11 @@ mod _core {
     #[pymodule_export]
     use crate::files::job;
     #[pymodule_export]
-    use crate::jobs::{branches, certify, design_study, optimize, study_text, verify};
+    use crate::jobs::{branches, certify, contact, design_study, optimize, study_text, verify};
     #[pymodule_export]
     use crate::motion::{run, sweep};
     #[pymodule_export]
-    use crate::problem::{Core, contact};
+    use crate::problem::Core;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

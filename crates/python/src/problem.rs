@@ -8,7 +8,6 @@ use crate::watch::{caught, on_pool};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use retune_model::{Contact, Positive};
 use retune_optim::{Evaluation, GoesOn, Limit, Objective, PeakEnergy, Response, Variable};
 use retune_study::{Rule, Setting, Study, read::from_text};
 use std::f64::consts::TAU;
@@ -25,14 +24,6 @@ pub struct Core {
     takes_long: bool,
     /// Whether stroke and force are known: a limit asks for them, or the stroke is that of a steady motion.
     knows: [bool; 2],
-}
-
-/// The walls of a damper of so many kg for which none are given, as JSON.
-#[pyfunction]
-pub fn contact(mass: f64) -> PyResult<String> {
-    let contact = Positive::new(mass).and_then(Contact::for_mass);
-    let contact = contact.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
-    Ok(json(&contact)?)
 }
 
 /// The columns of a batch, and the rows without a value, each with its exception.

@@ -11,7 +11,6 @@ pub use wishes::{Wish, Wishes};
 use crate::artefact::{Content, Kind, artefact};
 use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
-use crate::look::look;
 use crate::searches::Searches;
 use crate::{Error, Observer, Request, resolved};
 use retune_model::Measure;
@@ -93,8 +92,8 @@ fn one(
         Ok(study.energy(&tuned.scene_with(&[Setting::new("k1", k1)])?).unwrap_or(f64::NAN))
     };
     let detuned = wishes.k1_error.map(|error| Ok::<_, Error>([off(-error)?, off(error)?])).transpose()?;
-    let needs = look(&tuned).map_or([f64::NAN; 2], |seen| {
-        [Measure::Stroke, Measure::ContactForce].map(|of| seen.reached.get(Limit::Of(of)))
+    let needs = found.needs.as_ref().map_or([f64::NAN; 2], |needs| {
+        [Measure::Stroke, Measure::ContactForce].map(|measure| needs.damper.value(measure))
     });
     Ok(Designed { name, study: study.clone(), rows, needs, feasible: found.check_limits().is_ok(), detuned })
 }

@@ -112,7 +112,8 @@ type Known<'a> = (&'a str, Content, Option<Again>);
 /// The files of a directory that a job makes, in the order of its list.
 fn known<'a>(place: &Path, there: &'a [String], others: &[&Others]) -> Vec<Known<'a>> {
     let mut known: Vec<Known> = Vec::new();
-    let command = Manifest::read(place).and_then(|manifest| manifest.made_by).map(|made| made.command);
+    let command =
+        Manifest::read(place).ok().flatten().and_then(|manifest| manifest.made_by).map(|made| made.command);
     let compared = COMPARISONS.iter().filter(|kind| command.as_deref() == Some(kind.command));
     let ours = compared.chain(&KINDS).map(|kind| (*kind, None));
     for (kind, again) in
