@@ -3,7 +3,7 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_model::{NonNegative, Positive};
+use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
     FrequencyBand, Goal, Limits, Objective, PeakEnergy, Response, Scale, Side, Space, Variable, minimax,
 };
@@ -34,7 +34,7 @@ fn reference_slopes_are_differences_of_the_objective() {
     let of = objective(limits);
     let look = |x: &[f64]| {
         let (height, runs) = of.look(x, f64::INFINITY);
-        let stroke = runs.iter().map(|run| run.reached[1]).fold(0.0, f64::max);
+        let stroke = runs.iter().map(|run| run.reached.get(Measure::Stroke)).fold(0.0, f64::max);
         ([height.worst, stroke / 0.3 - 1.0], runs)
     };
     let (values, runs) = look(&STRIKES);
