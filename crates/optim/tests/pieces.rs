@@ -3,7 +3,7 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_model::{NonNegative, Positive};
+use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
     FrequencyBand, Goal, Limits, Objective, PeakEnergy, Response, Scale, Side, Space, Variable, minimax,
 };
@@ -34,7 +34,7 @@ fn reference_slopes_are_differences_of_the_objective() {
     let of = objective(limits);
     let look = |x: &[f64]| {
         let (height, runs) = of.look(x, f64::INFINITY);
-        let stroke = runs.iter().map(|run| run.reached[1]).fold(0.0, f64::max);
+        let stroke = runs.iter().map(|run| run.reached.get(Measure::Stroke)).fold(0.0, f64::max);
         ([height.worst, stroke / 0.3 - 1.0], runs)
     };
     let (values, runs) = look(&STRIKES);
@@ -95,7 +95,8 @@ fn exact_steady_slopes_are_differences_of_the_closed_form() {
             x[i] += sign * step;
             sorted(&x)
         });
-        for (number, piece) in pieces.iter().enumerate() {
+        // Lower ones may be where the band is cut, at places that move with the design.
+        for (number, piece) in [0, 1, energies].map(|number| (number, &pieces[number])) {
             let difference = (beside[0][number].value - beside[1][number].value) / (2.0 * step);
             let error = (piece.slope[i] - difference).abs() * own / (1.0 + piece.value.abs());
             assert!(error < 1e-5, "parameter {i} of piece {number}: {} {difference}", piece.slope[i]);
