@@ -99,7 +99,7 @@ fn brief<'a>(plan: &Plan, changes: &[Setting], quiet: &'a dyn Observer) -> Resul
     let changed = |study: &Study| -> Result<Study, Error> { Ok(study.with(changes)?) };
     let fewer = |range: Range, most: usize| Range { points: range.points.min(most), ..range };
     let mut file = plan.file.clone();
-    let finest = file.ladder.iter().copied().filter(|samples| *samples <= LADDER).next_back();
+    let finest = file.ladder.iter().copied().rfind(|samples| *samples <= LADDER);
     file.ladder =
         vec![file.ladder.last().map_or(LADDER, |last| (*last).min(LADDER)).max(finest.unwrap_or(2))];
     (file.omega, file.motions) = (fewer(file.omega, LADDER), fewer(file.motions, MOTIONS));

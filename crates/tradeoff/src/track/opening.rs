@@ -61,7 +61,7 @@ fn home(tracked: &Tracked, shown: &[usize]) -> Option<String> {
     let home = shown.iter().filter_map(nominal).map(|point| point.e1_max).reduce(f64::max)?;
     let widest = |damper: &usize| {
         let as_good = |point: &&Point| point.e1_max <= (1.0 + SAME) * home;
-        front(&tracked.points, *damper).into_iter().filter(as_good).next_back()
+        front(&tracked.points, *damper).into_iter().rfind(as_good)
     };
     let mut all: Vec<&Point> = shown.iter().filter_map(widest).collect();
     all.sort_by(|a, b| b.factor().total_cmp(&a.factor()));
