@@ -123,6 +123,7 @@ impl Contact {
     ///
     /// # Errors
     /// A modulus is beyond the numbers.
+    #[expect(clippy::approx_constant, reason = "the paper's studies have 0.318, not 1/π")]
     pub fn for_mass(mass: Positive) -> Result<Self, OutOfRange> {
         let young = |paper: f64| Positive::new(paper * (mass.get() / 60.0));
         let (steel, soft) = (PoissonRatio::new(0.3)?, PoissonRatio::new(0.4)?);

@@ -3,29 +3,26 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_model::{Measure, Scene};
+use retune_model::Scene;
 use retune_solver::{Also, Ask, Extremes, Method, Settings, Settle, Window, extremes, settled};
 use scenes::{Numbers, SSVI, Spread};
 
 /// Of the settled motion alone.
-const SETTLED: Ask = Ask {
-    measure: Measure::Energy,
-    phase: 0.0,
-    also: Some(Also::walls(f64::INFINITY)),
-    cutoff: f64::INFINITY,
-};
+fn of_settled() -> Ask {
+    Ask { also: Some(Also::walls(f64::INFINITY)), ..Ask::default() }
+}
 
 /// The extremes of the settled motion; none where it does not settle in 400 s or is answered in closed form.
 fn rest(scene: &Scene) -> Option<Extremes> {
     let window = Window { from: 50.0, to: 400.0 };
-    let found = settled(scene, window, Settle::default(), &Settings::default(), SETTLED).expect("a run");
+    let found = settled(scene, window, Settle::default(), &Settings::default(), of_settled()).expect("a run");
     (found.settled && found.largest.time < window.to).then_some(found)
 }
 
 /// Those of a run five times as long.
 fn late(scene: &Scene) -> Extremes {
     let window = Window { from: 1900.0, to: 2000.0 };
-    let ask = Ask { also: Some(Also::walls(window.from)), ..SETTLED };
+    let ask = Ask { also: Some(Also::walls(window.from)), ..Ask::default() };
     extremes(scene, window, &Settings::default(), ask).expect("a run")
 }
 

@@ -348,7 +348,7 @@ fn contract_invalid_objectives_are_refused() {
         assert!(said.starts_with(message), "{message}: {said}");
     }
     let mut based = global(json!({ "response": "steady" }), json!({ "ground_force": 100 }));
-    based["scene"]["forcing"] = json!({ "base": 0.01, "omega": 6.28 });
+    based["scene"]["forcing"] = json!({ "base": 0.01, "omega": 6.3 });
     let said = problem(&based.to_string());
     let message =
         "optimize.limits.ground_force: 100 is not allowed here: give another response: on a moving base";

@@ -135,7 +135,6 @@ impl Goal {
                 max_iter: Some(400),
                 max_fun_evals: Some(400),
                 bounds: vec![Bounds { lower: Some(0.0), upper: None }; 2],
-                ..Options::default()
             };
             let value = |x: &[f64], cutoff: f64| objective.value(x, cutoff);
             let found = minimize(value, &start, options, |_| ControlFlow::Continue(())).ok()?;
