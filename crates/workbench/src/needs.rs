@@ -136,7 +136,7 @@ impl Largest {
             Some(Response::Motions) => "over all motions that are found".to_owned(),
             _ => format!("from {} s on", short(study.window.t0.get())),
         };
-        (!less.is_empty()).then(|| format!("{part} {}", less.join(", ")))
+        (!less.is_empty()).then(|| format!("{part}: {}", less.join(", ")))
     }
 }
 
@@ -228,7 +228,7 @@ impl Needs {
             ("needs", self.damper.damper_words()),
             ("there", format!("the structure {}", self.damper.structure_words())),
         ];
-        lines.extend(self.damper.own_words(study).map(|words| ("", words)));
+        lines.extend(self.damper.own_words(study).map(|words| ("later", words)));
         let none = self.none.iter().map(|none| format!("no damper: {}", beside(none, false)));
         let linear = self.linear.iter().map(|Linear { k2, c2, needs, .. }| {
             format!("best TMD (k2 {}, c2 {}): {}", rounded(*k2, 4), rounded(*c2, 4), beside(needs, true))

@@ -113,7 +113,6 @@ fn run(
             0 => {}
             known => watch.result(&format!("goes on: {} known", are(known, "value")))?,
         }
-        study.transient().iter().try_for_each(|words| watch.result(&format!("note: {words}")))?;
         let answer = work(results)?;
         watch.log(&answer.search())?;
         let report = format!("{}\n{}", answer.report(), answer.next(&job.out));

@@ -151,9 +151,15 @@ impl Certificate {
         }
     }
 
-    /// The force up to which no other motion has 5 % more, as a multiple of its own; 0 where that was not looked at.
+    /// The force up to which no other motion has 5 % more, as a multiple of its own; infinite where there is no such motion to look for.
     pub(crate) fn safe_to(&self) -> f64 {
-        self.margin.as_ref().map_or(0.0, |margin| margin.safe_to)
+        self.margin.as_ref().map_or(f64::INFINITY, |margin| margin.safe_to)
+    }
+
+    /// Whether no verdict is better and no margin larger.
+    pub(crate) fn is_safest(&self) -> bool {
+        let clear = self.margin.as_ref().is_none_or(|margin| margin.other.is_none());
+        self.verdict == Some(Verdict::Robust) && clear
     }
 
     /// Whether it has all measurements. One of [`judge`](crate::certify::judge) lacks the motions from other starts where the verdict was

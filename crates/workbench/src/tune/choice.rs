@@ -51,8 +51,7 @@ fn place(all: &[(Option<Verdict>, f64)]) -> usize {
 }
 
 /// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
-/// margin of the force, and of those the best. The certificate of the
-/// choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
+/// margin of the force, and of those the best. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
 ///
 /// # Errors
 /// As [`certify`].
@@ -82,6 +81,9 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     };
     for number in order {
         seen.push((number, judge(&of(number)?)?));
+        if seen.last().is_some_and(|(_, certificate)| certificate.is_safest()) {
+            break;
+        }
     }
     let all: Vec<(Option<Verdict>, f64)> =
         seen.iter().map(|(_, certificate)| (certificate.verdict, certificate.safe_to())).collect();

@@ -15,7 +15,7 @@ use crate::certify::Short;
 use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
-use retune_model::Variable;
+use retune_model::{Scene, Variable};
 use retune_optim::{Evaluation, Failures, Scaling, Stop, energy};
 use retune_study::{PerVariable, Search, Study, design_cells, short};
 use run::RunNote;
@@ -67,7 +67,7 @@ pub struct Optimum {
     /// The largest values over all that the answer covers, each at its own place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) needs: Option<Needs>,
-    /// The study, for words.
+    /// The study with the tuned damper, for words.
     #[serde(skip)]
     of: Study,
     simulation: Summary,
@@ -181,7 +181,7 @@ impl Optimum {
             valleys,
             certificate,
             needs: Needs::new(study, search, &refined.objective.scene(&best.minimum.x)?, evaluation.energy),
-            of: study.clone(),
+            of: Study { scene: Scene { damper: Some(damper), ..study.scene }, ..study.clone() },
             simulation: summary,
             start: start(refined)?,
             made_by: MadeBy::new(study),

@@ -27,7 +27,7 @@ impl Optimum {
         say(format!("  build    {}", values.replace(' ', HELD).replace(',', ", ")));
         let flat: Vec<String> = self.valleys.iter().filter_map(Valley::words).collect();
         if !flat.is_empty() {
-            say(format!("  flat     {}, each with the others held: at most 0.1 % more", flat.join("; ")));
+            say(format!("  flat     {} (the others held): at most 0.1 % more", flat.join("; ")));
         }
         for (name, words) in self.needs.iter().flat_map(|needs| needs.lines(&self.of)) {
             say(format!("  {name:<9}{words}"));
@@ -116,7 +116,7 @@ impl Optimum {
 
     /// All that a reader has to know before the design is used.
     fn notes(&self) -> Vec<String> {
-        let mut lines = Vec::new();
+        let mut lines: Vec<String> = self.of.transient().iter().map(|words| format!("note: {words}")).collect();
         if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
             lines.push(format!(
                 "note: {unsettled} of {} of this design had not settled at T; their value is that of the window",
