@@ -76,7 +76,7 @@ export class Branches {
         if (this.words.hidden) return;
         const { found, going } = this;
         if (going) {
-            const now = going.done < going.of ? `runs from many starts at ${going.done} of ${going.of} frequencies` : "following the branches";
+            const now = going.done < going.of ? `runs from rest at ${going.done} of ${going.of} frequencies` : "runs from other starts, and their branches";
             this.words.textContent = `Looking for other motions: ${now} …`;
         } else if (found.problem) {
             this.words.textContent = `Branches: ${found.problem}.`;

@@ -11,9 +11,10 @@ use retune_study::{Study, rounded};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 
-/// Frequencies at which runs are started from rest, and other starts for each: as `retune branches` has them if not told otherwise.
-const SAMPLES: usize = 31;
-const STARTS: usize = 16;
+/// Frequencies at which runs are started from rest: as many as `retune branches` has if not told otherwise, like the next.
+pub const SAMPLES: usize = 31;
+/// Other starts over the band for each of these frequencies.
+pub const STARTS: usize = 16;
 /// Most events of one kind that are marked on a branch: a cascade has any number of them.
 const MOST_EVENTS: usize = 40;
 

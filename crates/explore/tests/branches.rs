@@ -1,6 +1,6 @@
 //! The motions beside those from rest: as `retune branches` finds them, and given up as soon as another place is shown.
 
-use retune_explore::branches::follow;
+use retune_explore::branches::{SAMPLES, STARTS, follow};
 use retune_explore::protocol::{Answer, Hung, Message, Place};
 use retune_explore::response::Stale;
 use retune_explore::session::serve;
@@ -41,7 +41,7 @@ fn reference_the_largest_motion_is_that_of_the_branches() {
         told.fetch_add(1, SeqCst);
     };
     let found = follow(isola().study(), &send, &|| false).expect("not stale");
-    assert_eq!(told.into_inner(), 31);
+    assert_eq!(told.into_inner(), SAMPLES);
     let largest = found.get("largest").expect("a motion");
     let near = |value: &Value, expected: &Value| {
         let [value, expected] = [value, expected].map(|number| number.as_f64().expect("a number"));
@@ -87,7 +87,8 @@ fn contract_a_stale_search_ends_at_its_next_run() {
     let stale = || asked.fetch_add(1, SeqCst) >= 40;
     assert_eq!(follow(isola().study(), &|_| (), &stale).err(), Some(Stale));
     let asked = asked.into_inner();
-    assert!(asked < 40 + 31 * 2 + 20, "asked {asked} times"); // once more for each sample, and at the end
+    // Once more for each start from rest and each other one over the band, at the samples, and at the end.
+    assert!(asked < 40 + SAMPLES * (1 + STARTS) + SAMPLES + 20, "asked {asked} times");
 }
 
 /// A slider that moves while motions are looked for: it is answered at once, and of the earlier place nothing comes any more.

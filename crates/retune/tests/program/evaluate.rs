@@ -54,7 +54,10 @@ fn contract_lines_without_a_value_are_told_on_both_streams() {
          error: standard input: 2 of 3 lines had no value\n"
     );
     let (note, errors) = stderr.split_once('\n').expect("a line");
-    assert!(note.starts_with("note: at t0 = 1 s the slowest transient still has 72.53 % of its start"), "{note}");
+    assert!(
+        note.starts_with("note: at t0 = 1 s the slowest transient still has 72.53 % of its start"),
+        "{note}"
+    );
     assert_eq!(errors, expected);
 }
 

@@ -61,6 +61,12 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         self.now.y
     }
 
+    /// The work that counts against the budget: equal steps are known beforehand, and cheap, so only they are counted.
+    fn spent(&self) -> Work {
+        let fixed = self.settings.method.has_fixed_step();
+        Work { evaluations: if fixed { 0 } else { self.work.evaluations }, ..self.work }
+    }
+
     /// Integrates to time `to` (s) or until the observer is satisfied.
     ///
     /// # Errors
@@ -71,7 +77,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         observer: &mut impl Observer<N>,
     ) -> Result<(), SolverError> {
         let span = [self.now.t, to];
-        self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.work, span);
+        self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.spent(), span);
         while self.now.t < to && !observer.satisfied() {
             let t = self.now.t;
             let (h, attempt) = self.accepted::<M>(to)?;
@@ -142,10 +148,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
                 && error <= self.tolerance.rtol
             {
                 self.work.steps += 1;
-                // Equal steps are known beforehand, and cheap: only they are counted.
-                let fixed = self.settings.method.has_fixed_step();
-                let spent = Work { evaluations: if fixed { 0 } else { self.work.evaluations }, ..self.work };
-                self.budget.check(&spent, t)?;
+                self.budget.check(&self.spent(), t)?;
                 let growth = 1.0 / (1.25 * (error / self.tolerance.rtol).powf(M::POWER)).max(0.2);
                 self.h = Some(if failed { h } else { h * growth });
                 return Ok((h, attempt));

@@ -116,7 +116,8 @@ impl Optimum {
 
     /// All that a reader has to know before the design is used.
     fn notes(&self) -> Vec<String> {
-        let mut lines: Vec<String> = self.of.transient().iter().map(|words| format!("note: {words}")).collect();
+        let mut lines: Vec<String> =
+            self.of.transient().iter().map(|words| format!("note: {words}")).collect();
         if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
             lines.push(format!(
                 "note: {unsettled} of {} of this design had not settled at T; their value is that of the window",
