@@ -105,7 +105,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
         dl.facts {
             (fact("Against no damper", &none.0, &none.1))
             (fact(&format!("Against {}", whose(&findings.study.scene)), &study.0, &study.1))
-            (fact("Certificate", verdict, &format!("{words}; {} ± {} {}", quantity.name(), digits(certificate.error_bar, 2), quantity.unit())))
+            (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
             @if let Some(needs) = &findings.optimum.needs {
                 @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
                     "{what}, from rest on, at {}{}{}", frequency(needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
