@@ -8,6 +8,7 @@ use crate::watch::{caught, on_pool};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use retune_model::Measure;
 use retune_optim::{Evaluation, GoesOn, Limit, Objective, PeakEnergy, Response, Variable};
 use retune_study::{Rule, Setting, Study, read::from_text};
 use std::f64::consts::TAU;
