@@ -28,6 +28,7 @@ pub fn seal<'a>(
         let window = Span { t0: NonNegative::new(0.0)?, end: Positive::new(case.to)? };
         let solver = Solver::default();
         let study = Study {
+            certificate: Default::default(),
             schema: None,
             kind: retune_study::Kind::Study,
             retune: None,
