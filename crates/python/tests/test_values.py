@@ -71,7 +71,7 @@ def test_contract_a_problem_of_objects_is_that_of_its_study(tmp_path: Path) -> N
     assert built.names == ["k2", "c2", "D", "C"] and built.units == ["N/m", "N·s/m", "m", "m"]
     assert built.start == [215, 232, 0.06, 0.36]
     assert built.at([300, 200, 0.1, 0.3]).start == [300, 200, 0.1, 0.3]
-    free = rt.Problem(rt.Structure(m1=1, c1=0, k1=1), rt.TMD(0.1, k2=0.1, c2=0), P=1, window=(50, 100), vary=["k2"], bounds={"k2": (0, np.inf)})
+    free = rt.Problem(rt.Structure(m1=1, c1=0.1, k1=1), rt.TMD(0.1, k2=0.1, c2=0.02), P=1, vary=["k2"], bounds={"k2": (0, np.inf)})
     assert free.bounds == [(0, np.inf)]
 
 
