@@ -162,7 +162,9 @@ fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<()
         answers: &mut std::io::stdout(),
         complaints: &mut screen::complain,
     };
-    evaluate::evaluate(&study::read(study)?, *json, &request, streams)
+    let study = study::read(study)?;
+    study.transient().iter().for_each(|words| (streams.complaints)(&format!("note: {words}")));
+    evaluate::evaluate(&study, *json, &request, streams)
 }
 
 /// Checks a study file and prints a description of it.

@@ -99,7 +99,6 @@ pub fn evaluate<I: BufRead + Send + 'static>(
 ) -> Result<(), Error> {
     let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
     let objective = objective(study, &search, &search.variables);
-    study.transient().iter().for_each(|words| (streams.complaints)(&format!("note: {words}")));
     request.on_threads(|| answer(&objective, json, streams))
 }
 
