@@ -1,4 +1,5 @@
 //! Results that are verified. The tests of `tradeoff` use this file too.
+#![allow(dead_code, reason = "each crate uses a part of this")]
 
 use crate::desk::{Desk, altered, tiny};
 use crate::observers::Record;
