@@ -4,7 +4,6 @@
 mod desk;
 #[path = "../../../workbench/tests/jobs/observers.rs"]
 mod observers;
-#[allow(dead_code, reason = "this crate has a desk of its own")]
 #[path = "../../../workbench/tests/jobs/verified.rs"]
 mod verified;
 

@@ -118,7 +118,7 @@ fn contract_values_that_nobody_means_are_told_with_what_helps() {
             "P",
             1e150,
             &|error| too_slow(error, Remedy::LessForce),
-            "at this rate it takes 1.3e23 steps",
+            "at this rate it takes 1.6e22 steps",
             "lower P: nearly all steps are those of contacts",
         ),
     ];
