@@ -97,7 +97,8 @@ impl Asked {
             return Err(Error::Asked { option: "--samples, --starts, --apart, --fine", problem });
         }
         let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
-        Ok((Plan { parameter: over, range, samples, starts, apart, fine, looks: SPACINGS.len() }, basins))
+        let plan = Plan { samples, starts, apart, fine, looks: SPACINGS.len(), ..Plan::over(over, range) };
+        Ok((plan, basins))
     }
 }
 
@@ -125,13 +126,13 @@ pub(crate) fn plan_json(plan: &Plan) -> Value {
 /// The plan in a resolved study; none if it is not one.
 pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
     let count = |name: &str| json[name].as_u64().map(|count| count as usize);
+    let range = [json["from"].as_f64()?, json["to"].as_f64()?];
     Some(Plan {
-        parameter: json["over"].as_str()?.parse().ok()?,
-        range: [json["from"].as_f64()?, json["to"].as_f64()?],
         samples: count("samples")?,
         starts: count("starts")?,
         apart: count("apart")?,
         fine: count("fine")?,
         looks: SPACINGS.len(),
+        ..Plan::over(json["over"].as_str()?.parse().ok()?, range)
     })
 }

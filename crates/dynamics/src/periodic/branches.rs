@@ -6,9 +6,10 @@ use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
 use super::trace::{Branch, trace};
+use super::worst::quantity;
 use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
-use retune_model::{Parameter, Scene};
+use retune_model::{Measure, Parameter, Scene};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
@@ -40,17 +41,24 @@ pub struct Plan {
     pub fine: usize,
     /// How often the gaps without a stable motion are looked into, more closely each time: at most as often as [`SPACINGS`] says.
     pub looks: usize,
+    /// Only motions with as much of a measure are followed along the parameter; the others count where runs meet them.
+    pub least: Option<(Measure, f64)>,
 }
 
 impl Plan {
     /// A plan without samples and without whatever is looked for beside them.
     pub const fn over(parameter: Parameter, range: [f64; 2]) -> Self {
-        Self { parameter, range, samples: 0, starts: 0, apart: 0, fine: 0, looks: 0 }
+        Self { parameter, range, samples: 0, starts: 0, apart: 0, fine: 0, looks: 0, least: None }
     }
 
     /// Starts over the whole range, beside those from rest.
     pub const fn others(&self) -> usize {
         self.samples * self.starts
+    }
+
+    /// Whether a motion is followed.
+    pub(super) fn follows(&self, orbit: &Orbit) -> bool {
+        self.least.is_none_or(|(measure, least)| quantity(measure)(&orbit.seen) >= least)
     }
 
     /// Starts at a value where runs are started beside the samples.
@@ -113,16 +121,15 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
     };
     let [from, to] = plan.range;
     if from == to {
-        let seen = look(&shooting, from, (&starts, plan.others()), &goes_on)?;
-        found.samples.push(seen.sample(&shooting)?);
+        found.samples.push(look(&shooting, from, (&starts, plan.others()), &goes_on)?.sample());
         found.ended = ended.into_inner();
         return Ok(found);
     }
     let values = evenly(from, to, plan.samples);
-    found.add(&shooting, values.par_iter().map(from_rest).collect::<Result<_, Error>>()?, &goes_on)?;
+    found.add(&shooting, values.par_iter().map(from_rest).collect::<Result<_, Error>>()?, &goes_on);
     let other = |number: usize| look_from(&shooting, &starts, number, &goes_on);
     let others = (0..plan.others()).into_par_iter().map(other).collect::<Result<_, Error>>()?;
-    found.add(&shooting, others, &goes_on)?;
+    found.add(&shooting, others, &goes_on);
     for periods in 1..=APART {
         found.seek_apart(&shooting, &starts, periods, &goes_on)?;
     }
@@ -132,7 +139,7 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
         }
         let here = |value: &f64| look(&shooting, *value, (&starts, plan.fewer_starts()), &goes_on);
         let values = found.unseen(*spacing);
-        found.add(&shooting, values.par_iter().map(here).collect::<Result<_, Error>>()?, &goes_on)?;
+        found.add(&shooting, values.par_iter().map(here).collect::<Result<_, Error>>()?, &goes_on);
     }
     found.seek_from_rest(&shooting, &starts, &goes_on)?;
     found.ended = ended.into_inner();
@@ -170,20 +177,17 @@ pub fn sample(
         Some(number) => look_from(&shooting, &starts, number, &|| true)?,
         None => look(&shooting, value, (&starts, plan.starts), &|| true)?,
     };
-    seen.sample(&shooting)
+    Ok(seen.sample())
 }
 
 impl Branches {
     /// Adds what runs have reached, with the branches through it that are new.
-    ///
-    /// # Errors
-    /// A scene cannot be run.
     pub(super) fn add(
         &mut self,
         shooting: &Shooting,
         seen: Vec<Reached>,
         goes_on: &(dyn Fn() -> bool + Sync),
-    ) -> Result<(), Error> {
+    ) {
         let mut seen: Vec<Reached> = seen.into_iter().filter(|seen| seen.starts > 0).collect();
         let mut known = 0;
         loop {
@@ -193,13 +197,10 @@ impl Branches {
                 seen.find(shooting, |own, motion| self.holds_among(own, motion, known..all));
             });
             known = all;
-            let Some(next) = seen.iter_mut().find_map(Reached::next) else { break };
+            let Some(next) = seen.iter_mut().find_map(|seen| seen.next(&self.plan)) else { break };
             next.branch = self.follow(&shooting.of_periods(next.periods), &next.motion, goes_on);
         }
-        let samples: Result<Vec<Sample>, Error> =
-            seen.into_par_iter().map(|seen| seen.sample(shooting)).collect();
-        self.samples.extend(samples?);
-        Ok(())
+        self.samples.extend(seen.into_iter().map(Reached::sample));
     }
 
     /// Values in the gaps without a stable motion, at most `spacing` of the range apart, beside those that have been looked at.
@@ -240,7 +241,8 @@ impl Branches {
                 let stable = |place: Option<usize>| {
                     place.and_then(|place| branch.points.get(place)).is_some_and(Orbit::is_stable)
                 };
-                if stable(event.place.checked_sub(1)) == stable(Some(event.place + 1)) {
+                let same = stable(event.place.checked_sub(1)) == stable(Some(event.place + 1));
+                if same || !self.plan.follows(&event.orbit) {
                     continue;
                 }
                 let Some(off) = doubled(&branch.shooting, event, self.plan.range, goes_on) else { continue };

@@ -1,5 +1,6 @@
 //! What runs settle on at one value of the parameter.
 
+use super::branches::Plan;
 use super::orbit::Orbit;
 use super::seen::Seen;
 use super::settle::{Settled, Starts, is_same, settle};
@@ -9,7 +10,7 @@ use crate::parameter::Error;
 /// A motion on which runs settle, at one sample.
 #[derive(Clone, Debug)]
 pub struct Attractor {
-    /// The number of its branch; none if it could not be followed.
+    /// The number of its branch; none if it was not followed, or could not be.
     pub branch: Option<usize>,
     /// The motion.
     pub orbit: Orbit,
@@ -40,6 +41,7 @@ pub struct Sample {
 pub(super) struct End {
     pub periods: usize,
     pub motion: Solution,
+    orbit: Orbit,
     starts: usize,
     from_rest: bool,
     /// The number of its branch, once it is known.
@@ -87,6 +89,7 @@ impl Reached {
                     None => {
                         let end = End {
                             periods,
+                            orbit: Orbit::of(&own, &solution)?,
                             motion: solution,
                             starts: 1,
                             from_rest,
@@ -118,25 +121,20 @@ impl Reached {
     }
 
     /// The next of these motions whose branch is to be followed; each comes once.
-    pub(super) fn next(&mut self) -> Option<&mut End> {
-        let one = self.attractors.iter_mut().find(|one| one.branch.is_none() && !one.followed)?;
+    pub(super) fn next(&mut self, plan: &Plan) -> Option<&mut End> {
+        let is_next = |one: &&mut End| one.branch.is_none() && !one.followed && plan.follows(&one.orbit);
+        let one = self.attractors.iter_mut().find(is_next)?;
         one.followed = true;
         Some(one)
     }
 
     /// As a sample.
-    ///
-    /// # Errors
-    /// A scene cannot be run.
-    pub(super) fn sample(self, shooting: &Shooting) -> Result<Sample, Error> {
+    pub(super) fn sample(self) -> Sample {
         let Self { value, number, irregular, rest_is_irregular, starts, .. } = self;
-        let mut attractors = Vec::new();
-        for End { periods, motion, starts, from_rest, branch, .. } in self.attractors {
-            let orbit = Orbit::of(&shooting.of_periods(periods), &motion)?;
-            attractors.push(Attractor { branch, orbit, starts, from_rest });
-        }
+        let known = |End { branch, orbit, starts, from_rest, .. }| Attractor { branch, orbit, starts, from_rest };
+        let mut attractors: Vec<Attractor> = self.attractors.into_iter().map(known).collect();
         attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
-        Ok(Sample { value, number, attractors, irregular, rest_is_irregular, starts })
+        Sample { value, number, attractors, irregular, rest_is_irregular, starts }
     }
 }
 

@@ -36,7 +36,7 @@ impl Branches {
             // The branch through one of them may hold the next.
             if unknown(self, value)? {
                 let seen = look(shooting, value, (starts, self.plan.fewer_starts()), goes_on)?;
-                self.add(shooting, vec![seen], goes_on)?;
+                self.add(shooting, vec![seen], goes_on);
             }
         }
         Ok(())

@@ -17,6 +17,8 @@ const SAMPLES: usize = 31;
 const STARTS: usize = 16;
 /// A force at which motions are looked for beside that of the margin that is needed, so that margins can be compared.
 const MORE: f64 = 1.2;
+/// At more force motions are followed that have this share of the value from rest.
+const FOLLOWED: f64 = 0.8;
 /// A motion counts that has by this factor more than the runs from rest.
 pub(super) const MUCH: f64 = 1.05;
 
@@ -162,8 +164,12 @@ impl Place {
         } else {
             self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.energy)
         };
-        // Irregular windows are sampled densely at the own force alone: runs there take longest.
-        let plan = Plan { looks: if times == 1.0 { SPACINGS.len() } else { 0 }, ..self.plan() };
+        // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
+        let plan = if times == 1.0 {
+            Plan { looks: SPACINGS.len(), ..self.plan() }
+        } else {
+            Plan { least: Some((self.goal.objective.quantity(), FOLLOWED * from_rest)), ..self.plan() }
+        };
         let branches = branches(&scene, plan, settings, Watch::default())?;
         Ok(AtForce { times, from_rest, branches })
     }
