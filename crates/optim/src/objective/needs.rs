@@ -34,9 +34,9 @@ pub struct Needs {
     pub own: PerMeasure<Need>,
 }
 
-/// Samples in the width 2π/T over which a run of length T tells frequencies apart, and the most of a band. An objective with an ensemble or
-/// several stiffnesses, whose runs are many, is looked at on its own samples.
-const PER_WIDTH: f64 = 16.0;
+/// Samples of runs from rest in the width 2π/T over which a run of length T tells frequencies apart, and the most of a band. An objective
+/// with an ensemble or several stiffnesses, whose runs are many, is looked at on its own samples, as its own part of the response is.
+const PER_WIDTH: f64 = 8.0;
 const MOST: f64 = 1601.0;
 
 impl Goal {
@@ -46,9 +46,12 @@ impl Goal {
     /// # Errors
     /// As [`Goal::evaluate_while`].
     pub fn needs(&self, scene: &Scene, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Needs, Unusable> {
-        let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
-        let end = goal.window.to;
-        goal.objective.for_each_term(&mut |term| {
+        let goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
+        let own = goal.largest(scene, settings, None, goes_on)?;
+        let (mut whole, end) = (goal, self.window.to);
+        whole.window.from = 0.0;
+        whole.objective.for_each_term(&mut |term| {
+            term.response = Response::Window;
             let single = term.ensemble.is_none() && term.k1.is_none();
             if let Some(band) = term.omega.as_mut().filter(|_| single) {
                 let Band { from, to, samples } = band.of(&scene.primary);
@@ -56,10 +59,6 @@ impl Goal {
                 band.samples = samples.max(wanted as usize);
             }
         });
-        let own = goal.largest(scene, settings, None, goes_on)?;
-        let mut whole = goal;
-        whole.window.from = 0.0;
-        whole.objective.for_each_term(&mut |term| term.response = Response::Window);
         let mut all = whole.largest(scene, settings, Some(0.0), goes_on)?;
         all.0.iter_mut().zip(own.0).for_each(|(all, own)| {
             if own.value > all.value {
