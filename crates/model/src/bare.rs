@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{Excitation, Forcing, Primary, Source};
+use crate::{Excitation, Forcing, Primary, Source, Start};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -11,6 +11,8 @@ pub struct Bare {
     pub(crate) k1: f64,
     pub(crate) omega: f64,
     source: Source,
+    /// Where the motion starts away from rest.
+    start: Option<Start>,
     /// Amplitude of the force at ω, N, and its phase, rad: φ, and by how much the force leads the motion of a base.
     amplitude: f64,
     phase: f64,
@@ -26,6 +28,7 @@ impl Bare {
             k1: primary.stiffness.get(),
             omega: forcing.frequency.get(),
             source: forcing.source,
+            start: forcing.start(),
             amplitude: 0.0,
             phase: 0.0,
             lead: 0.0,
@@ -90,12 +93,14 @@ impl Bare {
         [0.0; 2]
     }
 
-    /// State at t = 0: at rest, or where a free decay starts.
+    /// State at t = 0: at rest unless told otherwise.
     pub fn start(&self) -> [f64; 2] {
-        match self.source {
-            Source::Decay(start) => [start.x1.get(), start.v1.get()],
-            _ => self.rest(),
-        }
+        self.start.map_or(self.rest(), |start| [start.x1.get(), start.v1.get()])
+    }
+
+    /// Where a motion starts away from rest.
+    pub(crate) fn away(&self) -> Option<Start> {
+        self.start
     }
 
     /// Equation (1) without a damper: `[v1, a1]`, m/s and m/s².

@@ -4,7 +4,7 @@ mod energies;
 mod structure;
 
 use crate::bare::largest;
-use crate::{Bare, Damper, Excitation, Finite, Forcing, Primary, Source, hertz_force, hertz_force_slope};
+use crate::{Bare, Damper, Excitation, Finite, Forcing, Primary, Start, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
 
 /// The two walls of the cavity.
@@ -83,15 +83,15 @@ impl Coupled {
         [0.0, 0.0, self.d, 0.0]
     }
 
-    /// State at t = 0: at rest, or where a free decay starts, by default with the damper's spring at rest.
+    /// State at t = 0: at rest unless told otherwise, by default with the damper's spring at rest.
     pub fn start(&self) -> [f64; 4] {
-        match self.bare.source() {
-            Source::Decay(start) => {
-                let x1 = start.x1.get();
-                [x1, start.v1.get(), start.x2.map_or(x1 + self.d, Finite::get), start.v2.get()]
-            }
-            _ => self.rest(),
-        }
+        let Some(Start { x1, v1, x2, v2 }) = self.bare.away() else { return self.rest() };
+        [x1.get(), v1.get(), x2.map_or(x1.get() + self.d, Finite::get), v2.get()]
+    }
+
+    /// Whether the damper's spring is at rest at t = 0, so that the damper starts at D from the structure.
+    pub fn starts_at_rest_distance(&self) -> bool {
+        self.bare.away().is_none_or(|start| start.x2.is_none())
     }
 
     /// The energy bound with a damper; see [`Bare::most_energy`]. Walls store what an overlap at the start gives them.

@@ -14,6 +14,8 @@ pub struct Forcing {
     pub source: Source,
     /// omega, its angular frequency, rad/s; 0 of a free decay.
     pub frequency: NonNegative,
+    /// Where a motion under a force starts; at rest if there is none. A free decay has its own.
+    pub start: Option<Start>,
 }
 
 /// The kinds of forcing.
@@ -48,7 +50,23 @@ pub struct Start {
 impl Forcing {
     /// A force P cos ωt on the structure: P, N, and ω, rad/s.
     pub const fn force(amplitude: NonNegative, frequency: NonNegative) -> Self {
-        Self { source: Source::Force(amplitude), frequency }
+        Self { source: Source::Force(amplitude), frequency, start: None }
+    }
+
+    /// Where the motion starts; none at rest.
+    pub fn start(&self) -> Option<Start> {
+        match self.source {
+            Source::Decay(start) => Some(start),
+            _ => self.start,
+        }
+    }
+
+    /// Begins elsewhere.
+    pub fn begin(&mut self, at: Start) {
+        match &mut self.source {
+            Source::Decay(start) => *start = at,
+            _ => self.start = Some(at),
+        }
     }
 
     /// The number that sets the size of the motion, by its name in study files: P, imbalance, base. A free decay has none.
@@ -86,12 +104,12 @@ impl Forcing {
     }
 }
 
-/// What makes the primary structure move: one of `P`, `imbalance` and `base` with its `omega`, or `start` alone.
+/// What makes the primary structure move: one of `P`, `imbalance` and `base` with its `omega`, from rest or from `start`; or `start` alone.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Forcing", extend("oneOf" = [
     { "required": ["P", "omega"] }, { "required": ["imbalance", "omega"] }, { "required": ["base", "omega"] },
-    { "required": ["start"] }
+    { "required": ["start"], "properties": { "omega": false } }
 ]))]
 struct InFile {
     /// P, amplitude of a force P cos(omega t) on the structure, N.
@@ -103,7 +121,7 @@ struct InFile {
     /// Amplitude of a moving base, base cos(omega t), m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     base: Option<NonNegative>,
-    /// A free decay from this state at t = 0, without any force.
+    /// The state at t = 0, rest if left out; alone it is a free decay, without any force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<Start>,
     /// omega, angular frequency of the force, of the rotation or of the base, rad/s.
@@ -112,8 +130,8 @@ struct InFile {
 }
 
 impl From<Forcing> for InFile {
-    fn from(Forcing { source, frequency }: Forcing) -> Self {
-        let none = Self { force: None, imbalance: None, base: None, start: None, omega: Some(frequency) };
+    fn from(Forcing { source, frequency, start }: Forcing) -> Self {
+        let none = Self { force: None, imbalance: None, base: None, start, omega: Some(frequency) };
         match source {
             Source::Force(amplitude) => Self { force: Some(amplitude), ..none },
             Source::Imbalance(amplitude) => Self { imbalance: Some(amplitude), ..none },
@@ -126,7 +144,7 @@ impl From<Forcing> for InFile {
 /// Why what a file says is no forcing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Refused {
-    #[error("give one of `P`, `imbalance`, `base` and `start`, not {0} of them")]
+    #[error("give one of `P`, `imbalance` and `base`, or `start` alone, not {0} of them")]
     Count(usize),
     #[error("missing field `omega`: the angular frequency, rad/s")]
     NoFrequency,
@@ -139,21 +157,16 @@ impl TryFrom<InFile> for Forcing {
 
     fn try_from(file: InFile) -> Result<Self, Refused> {
         let InFile { force, imbalance, base, start, omega } = file;
-        let sources = [
-            force.map(Source::Force),
-            imbalance.map(Source::Imbalance),
-            base.map(Source::Base),
-            start.map(Source::Decay),
-        ];
+        let sources = [force.map(Source::Force), imbalance.map(Source::Imbalance), base.map(Source::Base)];
         let given: Vec<Source> = sources.into_iter().flatten().collect();
-        match (given.as_slice(), omega) {
-            ([Source::Decay(_)], Some(_)) => Err(Refused::FreeFrequency),
-            ([source @ Source::Decay(_)], None) => {
-                Ok(Self { source: *source, frequency: NonNegative::default() })
+        match (given.as_slice(), start, omega) {
+            ([], Some(_), Some(_)) => Err(Refused::FreeFrequency),
+            ([], Some(start), None) => {
+                Ok(Self { source: Source::Decay(start), frequency: NonNegative::default(), start: None })
             }
-            ([source], Some(frequency)) => Ok(Self { source: *source, frequency }),
-            ([_], None) => Err(Refused::NoFrequency),
-            (others, _) => Err(Refused::Count(others.len())),
+            ([source], start, Some(frequency)) => Ok(Self { source: *source, frequency, start }),
+            ([_], _, None) => Err(Refused::NoFrequency),
+            (others, ..) => Err(Refused::Count(others.len())),
         }
     }
 }
@@ -172,13 +185,14 @@ mod tests {
             r#"{"P":800.0,"omega":6.28}"#,
             r#"{"imbalance":0.5,"omega":6.28}"#,
             r#"{"base":0.01,"omega":6.28}"#,
+            r#"{"P":800.0,"start":{"x1":0.1,"v1":0.0,"x2":0.2,"v2":0.0},"omega":6.28}"#,
             r#"{"start":{"x1":0.1,"v1":0.0,"v2":0.0}}"#,
         ] {
             let forcing = read(text).expect(text);
             assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
         }
         for (text, said) in [
-            (r#"{"omega":6.28}"#, "give one of `P`, `imbalance`, `base` and `start`, not 0 of them"),
+            (r#"{"omega":6.28}"#, "give one of `P`, `imbalance` and `base`, or `start` alone, not 0 of them"),
             (r#"{"P":1,"base":1,"omega":6.28}"#, "not 2 of them"),
             (r#"{"P":1}"#, "missing field `omega`"),
             (r#"{"start":{},"omega":1}"#, "`omega` has no meaning beside `start`"),

@@ -12,6 +12,7 @@ pub use sweep::Sweep;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use retune_model::Start;
 use retune_solver::{Contacts, Method};
 use retune_study::{Setting, SettingError};
 use retune_workbench::parts::Shard;
@@ -191,6 +192,9 @@ pub struct Simulate {
     /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P imbalance base omega R T t0, in SI units; omega=1Hz and omega=60rpm too (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub settings: Vec<Setting>,
+    /// Start from this state instead of rest: x1,v1,x2,v2 in m and m/s, or x1,v1 with the damper's spring at rest
+    #[arg(long, value_name = "X1,V1,X2,V2", value_parser = retune_study::start, allow_hyphen_values = true)]
+    pub from: Option<Start>,
     /// Integration method
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).map(method))]
     pub solver: Option<Method>,

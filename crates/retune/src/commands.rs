@@ -123,7 +123,10 @@ fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
     study.solver.method = arguments.solver.unwrap_or(study.solver.method);
     study.solver.contacts = arguments.contacts.unwrap_or(study.solver.contacts);
     study.solver.rtol = arguments.rtol.unwrap_or(study.solver.rtol);
-    let study = study.with(&arguments.settings)?;
+    let mut study = study.with(&arguments.settings)?;
+    if let Some(start) = arguments.from {
+        study.scene.forcing.begin(start);
+    }
     let inputs = [arguments.study.as_path()];
     let trajectory = arguments.trajectory.as_deref();
     let trajectory =

@@ -104,7 +104,7 @@ fn invariant_no_sample_of_the_force_on_a_moving_ground_is_above_its_maximum() {
 }
 
 fn decay(numbers: Numbers, start: Start) -> Scene {
-    let forcing = Forcing { source: Source::Decay(start), frequency: NonNegative::default() };
+    let forcing = Forcing { source: Source::Decay(start), frequency: NonNegative::default(), start: None };
     Scene { forcing, ..numbers.scene() }
 }
 
@@ -133,6 +133,36 @@ fn exact_a_free_decay_without_a_damper() {
     }
     let found = run.structure.displacement.value;
     assert!(largest <= found * (1.0 + 1e-14) && largest > found * (1.0 - 1e-8), "{largest} {found}");
+}
+
+/// A run that begins where another one is after some periods of the force goes on as that one does, with walls and without.
+#[test]
+fn exact_a_run_from_a_state_of_another_goes_on_as_that_one() {
+    let period = std::f64::consts::TAU / SSVI.omega;
+    for damper in [true, false] {
+        let mut scene = SSVI.scene();
+        scene.damper = scene.damper.filter(|_| damper);
+        let run = |scene: &Scene, [from, to]: [f64; 2]| {
+            simulate(scene, Window { from: from * period, to: to * period }, &Settings::default())
+                .expect("a run")
+        };
+        let before = run(&scene, [0.0, 3.0]);
+        let whole = run(&scene, [4.0, 6.0]);
+        let [x1, v1, x2, v2] = before.final_state.map(number);
+        scene.forcing.start = Some(Start { x1, v1, x2: Some(x2), v2 });
+        let later = run(&scene, [1.0, 3.0]);
+        assert_eq!(whole.impacts, later.impacts);
+        for (a, b) in [
+            (whole.e1_max.value, later.e1_max.value),
+            (whole.relative_displacement_max, later.relative_displacement_max),
+            (whole.structure.acceleration.value, later.structure.acceleration.value),
+        ] {
+            assert!((a / b - 1.0).abs() < 1e-9 || a == b, "{a} {b}");
+        }
+        let asked =
+            extremes(&scene, Window { from: period, to: 3.0 * period }, &Settings::default(), Ask::default());
+        assert!((asked.expect("a run").largest.value / later.e1_max.value - 1.0).abs() < 1e-12);
+    }
 }
 
 /// The start of a free decay is all its energy; with contacts and with a start inside a wall, by two methods.

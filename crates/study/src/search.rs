@@ -88,6 +88,7 @@ impl Study {
     pub fn search(&self) -> Result<Search, Rule> {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
+        self.begins_at_rest()?;
         if let Some(gap) = optimize.vary.iter().find(|variable| variable.get(&damper).is_nan()) {
             return Err(Rule::NotAllowed {
                 field: "optimize.vary".to_owned(),

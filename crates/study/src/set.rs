@@ -80,6 +80,12 @@ pub enum SettingError {
         /// What the forcing is given by.
         has: &'static str,
     },
+    /// What is typed is no state.
+    #[error("--from: \"{text}\" is no state: give x1,v1,x2,v2 (m, m/s), or x1,v1 alone")]
+    Start {
+        /// As given.
+        text: String,
+    },
     /// A parameter of the damper in a scene without one.
     #[error("{name}: the scene has no damper")]
     NoDamper {

@@ -6,7 +6,7 @@ use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
 use crate::resolved;
 use crate::searches::Searches;
-use crate::tune::Found;
+use crate::summary::TunedDamper;
 use crate::{Error, Observer, Request};
 use retune_model::Positive;
 use retune_study::{PaperStudy, read_table2};
@@ -49,12 +49,13 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
             watch.log(&format!("\n{damper}: re-optimised from {whose}"))?;
             let optimum = searches.tune(study, "")?;
             let again = Row::of_optimum("re-optimised", damper, study, &optimum);
-            let Found { damper: own, e1_max } = optimum.start();
+            let settings = study.solver.settings();
+            let paper = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
             let paper = Row {
                 label: label.to_owned(),
-                found: own,
+                found: study.scene.damper.as_ref().map_or(again.found, TunedDamper::of),
                 printed: printed.map(Positive::get),
-                e1_max,
+                e1_max: paper.energy,
                 verdict: judge(study)?.short().verdict(),
                 ..again.clone()
             };

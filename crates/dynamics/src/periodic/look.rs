@@ -131,7 +131,8 @@ impl Reached {
     /// As a sample.
     pub(super) fn sample(self) -> Sample {
         let Self { value, number, irregular, rest_is_irregular, starts, .. } = self;
-        let known = |End { branch, orbit, starts, from_rest, .. }| Attractor { branch, orbit, starts, from_rest };
+        let known =
+            |End { branch, orbit, starts, from_rest, .. }| Attractor { branch, orbit, starts, from_rest };
         let mut attractors: Vec<Attractor> = self.attractors.into_iter().map(known).collect();
         attractors.sort_by_key(|attractor| std::cmp::Reverse(attractor.starts));
         Sample { value, number, attractors, irregular, rest_is_irregular, starts }

@@ -27,6 +27,8 @@ pub struct Seen {
     pub stroke: f64,
     /// Largest contact force, N.
     pub force: f64,
+    /// `[x1, v1, x2, v2]` at its first crest of the force.
+    pub start: [f64; 4],
 }
 
 /// Follows a motion of so many periods from its states at the beginnings of equal segments: each segment from its own, so that an
@@ -46,8 +48,9 @@ pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 
     let (values, touches) = all;
     let PerMeasure([e1_max, displacement, velocity, acceleration, ground_force, stroke, force]) =
         values.values();
+    let start = states.first().copied().unwrap_or_default();
     let impacts = turned(touches.0.iter().map(|(_, side)| *side));
-    Ok(Seen { impacts, e1_max, displacement, velocity, acceleration, ground_force, stroke, force })
+    Ok(Seen { impacts, e1_max, displacement, velocity, acceleration, ground_force, stroke, force, start })
 }
 
 /// The impacts in turn, from where they read first in the alphabet.

@@ -22,6 +22,8 @@ pub struct Largest {
     pub at: f64,
     /// The motion; none of a run that did not settle.
     pub orbit: Option<Orbit>,
+    /// A state of it at a crest of the force.
+    pub start: [f64; 4],
     /// Whether runs from rest that were made end on its branch, or did not settle either.
     pub from_rest: bool,
     /// Who gets there.
@@ -120,12 +122,15 @@ impl Sample {
         let periodic = self.attractors.iter().map(|Attractor { orbit, starts, from_rest, .. }| Largest {
             value: quantity(&orbit.seen),
             at: self.value,
+            start: orbit.seen.start,
             orbit: Some(orbit.clone()),
             from_rest: *from_rest,
             share: share(*starts),
         });
-        let irregular = self.irregular.iter().map(quantity).max_by(f64::total_cmp).map(|most| Largest {
-            value: most,
+        let most = self.irregular.iter().max_by(|a, b| quantity(a).total_cmp(&quantity(b)));
+        let irregular = most.map(|most| Largest {
+            value: quantity(most),
+            start: most.start,
             at: self.value,
             orbit: None,
             from_rest: self.rest_is_irregular,
@@ -190,6 +195,7 @@ impl Branches {
                 at: orbit.value,
                 from_rest: self.is_reached_from_rest(number),
                 share: self.share(number),
+                start: orbit.seen.start,
                 orbit: Some(orbit),
             })
         });

@@ -110,7 +110,11 @@ impl Numbers {
 
     /// The same with another kind of forcing of the size `p`.
     pub fn forced_by(&self, source: fn(NonNegative) -> Source) -> Scene {
-        let forcing = Forcing { source: source(non_negative(self.p)), frequency: non_negative(self.omega) };
+        let forcing = Forcing {
+            source: source(non_negative(self.p)),
+            frequency: non_negative(self.omega),
+            start: None,
+        };
         Scene { forcing, ..self.scene() }
     }
 

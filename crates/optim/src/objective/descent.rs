@@ -16,6 +16,9 @@ const STEADY_GAIN: f64 = 1e-10;
 /// that may be far away. A descent that ends on this side of its box goes on in another one, at most so many times.
 const WIDE: f64 = 4.0;
 const BOXES: usize = 8;
+/// Where nothing bounds the spring and the dashpot, a descent goes no further than to so many times Den Hartog's: the damper is all but
+/// locked to the structure there, and runs take ever more steps.
+const LOCKED: [f64; 2] = [1e3, 3e2];
 
 /// The foot of a slope.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,8 +54,9 @@ impl PeakEnergy {
             } else {
                 (at.clone(), look(&at, f64::INFINITY).0)
             };
-            let is_inside =
-                |(i, (side, end)): (usize, (&Side, &f64))| *end < side.to || bounds[i].upper == Some(*end);
+            let is_inside = |(i, (side, end)): (usize, (&Side, &f64))| {
+                *end < side.to || bounds[i].upper == Some(*end) || *end >= self.locked(i)
+            };
             let is_done = !found.is_below(&height) || space.0.iter().zip(&end).enumerate().all(is_inside);
             if found.is_below(&height) {
                 (at, height) = (end, found);
@@ -66,9 +70,20 @@ impl PeakEnergy {
         Foot { from: from.get(), end: Point { x: at, value }, counts: Counts { evaluations, infeasible } }
     }
 
+    /// From where on the damper is all but locked by a parameter.
+    fn locked(&self, i: usize) -> f64 {
+        let [k2, c2] = self.den_hartog();
+        let locked = match self.variables()[i] {
+            Variable::K2 => LOCKED[0] * k2,
+            Variable::C2 => LOCKED[1] * c2,
+            _ => f64::INFINITY,
+        };
+        if locked > 0.0 { locked } else { f64::INFINITY }
+    }
+
     /// A side of the box: the whole range of a gap, which may be zero.
     fn side(&self, i: usize, Bounds { lower, upper }: Bounds, at: f64) -> Side {
-        let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
+        let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or_else(|| self.locked(i).max(at)));
         let is_gap = matches!(self.variables()[i], Variable::D | Variable::C);
         let wide = if at > low && !(is_gap && high.is_finite()) { WIDE * at } else { high };
         let most = if wide.is_finite() { wide.min(high) } else { 1.0_f64.max(2.0 * low) };

@@ -6,7 +6,7 @@ use super::spec::Goal;
 use super::unusable::Unusable;
 use super::watch::GoesOn;
 use crate::search::minimax::{Height, Piece};
-use retune_model::{Damper, Scene, Variable};
+use retune_model::{Damper, Scene, Variable, den_hartog};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -83,6 +83,11 @@ impl PeakEnergy {
     /// The varied parameters, in the order of a design.
     pub fn variables(&self) -> &[Variable] {
         &self.variables
+    }
+
+    /// Den Hartog's spring and dashpot for the damper's mass, N/m and N·s/m.
+    pub(super) fn den_hartog(&self) -> [f64; 2] {
+        den_hartog(&self.scene.primary, self.damper.mass.get())
     }
 
     /// The damper of `design`: one value for each of [`Self::variables`], SI units; the other parameters are unchanged.

@@ -37,7 +37,8 @@ fn contract_certify_shows_the_certificate_and_where_it_is() {
 /// The results of several studies are named after the file that names them.
 #[test]
 fn contract_tables_and_fronts_show_what_they_found_and_where_it_is() {
-    let mut study = global(json!({ "omega": { "from": 7.5, "to": 7.8, "samples": 2 } }), json!({}));
+    let mut study =
+        global(json!({ "omega": { "from": 7.5, "to": 7.8, "samples": 2 }, "starts": 1 }), json!({}));
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 10 });
     study["optimize"]["refine"] = json!({ "MaxFunEvals": 8 });
     let desk = Desk::with(&study);
@@ -147,6 +148,10 @@ fn contract_settings_and_options_reach_the_run() {
         let setting = format!("{name}={value}");
         assert_eq!(json(&["--set", &setting]).pointer(pointer), Some(&json!(value)), "{name}");
     }
+    let answer = json(&["--from", "-0.1,0.5,0.02,-2", "--set", "t0=0"]);
+    let start = json!({ "x1": -0.1, "v1": 0.5, "x2": 0.02, "v2": -2.0 });
+    assert_eq!(answer.pointer("/parameters/forcing/start"), Some(&start));
+    assert!(answer["E1max"].as_f64().expect("J") >= 0.5 * (1000.0 * 0.25 + 39500.0 * 0.01));
     let answer = json(&["--solver", "ode23s", "--contacts", "stepped", "--rtol", "1e-5"]);
     assert_eq!(answer["solver"]["method"], "ode23s");
     assert_eq!(answer["solver"]["contacts"], "stepped");

@@ -8,7 +8,7 @@ use crate::observe::observer::Unobserved;
 use crate::response::Extreme;
 use crate::run::Follower;
 use crate::settings::{Settings, Window};
-use retune_model::{Coupled, Measure, Parameter, Source};
+use retune_model::{Coupled, Measure, Parameter};
 use std::f64::consts::TAU;
 
 /// Maxima as near as this share to the largest are ties: each has a gradient of its own.
@@ -114,19 +114,11 @@ fn lateness(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
 fn derivatives(system: &Coupled, measure: Measure, found: &Transition, parameters: &[Parameter]) -> Vec<f64> {
     let by_start = |parameter: Parameter, by: [f64; 4]| -> [f64; 4] {
         // The damper starts at D.
-        let moves = parameter == Parameter::D && starts_at_rest(system);
+        let moves = parameter == Parameter::D && system.starts_at_rest_distance();
         std::array::from_fn(|i| if moves { by[i] + found.by_state[2][i] } else { by[i] })
     };
     let all = parameters.iter().zip(&found.by);
     let at = &found.end;
     all.map(|(&parameter, by)| system.measure_by(measure, parameter, at.t, &at.y, &by_start(parameter, *by)))
         .collect()
-}
-
-/// Whether the damper's spring is at rest at the start.
-fn starts_at_rest(system: &Coupled) -> bool {
-    match system.bare().source() {
-        Source::Decay(start) => start.x2.is_none(),
-        _ => true,
-    }
 }

@@ -16,7 +16,7 @@ pub use verdict::{Judged, Verdict};
 use crate::Error;
 use crate::amount::Amount;
 use crate::summary::{MadeBy, TunedDamper};
-use retune_model::{Damper, Measure};
+use retune_model::Damper;
 use retune_optim::Evaluation;
 use retune_study::Study;
 use serde::Serialize;
@@ -65,11 +65,9 @@ pub struct Short {
     verdict: Option<Verdict>,
     words: String,
     error_bar: f64,
+    /// What the comparison of methods came to.
     #[serde(skip)]
-    quantity: Measure,
-    /// Methods and tolerances that are compared.
-    #[serde(skip)]
-    methods: usize,
+    compared: String,
     predictable: bool,
     regime: String,
     exponent: f64,
@@ -81,11 +79,7 @@ pub struct Short {
 impl Short {
     /// The verdict in words, with the error bar.
     pub fn verdict_words(&self) -> String {
-        if !self.error_bar.is_finite() {
-            return format!("{} (not computed by all methods)", self.words);
-        }
-        let Self { words, methods, error_bar, quantity, .. } = self;
-        format!("{words} ({methods} methods and tolerances differ by {error_bar:.1e} {})", quantity.unit())
+        format!("{} ({})", self.words, self.compared)
     }
 
     /// Whether the value is one of many that practically equal designs have.
@@ -151,6 +145,18 @@ impl Certificate {
         }
     }
 
+    /// How far the methods that could finish the worst run agree, and which could not.
+    fn compared(&self) -> String {
+        let (finished, not): (Vec<&Run>, Vec<&Run>) =
+            self.convergence.iter().partition(|run| run.is_finished());
+        let mut not: Vec<&str> = not.iter().map(|run| run.method.name()).collect();
+        not.dedup();
+        let not =
+            if not.is_empty() { String::new() } else { format!("; {} could not finish", not.join(" and ")) };
+        let unit = self.value.quantity.unit();
+        format!("{} methods and tolerances differ by {:.1e} {unit}{not}", finished.len(), self.error_bar)
+    }
+
     /// The force up to which no other motion has 5 % more, as a multiple of its own; infinite where there is no such motion to look for.
     pub(crate) fn safe_to(&self) -> f64 {
         self.margin.as_ref().map_or(f64::INFINITY, |margin| margin.safe_to)
@@ -178,19 +184,9 @@ impl Certificate {
 
     /// The short form.
     pub fn short(&self) -> Short {
-        let Self { verdict, words, error_bar, value, predictable, motion, .. } = self.clone();
-        let methods = self.convergence.len();
+        let Self { verdict, words, error_bar, predictable, motion, .. } = self.clone();
+        let compared = self.compared();
         let Motion { regime, exponent, sentence, .. } = motion;
-        Short {
-            verdict,
-            words,
-            error_bar,
-            quantity: value.quantity,
-            methods,
-            predictable,
-            regime,
-            exponent,
-            sentence,
-        }
+        Short { verdict, words, error_bar, compared, predictable, regime, exponent, sentence }
     }
 }

@@ -50,7 +50,8 @@ impl Place {
             let before =
                 margin.forces.iter().copied().filter(|times| *times < found.times).fold(1.0, f64::max);
             let value = Amount::new(measure, one.value);
-            let other = Other { value, omega: one.at, k1, periods: None, impacts: String::new() };
+            let other =
+                Other { value, omega: one.at, k1, state: one.start, periods: None, impacts: String::new() };
             margin.lower_to(before, other);
         }
         let scene = with_force(&self.scene, found.times)?;
@@ -60,6 +61,7 @@ impl Place {
             value: Amount::new(measure, of(&onset.orbit.seen)),
             omega: onset.omega,
             k1,
+            state: onset.orbit.seen.start,
             periods: Some(onset.orbit.periods),
             impacts: onset.orbit.seen.impacts.clone(),
         };

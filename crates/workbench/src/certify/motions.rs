@@ -4,7 +4,7 @@ use super::certificate::{Another, Irregular, MISSED, Margin, Motions, SHARE};
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::Error;
-use retune_dynamics::periodic::branches::{Plan, SPACINGS};
+use retune_dynamics::periodic::branches::Plan;
 use retune_dynamics::periodic::worst::{quantity, width_missed};
 use retune_dynamics::periodic::{Branches, Watch, branches};
 use retune_model::{Measure, NonNegative, Parameter, Scene, Source};
@@ -166,7 +166,7 @@ impl Place {
         };
         // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
         let plan = if times == 1.0 {
-            Plan { looks: SPACINGS.len(), ..self.plan() }
+            Plan { looks: 1, ..self.plan() }
         } else {
             Plan { least: Some((self.goal.objective.quantity(), FOLLOWED * from_rest)), ..self.plan() }
         };

@@ -95,6 +95,7 @@ fn settings() -> Vec<SettingError> {
         SettingError::Frequency { name: "omega", problem: "\"1kHz\" is no frequency".into() },
         SettingError::OutOfRange { name, source: out_of_range() },
         SettingError::Forcing { name: "P", has: "base" },
+        SettingError::Start { text: "1,2,3".into() },
         SettingError::NoDamper { name },
         SettingError::NoWalls { name: "D" },
         SettingError::Rule(Rule::EmptyWindow { t0: 9.0, end: 4.0 }),
@@ -232,7 +233,7 @@ fn regress_the_words_of_every_error() {
         each!(errors(), Error: Store Study Setting Rule Sweep Asked Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
-        each!(settings(), SettingError: Form Name Number Frequency OutOfRange Forcing NoDamper NoWalls Rule),
+        each!(settings(), SettingError: Form Name Number Frequency OutOfRange Forcing Start NoDamper NoWalls Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),

@@ -6,7 +6,7 @@ mod run;
 
 use super::choice::PassedOver;
 use super::global::{Basins, Explored};
-use super::refine::{Refined, Run};
+use super::refine::Refined;
 use super::surf::Surf;
 use super::valley::Valley;
 use crate::Error;
@@ -71,8 +71,6 @@ pub struct Optimum {
     #[serde(skip)]
     of: Study,
     simulation: Summary,
-    #[serde(skip)]
-    start: Found,
     #[serde(skip)]
     made_by: MadeBy,
 }
@@ -183,7 +181,6 @@ impl Optimum {
             needs: Needs::new(study, search, &refined.objective.scene(&best.minimum.x)?, evaluation.energy),
             of: Study { scene: Scene { damper: Some(damper), ..study.scene }, ..study.clone() },
             simulation: summary,
-            start: start(refined)?,
             made_by: MadeBy::new(study),
         })
     }
@@ -205,11 +202,6 @@ impl Optimum {
     pub fn check_limits(&self) -> Result<(), Error> {
         self.certificate.check_limits(self.made_by.study())
     }
-
-    /// The design at which the best refinement started.
-    pub fn start(&self) -> Found {
-        self.start
-    }
 }
 
 /// The header of the paper's Table 2.
@@ -227,19 +219,6 @@ pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
     let m2 = short(damper.mass.get());
     let [k2, c2, d, c] = design_cells(&damper.design, 6);
     format!("{name:<24}{m2:<10}{k2:<12}{c2:<14}{d:<12}{c}")
-}
-
-/// The start of the best run, with its energy whether it keeps the limits or not. A run that ends before its first iteration has
-/// only its end.
-fn start(refined: &Refined) -> Result<Found, Error> {
-    let Run { rows, minimum, .. } = refined.best();
-    let (x, value) = rows.first().map_or((&minimum.x, minimum.value), |row| (&row.best, row.value));
-    let scene = refined.objective.scene(x)?;
-    let e1_max = match energy(value) {
-        none if none.is_nan() => refined.objective.evaluate(&scene, f64::INFINITY)?.energy,
-        known => known,
-    };
-    Ok(Found { damper: TunedDamper::of(&refined.objective.damper(x)?), e1_max })
 }
 
 impl FailureNote {

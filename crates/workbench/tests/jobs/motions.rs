@@ -29,6 +29,15 @@ fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
     assert!(largest["periods"] == 2 && (0.25..0.5).contains(&share), "{largest}");
     assert!((0.9..1.0).contains(&number(&seen, "/motions/covered")), "{said}");
     assert!(said.contains("a motion has 735.639 J at omega = 5.98192 rad/s (2 periods, impacts "), "{said}");
+
+    // Its state is where it can be run again from.
+    let state: Vec<String> = (0..4).map(|i| largest["state"][i].to_string()).collect();
+    let omega = Setting::new("omega", number(largest, "/omega"));
+    let mut again = isola().with(&[omega, Setting::new("t0", 0.0)]).expect("a study");
+    assert!(said.contains(" --from "), "{said}");
+    again.scene.forcing.begin(retune_study::start(&state.join(",")).expect("a state"));
+    let run = json!(good(retune_workbench::simulate::simulate(&again, None)));
+    assert!((number(&run, "/E1max") - number(largest, "/E1max")).abs() < 1e-6, "{run}");
 }
 
 /// With 44 mm more D the isola is gone, and back for a quarter of a per cent more force, or as much less D: an edge that runs at the design's own

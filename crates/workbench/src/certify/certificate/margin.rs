@@ -12,6 +12,8 @@ pub struct Other {
     pub value: Amount,
     pub omega: f64,
     pub k1: f64,
+    /// `[x1, v1, x2, v2]` of it at a crest of the force.
+    pub state: [f64; 4],
     /// Periods of the force after which it repeats; null where it does not.
     pub periods: Option<usize>,
     /// The walls that it strikes in turn: S the structure, O the obstacle.
@@ -47,7 +49,7 @@ pub struct Error {
 impl Other {
     /// What it is and where.
     pub fn words(&self) -> String {
-        let Self { value, omega, k1, periods, impacts } = self;
+        let Self { value, omega, k1, periods, impacts, .. } = self;
         let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
         let (omega, k1) = (short(*omega), short(*k1));
         format!("{} at omega = {omega} rad/s, k1 = {k1} N/m ({kind})", measured(value.value, value.quantity))

@@ -24,7 +24,7 @@ pub struct WorstRun {
     pub phase: f64,
 }
 
-/// The value of the worst run by a method.
+/// The value of the worst run by a method; null where it could not finish it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Run {
     pub method: Method,
@@ -88,6 +88,11 @@ pub struct Measured {
 }
 
 impl Run {
+    /// Whether the method could finish the run.
+    pub fn is_finished(&self) -> bool {
+        self.value.value.is_finite()
+    }
+
     /// Difference to the worst run of the study's own method.
     pub fn error(&self, worst: &WorstRun) -> f64 {
         (self.value.value - worst.value.value).abs()

@@ -41,6 +41,8 @@ pub struct Another {
     #[serde(flatten)]
     pub value: Amount,
     pub omega: f64,
+    /// `[x1, v1, x2, v2]` of it at a crest of the force, to run it again from.
+    pub state: [f64; 4],
     /// Periods of the force after which it repeats; null where it does not.
     pub periods: Option<usize>,
     /// The walls that it strikes in turn: S the structure, O the obstacle.
@@ -73,6 +75,7 @@ impl Another {
         Self {
             value: Amount::new(quantity, found.value),
             omega: found.at,
+            state: found.start,
             periods: found.orbit.as_ref().map(|orbit| orbit.periods),
             impacts: found.orbit.as_ref().map(|orbit| orbit.seen.impacts.clone()).unwrap_or_default(),
             from_rest: found.from_rest,
@@ -86,6 +89,13 @@ impl Another {
         let Self { value, omega, periods, impacts, .. } = self;
         let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
         format!("{} at omega = {} rad/s ({kind})", measured(value.value, value.quantity), short(*omega))
+    }
+
+    /// How to run it again, with a study or results that hold the design.
+    pub fn again(&self, k1: f64) -> String {
+        let Self { omega, state, .. } = self;
+        let state = state.map(short).join(",");
+        format!("`retune simulate STUDY --set omega={omega} --set k1={k1} --from {state}` runs it again")
     }
 
     /// How it is reached.

@@ -11,35 +11,24 @@ fn said(value: f64, quantity: Measure) -> String {
     if value.is_finite() { measured(value, quantity) } else { NONE.to_owned() }
 }
 
-/// An error bar.
-fn bar(error: f64, quantity: Measure) -> String {
-    if error.is_finite() { format!("{error:.1e} {}", quantity.unit()) } else { "an unknown error".to_owned() }
-}
-
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { words, error_bar, quantity, regime, exponent, .. } = self;
-        write!(f, "certificate: {words}\n  methods differ by {}, ", bar(*error_bar, *quantity))?;
+        let Self { words, compared, regime, exponent, .. } = self;
+        write!(f, "certificate: {words}\n  {compared}, ")?;
         write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
     }
 }
 
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { made_by, design, value, error_bar, worst_run, motion, neighbourhood, .. } = self;
+        let Self { made_by, design, value, worst_run, motion, neighbourhood, .. } = self;
         writeln!(f, "{made_by}")?;
         writeln!(f, "design        {}", design.words(|_| 6))?;
         let predictable = if self.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());
         let said = |value: f64| said(value, quantity);
-        let methods = self.convergence.len();
-        let bar = bar(*error_bar, quantity);
-        writeln!(
-            f,
-            "{name:<14}{}, {predictable}: {methods} methods and tolerances differ by {bar}",
-            said(value)
-        )?;
+        writeln!(f, "{name:<14}{}, {predictable}: {}", said(value), self.compared())?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let (omega, k1) = (short(*omega), short(*k1));
@@ -61,6 +50,9 @@ impl std::fmt::Display for Certificate {
         if let Some(motions) = &self.motions {
             writeln!(f, "motions       {}", motions.words())?;
             writeln!(f, "              {}", motions.missed())?;
+            if let Some(other) = motions.largest.as_ref().filter(|other| !other.from_rest) {
+                writeln!(f, "              {}", other.again(motions.k1))?;
+            }
         }
         if let Some(margin) = &self.margin {
             writeln!(f, "margin        {}", margin.words())?;

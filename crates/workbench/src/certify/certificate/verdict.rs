@@ -58,7 +58,8 @@ pub struct Judged {
 impl Measured {
     /// What they say of a design with this value.
     pub fn judged(&self, value: Amount) -> Judged {
-        let error_bar = self.convergence.iter().map(|run| run.error(&self.worst_run)).fold(0.0, f64::max);
+        let finished = self.convergence.iter().filter(|run| run.is_finished());
+        let error_bar = finished.map(|run| run.error(&self.worst_run)).fold(0.0, f64::max);
         let predictable = is_predictable(error_bar, self.worst_run.value.value);
         let (verdict, words) = judge(value, error_bar, predictable, self);
         Judged { error_bar, predictable, verdict, words }
