@@ -42,7 +42,7 @@ fn contract_retune_tunes_both_dampers_for_each_stiffness() {
 fn moving() -> Desk {
     let desk = Desk::new();
     let omega = json!({ "from": 1.2, "to": 1.3, "samples": 2, "relative": true });
-    let mut study = global(json!({ "omega": omega, "starts": 1 }), json!({}));
+    let mut study = global(json!({ "omega": omega }), json!({}));
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 20 });
     desk.write_json("one.json", &study);
     let row = json!({ "damper": "SSVI NES", "study": "one.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });

@@ -143,8 +143,11 @@ pub fn edited(k1: f64) -> Value {
 }
 
 /// The tiny study with a global search instead of its grid.
-pub fn global(objective: Value, limits: Value) -> Value {
+pub fn global(mut objective: Value, limits: Value) -> Value {
     let mut study = tiny();
+    if objective.get("sum").is_none() {
+        objective["starts"] = json!(1); // certificates are quick
+    }
     study["optimize"] = json!({
         "vary": ["k2", "c2", "D", "C"],
         "bounds": { "k2": [10, 1000], "c2": [1, 500], "D": [0, 0.5], "C": [0, 0.5] },

@@ -168,6 +168,8 @@ fn contract_a_directory_without_a_manifest_below_is_named() {
 fn contract_results_that_break_their_limits_are_verified() {
     let mut study = tiny();
     study["optimize"]["limits"] = json!({ "stroke": 1e-6 });
+    study["optimize"]["bounds"]["c2"] = json!([1, 1000]);
+    study["optimize"]["objective"] = json!({ "starts": 1 });
     let desk = Desk::with(&study);
     assert!(matches!(search(&desk, "study.json", "out").check_limits(), Err(Error::Infeasible { .. })));
     holds(&desk, "out", 20);
