@@ -2,11 +2,11 @@
 
 use super::look::{Reached, Sample, look, look_from};
 use super::orbit::Orbit;
+use super::seen::quantity;
 use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
 use super::trace::{Branch, trace};
-use super::worst::quantity;
 use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, Scene};
@@ -197,7 +197,10 @@ impl Branches {
                 seen.find(shooting, |own, motion| self.holds_among(own, motion, known..all));
             });
             known = all;
-            let Some(next) = seen.iter_mut().find_map(|seen| seen.next(&self.plan)) else { break };
+            let Some(next) = seen.iter_mut().find_map(|seen| seen.next(|orbit| self.plan.follows(orbit)))
+            else {
+                break;
+            };
             next.branch = self.follow(&shooting.of_periods(next.periods), &next.motion, goes_on);
         }
         self.samples.extend(seen.into_iter().map(Reached::sample));

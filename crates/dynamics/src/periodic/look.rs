@@ -1,6 +1,5 @@
 //! What runs settle on at one value of the parameter.
 
-use super::branches::Plan;
 use super::orbit::Orbit;
 use super::seen::Seen;
 use super::settle::{Settled, Starts, is_same, settle};
@@ -121,8 +120,8 @@ impl Reached {
     }
 
     /// The next of these motions whose branch is to be followed; each comes once.
-    pub(super) fn next(&mut self, plan: &Plan) -> Option<&mut End> {
-        let is_next = |one: &&mut End| one.branch.is_none() && !one.followed && plan.follows(&one.orbit);
+    pub(super) fn next(&mut self, follows: impl Fn(&Orbit) -> bool) -> Option<&mut End> {
+        let is_next = |one: &&mut End| one.branch.is_none() && !one.followed && follows(&one.orbit);
         let one = self.attractors.iter_mut().find(is_next)?;
         one.followed = true;
         Some(one)

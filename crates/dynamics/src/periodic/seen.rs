@@ -2,7 +2,7 @@
 
 use crate::parameter::Error;
 use crate::poincare::coupled;
-use retune_model::{PerMeasure, Scene, Side};
+use retune_model::{Measure, PerMeasure, Scene, Side};
 use retune_solver::observe::{LargestValues, TouchDownTimes};
 use retune_solver::{Follower, Motion, Phase, Settings};
 use std::f64::consts::TAU;
@@ -51,6 +51,19 @@ pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 
     let start = states.first().copied().unwrap_or_default();
     let impacts = turned(touches.0.iter().map(|(_, side)| *side));
     Ok(Seen { impacts, e1_max, displacement, velocity, acceleration, ground_force, stroke, force, start })
+}
+
+/// How a motion has a quantity.
+pub fn quantity(measure: Measure) -> fn(&Seen) -> f64 {
+    match measure {
+        Measure::Energy => |seen| seen.e1_max,
+        Measure::Displacement => |seen| seen.displacement,
+        Measure::Velocity => |seen| seen.velocity,
+        Measure::Acceleration => |seen| seen.acceleration,
+        Measure::GroundForce => |seen| seen.ground_force,
+        Measure::Stroke => |seen| seen.stroke,
+        Measure::ContactForce => |seen| seen.force,
+    }
 }
 
 /// The impacts in turn, from where they read first in the alphabet.

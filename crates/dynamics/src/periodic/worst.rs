@@ -6,8 +6,9 @@ use super::largest::largest;
 use super::look::{Attractor, Sample};
 use super::orbit::Orbit;
 use super::seen::Seen;
+pub use super::seen::quantity;
 use crate::parameter::Error;
-use retune_model::{Measure, Scene};
+use retune_model::Scene;
 use retune_solver::Settings;
 
 /// A range without a stable motion is named if it is wider than this share of the range.
@@ -57,19 +58,6 @@ pub struct Motions {
     pub covered: f64,
     /// The parts over which none is, and the largest value of the first quantity in the runs that were made there.
     pub irregular: Vec<(Interval, f64)>,
-}
-
-/// How a motion has a quantity.
-pub fn quantity(measure: Measure) -> fn(&Seen) -> f64 {
-    match measure {
-        Measure::Energy => |seen| seen.e1_max,
-        Measure::Displacement => |seen| seen.displacement,
-        Measure::Velocity => |seen| seen.velocity,
-        Measure::Acceleration => |seen| seen.acceleration,
-        Measure::GroundForce => |seen| seen.ground_force,
-        Measure::Stroke => |seen| seen.stroke,
-        Measure::ContactForce => |seen| seen.force,
-    }
 }
 
 /// Finds the motions of a scene in the range of a plan, which may be one value, and the largest values of some quantities over them.
