@@ -102,7 +102,8 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
             .scene_at(&retune_model::Design { k2, c2, d: Some(d), c: Some(c), m2: None })
             .expect("a damper");
         // The damper that was found, and the one where the search starts, which strikes its walls.
-        let omegas = [wishes.band[0], found["objective"]["worst_omega"].as_f64().expect("a number")];
+        let worst = found["objective"]["worst_omega"].as_f64().expect("a number");
+        let omegas = [wishes.band[0], worst, wishes.natural_frequency()];
         let mut impacts = 0;
         for (mut scene, omega) in
             [found_scene, study.scene].into_iter().flat_map(|scene| omegas.map(|omega| (scene, omega)))
