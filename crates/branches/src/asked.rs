@@ -55,7 +55,7 @@ impl Asked {
     /// An end is no number or out of range, or there are too many runs.
     pub(crate) fn plan(&self, study: &Study) -> Result<(Plan, Option<f64>), Error> {
         let Self { over, samples, starts, apart, fine, .. } = *self;
-        study.begins_at_rest().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+        study.begins_at_rest().map_err(Error::rule(study))?;
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
             return Err(Error::Asked { option: "STUDY", problem });

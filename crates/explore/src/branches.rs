@@ -37,6 +37,9 @@ pub fn follow(
     if !strikes || matches!(study.scene.forcing.source, Source::Decay(_)) {
         return Ok(answer.with("problem", "nothing is struck: there is one motion, the response"));
     }
+    if let Err(rule) = study.begins_at_rest() {
+        return Ok(answer.with("problem", rule.to_string()));
+    }
     let of = quantity(study.quantity());
     let band = band(study);
     let range = [band.from, band.to];

@@ -12,7 +12,7 @@ pub struct Bare {
     pub(crate) omega: f64,
     source: Source,
     /// Where the motion starts away from rest.
-    start: Option<Start>,
+    pub(crate) away: Option<Start>,
     /// Amplitude of the force at ω, N, and its phase, rad: φ, and by how much the force leads the motion of a base.
     amplitude: f64,
     phase: f64,
@@ -28,7 +28,7 @@ impl Bare {
             k1: primary.stiffness.get(),
             omega: forcing.frequency.get(),
             source: forcing.source,
-            start: forcing.start(),
+            away: forcing.start(),
             amplitude: 0.0,
             phase: 0.0,
             lead: 0.0,
@@ -95,12 +95,7 @@ impl Bare {
 
     /// State at t = 0: at rest unless told otherwise.
     pub fn start(&self) -> [f64; 2] {
-        self.start.map_or(self.rest(), |start| [start.x1.get(), start.v1.get()])
-    }
-
-    /// Where a motion starts away from rest.
-    pub(crate) fn away(&self) -> Option<Start> {
-        self.start
+        self.away.map_or(self.rest(), |start| [start.x1.get(), start.v1.get()])
     }
 
     /// Equation (1) without a damper: `[v1, a1]`, m/s and m/s².

@@ -85,13 +85,13 @@ impl Coupled {
 
     /// State at t = 0: at rest unless told otherwise, by default with the damper's spring at rest.
     pub fn start(&self) -> [f64; 4] {
-        let Some(Start { x1, v1, x2, v2 }) = self.bare.away() else { return self.rest() };
+        let Some(Start { x1, v1, x2, v2 }) = self.bare.away else { return self.rest() };
         [x1.get(), v1.get(), x2.map_or(x1.get() + self.d, Finite::get), v2.get()]
     }
 
     /// Whether the damper's spring is at rest at t = 0, so that the damper starts at D from the structure.
     pub fn starts_at_rest_distance(&self) -> bool {
-        self.bare.away().is_none_or(|start| start.x2.is_none())
+        self.bare.away.is_none_or(|start| start.x2.is_none())
     }
 
     /// The energy bound with a damper; see [`Bare::most_energy`]. Walls store what an overlap at the start gives them.

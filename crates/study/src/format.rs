@@ -67,7 +67,7 @@ impl Margins {
     }
 }
 
-/// The time window in which maxima are evaluated. Every run starts from rest at t = 0.
+/// The time window in which maxima are evaluated. Every run starts at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Span {

@@ -84,14 +84,14 @@ pub fn judge(study: &Study) -> Result<Certificate, Error> {
 }
 
 fn damper_of(study: &Study) -> Result<&Damper, Error> {
-    study.begins_at_rest().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+    study.begins_at_rest().map_err(Error::rule(study))?;
     study.scene.damper.as_ref().ok_or_else(|| {
         let rule = Rule::NotAllowed {
             field: "scene.damper".to_owned(),
             value: "none".to_owned(),
             allowed: "a damper, for that is what is certified",
         };
-        Error::Rule { name: study.name().to_owned(), rule }
+        Error::rule(study)(rule)
     })
 }
 

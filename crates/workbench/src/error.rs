@@ -2,7 +2,7 @@
 
 use retune_optim::{Failures, Unusable};
 use retune_solver::SolverError;
-use retune_study::{Rule, SettingError, StudyError, counted};
+use retune_study::{Rule, SettingError, Study, StudyError, counted};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -146,6 +146,13 @@ pub enum Error {
         /// The error of the drawing library.
         problem: String,
     },
+}
+
+impl Error {
+    /// That a study breaks a rule.
+    pub fn rule(study: &Study) -> impl Fn(Rule) -> Self + Copy + '_ {
+        |rule| Self::Rule { name: study.name().to_owned(), rule }
+    }
 }
 
 fn example(failures: &Failures) -> String {

@@ -97,7 +97,7 @@ pub fn evaluate<I: BufRead + Send + 'static>(
     request: &Request,
     streams: Streams<'_, I>,
 ) -> Result<(), Error> {
-    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+    let search = study.search().map_err(Error::rule(study))?;
     let objective = objective(study, &search, &search.variables);
     request.on_threads(|| answer(&objective, json, streams))
 }

@@ -126,7 +126,7 @@ fn run(
 
 /// The search of a study.
 fn searched(study: &Study) -> Result<Search, Error> {
-    study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })
+    study.search().map_err(Error::rule(study))
 }
 
 /// Searches, writes, and discards what cannot be computed: only work that could not be written can be resumed later.

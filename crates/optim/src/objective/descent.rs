@@ -55,7 +55,7 @@ impl PeakEnergy {
                 (at.clone(), look(&at, f64::INFINITY).0)
             };
             let is_inside = |(i, (side, end)): (usize, (&Side, &f64))| {
-                *end < side.to || bounds[i].upper == Some(*end) || *end >= self.locked(i)
+                *end < side.to || *end >= bounds[i].upper.unwrap_or(self.locked(i))
             };
             let is_done = !found.is_below(&height) || space.0.iter().zip(&end).enumerate().all(is_inside);
             if found.is_below(&height) {
@@ -70,7 +70,7 @@ impl PeakEnergy {
         Foot { from: from.get(), end: Point { x: at, value }, counts: Counts { evaluations, infeasible } }
     }
 
-    /// From where on the damper is all but locked by a parameter.
+    /// From where on the damper is all but locked by a parameter, in its unit; infinite of one that does not lock it.
     fn locked(&self, i: usize) -> f64 {
         let [k2, c2] = self.den_hartog();
         let locked = match self.variables()[i] {
@@ -83,7 +83,7 @@ impl PeakEnergy {
 
     /// A side of the box: the whole range of a gap, which may be zero.
     fn side(&self, i: usize, Bounds { lower, upper }: Bounds, at: f64) -> Side {
-        let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or_else(|| self.locked(i).max(at)));
+        let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(self.locked(i).max(at)));
         let is_gap = matches!(self.variables()[i], Variable::D | Variable::C);
         let wide = if at > low && !(is_gap && high.is_finite()) { WIDE * at } else { high };
         let most = if wide.is_finite() { wide.min(high) } else { 1.0_f64.max(2.0 * low) };

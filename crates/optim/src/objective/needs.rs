@@ -8,7 +8,7 @@ use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use super::watch::{GoesOn, Hooks, Watch, Watched};
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
-use retune_model::{Damper, Measure, NonNegative, PerMeasure, Scene, Source, Variable};
+use retune_model::{Damper, Measure, NonNegative, PerMeasure, Scene, Source, Variable, den_hartog};
 use retune_solver::{Also, Settings};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -109,11 +109,7 @@ impl Goal {
         let (Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) = scene.forcing.source else {
             return None;
         };
-        let (m1, k1) = (scene.primary.mass.get(), scene.primary.stiffness.get());
-        let (m2, share) = (damper.mass.get(), damper.mass.get() / m1);
-        let k2 = m2 * k1 / m1 / (1.0 + share).powi(2);
-        let c2 = 2.0 * (m2 * k2).sqrt() * (0.375 * share / (1.0 + share).powi(3)).sqrt();
-        if !of_the_structure || k1 == 0.0 {
+        if !of_the_structure || scene.primary.stiffness.get() == 0.0 {
             return None;
         }
         let plain = Damper {
@@ -142,7 +138,7 @@ impl Goal {
         let banded = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
         let closed =
             banded && !(quantity == Measure::GroundForce && matches!(scene.forcing.source, Source::Base(_)));
-        let mut best = [k2, c2];
+        let mut best = den_hartog(&scene.primary, damper.mass.get());
         if closed {
             let steady = |term: &mut Objective| (term.response, term.ensemble) = (Response::Steady, None);
             best = search(best, &steady)?;

@@ -70,7 +70,7 @@ fn from(study: &Study, start: &PerVariable<f64>) -> Result<(Study, Search, usize
         optimize.starts = vec![*start];
         samples = optimize.objective.omega.map_or(0, |band| band.samples);
     }
-    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+    let search = study.search().map_err(Error::rule(&study))?;
     Ok((study, search, samples))
 }
 

@@ -80,7 +80,7 @@ impl Fronts {
     fn bounded(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
         let Under { damper, sweep, bound } = under;
         let (_, study) = &self.plan.dampers[damper];
-        let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
+        let refuse = Error::rule(study);
         study::bounded(study, sweep, bound, starts).map_err(refuse)
     }
 

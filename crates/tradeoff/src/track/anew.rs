@@ -144,7 +144,7 @@ fn robust(study: &Study, designs: &[(f64, Design)]) -> Result<Study, Error> {
         let own = designs.iter().find(|(k1, _)| *k1 == nominal);
         optimize.starts.extend(own.map(|(_, design)| PerVariable::of_design(design, &optimize.vary)));
     }
-    let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
+    let refuse = Error::rule(&study);
     study.check().map_err(refuse)?;
     Ok(study)
 }

@@ -104,7 +104,7 @@ pub fn trade(
     watch: &dyn Observer,
 ) -> Result<Vec<Point>, Error> {
     let study = &tuned.study;
-    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+    let search = study.search().map_err(Error::rule(study))?;
     let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
     let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
     let seen =

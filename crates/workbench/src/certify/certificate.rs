@@ -30,7 +30,7 @@ pub struct Certificate {
     /// The objective's value.
     #[serde(flatten)]
     pub(crate) value: Amount,
-    /// Largest difference of a run of the convergence study to the worst run: how far the methods agree.
+    /// Largest difference of a run of the convergence study that could be finished to the worst run, in the unit of the value: how far the methods agree.
     pub(crate) error_bar: f64,
     pub(crate) predictable: bool,
     /// null where the design breaks a limit.

@@ -26,7 +26,7 @@ pub struct Ends {
 /// # Errors
 /// The study has nothing to tune, nothing can be computed, or the journal cannot be written.
 pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer) -> Result<Ends, Error> {
-    let search = study.search().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+    let search = study.search().map_err(Error::rule(study))?;
     let explored = global(study, &search, (journal, place), watch)?;
     let stage = format!("{place}fminsearch");
     let starts = starts(&search, &[], explored.as_ref());

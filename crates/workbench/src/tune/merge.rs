@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// [`tune`]: super::tune()
 pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let study = retune_study::read(&request.study)?;
-    let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
+    let refuse = Error::rule(&study);
     let search = searched(&study)?;
     let (_, grid) = search.surf.as_ref().ok_or_else(|| refuse(Rule::NoGrid))?;
     let wanted = Wanted {

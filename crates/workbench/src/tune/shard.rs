@@ -19,7 +19,7 @@ pub fn shard(
     order: &Order,
     watch: &dyn Observer,
 ) -> Result<(), Error> {
-    let refuse = |rule| Error::Rule { name: study.name().to_owned(), rule };
+    let refuse = Error::rule(study);
     let search = study.search().map_err(refuse)?;
     let (variables, grid) = search.surf.clone().ok_or_else(|| refuse(Rule::NoGrid))?;
     let (objective, most) = (coarse(study, &search, &variables), study.coarse().up_to());
