@@ -76,8 +76,8 @@ def ssvi(random):
     primary, forcing, m2, k2, c2, band = structure(random)
     stroke, reach = steady(primary, forcing, m2, k2, c2, band)
     box = {"k2": [0.02 * k2, 4 * k2], "c2": [0.02 * c2, 50 * c2], "D": [0, 4 * stroke], "C": [0, 4 * stroke]}
-    kind = ["stroke", "force", "cavity"][random.integers(3)]
-    most = {"stroke": stroke * random.uniform(0.3, 1.1), "force": 10 ** random.uniform(-1, 1) * forcing["P"], "cavity": stroke * random.uniform(0.5, 3)}
+    kind = ["stroke", "contact_force", "cavity"][random.integers(3)]
+    most = {"stroke": stroke * random.uniform(0.3, 1.1), "contact_force": 10 ** random.uniform(-1, 1) * forcing["P"], "cavity": stroke * random.uniform(0.5, 3)}
     period = 2 * math.pi / forcing["omega"]
     optimize = {
         "vary": ["k2", "c2", "D", "C"],

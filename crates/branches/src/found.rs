@@ -1,6 +1,6 @@
 //! What `branches` finds.
 
-use retune_dynamics::periodic::{Basins, Branches, Orbit};
+use retune_dynamics::periodic::{Basins, Branches, Onset, Orbit};
 use retune_study::Study;
 
 /// The motions of a study along a parameter.
@@ -36,8 +36,8 @@ impl Found {
 pub struct Margin {
     /// The scene's own force, N.
     pub own: f64,
-    /// The frequency and the motion at which it is born, the value of the latter being the force; none up to the largest that was tried.
-    pub birth: Option<(f64, Orbit)>,
+    /// Where it is born as the force rises; none up to the largest that was tried.
+    pub birth: Option<Onset>,
     /// The largest that was tried.
     pub tried: f64,
 }

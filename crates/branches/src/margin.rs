@@ -5,9 +5,8 @@
 //! born earlier.
 
 use crate::found::{Found, Margin};
-use crate::remedy::folds;
 use retune_dynamics::periodic::branches::{Watch, branches};
-use retune_dynamics::periodic::{Branch, Orbit};
+use retune_dynamics::periodic::{Branch, Onset, onset};
 use retune_model::Parameter;
 use retune_workbench::Error;
 
@@ -16,14 +15,8 @@ const STEPS: [f64; 10] = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0];
 /// How far below a birth another is looked for, as a share of the force, and how often.
 const BELOW: f64 = 0.995;
 const AGAIN: usize = 4;
-/// Motions of a branch from which the force is lowered first.
-const FIRST: usize = 40;
 /// A branch counts whose largest energy is by this factor above that of all motions that runs from rest lead to.
 const MUCH: f64 = 1.05;
-/// Motions as near as this share of the branch's range are at one frequency.
-const NEAR: f64 = 0.02;
-/// Golden sections about the least of them.
-const SECTIONS: usize = 30;
 
 /// Looks for it. None where the answer is not along ω, or nothing has an amplitude. Where there is such a motion already, nothing above the own force is
 /// tried.
@@ -37,16 +30,18 @@ pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
     if others(found).next().is_some() {
         return Ok(Some(Margin { own, birth: None, tried: own }));
     }
-    let first_birth = |force: f64| -> Result<Option<(f64, Orbit)>, Error> {
+    let first_birth = |force: f64| -> Result<Option<Onset>, Error> {
         let scene = Parameter::P.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
         let there = branches(&scene, plan, &found.study.solver.settings(), Watch::default())?;
         let there = Found::new(found.study.clone(), there);
-        Ok(others(&there).filter_map(birth).min_by(|a, b| a.1.value.total_cmp(&b.1.value)))
+        let births =
+            others(&there).filter_map(|branch| onset(&branch.seeds(|_| true), Parameter::P, own, &|_| true));
+        Ok(births.min_by(|a, b| a.value.total_cmp(&b.value)))
     };
     for step in STEPS {
         let Some(mut born) = first_birth(step * own)? else { continue };
         for _ in 0..AGAIN {
-            let below = BELOW * born.1.value;
+            let below = BELOW * born.value;
             match if below > own { first_birth(below)? } else { None } {
                 Some(earlier) => born = earlier,
                 None => break,
@@ -66,40 +61,6 @@ fn others(found: &Found) -> impl Iterator<Item = &Branch> {
     found.branches.branches.iter().enumerate().filter(is_other).map(|(_, branch)| branch)
 }
 
-/// The frequency and the motion with which a branch is born as the force rises: at the least of the folds at which its motions vanish as it
-/// falls.
-fn birth(branch: &Branch) -> Option<(f64, Orbit)> {
-    let fold = |orbit: &Orbit| folds(branch, orbit, Parameter::P).and_then(|[below, _]| below);
-    let every = branch.points.len().div_ceil(FIRST);
-    let some = branch.points.iter().step_by(every).filter_map(|point| Some((fold(point)?.value, point)));
-    let some: Vec<(f64, &Orbit)> = some.collect();
-    let (_, least) = some.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let omegas = || branch.points.iter().map(|point| point.value);
-    let [first, last] = [omegas().fold(f64::MAX, f64::min), omegas().fold(f64::MIN, f64::max)];
-    // The least lies between the motions beside it; those of the other side of the branch at nearly its own ω do not count.
-    let near = NEAR * (last - first);
-    let beside = |way: f64| {
-        let gaps = some.iter().map(|(_, point)| way * (point.value - least.value)).filter(|gap| *gap > near);
-        least.value + way * gaps.fold(f64::INFINITY, f64::min)
-    };
-    let [mut low, mut high] = [beside(-1.0).max(first), beside(1.0).min(last)];
-    let at = |omega: f64| {
-        let distance = |point: &Orbit| (point.value - omega).abs();
-        let (_, guess) = some.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))?;
-        let shooting = &branch.shooting;
-        let motion = shooting.correct_at_value(&shooting.unknowns(&guess.states, omega))?;
-        fold(&Orbit::of(shooting, &motion).ok()?)
-    };
-    let value = |omega: f64| at(omega).map_or(f64::INFINITY, |birth| birth.value);
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..SECTIONS {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if value(a) < value(b) { high = b } else { low = a }
-    }
-    let omega = 0.5 * (low + high);
-    Some((omega, at(omega)?))
-}
-
 impl Margin {
     /// In words.
     pub fn words(&self) -> String {
@@ -114,15 +75,15 @@ impl Margin {
                 retune_study::short(tried / own),
                 retune_study::short(*tried)
             ),
-            Some((omega, birth)) => format!(
+            Some(Onset { value, omega, orbit }) => format!(
                 "Up to {} times the force, {} N, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
                  periods, impacts {}).",
-                retune_study::rounded(birth.value / own, 6),
-                retune_study::rounded(birth.value, 8),
+                retune_study::rounded(value / own, 6),
+                retune_study::rounded(*value, 8),
                 retune_study::rounded(*omega, 6),
-                retune_study::rounded(birth.seen.e1_max, 5),
-                birth.periods,
-                birth.seen.impacts
+                retune_study::rounded(orbit.seen.e1_max, 5),
+                orbit.periods,
+                orbit.seen.impacts
             ),
         }
     }

@@ -128,6 +128,10 @@ pub fn answer(found: &Found) -> Vec<String> {
         counted(found.branches.branches.len() as u64, "branch"),
         rounded(share, 4)
     ));
+    if found.branches.ended {
+        let count = found.branches.branches.len();
+        words.push(format!("The search ended after {count} branches: there may be more, and the largest of all may be on one of them."));
+    }
     for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * (plan.range[1] - plan.range[0]))
     {
         let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;

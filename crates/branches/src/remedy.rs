@@ -27,13 +27,12 @@ pub fn remedies(branch: &Branch, orbit: &Orbit) -> Vec<Remedy> {
 
 fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<Remedy> {
     let own = parameter.of(&branch.shooting.forced.scene).filter(|own| *own > 0.0)?;
-    let folds = folds(branch, orbit, parameter)?.map(|fold| fold.map(|orbit| orbit.value));
+    let folds = folds(branch, orbit, (parameter, own))?;
     folds.iter().any(Option::is_some).then_some(Remedy { parameter, own, folds })
 }
 
-/// The motions at the folds below and above a parameter's value in the scene at which a motion of a branch vanishes.
-pub fn folds(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<[Option<Orbit>; 2]> {
-    let own = parameter.of(&branch.shooting.forced.scene).filter(|own| *own > 0.0)?;
+/// The values of a parameter below and above its own in the scene at which a motion of a branch vanishes at a fold.
+fn folds(branch: &Branch, orbit: &Orbit, (parameter, own): (Parameter, f64)) -> Option<[Option<f64>; 2]> {
     let shooting = branch.shooting.along(orbit.value, parameter, own).ok()?;
     let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, own))?;
     let along = trace(&shooting, &seed, REACH.map(|share| share * own), &|| true)?;
@@ -43,8 +42,8 @@ pub fn folds(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<[Op
     let closed = along.ends == [End::Closed; 2];
     let before = folds().rfind(|event| event.place < seed || closed);
     let after = folds().find(|event| event.place > seed);
-    let [low, high] = [before, after].map(|event| event.map(|event| event.orbit.clone()));
-    Some([low.filter(|end| end.value < own), high.filter(|end| end.value > own)])
+    let [low, high] = [before, after].map(|event| event.map(|event| event.orbit.value));
+    Some([low.filter(|end| *end < own), high.filter(|end| *end > own)])
 }
 
 impl Remedy {

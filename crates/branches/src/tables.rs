@@ -2,7 +2,7 @@
 
 use crate::basins::STARTS;
 use crate::found::Found;
-use retune_dynamics::periodic::Orbit;
+use retune_dynamics::periodic::{Onset, Orbit};
 use retune_store::Directory;
 use retune_study::joined;
 use retune_workbench::Error;
@@ -136,8 +136,8 @@ pub fn summary(found: &Found) -> Value {
         "margin": found.margin.as_ref().map(|margin| json!({
             "P": margin.own,
             "tried": margin.tried,
-            "birth": margin.birth.as_ref().map(|(omega, orbit)| json!({
-                "P": orbit.value,
+            "birth": margin.birth.as_ref().map(|Onset { value, omega, orbit }| json!({
+                "P": value,
                 "omega": omega,
                 "E1max": orbit.seen.e1_max,
                 "impacts": orbit.seen.impacts,

@@ -8,7 +8,7 @@
 //! branch), `events` (its bifurcations), `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs
 //! from many starts do), `largest`, then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
 //! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, `onset`
-//! (from which value of a parameter on a motion is there), and `basins`, where starts end.
+//! (from which value of a parameter on a motion is there), `known` (motions of one damper followed to another), and `basins`, where starts end.
 
 pub mod basins;
 mod belongs;
@@ -16,6 +16,7 @@ pub mod branches;
 pub mod deflate;
 pub mod events;
 pub mod forced;
+mod known;
 pub mod largest;
 pub mod look;
 mod node;
@@ -33,6 +34,7 @@ pub use basins::{Basins, Plane};
 pub use branches::{Branches, Interval, Watch, branches};
 pub use events::{Event, EventKind};
 pub use forced::Forced;
+pub use known::from_rest_and;
 pub use largest::largest;
 pub use look::Sample;
 pub use onset::{Onset, Seed, onset};

@@ -18,6 +18,7 @@ pub use objective::descent::Foot;
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
 pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
+pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
 pub use objective::peak_energy::{Counts, Failures, PeakEnergy};
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};

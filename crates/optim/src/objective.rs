@@ -12,7 +12,7 @@ pub mod evaluate;
 pub mod evaluation;
 pub mod gradient;
 pub mod limits;
-mod motions;
+pub mod motions;
 pub mod needs;
 pub mod peak_energy;
 pub mod pieces;

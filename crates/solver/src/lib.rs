@@ -66,7 +66,7 @@ pub use hybrid::propagator::{Hybrid, Motion, Phase};
 pub use linear::steps;
 pub use recurrence::test::Settle;
 pub use response::{Extreme, Response, SceneKind, StructureMaxima, Work};
-pub use run::Follower;
+pub use run::{Follower, least_steps};
 pub use settings::{Contacts, Method, Settings, Window};
 pub use settle::settled;
 pub use simulate::{e1_max, simulate, touch_downs};

@@ -3,6 +3,7 @@
 use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
+use crate::linear::flow::Flow;
 use crate::methods::onestep::Run;
 use crate::methods::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
 use crate::observe::observer::Observer;
@@ -10,10 +11,20 @@ use crate::response::Work;
 use crate::settings::{Method, Settings, Window};
 use crate::system::{LinearSystem, System};
 use nalgebra::{Const, DimMin};
-use retune_model::{Bare, Coupled};
+use retune_model::{Bare, Coupled, Scene};
 
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
+
+/// The least number of steps of a run of so many seconds by the exact method: those of its flight. Contacts add to them.
+pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
+    let Scene { primary, forcing, damper } = scene;
+    let step = match damper {
+        None => Flow::new(Bare::new(primary, forcing).linear(), seconds).step(),
+        Some(damper) => Flow::new(Coupled::new(primary, forcing, damper).linear(), seconds).step(),
+    };
+    seconds / step
+}
 
 /// Follows the bare structure from its start at t = 0: `before` sees the motion to the window, `observer` that inside it.
 pub fn follow_bare(

@@ -39,7 +39,7 @@ pub struct Fronts {
     pub stroke: Vec<Positive>,
     /// Limits on the contact force on either wall, N, as `limits.contact_force` of a study. Every damper is tuned under each of them, with k2 within the bounds of its study.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub force: Vec<Positive>,
+    pub contact_force: Vec<Positive>,
     /// Number of band samples on which the optimised designs are refined and re-evaluated, so that they are compared on the same frequencies.
     #[serde(default = "samples")]
     #[schemars(range(min = 2, max = 10000))]
@@ -81,7 +81,7 @@ pub enum Sweep {
     /// The stroke.
     Stroke,
     /// The contact force.
-    Force,
+    ContactForce,
 }
 
 /// The studies of a file, with all that it says about them.
@@ -120,14 +120,14 @@ fn certificates() -> usize {
 
 impl Sweep {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::K2, Self::Stroke, Self::Force];
+    pub const ALL: [Self; 3] = [Self::K2, Self::Stroke, Self::ContactForce];
 
     /// Its name in studies and of its table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::K2 => "k2",
             Self::Stroke => "stroke",
-            Self::Force => "force",
+            Self::ContactForce => "contact_force",
         }
     }
 
@@ -136,7 +136,7 @@ impl Sweep {
         match self {
             Self::K2 => "N/m",
             Self::Stroke => "m",
-            Self::Force => "N",
+            Self::ContactForce => "N",
         }
     }
 
@@ -145,7 +145,7 @@ impl Sweep {
         match self {
             Self::K2 => None,
             Self::Stroke => Some(Limit::Of(Measure::Stroke)),
-            Self::Force => Some(Limit::Of(Measure::ContactForce)),
+            Self::ContactForce => Some(Limit::Of(Measure::ContactForce)),
         }
     }
 }
@@ -156,7 +156,7 @@ impl FrontsPlan {
         let given = match sweep {
             Sweep::K2 => &self.said.k2,
             Sweep::Stroke => &self.said.stroke,
-            Sweep::Force => &self.said.force,
+            Sweep::ContactForce => &self.said.contact_force,
         };
         let mut values: Vec<f64> = given.iter().map(|value| value.get()).collect();
         values.sort_by(f64::total_cmp);
@@ -231,8 +231,12 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     if said.dampers.is_empty() {
         return Err(refuse("dampers", "an empty list".to_owned(), "at least one"));
     }
-    if said.k2.is_empty() && said.stroke.is_empty() && said.force.is_empty() {
-        return Err(refuse("k2", "an empty list".to_owned(), "at least one bound on k2, stroke or force"));
+    if said.k2.is_empty() && said.stroke.is_empty() && said.contact_force.is_empty() {
+        return Err(refuse(
+            "k2",
+            "an empty list".to_owned(),
+            "at least one bound on k2, stroke or contact_force",
+        ));
     }
     if said.rounds > MOST_ROUNDS {
         return Err(refuse("rounds", said.rounds.to_string(), "a whole number from 0 to 24"));

@@ -32,6 +32,7 @@ use retune_study::{self as study, Setting};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::designs::{Designs, Row};
 use retune_workbench::job::{Done, Job, Made};
+use retune_workbench::needs::Largest;
 use retune_workbench::resolved;
 use retune_workbench::searches::Searches;
 use retune_workbench::summary::TunedDamper;
@@ -139,5 +140,7 @@ fn paper(tuned: &Tuned) -> Option<Row> {
         e1_max: tuned.energy(&at, tuned.nominal()),
         none: tuned.study.energy_without_damper(),
         verdict: "",
+        reason: "the paper's design is not certified here".to_owned(),
+        needs: Largest::of(&tuned.study.goal(), &tuned.study.scene_at(&at)?, &tuned.study),
     })
 }

@@ -2,6 +2,7 @@
 
 use retune_model::{Forcing, Measure, Source};
 use retune_optim::{Part, Response};
+use retune_solver::{Method, least_steps};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
 
 /// Describes a table of studies.
@@ -43,8 +44,28 @@ pub fn study(study: &Study) -> String {
         lines.push(format!("tunes {} from {}", joined(&search.variables, ", "), starts(&search)));
         lines.extend(goal(study));
     }
+    lines.extend(steps(study));
     lines.extend(study.transient());
     lines.join("\n  ")
+}
+
+/// What a run costs, where runs are made in exact steps.
+fn steps(study: &Study) -> Option<String> {
+    let settings = study.solver.settings();
+    if settings.method != Method::Hybrid || study.objective().is_steady() {
+        return None;
+    }
+    let (least, most) = (least_steps(&study.scene, study.window.end.get()), settings.max_steps);
+    let refused = if least > most as f64 { ": it is refused" } else { "" };
+    let contacts = if study.scene.damper.is_some_and(|damper| damper.contact.is_some()) {
+        ", and those of contacts"
+    } else {
+        ""
+    };
+    Some(format!(
+        "a run takes {} steps in flight{contacts}; max_steps is {most}{refused}",
+        short(least.ceil())
+    ))
 }
 
 /// The forcing in words.

@@ -1,8 +1,10 @@
 //! Tables of designs in the form of the paper's Table 2, as `table2` and `track` make them.
 
 use crate::Error;
+use crate::needs::{Largest, TOLD};
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, table2_header, table2_row};
+use retune_model::Measure;
 use retune_store::Directory;
 use retune_study::{Study, fields, short};
 use serde::Serialize;
@@ -40,6 +42,11 @@ pub struct Row {
     pub none: f64,
     /// The verdict of its certificate.
     pub verdict: &'static str,
+    /// The reason for it, in words.
+    pub reason: String,
+    /// The largest values over all that the objective covers, from rest on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub needs: Option<Largest>,
 }
 
 impl Row {
@@ -54,6 +61,8 @@ impl Row {
             e1_max: found.e1_max,
             none: study.energy_without_damper(),
             verdict: optimum.verdict(),
+            reason: optimum.reason().to_owned(),
+            needs: optimum.needs.as_ref().map(|needs| needs.damper),
         }
     }
 
@@ -75,13 +84,16 @@ impl Designs {
 
     /// The table as CSV.
     pub fn csv(&self) -> String {
+        let names = TOLD.map(Measure::name).join(",");
         let mut text =
-            format!("{},damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,verdict\n", self.column);
-        for Row { label, damper, found, printed, e1_max, none, verdict } in &self.rows {
+            format!("{},damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,{names},verdict\n", self.column);
+        for Row { label, damper, found, printed, e1_max, none, verdict, needs, .. } in &self.rows {
+            let need = |measure| needs.map_or(String::new(), |needs| needs.value(measure).to_string());
+            let needs = TOLD.map(need).join(",");
             let printed = printed.map(|value| value.to_string()).unwrap_or_default();
             let [label, damper] = [label, damper].map(|text| quoted(text));
             let values = fields(&found.values());
-            text += &format!("{label},{damper},{values},{e1_max},{printed},{none},{verdict}\n");
+            text += &format!("{label},{damper},{values},{e1_max},{printed},{none},{needs},{verdict}\n");
         }
         text
     }
@@ -108,6 +120,11 @@ impl Designs {
                 row.reduction(),
                 row.verdict
             ));
+        }
+        lines.push(String::new());
+        for Row { label, damper, needs, reason, .. } in &self.rows {
+            let needs = needs.map_or(String::new(), |needs| format!("needs {}; ", needs.list()));
+            lines.push(format!("{damper}, {label}: {needs}{reason}"));
         }
         lines.join("\n")
     }

@@ -13,6 +13,15 @@ const APART: f64 = 0.01;
 /// The share by which another damper must be better, or the structure move more than without a damper, to be named.
 const BETTER: f64 = 1e-3;
 
+/// What is told of a damper: the room and the strength that it needs, and what the structure does.
+pub const TOLD: [Measure; 5] = [
+    Measure::Stroke,
+    Measure::ContactForce,
+    Measure::Displacement,
+    Measure::Acceleration,
+    Measure::GroundForce,
+];
+
 /// What a design needs, and what others need.
 #[derive(Clone, Debug, Serialize)]
 pub struct Needs {
@@ -101,6 +110,11 @@ impl Largest {
         format!("{} at {} rad/s", sized(measure, value), rounded(omega, 4))
     }
 
+    /// The values that are [`TOLD`], in a list.
+    pub fn list(&self) -> String {
+        TOLD.map(|measure| format!("{} {}", short_name(measure), self.sized(measure))).join(", ")
+    }
+
     /// The room and the strength that the damper needs.
     fn damper_words(&self) -> String {
         let stroke = self.words(Measure::Stroke);
@@ -124,9 +138,7 @@ impl Largest {
 
     /// What the objective looks at, where it is less.
     fn own_words(&self, study: &Study) -> Option<String> {
-        let told = [Measure::Stroke, Measure::ContactForce, Measure::Displacement, Measure::Acceleration];
-        let told = told.into_iter().chain([Measure::GroundForce]);
-        let less = told.filter_map(|measure| {
+        let less = TOLD.into_iter().filter_map(|measure| {
             Some(format!("{} {}", short_name(measure), sized(measure, self.own(measure)?)))
         });
         let less: Vec<String> = less.collect();

@@ -4,11 +4,13 @@ use crate::artefact::{Content, Kind, artefact};
 use crate::certify::judge;
 use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
+use crate::needs::Largest;
 use crate::resolved;
 use crate::searches::Searches;
 use crate::summary::TunedDamper;
 use crate::{Error, Observer, Request};
 use retune_model::Positive;
+use retune_optim::{Goal, Limits};
 use retune_study::{PaperStudy, read_table2};
 use serde_json::json;
 
@@ -51,12 +53,15 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
             let again = Row::of_optimum("re-optimised", damper, study, &optimum);
             let settings = study.solver.settings();
             let paper = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
+            let certificate = judge(study)?;
             let paper = Row {
                 label: label.to_owned(),
                 found: study.scene.damper.as_ref().map_or(again.found, TunedDamper::of),
                 printed: printed.map(Positive::get),
                 e1_max: paper.energy,
-                verdict: judge(study)?.short().verdict(),
+                verdict: certificate.short().verdict(),
+                reason: certificate.reason().to_owned(),
+                needs: Largest::of(&Goal { limits: Limits::default(), ..study.goal() }, &study.scene, study),
                 ..again.clone()
             };
             table.extend([paper, again]);

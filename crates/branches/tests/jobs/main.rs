@@ -11,8 +11,8 @@ use desk::{Desk, committed};
 use observers::{good, refused};
 use retune_branches::{Asked, OTHERS, branches};
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::EventKind;
 use retune_dynamics::periodic::settle::{Settled, settle};
+use retune_dynamics::periodic::{EventKind, Onset};
 use retune_workbench::{Done, Error, Request, Silent};
 use serde_json::Value;
 use verified::{End, a_changed_digit_is_found, holds, look};
@@ -96,11 +96,12 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
     let asked = Asked { from, to, samples: 15, margin: true, ..Asked::default() };
     let desk = Desk::with(&study);
     let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("not made") };
-    let (omega, birth) = found.margin.expect("asked for").birth.expect("within twice the force");
-    assert!(birth.value > 800.0, "{}", birth.value);
+    let Onset { value, omega, orbit } =
+        found.margin.expect("asked for").birth.expect("within twice the force");
+    assert!(value > 800.0, "{value}");
     assert!(desk.read("out2/README.md").contains("times the force"));
     for (share, is_there) in [(0.999, false), (1.003, true)] {
-        study["scene"]["forcing"]["P"] = (share * birth.value).into();
+        study["scene"]["forcing"]["P"] = (share * value).into();
         let desk = Desk::with(&study);
         // Samples about the place where it begins, for just above its birth it is narrow.
         let [from, to] = [-0.05, 0.05].map(|way| Some((omega + way).to_string()));
@@ -108,7 +109,7 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
         let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("made") };
         let energies = found.largest.iter().flatten().map(|orbit| orbit.seen.e1_max);
         let most = energies.fold(0.0, f64::max);
-        assert_eq!(most > 0.8 * birth.seen.e1_max, is_there, "{most} J at {share} of the force");
+        assert_eq!(most > 0.8 * orbit.seen.e1_max, is_there, "{most} J at {share} of the force");
     }
     let wrong = Asked { over: Parameter::K1, margin: true, ..Asked::default() };
     let error = refused(branches(&request(&desk, 1), &wrong, &Silent));

@@ -1,16 +1,18 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
+use super::events::Event;
 use super::look::{Reached, Sample, look, look_from};
 use super::orbit::Orbit;
-use super::seen::quantity;
+use super::seen::{Seen, quantity};
 use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
-use super::trace::{Branch, trace};
+use super::trace::{Branch, trace, trace_while};
 use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, Scene};
 use retune_solver::Settings;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 /// How far apart runs are started in the gaps without a stable motion, again and again, as shares of the range; with this share of the
@@ -21,8 +23,12 @@ const FEWER: usize = 4;
 const APART: usize = 2;
 /// The narrowest gap that is looked into, as a share of the range.
 const NARROW: f64 = 2e-4;
-/// Most branches.
-const MOST_BRANCHES: usize = 200;
+/// Motions that are looked at for the largest value have this share of the largest that is known.
+pub(super) const COUNTS: f64 = 0.8;
+/// A crest ends where the quantity is below this share of its largest value.
+const DOWN: f64 = 0.995;
+/// Most branches; whoever shows them says so.
+pub const MOST_BRANCHES: usize = 200;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +49,24 @@ pub struct Plan {
     pub looks: usize,
     /// Only motions with as much of a measure are followed along the parameter; the others count where runs meet them.
     pub least: Option<(Measure, f64)>,
+    /// A branch is followed about its largest value of a measure alone, and none that branches off: enough for that value.
+    pub crests: Option<Measure>,
 }
 
 impl Plan {
     /// A plan without samples and without whatever is looked for beside them.
     pub const fn over(parameter: Parameter, range: [f64; 2]) -> Self {
-        Self { parameter, range, samples: 0, starts: 0, apart: 0, fine: 0, looks: 0, least: None }
+        Self {
+            parameter,
+            range,
+            samples: 0,
+            starts: 0,
+            apart: 0,
+            fine: 0,
+            looks: 0,
+            least: None,
+            crests: None,
+        }
     }
 
     /// Starts over the whole range, beside those from rest.
@@ -76,7 +94,7 @@ pub struct Branches {
     pub branches: Vec<Branch>,
     /// The samples, in the order of their values.
     pub samples: Vec<Sample>,
-    /// Whether the search was ended before it had found all it could.
+    /// Whether the search was ended before it had found all it could, by who asked for it or after the most branches.
     pub ended: bool,
 }
 
@@ -122,11 +140,21 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
     let [from, to] = plan.range;
     if from == to {
         found.samples.push(look(&shooting, from, (&starts, plan.others()), &goes_on)?.sample());
-        found.ended = ended.into_inner();
+        found.ended |= ended.into_inner();
         return Ok(found);
     }
     let values = evenly(from, to, plan.samples);
-    found.add(&shooting, values.par_iter().map(from_rest).collect::<Result<_, Error>>()?, &goes_on);
+    let mut seen: Vec<Reached> = values.par_iter().map(from_rest).collect::<Result<_, Error>>()?;
+    if let Some(measure) = plan.crests {
+        let reached: Vec<f64> = seen.iter().map(|seen| seen.most(quantity(measure))).collect();
+        let most = reached.iter().copied().fold(0.0, f64::max);
+        found.plan.least = Some((measure, COUNTS * most));
+        let at = |i: usize| reached.get(i).copied().unwrap_or(0.0);
+        let is_crest = |i: usize| at(i) >= at(i.wrapping_sub(1)) && at(i) >= at(i + 1);
+        let mut number = 0..;
+        seen.retain(|_| number.next().is_some_and(is_crest));
+    }
+    found.add(&shooting, seen, &goes_on);
     let other = |number: usize| look_from(&shooting, &starts, number, &goes_on);
     let others = (0..plan.others()).into_par_iter().map(other).collect::<Result<_, Error>>()?;
     found.add(&shooting, others, &goes_on);
@@ -142,7 +170,7 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
         found.add(&shooting, values.par_iter().map(here).collect::<Result<_, Error>>()?, &goes_on);
     }
     found.seek_from_rest(&shooting, &starts, &goes_on)?;
-    found.ended = ended.into_inner();
+    found.ended |= ended.into_inner();
     found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
 }
@@ -226,12 +254,17 @@ impl Branches {
         &mut self,
         shooting: &Shooting,
         seed: &Solution,
-        goes_on: &dyn Fn() -> bool,
+        goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Option<usize> {
         if self.branches.len() >= MOST_BRANCHES {
+            self.ended = true;
             return None;
         }
         let number = self.branches.len();
+        if let Some(measure) = self.plan.crests {
+            self.branches.push(crest(shooting, seed, self.plan.range, quantity(measure))?);
+            return Some(number);
+        }
         self.branches.push(trace(shooting, seed, self.plan.range, goes_on)?);
         let mut next = number;
         while next < self.branches.len() && self.branches.len() < MOST_BRANCHES {
@@ -240,15 +273,16 @@ impl Branches {
             if 2 * branch.shooting.periods > MOST_PERIODS {
                 continue;
             }
-            for event in &branch.events {
+            let branches_off = |event: &Event| {
                 let stable = |place: Option<usize>| {
                     place.and_then(|place| branch.points.get(place)).is_some_and(Orbit::is_stable)
                 };
                 let same = stable(event.place.checked_sub(1)) == stable(Some(event.place + 1));
-                if same || !self.plan.follows(&event.orbit) {
-                    continue;
-                }
-                let Some(off) = doubled(&branch.shooting, event, self.plan.range, goes_on) else { continue };
+                let follows = !same && self.plan.follows(&event.orbit);
+                follows.then(|| doubled(&branch.shooting, event, self.plan.range, goes_on)).flatten()
+            };
+            let off: Vec<Branch> = branch.events.par_iter().filter_map(branches_off).collect();
+            for off in off {
                 let own = off.shooting.clone();
                 let known = off.points.get(off.points.len() / 2).and_then(|orbit| {
                     let start = own.unknowns(&orbit.states, orbit.value);
@@ -259,6 +293,7 @@ impl Branches {
                 }
             }
         }
+        self.ended |= self.branches.len() >= MOST_BRANCHES;
         Some(number)
     }
 
@@ -272,6 +307,22 @@ impl Branches {
         let irregular = begins.zip(ends).filter(|(a, b)| b - a > narrow).map(|(a, b)| [a, b]).collect();
         [stable, irregular]
     }
+}
+
+/// The part of the branch of a motion that leads up to the largest value of a quantity among stable motions, and a little beyond.
+fn crest(
+    shooting: &Shooting,
+    seed: &Solution,
+    range: Interval,
+    quantity: fn(&Seen) -> f64,
+) -> Option<Branch> {
+    let most = Cell::new(0.0);
+    let goes_on = |orbit: &Orbit| {
+        let value = quantity(&orbit.seen);
+        most.set(f64::max(most.get(), value));
+        orbit.is_stable() && value >= DOWN * most.get()
+    };
+    trace_while(shooting, seed, range, &goes_on)
 }
 
 /// The steps of a branch over which its motions are stable.

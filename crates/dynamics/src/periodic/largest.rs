@@ -5,8 +5,10 @@ use super::trace::Branch;
 
 /// Local maxima as near as this share to the largest are located exactly.
 const CLOSE: f64 = 0.02;
-/// Evaluations to locate a maximum.
+/// Most evaluations to locate a maximum.
 const EVALUATIONS: usize = 40;
+/// Less than this share is no gain.
+const NOTHING: f64 = 1e-14;
 
 /// The motion with the largest value of a quantity among the stable ones of a branch, located between the points of the branch.
 pub fn largest(branch: &Branch, quantity: impl Fn(&Orbit) -> f64 + Copy) -> Option<Orbit> {
@@ -21,30 +23,57 @@ pub fn largest(branch: &Branch, quantity: impl Fn(&Orbit) -> f64 + Copy) -> Opti
         let own = stable(i)?.clone();
         let inner = i > 0 && branch.is_stable_after(i - 1) && branch.is_stable_after(i);
         let better = if inner { located(branch, i, quantity) } else { None };
-        Some(better.filter(|better| quantity(better) > quantity(&own)).unwrap_or(own))
+        Some(better.unwrap_or(own))
     });
     located.max_by(|a, b| quantity(a).total_cmp(&quantity(b)))
 }
 
-/// The largest value between the neighbours of a point, by golden sections.
+/// The largest value between the neighbours of a point: parabolas through the three highest places, golden sections where these do not
+/// narrow it down; it ends where a parabola promises no more.
 fn located(branch: &Branch, i: usize, quantity: impl Fn(&Orbit) -> f64) -> Option<Orbit> {
     let shooting = &branch.shooting;
     let x = |i: usize| shooting.unknowns(&branch.points[i].states, branch.points[i].value);
-    let (from, way) = (x(i - 1), x(i + 1) - x(i - 1));
-    let at = |share: f64| Orbit::of(shooting, &shooting.correct(&(&from + &way * share), &way)?).ok();
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut low, mut high) = (0.0, 1.0);
-    let (mut a, mut b) = (at(1.0 - golden)?, at(golden)?);
+    let (from, own, to) = (x(i - 1), x(i), x(i + 1));
+    let way = &to - &from;
+    let orbit = |share: f64| Orbit::of(shooting, &shooting.correct(&(&from + &way * share), &way)?).ok();
+    let share = shooting.inner(&(&own - &from), &way) / shooting.inner(&way, &way);
+    let [low, most, high] = [i - 1, i, i + 1].map(|i| quantity(&branch.points[i]));
+    let (mut best, mut three) = (None, [(0.0, low), (share, most), (1.0, high)]);
     for _ in 0..EVALUATIONS {
-        if quantity(&a) > quantity(&b) {
-            high = low + golden * (high - low);
-            b = a;
-            a = at(high - golden * (high - low))?;
+        let (next, gain) = higher(&three);
+        if gain <= NOTHING * three[1].1.abs() || !(three[0].0..three[2].0).contains(&next) {
+            break;
+        }
+        let found = orbit(next)?;
+        let value = quantity(&found);
+        let is_right = next > three[1].0;
+        if value > three[1].1 {
+            three = if is_right {
+                [three[1], (next, value), three[2]]
+            } else {
+                [three[0], (next, value), three[1]]
+            };
+            best = Some(found);
         } else {
-            low = high - golden * (high - low);
-            a = b;
-            b = at(low + golden * (high - low))?;
+            three[if is_right { 2 } else { 0 }] = (next, value);
         }
     }
-    Some(if quantity(&a) > quantity(&b) { a } else { b })
+    best
+}
+
+/// Where three values, the middle one the largest, promise the most, and how much more: at the vertex of their parabola, if it is not within a
+/// hundredth of an end of the wider side; else in the golden section of that side.
+fn higher([(a, low), (b, most), (c, high)]: &[(f64, f64); 3]) -> (f64, f64) {
+    let [left, right] = [(most - low) / (b - a), (high - most) / (c - b)];
+    let curvature = (right - left) / (c - a);
+    let slope = left + curvature * (b - a);
+    let vertex = b - 0.5 * slope / curvature;
+    let gain = -0.25 * slope * slope / curvature;
+    let (side, width) = if c - b > b - a { (1.0, c - b) } else { (-1.0, b - a) };
+    let narrow = (b - a).min(c - b) < 1e-3 * (c - a);
+    if curvature < 0.0 && (vertex - b).abs() < 0.99 * width && !narrow {
+        (vertex, gain)
+    } else {
+        (b + side * 0.382 * width, most - low.min(*high))
+    }
 }

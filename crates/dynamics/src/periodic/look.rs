@@ -103,6 +103,12 @@ impl Reached {
         Ok(())
     }
 
+    /// The largest value of a quantity.
+    pub(super) fn most(&self, quantity: fn(&Seen) -> f64) -> f64 {
+        let periodic = self.attractors.iter().map(|one| quantity(&one.orbit.seen));
+        periodic.chain(self.irregular.iter().map(quantity)).fold(0.0, f64::max)
+    }
+
     /// Whether a periodic motion is such a one.
     pub(super) fn is_any(&self, shooting: &Shooting, such: impl Fn(&Shooting, &Solution) -> bool) -> bool {
         self.attractors.iter().any(|one| such(&shooting.of_periods(one.periods), &one.motion))

@@ -50,12 +50,13 @@ impl Node {
     }
 
     /// The same motion from the segment on that is so many before its first.
-    pub(super) fn moved_back(mut self, shooting: &Shooting<impl Forced>, shift: usize) -> Self {
+    pub(super) fn moved_back(mut self, shooting: &Shooting<impl Forced>, shift: usize) -> Option<Self> {
         let on = shooting.segments - shift;
         self.solution.x = shooting.moved_on(&self.solution.x, on);
         self.direction = shooting.moved_on(&self.direction, on);
         self.orbit.states.rotate_right(shift);
-        self
+        self.orbit.seen_anew(shooting)?;
+        Some(self)
     }
 
     /// Whether multipliers leave or enter the unit circle on the way to another motion by as many as events with these numbers of multipliers tell.

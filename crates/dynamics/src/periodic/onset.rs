@@ -4,8 +4,8 @@
 use super::branches::Branches;
 use super::orbit::Orbit;
 use super::shooting::Shooting;
-use super::trace::trace;
-use retune_model::Parameter;
+use super::trace::{Branch, trace};
+use retune_model::{Parameter, Scene};
 
 /// Motions of a branch from which the parameter is changed.
 const SEEDS: usize = 7;
@@ -38,20 +38,7 @@ impl Branches {
     pub fn seeds(&self, shooting: &Shooting, counts: impl Fn(&Orbit) -> bool) -> Vec<Vec<Seed>> {
         let seed =
             |orbit: &Orbit| Seed { shooting: shooting.of_periods(orbit.periods), orbit: orbit.clone() };
-        let of_branches = self.branches.iter().map(|branch| {
-            let all = 0..branch.points.len();
-            let all: Vec<&Orbit> = all
-                .filter(|i| branch.is_stable_at(*i))
-                .map(|i| &branch.points[i])
-                .filter(|orbit| counts(orbit))
-                .collect();
-            let last = all.len().saturating_sub(1);
-            let mut places: Vec<usize> = (0..SEEDS).map(|i| i * last / (SEEDS - 1)).collect();
-            places.dedup();
-            let mut seeds: Vec<Seed> = places.into_iter().filter_map(|i| Some(seed(all.get(i)?))).collect();
-            seeds.sort_by(|a, b| a.orbit.value.total_cmp(&b.orbit.value));
-            seeds
-        });
+        let of_branches = self.branches.iter().map(|branch| branch.seeds(&counts));
         let alone =
             self.samples.iter().flat_map(|sample| &sample.attractors).filter(|one| one.branch.is_none());
         let alone = alone.map(|one| &one.orbit).filter(|orbit| counts(orbit)).map(|orbit| vec![seed(orbit)]);
@@ -70,7 +57,28 @@ impl Branches {
     }
 }
 
+impl Branch {
+    /// Some of its stable motions that count, in the order of their ω.
+    pub fn seeds(&self, counts: impl Fn(&Orbit) -> bool) -> Vec<Seed> {
+        let stable = (0..self.points.len()).filter(|i| self.is_stable_at(*i)).map(|i| &self.points[i]);
+        let all: Vec<&Orbit> = stable.filter(|orbit| counts(orbit)).collect();
+        let last = all.len().saturating_sub(1);
+        let mut places: Vec<usize> = (0..SEEDS).map(|i| i * last / (SEEDS - 1)).collect();
+        places.dedup();
+        let some = places.into_iter().filter_map(|i| all.get(i));
+        let seed = |orbit: &&Orbit| Seed { shooting: self.shooting.clone(), orbit: (*orbit).clone() };
+        let mut seeds: Vec<Seed> = some.map(seed).collect();
+        seeds.sort_by(|a, b| a.orbit.value.total_cmp(&b.orbit.value));
+        seeds
+    }
+}
+
 impl Seed {
+    /// The scene of the motion.
+    pub(super) fn scene(&self) -> &Scene {
+        &self.shooting.forced.scene
+    }
+
     /// The stable motion that this one becomes as a parameter other than ω changes to a value; none if it vanishes before.
     pub fn moved(&self, parameter: Parameter, to: f64) -> Option<Self> {
         let points = self.along(parameter, to)?;

@@ -33,6 +33,12 @@ impl Orbit {
         Ok(Self { value, periods: shooting.periods, states, multipliers, seen })
     }
 
+    /// Takes its largest values from its states and its value again, which were changed, so that whoever has these finds those to the last bit.
+    pub(super) fn seen_anew(&mut self, shooting: &Shooting<impl Forced>) -> Option<()> {
+        self.seen = shooting.forced.seen(self.value, self.periods, &self.states).ok()?;
+        Some(())
+    }
+
     /// Whether small changes die out.
     pub fn is_stable(&self) -> bool {
         self.multipliers[0].norm() < 1.0

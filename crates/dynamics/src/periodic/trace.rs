@@ -108,6 +108,16 @@ pub fn trace<S: Forced>(
     [from, to]: [f64; 2],
     goes_on: &dyn Fn() -> bool,
 ) -> Option<Branch<S>> {
+    trace_while(shooting, seed, [from, to], &|_| goes_on())
+}
+
+/// The same as long as `goes_on` says so of the motion that it has come to.
+pub(super) fn trace_while<S: Forced>(
+    shooting: &Shooting<S>,
+    seed: &Solution,
+    [from, to]: [f64; 2],
+    goes_on: &dyn Fn(&Orbit) -> bool,
+) -> Option<Branch<S>> {
     let start = Node::new(shooting, seed.clone(), &shooting.by_value())?;
     let (after, end) = side(shooting, &start, [from, to], goes_on);
     if end == End::Closed {
@@ -125,7 +135,7 @@ pub(super) fn trace_from<S: Forced>(
     range: [f64; 2],
     goes_on: &dyn Fn() -> bool,
 ) -> Branch<S> {
-    let (after, end) = side(shooting, start, range, goes_on);
+    let (after, end) = side(shooting, start, range, &|_| goes_on());
     joined(shooting, Vec::new(), start, after, [End::Halved, end])
 }
 
@@ -137,13 +147,13 @@ fn side(
     shooting: &Shooting<impl Forced>,
     start: &Node,
     range: [f64; 2],
-    goes_on: &dyn Fn() -> bool,
+    goes_on: &dyn Fn(&Orbit) -> bool,
 ) -> (Vec<Found>, End) {
     let mut found: Vec<Found> = Vec::new();
     let (mut now, mut step) = (start.clone(), FIRST);
     let (mut apart, mut unstable) = (0.0, 0);
     for _ in 0..MOST {
-        if !goes_on() {
+        if !goes_on(&now.orbit) {
             return (found, End::Ended);
         }
         let (next, events, end) = loop {
@@ -225,7 +235,7 @@ fn up_to_end(
     let alike = shooting.inner(&direction, &start.direction) > TURN;
     let passed = shooting.inner(&(x - &start.solution.x), &start.direction) >= 0.0;
     if apart > came && away < came && alike && passed {
-        return Some((start.clone().moved_back(shooting, shift), Some(End::Closed)));
+        return Some((start.clone().moved_back(shooting, shift)?, Some(End::Closed)));
     }
     Some((next, None))
 }
@@ -264,6 +274,7 @@ fn at_value(shooting: &Shooting<impl Forced>, [now, next]: [&Node; 2], value: f6
     guess[last] = value / shooting.span;
     let mut node = Node::new(shooting, shooting.correct_at_value(&guess)?, &now.direction)?;
     node.orbit.value = value;
+    node.orbit.seen_anew(shooting)?;
     Some(node)
 }
 

@@ -8,6 +8,7 @@ use super::band::{Band, all_worst_over};
 use super::ensemble::SLACK;
 use super::evaluation::{Evaluation, Place, Run};
 use super::limits::{INFEASIBLE, Limits, PerLimit, ranked};
+use super::motions::{Known, Sought};
 use super::spec::{Goal, Response, Stiffnesses};
 use super::unusable::Unusable;
 use super::watch::{FREE, GoesOn, Hooks, Largest, Numbered, Seen, Watch, Watched};
@@ -53,7 +54,20 @@ impl Goal {
         self.evaluate_with(scene, settings, cutoff, Hooks { goes_on, ..FREE })
     }
 
-    fn evaluate_with(
+    /// The same, with the motions that runs from rest lead to and those that are known, where it asks for all.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn evaluate_following(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        known: &Known,
+    ) -> Result<Evaluation, Unusable> {
+        self.evaluate_with(scene, settings, f64::INFINITY, Hooks { sought: Sought::Followed(known), ..FREE })
+    }
+
+    pub(super) fn evaluate_with(
         &self,
         scene: &Scene,
         settings: &Settings,

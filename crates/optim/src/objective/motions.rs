@@ -1,11 +1,15 @@
 //! The largest over every motion that is found, for the response "motions".
 
-use super::spec::{Objective, STARTS};
+use super::spec::{Objective, Response, STARTS};
 use super::unusable::Unusable;
-use retune_dynamics::periodic::branches::Plan;
-use retune_dynamics::periodic::worst::{motions, quantity};
+use super::watch::{FREE, Hooks};
+use super::{evaluation::Evaluation, spec::Goal};
+use retune_dynamics::periodic::branches::{Plan, Watch, branches};
+use retune_dynamics::periodic::worst::{Motions, quantity};
+use retune_dynamics::periodic::{Branches, Seed, from_rest_and};
 use retune_model::{Measure, Parameter, PerMeasure, Scene, Worst};
 use retune_solver::Settings;
+use std::sync::{Mutex, PoisonError};
 
 /// What was found.
 pub(super) struct Found {
@@ -17,24 +21,94 @@ pub(super) struct Found {
     pub settled: bool,
 }
 
+/// Motions of one damper, for each structure, force and quantity that an objective looks at, which a search follows to other dampers.
+#[derive(Debug, Default)]
+pub struct Known(Vec<(Scene, Measure, Vec<Seed>)>);
+
+impl Known {
+    /// Those of the structure that is nearest to that of a scene.
+    fn of(&self, scene: &Scene, measure: Measure) -> &[Seed] {
+        let k1 = |scene: &Scene| scene.primary.stiffness.get();
+        let own = self.0.iter().filter(|(_, of, _)| *of == measure);
+        let away = |other: &Scene| (k1(other) - k1(scene)).abs();
+        own.min_by(|a, b| away(&a.0).total_cmp(&away(&b.0))).map_or(&[], |(.., seeds)| seeds)
+    }
+}
+
+/// Which motions are looked at.
+#[derive(Clone, Copy)]
+pub(super) enum Sought<'a> {
+    /// All that are found from many starts.
+    All,
+    /// The same, and they are kept.
+    Kept(&'a Mutex<Known>),
+    /// Those that runs from rest lead to, and those that are known.
+    Followed(&'a Known),
+}
+
+impl Goal {
+    /// Whether it looks at motions from other starts than rest, over a band: then a search follows those it knows from one design to the next.
+    pub fn follows_motions(&self) -> bool {
+        self.objective
+            .terms()
+            .iter()
+            .any(|(_, term)| term.response == Response::Motions && term.omega.is_some())
+    }
+
+    /// The motions of a scene that a search from there follows to other dampers, and the value with all motions that are found.
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate`].
+    pub fn known(&self, scene: &Scene, settings: &Settings) -> Result<(Evaluation, Known), Unusable> {
+        let known = Mutex::default();
+        let hooks = Hooks { sought: Sought::Kept(&known), ..FREE };
+        let found = self.evaluate_with(scene, settings, f64::INFINITY, hooks)?;
+        Ok((found, known.into_inner().unwrap_or_else(PoisonError::into_inner)))
+    }
+}
+
 /// Finds the motions of a scene from one frequency to another, by runs at so many of them.
 pub(super) fn largest_motion(
     scene: &Scene,
     (from, to, samples): (f64, f64, usize),
     term: &Objective,
-    also: PerMeasure<bool>,
+    (also, sought): (PerMeasure<bool>, Sought<'_>),
     settings: &Settings,
 ) -> Result<Found, Unusable> {
     let starts = term.starts.unwrap_or(STARTS);
     let plan = Plan { samples, starts, looks: 1, ..Plan::over(Parameter::Omega, [from, to]) };
     let measures: Vec<Measure> = [term.quantity].into_iter().chain(also.chosen()).collect();
     let kinds: Vec<_> = measures.iter().map(|measure| quantity(*measure)).collect();
-    let found = motions(scene, plan, settings, &kinds)?;
+    let found = if let Sought::Followed(known) = sought
+        && from < to
+    {
+        from_rest_and(known.of(scene, term.quantity), scene, (plan, term.quantity), settings)?
+    } else {
+        let found = branches(scene, plan, settings, Watch::default())?;
+        if let Sought::Kept(known) = sought
+            && from < to
+        {
+            let seeds = found.known(scene, term.quantity, settings)?;
+            known.lock().unwrap_or_else(PoisonError::into_inner).0.push((*scene, term.quantity, seeds));
+        }
+        found
+    };
+    Ok(largest_of(&found, &kinds, &measures, from))
+}
+
+/// The largest value of each measure.
+fn largest_of(
+    found: &Branches,
+    kinds: &[fn(&retune_dynamics::periodic::seen::Seen) -> f64],
+    measures: &[Measure],
+    from: f64,
+) -> Found {
+    let found = Motions::of(found, kinds);
     let mut worst = found.largest.iter().map(|largest| match largest {
         Some(largest) => Worst { value: largest.value, frequency: largest.at },
         None => Worst { value: 0.0, frequency: from },
     });
     let largest = worst.next().unwrap_or(Worst { value: 0.0, frequency: from });
-    let also = measures.into_iter().skip(1).zip(worst).collect();
-    Ok(Found { largest, also, settled: found.irregular.is_empty() })
+    let also = measures.iter().copied().skip(1).zip(worst).collect();
+    Found { largest, also, settled: found.irregular.is_empty() }
 }

@@ -6,7 +6,7 @@ use super::limits::Limits;
 use super::peak_energy::PeakEnergy;
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
-use super::watch::{GoesOn, Hooks, Watch, Watched};
+use super::watch::{FREE, GoesOn, Hooks, Watch, Watched};
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
 use retune_model::{Damper, Measure, NonNegative, PerMeasure, Scene, Source, Variable, den_hartog};
 use retune_solver::{Also, Settings};
@@ -92,7 +92,7 @@ impl Goal {
         };
         let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
         let watched = Watched { also, own: from.is_none(), matters: PerMeasure([f64::NEG_INFINITY; 7]) };
-        let watch = Watch::new(self, scene, settings, watched, Hooks { keep: &keep, goes_on });
+        let watch = Watch::new(self, scene, settings, watched, Hooks { keep: &keep, goes_on, ..FREE });
         self.energy(scene, f64::INFINITY, &watch)?;
         Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))
     }

@@ -2,9 +2,10 @@
 
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
+use super::motions::{Known, Sought};
 use super::spec::Goal;
 use super::unusable::Unusable;
-use super::watch::GoesOn;
+use super::watch::{FREE, GoesOn, Hooks};
 use crate::search::minimax::{Height, Piece};
 use retune_model::{Damper, Scene, Variable, den_hartog};
 use retune_solver::Settings;
@@ -54,6 +55,8 @@ pub struct PeakEnergy {
     settings: Settings,
     failures: Mutex<Failures>,
     counts: [AtomicU64; 2],
+    /// The motions that are followed; none where all are looked for at each design.
+    known: Option<Known>,
 }
 
 impl PeakEnergy {
@@ -66,8 +69,8 @@ impl PeakEnergy {
         settings: Settings,
     ) -> Self {
         let goal = goal.into();
-        let (failures, counts) = Default::default();
-        Self { scene, damper, variables, goal, settings, failures, counts }
+        let (failures, counts, known) = Default::default();
+        Self { scene, damper, variables, goal, settings, failures, counts, known }
     }
 
     /// The goal.
@@ -173,12 +176,29 @@ impl PeakEnergy {
         self.counts[1].fetch_add(infeasible, Relaxed);
     }
 
-    /// Evaluates a scene with this objective's goal and settings; see [`Goal::evaluate`].
+    /// The same for a search: where its goal asks for all motions, those that runs from rest lead to are looked at, and those that it
+    /// [learns](Self::learn), which takes a fiftieth of the time.
+    #[must_use]
+    pub fn following(self) -> Self {
+        Self { known: Some(Known::default()), ..self }
+    }
+
+    /// Learns the motions at a design, which are followed from there to others; gives the value with all that are found there.
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate`].
+    pub fn learn(&mut self, design: &[f64]) -> Result<Evaluation, Unusable> {
+        let (found, known) = self.goal.known(&self.scene(design)?, &self.settings)?;
+        self.known = Some(known);
+        Ok(found)
+    }
+
+    /// Evaluates a scene with this objective's goal and settings; see [`Goal::evaluate`] and [`Self::learn`].
     ///
     /// # Errors
     /// As [`Goal::evaluate`].
     pub fn evaluate(&self, scene: &Scene, cutoff: f64) -> Result<Evaluation, Unusable> {
-        self.goal.evaluate(scene, &self.settings, cutoff)
+        self.goal.evaluate_with(scene, &self.settings, cutoff, Hooks { sought: self.sought(), ..FREE })
     }
 
     /// The same as long as `goes_on` says so; see [`Goal::evaluate_while`].
@@ -191,7 +211,16 @@ impl PeakEnergy {
         cutoff: f64,
         goes_on: GoesOn<'_>,
     ) -> Result<Evaluation, Unusable> {
-        self.goal.evaluate_while(scene, &self.settings, cutoff, goes_on)
+        self.goal.evaluate_with(
+            scene,
+            &self.settings,
+            cutoff,
+            Hooks { goes_on, sought: self.sought(), ..FREE },
+        )
+    }
+
+    fn sought(&self) -> Sought<'_> {
+        self.known.as_ref().map_or(Sought::All, Sought::Followed)
     }
 
     /// The failed evaluations so far.

@@ -2,7 +2,7 @@
 
 use super::evaluation::{Place, Run};
 use super::limits::{Limit, Limits};
-use super::motions::{Found, largest_motion};
+use super::motions::{Found, Sought, largest_motion};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use retune_model::{Bare, Coupled, Measure, NonNegative, PerMeasure, Scene, Worst};
@@ -17,10 +17,11 @@ pub type GoesOn<'a> = &'a (dyn Fn() -> bool + Sync);
 pub(super) struct Hooks<'a> {
     pub goes_on: GoesOn<'a>,
     pub keep: &'a (dyn Fn(Run) + Sync),
+    pub sought: Sought<'a>,
 }
 
 /// No questions, and nothing kept.
-pub(super) const FREE: Hooks<'static> = Hooks { goes_on: &|| true, keep: &|_| () };
+pub(super) const FREE: Hooks<'static> = Hooks { goes_on: &|| true, keep: &|_| (), sought: Sought::All };
 
 /// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 pub(super) struct Seen {
@@ -123,8 +124,13 @@ impl<'a> Watch<'a> {
         if scene.damper.is_none() {
             return self.steady(scene, [from, to], (number, term));
         }
-        let Found { largest, also, settled } =
-            largest_motion(scene, (from, to, samples), term, self.measures(), self.settings)?;
+        let Found { largest, also, settled } = largest_motion(
+            scene,
+            (from, to, samples),
+            term,
+            (self.measures(), self.hooks.sought),
+            self.settings,
+        )?;
         self.see_each(scene, number, largest, &also, settled)
     }
 

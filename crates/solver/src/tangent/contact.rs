@@ -100,8 +100,9 @@ pub(super) struct Nodes {
     states: [[f64; 4]; FOLLOWED],
 }
 
-/// Nodes of a piece of a contact that is followed step by step.
-const FOLLOWED: usize = 12;
+/// Nodes of a piece of a contact that is followed step by step: derivatives by 8 and by 12 differ by at most 4e-12, also of a damper that is
+/// pressed to its wall.
+const FOLLOWED: usize = 8;
 
 /// Nodes of Gauss's rule on `[0, 1]`, the integrals to each of them, and over all.
 struct Gauss {

@@ -1,6 +1,6 @@
 //! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
-use retune_model::Design;
+use retune_model::{Design, PerMeasure};
 use retune_study::{Sweep, fields};
 use retune_workbench::certify::Verdict;
 use std::cmp::Ordering;
@@ -28,6 +28,10 @@ pub struct Candidate {
     pub force: f64,
     /// The verdict of its certificate.
     pub verdict: &'static str,
+    /// The reason for it, if it has a certificate.
+    pub reason: String,
+    /// The largest value of each measure from rest on, each at its own frequency, if it has a certificate.
+    pub needs: Option<PerMeasure<f64>>,
 }
 
 impl Candidate {
@@ -41,7 +45,7 @@ impl Candidate {
         match sweep {
             Sweep::K2 => self.at.k2.get(),
             Sweep::Stroke => self.stroke,
-            Sweep::Force => self.force,
+            Sweep::ContactForce => self.force,
         }
     }
 
@@ -65,6 +69,11 @@ impl Candidate {
         self.verdict == Verdict::FromRest.name()
     }
 
+    /// Whether its certificate calls it robust.
+    pub fn is_robust(&self) -> bool {
+        self.verdict == Verdict::Robust.name()
+    }
+
     /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
     pub fn is_nearly(&self, other: &Self) -> bool {
         let near = |(a, b): (f64, f64)| {
@@ -80,12 +89,15 @@ impl Candidate {
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
     }
 
-    /// Its fields in a table; those of gaps are empty without walls.
+    /// Its fields in a table, under [`Self::COLUMNS`]; those of gaps are empty without walls.
     pub fn fields(&self) -> String {
-        let Self { at, e1_max, checked, stroke, force, verdict, .. } = self;
+        let Self { at, e1_max, checked, stroke, force, .. } = self;
         let checked = checked.map(|value| value.to_string()).unwrap_or_default();
-        format!("{e1_max},{checked},{},{stroke},{force},{verdict}", fields(&at.values()))
+        format!("{e1_max},{checked},{},{stroke},{force}", fields(&at.values()))
     }
+
+    /// The names of [`Self::fields`].
+    pub const COLUMNS: &str = "E1max,E1max_check,k2,c2,D,C,stroke,contact_force";
 }
 
 /// The design that keeps a bound first, then that which is beyond it by less.
@@ -111,7 +123,9 @@ mod tests {
             stroke: 0.5,
             force: 0.0,
             verdict: "steady",
+            reason: String::new(),
+            needs: None,
         };
-        assert_eq!(design.fields(), "600,,215,35,,,0.5,0,steady");
+        assert_eq!(design.fields(), "600,,215,35,,,0.5,0");
     }
 }

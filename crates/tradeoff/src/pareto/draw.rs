@@ -55,7 +55,7 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
     let label = match sweep {
         Sweep::K2 => "k2 at most, N/m",
         Sweep::Stroke => "stroke at most, m",
-        Sweep::Force => "contact force at most, N",
+        Sweep::ContactForce => "contact force at most, N",
     };
     let chart = Chart {
         title: String::new(),

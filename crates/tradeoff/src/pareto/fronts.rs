@@ -6,6 +6,7 @@
 use super::again::certifiable;
 use super::candidate::{Candidate, SAME};
 use rayon::prelude::*;
+use retune_model::{Measure, PerMeasure};
 use retune_study::{FrontsPlan, Sweep};
 use retune_workbench::Error;
 use retune_workbench::certify::{Certificate, certify};
@@ -13,6 +14,9 @@ use retune_workbench::designs::quoted;
 
 /// The verdict of a damper that no search found.
 pub(super) const GIVEN: &str = "of the study";
+
+/// What a table tells of the structure beside the stroke and the force of a design: the largest values from rest on.
+pub(super) const NEEDS: [Measure; 3] = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce];
 
 /// The best design of a damper under a bound; none where no design that was found keeps it.
 #[derive(Debug)]
@@ -36,6 +40,8 @@ pub struct Fronts {
     pub designs: Vec<Candidate>,
     /// The dampers in the scenes of the studies, where they can be run.
     pub given: Vec<Candidate>,
+    /// What the structure does without a damper, from rest on.
+    pub none: Option<PerMeasure<f64>>,
     /// The certificates of the designs that are furthest below the first damper under the same bound, each value once.
     pub certified: Vec<Certified>,
 }
@@ -60,7 +66,7 @@ pub struct Certified {
 impl Fronts {
     /// No design yet.
     pub(super) fn new(plan: FrontsPlan) -> Self {
-        Self { plan, designs: Vec::new(), given: Vec::new(), certified: Vec::new() }
+        Self { plan, designs: Vec::new(), given: Vec::new(), none: None, certified: Vec::new() }
     }
 
     /// The number of the design found that is the best of a damper under a bound; none where none keeps it. Of those as good, the best
@@ -157,11 +163,14 @@ impl Fronts {
 
     /// The table along a bound: a row for each bound and damper; what no design keeps has empty fields.
     pub fn csv(&self, sweep: Sweep) -> String {
-        let mut text =
-            format!("{}_most,damper,E1max,E1max_check,k2,c2,D,C,stroke,force,verdict\n", sweep.name());
+        let needs = NEEDS.map(Measure::name).join(",");
+        let mut text = format!("{}_most,damper,{},{needs},verdict\n", sweep.name(), Candidate::COLUMNS);
         for Row { bound, damper, design, .. } in self.rows(sweep) {
-            let fields = design.map_or(",,,,,,,,none keeps it".to_owned(), Candidate::fields);
-            text += &format!("{bound},{},{fields}\n", quoted(self.name(damper)));
+            let fields = design.map_or(",,,,,,,".to_owned(), Candidate::fields);
+            let need = |measure| design.and_then(|design| Some(design.needs?.get(measure).to_string()));
+            let needs = NEEDS.map(|measure| need(measure).unwrap_or_default()).join(",");
+            let verdict = design.map_or("none keeps it", |design| design.verdict);
+            text += &format!("{bound},{},{fields},{needs},{verdict}\n", quoted(self.name(damper)));
         }
         text
     }
@@ -171,7 +180,7 @@ impl Fronts {
         let rows = self
             .front()
             .into_iter()
-            .map(|design| format!("{},{}\n", quoted(self.name(design.damper)), design.fields()));
-        format!("damper,E1max,E1max_check,k2,c2,D,C,stroke,force,verdict\n{}", rows.collect::<String>())
+            .map(|d| format!("{},{},{}\n", quoted(self.name(d.damper)), d.fields(), d.verdict));
+        format!("damper,{},verdict\n{}", Candidate::COLUMNS, rows.collect::<String>())
     }
 }

@@ -2,9 +2,9 @@
 
 use super::candidate::SAME;
 use super::draw;
-use super::fronts::{Certified, Fronts, Row};
+use super::fronts::{Certified, Fronts, NEEDS, Row};
 use retune_store::Directory;
-use retune_study::{Sweep, design_cells, design_words, short};
+use retune_study::{Sweep, design_cells, design_words, rounded, short};
 use retune_workbench::Error;
 use retune_workbench::document::{Block, Document};
 
@@ -19,12 +19,13 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
         let (file, id, title) = match sweep {
             Sweep::K2 => ("k2.svg", "k2", "k2 at most"),
             Sweep::Stroke => ("stroke.svg", "stroke", "Stroke at most"),
-            Sweep::Force => ("force.svg", "force", "Contact force at most"),
+            Sweep::ContactForce => ("contact_force.svg", "contact-force", "Contact force at most"),
         };
         let drawing = draw::sweep(fronts, sweep);
         directory.write(file, &drawing.wide)?;
         let figure = Block::Figure(file, drawing, format!("The least E1max: {}", title.to_lowercase()));
-        sections.push((id, title, vec![figure, table(fronts, sweep)]));
+        let blocks = [figure, table(fronts, sweep), needs(fronts, sweep)];
+        sections.push((id, title, blocks.into_iter().chain(reasons(fronts, sweep)).collect()));
     }
     let drawing = draw::front(fronts);
     directory.write("front.svg", &drawing.wide)?;
@@ -78,7 +79,7 @@ fn made(fronts: &Fronts, names: &[&str]) -> String {
     if !plan.designs.is_empty() {
         text += " Designs that were known before stand among them, and descents begin at them, too.";
     }
-    text += " Strokes (spring deflections |x2 - x1 - D|) and forces are the largest of whole runs from rest.";
+    text += " Strokes (spring deflections |x2 - x1 - D|), forces and motions of the structure are the largest from rest on, each at its own frequency.";
     if plan.sweeps().iter().any(|sweep| *sweep != Sweep::K2) {
         text += " Verdict edge: an error of 1 % can break the bound; none: a motion that other starts than rest lead to breaks it.";
     }
@@ -99,9 +100,7 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
     if is_checked {
         head.push(format!("on {} frequencies", fronts.plan.check()));
     }
-    head.extend(
-        ["k2, N/m", "c2, N·s/m", "D, m", "C, m", "stroke, m", "force, N", "verdict"].map(str::to_owned),
-    );
+    head.extend(["k2, N/m", "c2, N·s/m", "D, m", "C, m", "verdict"].map(str::to_owned));
     let row = |row: Row| {
         let mut cells = vec![row.bound.to_string(), fronts.name(row.damper).to_owned()];
         match row.design {
@@ -116,7 +115,6 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
                     cells.push(design.checked.map(|value| joule(value) + mark).unwrap_or_default());
                 }
                 cells.extend(design_cells(&design.at, 4));
-                cells.extend([metre(design.stroke), format!("{:.0}", design.force)]);
                 cells.push(design.verdict.to_owned());
             }
         }
@@ -124,6 +122,54 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
     };
     let rows = fronts.rows(sweep).into_iter().map(row).collect();
     Block::Table(format!("The best design of each damper with {name} at most a bound."), head, rows)
+}
+
+/// What the designs of [`table`] need, beside no damper.
+fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
+    let (name, unit) = (sweep.name(), sweep.unit());
+    let mut head = vec![format!("{name} at most, {unit}"), "damper".to_owned()];
+    head.extend(["stroke, m".to_owned(), "contact force, N".to_owned()]);
+    head.extend(NEEDS.map(|measure| format!("{}, {}", measure.name(), measure.unit())));
+    let row = |row: Row| {
+        let design = row.design?;
+        let mut cells = vec![row.bound.to_string(), fronts.name(row.damper).to_owned()];
+        cells.extend([metre(design.stroke), format!("{:.0}", design.force)]);
+        cells.extend(
+            NEEDS.map(|measure| design.needs.map_or(String::new(), |all| rounded(all.get(measure), 4))),
+        );
+        Some(cells)
+    };
+    let mut rows: Vec<Vec<String>> = fronts.rows(sweep).into_iter().filter_map(row).collect();
+    if let Some(none) = fronts.none {
+        let mut cells = ["", "no damper", "", ""].map(str::to_owned).to_vec();
+        cells.extend(NEEDS.map(|measure| rounded(none.get(measure), 4)));
+        rows.push(cells);
+    }
+    Block::Table(
+        "What they need and what the structure does: the largest from rest on.".to_owned(),
+        head,
+        rows,
+    )
+}
+
+/// The reasons of verdicts other than robust in [`table`], each once.
+fn reasons(fronts: &Fronts, sweep: Sweep) -> Option<Block> {
+    let (name, unit) = (sweep.name(), sweep.unit());
+    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    for Row { bound, damper, design, .. } in fronts.rows(sweep) {
+        let Some(design) = design.filter(|design| !design.reason.is_empty() && !design.is_robust()) else {
+            continue;
+        };
+        let reason = format!("{} ({}): {}", fronts.name(damper), design_words(&design.at, 4), design.reason);
+        match said.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, bounds)) => bounds.push(bound.to_string()),
+            None => said.push((reason, vec![bound.to_string()])),
+        }
+    }
+    let line = |(reason, bounds): (String, Vec<String>)| {
+        format!("{name} at most {} {unit}, {reason}.", bounds.join(", "))
+    };
+    (!said.is_empty()).then(|| Block::List(said.into_iter().map(line).collect()))
 }
 
 /// The advantage of each damper over the first, in words.

@@ -7,11 +7,12 @@ use super::descents::Task;
 use super::fronts::{Fronts, GIVEN};
 use super::refinement::Under;
 use rayon::prelude::*;
-use retune_model::{Design, Measure};
-use retune_optim::Limit;
+use retune_model::{Design, Measure, PerMeasure, Scene};
+use retune_optim::{Goal, Limit, Limits};
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep, clipped};
 use retune_workbench::certify::judge;
 use retune_workbench::look::{finer, look};
+use retune_workbench::needs::Largest;
 use retune_workbench::searches::Searches;
 use retune_workbench::tune::ends::Ends;
 use retune_workbench::{Error, Observer};
@@ -40,6 +41,11 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
     }
     fronts.go_down(tasks, searches, watch)?;
     fronts.judge()?;
+    fronts.none = fronts
+        .plan
+        .dampers
+        .last()
+        .and_then(|(_, study)| largest(study, &Scene { damper: None, ..study.scene }));
     fronts.certified = fronts.certify()?;
     Ok(fronts)
 }
@@ -98,7 +104,17 @@ impl Fronts {
         let found = look(&finer(study, self.plan.said.samples, &at)?)?;
         let [stroke, force] =
             [Measure::Stroke, Measure::ContactForce].map(|of| found.reached.get(Limit::Of(of)));
-        Some(Candidate { damper, at, e1_max: found.energy, checked: None, stroke, force, verdict })
+        Some(Candidate {
+            damper,
+            at,
+            e1_max: found.energy,
+            checked: None,
+            stroke,
+            force,
+            verdict,
+            reason: String::new(),
+            needs: None,
+        })
     }
 
     /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
@@ -134,8 +150,10 @@ impl Fronts {
         }
         let study = self.bounded(under, Vec::new())?;
         let scene = study.scene_at(at).unwrap_or(study.scene);
-        let verdict = judge(&Study { scene, ..study })?.short().verdict();
-        Ok(Candidate { verdict, ..design.clone() })
+        let needs = largest(&study, &scene);
+        let certificate = judge(&Study { scene, ..study })?;
+        let (verdict, reason) = (certificate.short().verdict(), certificate.reason().to_owned());
+        Ok(Candidate { verdict, reason, needs, ..design.clone() })
     }
 
     /// Every bound for every damper.
@@ -148,4 +166,11 @@ impl Fronts {
         }
         all
     }
+}
+
+/// The largest value of each measure over the band of a study from rest on.
+fn largest(study: &Study, scene: &Scene) -> Option<PerMeasure<f64>> {
+    let goal = Goal { limits: Limits::default(), ..study.goal() };
+    let needs = Largest::of(&goal, scene, study)?;
+    Some(PerMeasure(Measure::ALL.map(|measure| needs.value(measure))))
 }

@@ -82,6 +82,11 @@ impl Short {
         format!("{} ({})", self.words, self.compared)
     }
 
+    /// The reason for the verdict, in words.
+    pub fn reason(&self) -> &str {
+        &self.words
+    }
+
     /// Whether the value is one of many that practically equal designs have.
     pub fn is_chaotic(&self) -> bool {
         self.verdict == Some(Verdict::SingleChaoticRealisation)
@@ -180,6 +185,11 @@ impl Certificate {
     /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         self.short().check_limits(self.made_by.study())
+    }
+
+    /// The reason for the verdict, in words.
+    pub fn reason(&self) -> &str {
+        &self.words
     }
 
     /// The short form.

@@ -9,7 +9,9 @@ use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Scene, Source};
-use retune_optim::{Ensemble, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Unusable};
+use retune_optim::{
+    Ensemble, Evaluation, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Unusable,
+};
 use retune_solver::{Ask, Method, Settings, Settle, Window, extremes, settled};
 use retune_study::{Setting, Study};
 
@@ -45,13 +47,14 @@ pub(super) enum OtherStarts {
 /// The design itself has no value, or its worst run cannot be followed.
 pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
-    let own = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
+    let (own, known) = goal.known(&study.scene, &settings)?;
+    let look = |scene: &Scene| Look::of(goal.evaluate_following(scene, &settings, &known));
     let mut near = Vec::new();
-    let sensitivity = sensitivities(study, &goal, &settings, &mut near);
-    let neighbourhood = neighbourhood(&study.scene, &goal, &settings, &mut near);
+    let sensitivity = sensitivities(study, &goal, look, &mut near);
+    let neighbourhood = neighbourhood(&study.scene, look, &mut near);
     let convergence = convergence(&own.worst, &goal, &settings)?;
     let finer = finer(&goal).map(|goal| {
-        let found = look(&study.scene, &goal, &settings);
+        let found = Look::of(goal.evaluate(&study.scene, &settings, f64::INFINITY));
         near.push(Near {
             at: format!("with {FINER} times the samples"),
             neighbour: false,
@@ -142,7 +145,12 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
 
 /// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to
 /// `near`.
-fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Vec<Sensitivity> {
+fn sensitivities(
+    study: &Study,
+    goal: &Goal,
+    look: impl Fn(&Scene) -> Look + Sync,
+    near: &mut Vec<Near>,
+) -> Vec<Sensitivity> {
     let omega = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none()).then_some("omega");
     let force = ["P", "imbalance", "base"];
     let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(force).chain(omega);
@@ -155,7 +163,7 @@ fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec
         .collect();
     let at = |&(name, _, value): &(&'static str, f64, f64)| {
         let scene = study.scene_with(&[Setting::new(name, value)]);
-        scene.map_or(Look::NOTHING, |scene| look(&scene, goal, settings))
+        scene.map_or(Look::NOTHING, |scene| look(&scene))
     };
     let found: Vec<Look> = off.par_iter().map(at).collect();
     near.extend(off.iter().zip(&found).map(|((name, error, _), found)| Near {
@@ -171,10 +179,10 @@ fn sensitivities(study: &Study, goal: &Goal, settings: &Settings, near: &mut Vec
 }
 
 /// The objective of the neighbours. What they reach goes to `near`.
-fn neighbourhood(scene: &Scene, goal: &Goal, settings: &Settings, near: &mut Vec<Near>) -> Neighbourhood {
+fn neighbourhood(scene: &Scene, look: impl Fn(&Scene) -> Look + Sync, near: &mut Vec<Near>) -> Neighbourhood {
     let member = |i: u32| {
         let scene = NEIGHBOURS.member(scene, i);
-        scene.map_or(Look::NOTHING, |(scene, _)| look(&scene, goal, settings))
+        scene.map_or(Look::NOTHING, |(scene, _)| look(&scene))
     };
     let found: Vec<Look> = (0..NEIGHBOURS.members).into_par_iter().map(member).collect();
     let at = format!("for a design within {} %", 100.0 * NEIGHBOURS.errors);
@@ -192,9 +200,8 @@ struct Look {
 impl Look {
     /// Of a scene that cannot be run.
     const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 8]) };
-}
 
-fn look(scene: &Scene, goal: &Goal, settings: &Settings) -> Look {
-    let found = goal.evaluate(scene, settings, f64::INFINITY);
-    found.map_or(Look::NOTHING, |found| Look { energy: found.energy, reached: found.reached })
+    fn of(found: Result<Evaluation, Unusable>) -> Self {
+        found.map_or(Self::NOTHING, |found| Self { energy: found.energy, reached: found.reached })
+    }
 }

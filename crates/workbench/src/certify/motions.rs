@@ -187,6 +187,12 @@ impl Place {
             to,
             k1: self.scene.primary.stiffness.get(),
             k1_of: Vec::new(),
+            members_not_looked_at: self
+                .goal
+                .objective
+                .terms()
+                .iter()
+                .any(|(_, term)| term.ensemble.is_some()),
             samples: SAMPLES,
             starts,
             width_missed: (to - from) * width_missed(starts, SHARE, MISSED),

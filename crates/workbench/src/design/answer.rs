@@ -146,7 +146,7 @@ fn costs(wishes: &Wishes, designed: &[Designed]) -> Vec<String> {
 fn sure(damper: &Designed) -> Option<String> {
     let row = damper.rows.first()?;
     let kept = if damper.feasible { "" } else { "; none found that keeps the limits, this is the nearest" };
-    Some(format!("Certificate of the {}: {}{kept}.", damper.name, row.verdict))
+    Some(format!("Certificate of the {}: {}{kept}.", damper.name, row.reason))
 }
 
 fn short(value: f64) -> String {

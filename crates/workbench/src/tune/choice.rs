@@ -5,11 +5,17 @@ use super::refine::{Refined, Run};
 use crate::Error;
 use crate::amount::Amount;
 use crate::certify::{Certificate, Verdict, certify, judge};
+use crate::look::look;
+use retune_model::Measure;
+use retune_optim::Limit;
 use retune_study::{PerVariable, Study};
 use serde::Serialize;
 
 /// Designs whose values differ by less than this share are as good.
 const SAME: f64 = 0.01;
+
+/// In a valley values differ by less than this share.
+const VALLEY: f64 = 1e-3;
 
 /// A design that was passed over, though its value is smaller.
 #[derive(Clone, Debug, Serialize)]
@@ -38,27 +44,41 @@ const SAME_MARGIN: f64 = 0.01;
 /// The place of the choice among designs in the order of their values: the first that is robust, of these the one with the largest margin of the
 /// force; else the first of which no other motion is much worse than that from rest; else the first.
 fn place(all: &[(Option<Verdict>, f64)]) -> usize {
-    let rank = |(verdict, safe_to): (Option<Verdict>, f64)| match verdict {
+    let rank = |place: usize| rank(all[place].0, all[place].1);
+    (0..all.len()).reduce(|best, other| if rank(other) < rank(best) { other } else { best }).unwrap_or(0)
+}
+
+/// Less is better: the verdict, and of designs that are robust the margin of the force.
+fn rank(verdict: Option<Verdict>, safe_to: f64) -> (u8, f64) {
+    match verdict {
         Some(Verdict::Robust) => (0, -(safe_to / SAME_MARGIN).round()),
         Some(Verdict::FromRest) => (2, 0.0),
         _ => (1, 0.0),
-    };
-    let order = |a: &usize, b: &usize| {
-        let [(a, far), (b, farther)] = [rank(all[*a]), rank(all[*b])];
-        a.cmp(&b).then(far.total_cmp(&farther))
-    };
-    (0..all.len()).min_by(order).unwrap_or(0)
+    }
+}
+
+/// The contact force, N, and the stroke, m, of a design; none where it cannot be run.
+fn burden(study: &Study) -> Option<[f64; 2]> {
+    let reached = look(study)?.reached;
+    Some([Measure::ContactForce, Measure::Stroke].map(|measure| reached.get(Limit::Of(measure))))
+}
+
+/// Whether a design needs less: a force that is smaller by more than what is the same, or as large a force and a smaller stroke.
+fn is_less(other: &[f64; 2], own: &[f64; 2]) -> bool {
+    let less = |i: usize| other[i] < (1.0 - SAME) * own[i];
+    let more = |i: usize| other[i] > (1.0 + SAME) * own[i];
+    less(0) || !more(0) && less(1)
 }
 
 /// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
-/// margin of the force, and of those the best. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
+/// margin of the force, of those the best, and of those within 0.1 % of it the one with the least contact force, then stroke. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
 ///
 /// # Errors
 /// As [`certify`].
 pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificate, Vec<PassedOver>), Error> {
     let settings = study.solver.settings();
     let value = |Run { minimum, .. }: &Run| {
-        if settings == *refined.objective.settings() {
+        if settings == *refined.objective.settings() && !study.goal().follows_motions() {
             return minimum.value;
         }
         let scene = refined.objective.scene(&minimum.x);
@@ -79,6 +99,7 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
         let scene = refined.objective.scene(&refined.runs[number].minimum.x)?;
         Ok(Study { scene, ..study.clone() })
     };
+    let as_good = order.clone();
     for number in order {
         seen.push((number, judge(&of(number)?)?));
         if seen.last().is_some_and(|(_, certificate)| certificate.is_safest()) {
@@ -87,12 +108,40 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     }
     let all: Vec<(Option<Verdict>, f64)> =
         seen.iter().map(|(_, certificate)| (certificate.verdict, certificate.safe_to())).collect();
-    let chosen = place(&all);
-    let passed = seen.iter().take(chosen).map(|(number, certificate)| PassedOver {
+    let mut chosen = place(&all);
+    // In a valley, where values differ by nothing that matters, the design that needs the least.
+    let (number, certificate) = &seen[chosen];
+    let burden =
+        |number: usize| of(number).ok().and_then(|study| burden(&study)).unwrap_or([f64::INFINITY; 2]);
+    let own = burden(*number);
+    let within = |other: &usize| values[*other] <= (1.0 + VALLEY) * values[*number];
+    let mut lighter: Vec<(usize, [f64; 2])> =
+        as_good.iter().copied().filter(within).map(|other| (other, burden(other))).collect();
+    lighter.retain(|(_, other)| is_less(other, &own));
+    lighter.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let least = rank(certificate.verdict, certificate.safe_to());
+    for (number, _) in lighter {
+        if seen.iter().all(|(known, _)| *known != number) {
+            seen.push((number, judge(&of(number)?)?));
+        }
+        let place = seen.iter().position(|(known, _)| *known == number).unwrap_or(chosen);
+        let certificate = &seen[place].1;
+        if rank(certificate.verdict, certificate.safe_to()) <= least {
+            chosen = place;
+            break;
+        }
+    }
+    let taken = rank(seen[chosen].1.verdict, seen[chosen].1.safe_to());
+    let smaller = |(number, _): &&(usize, Certificate)| values[*number] < values[seen[chosen].0];
+    let passed = seen.iter().filter(smaller).map(|(number, certificate)| PassedOver {
         start: number + 1,
         design: PerVariable::of(refined.objective.variables(), &refined.runs[*number].minimum.x),
         value: Amount::new(study.quantity(), retune_optim::energy(values[*number])),
-        words: certificate.words.clone(),
+        words: if rank(certificate.verdict, certificate.safe_to()) > taken {
+            certificate.words.clone()
+        } else {
+            "as good, but it needs a larger contact force or stroke".to_owned()
+        },
     });
     let passed = passed.collect();
     let (number, certificate) = seen.swap_remove(chosen);
@@ -104,6 +153,13 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn contract_in_a_valley_the_least_force_is_chosen_then_the_least_stroke() {
+        let own = [1000.0, 0.5];
+        assert!(is_less(&[980.0, 0.7], &own) && is_less(&[1005.0, 0.4], &own));
+        assert!(!is_less(&[995.0, 0.5], &own) && !is_less(&[1100.0, 0.1], &own) && !is_less(&own, &own));
+    }
 
     #[test]
     fn contract_the_robust_design_with_the_largest_margin_is_chosen() {

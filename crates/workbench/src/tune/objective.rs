@@ -29,14 +29,14 @@ pub fn objective(study: &Study, search: &Search, variables: &[Variable]) -> Peak
 /// The same at the tolerance of searches.
 pub fn searched(study: &Study, search: &Search, variables: &[Variable]) -> PeakEnergy {
     let settings = study.solver.searching();
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings).following()
 }
 
 /// The same at a relative tolerance, or at that of searches where it is looser.
 pub fn loose(study: &Study, search: &Search, variables: &[Variable], rtol: f64) -> PeakEnergy {
     let own = study.solver.searching();
     let settings = Settings { rtol: own.rtol.max(rtol), ..own };
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings)
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings).following()
 }
 
 /// The same as exact as the study wants its grid: at the tolerance of `optimize.coarse`, and on samples alone if it says so.
@@ -44,5 +44,5 @@ pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Variable]) -> 
     let (said, own) = (study.coarse(), study.solver.searching());
     let settings = Settings { rtol: said.rtol.unwrap_or(own.rtol), ..own };
     let goal = Goal { peaks: said.peaks, ..study.goal() };
-    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), goal, settings)
+    PeakEnergy::new(study.scene, search.damper, variables.to_vec(), goal, settings).following()
 }

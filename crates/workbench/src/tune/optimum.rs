@@ -195,6 +195,11 @@ impl Optimum {
         self.certificate.verdict()
     }
 
+    /// The reason for the verdict, in words.
+    pub fn reason(&self) -> &str {
+        self.certificate.reason()
+    }
+
     /// Refuses a design that breaks the limits of its study.
     ///
     /// # Errors

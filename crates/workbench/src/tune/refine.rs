@@ -11,6 +11,11 @@ use retune_store::{Directory, Journal, Pending};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
 
+/// Refinements in a row, each with the motions that are found where the last one ended.
+const ROUNDS: usize = 4;
+/// Values that differ by less than this share are the same.
+const SAME: f64 = 1e-6;
+
 /// All refinements of a study.
 pub struct Refined {
     /// The objective that was minimised; it keeps the failed evaluations.
@@ -93,12 +98,13 @@ pub(super) fn each(
     (journal, stage): (&Journal, &str),
     mut tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error>,
 ) -> Result<Refined, Error> {
-    let objective = searched(study, search, &search.variables);
+    let mut objective = searched(study, search, &search.variables);
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
-        let run =
-            run(&objective, search, start, (journal, stage), |row, design| tell(number + 1, row, design))?;
+        let run = run(&mut objective, search, start, (journal, stage), |row, design| {
+            tell(number + 1, row, design)
+        })?;
         let best = runs.get(winner).map_or(f64::INFINITY, |best: &Run| best.minimum.value);
         if run.minimum.value < best {
             winner = number;
@@ -114,8 +120,46 @@ pub(super) fn columns(objective: &PeakEnergy, design: &[f64]) -> Result<Vec<f64>
     Ok(Variable::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
 }
 
-/// One run. `tell` receives each row with its whole design; its error ends the run.
+/// One run. `tell` receives each row with its whole design; its error ends the run. Where the objective looks at all motions, those at the start are
+/// followed; if others have more at the end, the run goes on from there with these.
 fn run(
+    objective: &mut PeakEnergy,
+    search: &Search,
+    start: &[f64],
+    (journal, stage): (&Journal, &str),
+    mut tell: impl FnMut(&Row, &[f64]) -> Result<(), Error>,
+) -> Result<Run, Error> {
+    if !objective.goal().follows_motions() {
+        return simplex(objective, search, start, (journal, stage), tell);
+    }
+    objective.learn(start)?;
+    let mut whole = simplex(objective, search, start, (journal, &format!("{stage} {start:?}")), &mut tell)?;
+    for round in 1..=ROUNDS {
+        let from = whole.minimum.clone();
+        whole.minimum.value = objective.learn(&from.x)?.value;
+        if round == ROUNDS || whole.minimum.value <= (1.0 + SAME) * from.value {
+            break;
+        }
+        let stage = format!("{stage} {:?}", from.x);
+        let on = |row: &Row| Row {
+            iteration: row.iteration + from.iterations,
+            func_count: row.func_count + from.func_count,
+            ..row.clone()
+        };
+        let next =
+            simplex(objective, search, &from.x, (journal, &stage), |row, design| tell(&on(row), design))?;
+        whole.rows.extend(next.rows.iter().map(on));
+        whole.minimum = Minimum {
+            iterations: from.iterations + next.minimum.iterations,
+            func_count: from.func_count + next.minimum.func_count,
+            ..next.minimum
+        };
+    }
+    Ok(whole)
+}
+
+/// One simplex.
+fn simplex(
     objective: &PeakEnergy,
     search: &Search,
     start: &[f64],

@@ -32,7 +32,10 @@ pub(crate) struct Valley {
 
 /// Measures it for each varied parameter of a design.
 pub(super) fn measure(study: &Study, search: &Search, design: &[f64], journal: &Journal) -> Vec<Valley> {
-    let objective = searched(study, search, &search.variables);
+    let mut objective = searched(study, search, &search.variables);
+    if objective.goal().follows_motions() && objective.learn(design).is_err() {
+        return Vec::new();
+    }
     let value = kept(&objective, journal, "valley", || ());
     let most = (1.0 + ALLOWED) * value(design, f64::INFINITY);
     let does = |i: usize, x: f64| {

@@ -6,6 +6,7 @@ use crate::{found, request};
 use retune_study::{Margins, Setting, Study};
 use retune_workbench::Silent;
 use retune_workbench::certify::certify;
+use retune_workbench::tune::objective::searched;
 use retune_workbench::tune::tune;
 use serde_json::{Value, json};
 
@@ -118,4 +119,27 @@ fn regress_the_response_motions_has_what_other_starts_lead_to() {
     let all = value(&study);
     study["optimize"]["objective"]["response"] = json!("window");
     assert!(all > value(&study), "{all}");
+}
+
+/// A search follows the motions that it has learned to designs like the one where it did, and comes to the values of a whole look there.
+#[test]
+fn exact_a_search_follows_the_motions_that_it_has_learned() {
+    let mut study = committed("ssvi-isola.json");
+    study["optimize"]["objective"]["response"] = json!("motions");
+    study["optimize"]["objective"]["omega"] = json!({ "from": 5.8, "to": 6.1, "samples": 4 });
+    let desk = Desk::with(&study);
+    let study = retune_study::read(&desk.path("study.json")).expect("a study");
+    let search = study.search().expect("a search");
+    let mut objective = searched(&study, &search, &search.variables);
+    let own = [597.2737982898645, 95.72415913882642, 0.6072128825900359, 0.03740508433492577];
+    let from_rest = objective.value(&own, f64::INFINITY);
+    assert!(from_rest < 226.0, "{from_rest}");
+    let all = objective.learn(&own).expect("a value").value;
+    assert!((all - 735.639).abs() < 1e-3, "{all}");
+    let near = [596.0, 95.9, 0.604, 0.0374];
+    let followed = objective.value(&near, f64::INFINITY);
+    let whole =
+        study.goal().evaluate(&objective.scene(&near).expect("a scene"), objective.settings(), f64::INFINITY);
+    let whole = whole.expect("a value").value;
+    assert!(followed > 700.0 && (followed / whole - 1.0).abs() < 1e-9, "{followed} {whole}");
 }

@@ -24,7 +24,18 @@ fn paper_table2_puts_our_rows_beside_the_papers() {
     let desk = desk("table2.json");
     good(table2(&request(&desk, "table2.json", "out"), &Silent));
     let csv = desk.rows("out/table2.csv");
-    assert_eq!(csv[0].join(","), "origin,damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,verdict");
+    let needs = "stroke,contact_force,x1max,a1max,ground_force";
+    let columns = format!("origin,damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,{needs},verdict");
+    assert_eq!(csv[0].join(","), columns);
+    // From rest on x1 is at least what the energy of the window needs, at the frequency of the scene.
+    let need = |row: usize, column: usize| csv[row][column].parse::<f64>().expect("a number");
+    assert!((1..5).all(|row| need(row, 12) >= 0.9 * (2.0 * need(row, 7) / 6.4e4).sqrt()), "{csv:?}");
+    assert!(need(1, 11) > 0.0 && need(3, 11) == 0.0, "{csv:?}");
+    let text = desk.read("out/table2.txt");
+    assert!(
+        text.contains("\nSSVI NES, paper: needs stroke ") && text.contains("\nTMD, re-optimised: needs "),
+        "{text}"
+    );
     let none = |row: usize| csv[row][9].parse::<f64>().expect("a number");
     assert!((1..5).all(|row| none(row) > 0.0) && csv[1][8] == "563" && csv[2][8].is_empty());
     assert_eq!(csv[1][..7], ["paper", "SSVI NES", "60", "215", "232", "0.06", "0.36"]);

@@ -179,6 +179,8 @@ fn contract_a_robust_objective_is_tuned_and_its_worst_place_reported() {
     let k1 = number(&optimum, "/objective/worst_k1");
     assert!((k1 / 3.9e4 - 1.0).abs() < 1e-3 || (k1 / 4.2e4 - 1.0).abs() < 1e-3, "{k1}");
     assert!(number(&optimum, "/objective/runs") >= 8.0);
+    let certificate = desk.read_json("out/certificate.json");
+    assert_eq!(certificate["motions"]["members_not_looked_at"], true, "{certificate}");
 }
 
 /// The grid at its own tolerance, the search at its own; what it finds, at that of the results.

@@ -19,6 +19,9 @@ pub struct Motions {
     pub k1: f64,
     /// All stiffnesses at which motions were looked for.
     pub k1_of: Vec<f64>,
+    /// Whether the objective has an ensemble: its members were not looked at from other starts.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub members_not_looked_at: bool,
     /// Frequencies at which runs were started from rest, and other starts over the band.
     pub samples: usize,
     pub starts: usize,
@@ -133,8 +136,18 @@ impl Motions {
         };
         let k1 = k1.join(", ");
         format!(
-            "by {starts} starts {over}, k1 = {k1} N/m: stable periodic ones are known over {covered} % of the band; {largest}{irregular}"
+            "by {starts} starts {over}, k1 = {k1} N/m: stable periodic ones are known over {covered} % of the band; {largest}{irregular}{}",
+            self.members_words()
         )
+    }
+
+    /// What was not looked at, of an objective with an ensemble.
+    pub fn members_words(&self) -> &'static str {
+        if self.members_not_looked_at {
+            "; members of the ensemble not looked at from other starts"
+        } else {
+            ""
+        }
     }
 
     /// What the starts may miss.

@@ -155,7 +155,10 @@ fn judge_motions(all: &Measured, said: &str) -> (Verdict, String) {
         margin => {
             let margin = margin.map_or(String::new(), |margin| format!("; {}", margin.words()));
             let starts = motions.starts;
-            let words = format!("robust: at worst {said}; none of {starts} starts leads to 5 % more{margin}");
+            let words = format!(
+                "robust: at worst {said}; none of {starts} starts leads to 5 % more{margin}{}",
+                motions.members_words()
+            );
             (Verdict::Robust, words)
         }
     }
