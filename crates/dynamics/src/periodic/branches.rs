@@ -1,18 +1,19 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
+use super::crest::{COUNTS, crest, keep_crests};
 use super::events::Event;
+use super::largest::{merged, stable_parts};
 use super::look::{Reached, Sample, look, look_from};
 use super::orbit::Orbit;
-use super::seen::{Seen, quantity};
+use super::seen::quantity;
 use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::switch::doubled;
-use super::trace::{Branch, trace, trace_while};
+use super::trace::{Branch, trace};
 use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, Scene};
 use retune_solver::Settings;
-use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 /// How far apart runs are started in the gaps without a stable motion, again and again, as shares of the range; with this share of the
@@ -23,12 +24,8 @@ const FEWER: usize = 4;
 const APART: usize = 2;
 /// The narrowest gap that is looked into, as a share of the range.
 const NARROW: f64 = 2e-4;
-/// Motions that are looked at for the largest value have this share of the largest that is known.
-pub(super) const COUNTS: f64 = 0.8;
-/// A crest ends where the quantity is below this share of its largest value.
-const DOWN: f64 = 0.995;
-/// Most branches; whoever shows them says so.
-pub const MOST_BRANCHES: usize = 200;
+/// Most branches.
+const MOST_BRANCHES: usize = 200;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,13 +143,7 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
     let values = evenly(from, to, plan.samples);
     let mut seen: Vec<Reached> = values.par_iter().map(from_rest).collect::<Result<_, Error>>()?;
     if let Some(measure) = plan.crests {
-        let reached: Vec<f64> = seen.iter().map(|seen| seen.most(quantity(measure))).collect();
-        let most = reached.iter().copied().fold(0.0, f64::max);
-        found.plan.least = Some((measure, COUNTS * most));
-        let at = |i: usize| reached.get(i).copied().unwrap_or(0.0);
-        let is_crest = |i: usize| at(i) >= at(i.wrapping_sub(1)) && at(i) >= at(i + 1);
-        let mut number = 0..;
-        seen.retain(|_| number.next().is_some_and(is_crest));
+        found.plan.least = Some((measure, COUNTS * keep_crests(&mut seen, quantity(measure))));
     }
     found.add(&shooting, seen, &goes_on);
     let other = |number: usize| look_from(&shooting, &starts, number, &goes_on);
@@ -274,10 +265,8 @@ impl Branches {
                 continue;
             }
             let branches_off = |event: &Event| {
-                let stable = |place: Option<usize>| {
-                    place.and_then(|place| branch.points.get(place)).is_some_and(Orbit::is_stable)
-                };
-                let same = stable(event.place.checked_sub(1)) == stable(Some(event.place + 1));
+                let stable = |place: usize| branch.points.get(place).is_some_and(Orbit::is_stable);
+                let same = stable(event.place.wrapping_sub(1)) == stable(event.place + 1);
                 let follows = !same && self.plan.follows(&event.orbit);
                 follows.then(|| doubled(&branch.shooting, event, self.plan.range, goes_on)).flatten()
             };
@@ -303,48 +292,8 @@ impl Branches {
         let [from, to] = self.plan.range;
         let begins = [from].into_iter().chain(stable.iter().map(|part| part[1]));
         let ends = stable.iter().map(|part| part[0]).chain([to]);
-        let narrow = 1e-9 * (to - from);
-        let irregular = begins.zip(ends).filter(|(a, b)| b - a > narrow).map(|(a, b)| [a, b]).collect();
+        let irregular = begins.zip(ends).filter(|(a, b)| b - a > 1e-9 * (to - from)).map(|(a, b)| [a, b]);
+        let irregular = irregular.collect();
         [stable, irregular]
     }
-}
-
-/// The part of the branch of a motion that leads up to the largest value of a quantity among stable motions, and a little beyond.
-fn crest(
-    shooting: &Shooting,
-    seed: &Solution,
-    range: Interval,
-    quantity: fn(&Seen) -> f64,
-) -> Option<Branch> {
-    let most = Cell::new(0.0);
-    let goes_on = |orbit: &Orbit| {
-        let value = quantity(&orbit.seen);
-        most.set(f64::max(most.get(), value));
-        orbit.is_stable() && value >= DOWN * most.get()
-    };
-    trace_while(shooting, seed, range, &goes_on)
-}
-
-/// The steps of a branch over which its motions are stable.
-fn stable_parts(branch: &Branch) -> impl Iterator<Item = Interval> {
-    let pairs = branch.points.windows(2).enumerate().filter(|(i, _)| branch.is_stable_after(*i));
-    pairs.map(|(_, pair)| [pair[0].value.min(pair[1].value), pair[0].value.max(pair[1].value)])
-}
-
-/// The union of intervals, as intervals apart from each other.
-fn merged(mut parts: Vec<Interval>) -> Vec<Interval> {
-    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let mut all: Vec<Interval> = Vec::new();
-    for part in parts {
-        match all.last_mut() {
-            Some(last) if part[0] <= last[1] => last[1] = last[1].max(part[1]),
-            _ => all.push(part),
-        }
-    }
-    all
-}
-
-/// The parts of the range over which a branch has stable motions.
-pub(super) fn stable_ranges(branch: &Branch) -> Vec<Interval> {
-    merged(stable_parts(branch).collect())
 }

@@ -17,6 +17,39 @@ const CONTINUOUS: f64 = 1e-3;
 /// A difference of motions below this is that of their solutions.
 const ROUNDED: f64 = 1e-10;
 
+/// Why a branch was followed no farther.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The parameter left its range.
+    Range,
+    /// It is closed: it came back to where it began.
+    Closed,
+    /// It has joined the branch of half its period, at a period doubling.
+    Halved,
+    /// After the most steps, or the most unstable motions in a row.
+    Steps,
+    /// No solution was found a shortest step ahead.
+    Lost,
+    /// Whoever watches ended the search.
+    Ended,
+}
+
+impl End {
+    /// In words, after "the branch".
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Range => "ends where the range ends",
+            Self::Closed => "is closed",
+            Self::Halved => "ends at a period doubling",
+            Self::Steps => {
+                "was followed no farther after the most steps, or the most unstable motions in a row"
+            }
+            Self::Lost => "was lost: no motion was found a shortest step ahead",
+            Self::Ended => "was followed no farther, for the search was ended",
+        }
+    }
+}
+
 /// A kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventKind {

@@ -1,6 +1,7 @@
 //! Motions that are known for one damper, followed to dampers like it: what a search looks at beside runs from rest.
 
-use super::branches::{Branches, COUNTS, Plan, Watch, branches, equations};
+use super::branches::{Branches, Plan, Watch, branches, equations};
+use super::crest::COUNTS;
 use super::onset::Seed;
 use super::orbit::Orbit;
 use super::seen::quantity;

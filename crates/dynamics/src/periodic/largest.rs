@@ -77,3 +77,27 @@ fn higher([(a, low), (b, most), (c, high)]: &[(f64, f64); 3]) -> (f64, f64) {
         (b + side * 0.382 * width, most - low.min(*high))
     }
 }
+
+/// The steps of a branch over which its motions are stable.
+pub(super) fn stable_parts(branch: &Branch) -> impl Iterator<Item = [f64; 2]> {
+    let pairs = branch.points.windows(2).enumerate().filter(|(i, _)| branch.is_stable_after(*i));
+    pairs.map(|(_, pair)| [pair[0].value.min(pair[1].value), pair[0].value.max(pair[1].value)])
+}
+
+/// The union of intervals, as intervals apart from each other.
+pub(super) fn merged(mut parts: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for part in parts {
+        match all.last_mut() {
+            Some(last) if part[0] <= last[1] => last[1] = last[1].max(part[1]),
+            _ => all.push(part),
+        }
+    }
+    all
+}
+
+/// The parts of the range over which a branch has stable motions.
+pub(super) fn stable_ranges(branch: &Branch) -> Vec<[f64; 2]> {
+    merged(stable_parts(branch).collect())
+}

@@ -1,10 +1,10 @@
 //! From a period doubling to the branch of twice the period.
 
-use super::events::{Event, EventKind};
+use super::events::{End, Event, EventKind};
 use super::forced::Forced;
 use super::node::Node;
 use super::shooting::Shooting;
-use super::trace::{Branch, End, trace_from};
+use super::trace::{Branch, trace_from};
 use nalgebra::{DVector, Matrix4, Vector4};
 
 /// The branch that begins at a period doubling of another; none if it is not one, or no motion is found on it.

@@ -5,7 +5,7 @@
 //! than [`TURN`], or what happens on the way cannot be located, because the motions there are not one branch: so it neither jumps to another
 //! branch nor cuts a fold short.
 
-use super::events::{Event, EventKind, located};
+use super::events::{End, Event, EventKind, located};
 use super::forced::{Damped, Forced};
 use super::node::Node;
 use super::orbit::Orbit;
@@ -30,39 +30,6 @@ const ASTRAY: f64 = 0.3;
 const JOINED: f64 = 1e-4;
 /// Halves nearer than this share of a step are the same: the step has ended on the branch of half the periods.
 const MET: f64 = 0.1;
-
-/// Why a branch was followed no farther.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// The parameter left its range.
-    Range,
-    /// It is closed: it came back to where it began.
-    Closed,
-    /// It has joined the branch of half its period, at a period doubling.
-    Halved,
-    /// After the most steps, or the most unstable motions in a row.
-    Steps,
-    /// No solution was found a shortest step ahead.
-    Lost,
-    /// Whoever watches ended the search.
-    Ended,
-}
-
-impl End {
-    /// In words, after "the branch".
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Range => "ends where the range ends",
-            Self::Closed => "is closed",
-            Self::Halved => "ends at a period doubling",
-            Self::Steps => {
-                "was followed no farther after the most steps, or the most unstable motions in a row"
-            }
-            Self::Lost => "was lost: no motion was found a shortest step ahead",
-            Self::Ended => "was followed no farther, for the search was ended",
-        }
-    }
-}
 
 /// A branch: its motions in their order, with what happens between them.
 #[derive(Clone, Debug)]

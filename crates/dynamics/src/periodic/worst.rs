@@ -1,8 +1,8 @@
 //! The largest value of a quantity over all motions of a scene in a range of a parameter: exact on branches of stable periodic motions, and of
 //! runs where none is known.
 
-use super::branches::{Branches, Interval, Plan, Watch, branches, stable_ranges};
-use super::largest::largest;
+use super::branches::{Branches, Interval, Plan, Watch, branches};
+use super::largest::{largest, stable_ranges};
 use super::look::{Attractor, Sample};
 use super::orbit::Orbit;
 use super::seen::Seen;

@@ -15,7 +15,7 @@ use super::watch::{FREE, GoesOn, Hooks, Largest, Numbered, Seen, Watch, Watched}
 use crate::chunks::in_groups;
 use retune_model::{NonNegative, PerMeasure, Scene};
 use retune_solver::Settings;
-use std::sync::PoisonError;
+use std::sync::{Mutex, PoisonError};
 
 impl Goal {
     /// Evaluates a scene. The value may be any number above `cutoff` once it is known to exceed it; the rest is then incomplete.
@@ -65,6 +65,25 @@ impl Goal {
         known: &Known,
     ) -> Result<Evaluation, Unusable> {
         self.evaluate_with(scene, settings, f64::INFINITY, Hooks { sought: Sought::Followed(known), ..FREE })
+    }
+
+    /// Whether it looks at motions from other starts than rest, over a band: then a search follows those it knows from one design to the next.
+    pub fn follows_motions(&self) -> bool {
+        self.objective
+            .terms()
+            .iter()
+            .any(|(_, term)| term.response == Response::Motions && term.omega.is_some())
+    }
+
+    /// The motions of a scene that a search from there follows to other dampers, and the value with all motions that are found.
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate`].
+    pub fn known(&self, scene: &Scene, settings: &Settings) -> Result<(Evaluation, Known), Unusable> {
+        let known = Mutex::default();
+        let hooks = Hooks { sought: Sought::Kept(&known), ..FREE };
+        let found = self.evaluate_with(scene, settings, f64::INFINITY, hooks)?;
+        Ok((found, known.into_inner().unwrap_or_else(PoisonError::into_inner)))
     }
 
     pub(super) fn evaluate_with(

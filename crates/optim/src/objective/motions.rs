@@ -1,9 +1,7 @@
 //! The largest over every motion that is found, for the response "motions".
 
-use super::spec::{Objective, Response, STARTS};
+use super::spec::{Objective, STARTS};
 use super::unusable::Unusable;
-use super::watch::{FREE, Hooks};
-use super::{evaluation::Evaluation, spec::Goal};
 use retune_dynamics::periodic::branches::{Plan, Watch, branches};
 use retune_dynamics::periodic::worst::{Motions, quantity};
 use retune_dynamics::periodic::{Branches, Seed, from_rest_and};
@@ -44,27 +42,6 @@ pub(super) enum Sought<'a> {
     Kept(&'a Mutex<Known>),
     /// Those that runs from rest lead to, and those that are known.
     Followed(&'a Known),
-}
-
-impl Goal {
-    /// Whether it looks at motions from other starts than rest, over a band: then a search follows those it knows from one design to the next.
-    pub fn follows_motions(&self) -> bool {
-        self.objective
-            .terms()
-            .iter()
-            .any(|(_, term)| term.response == Response::Motions && term.omega.is_some())
-    }
-
-    /// The motions of a scene that a search from there follows to other dampers, and the value with all motions that are found.
-    ///
-    /// # Errors
-    /// As [`Goal::evaluate`].
-    pub fn known(&self, scene: &Scene, settings: &Settings) -> Result<(Evaluation, Known), Unusable> {
-        let known = Mutex::default();
-        let hooks = Hooks { sought: Sought::Kept(&known), ..FREE };
-        let found = self.evaluate_with(scene, settings, f64::INFINITY, hooks)?;
-        Ok((found, known.into_inner().unwrap_or_else(PoisonError::into_inner)))
-    }
 }
 
 /// Finds the motions of a scene from one frequency to another, by runs at so many of them.
