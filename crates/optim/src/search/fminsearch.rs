@@ -15,14 +15,12 @@
 //! the state are the best vertex, and the key-value store has `iteration`, `func_count` and `procedure`. They must
 //! be `'static` and cannot end a run, which is why `run` has a `watch` closure instead: it may borrow and may break.
 //!
-//! # Saving a run
-//! The solver is the whole state of a run and can be serialised. [`Fminsearch::run`] continues where it stopped: break from
-//! `watch`, save the solver, and run it again, now or in another process. The rows are those of an uninterrupted run.
+//! # Interrupting a run
+//! The solver is the whole state of a run: [`Fminsearch::run`] continues where `watch` broke it, and the rows are those of an uninterrupted run.
 //! (In an `Executor` of your own the observers' `observe_init` sees the last row of a continued run again.)
 
 mod log;
 mod options;
-mod saved;
 mod simplex;
 mod solver;
 mod start;
@@ -91,7 +89,7 @@ pub fn minimize(
 impl Fminsearch {
     /// Runs, or continues, until a stop test holds or `watch` breaks; see [`minimize`] for both closures.
     ///
-    /// After an interruption the solver can be saved, and run again to continue with the next row.
+    /// After an interruption the solver can be run again to continue with the next row.
     ///
     /// # Errors
     /// [`Error::StartValue`] where the objective is not finite at the start; the solver is then unchanged.

@@ -1,25 +1,14 @@
 //! The geometry of a simplex: n + 1 vertices in n coordinates, sorted from the best value to the worst.
 
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::cmp::Ordering;
 
 /// A point and the value of the objective there.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Vertex {
     /// Coordinates the simplex moves in: parameters over their scale.
     pub x: Vec<f64>,
     /// The objective: finite, or +∞ where it has no finite value. Never NaN.
-    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_is_infinite")]
     pub value: f64,
-}
-
-/// JSON has no ∞: it is written as `null`.
-fn finite_or_null<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    value.is_finite().then_some(*value).serialize(serializer)
-}
-
-fn null_is_infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
 /// Sorts from best to worst; equal values keep their order, so a new vertex comes after the one it ties with.

@@ -5,7 +5,6 @@ use super::options::{Error, Options, Scaling};
 use super::simplex::{self, Vertex};
 use argmin::core::{Error as ArgminError, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use argmin::kv;
-use serde::{Deserialize, Serialize};
 
 /// Reflection ρ, expansion χ, contraction ψ and shrink σ coefficients (Lagarias et al. 1998, eq. 2.1 and after).
 const RHO: f64 = 1.0;
@@ -18,9 +17,8 @@ const LIMIT_PER_COORDINATE: u64 = 200;
 
 /// A run of `fminsearch`: an argmin solver for objectives `Fn(&[f64], cutoff: f64) -> f64`.
 ///
-/// It holds everything a run needs to continue, and can be serialised; see the [module](super).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(remote = "Self", deny_unknown_fields)]
+/// It holds everything a run needs to continue; see the [module](super).
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fminsearch {
     pub(super) options: Options,
     /// Parameters are the simplex's coordinates times these.
