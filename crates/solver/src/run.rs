@@ -16,7 +16,7 @@ use retune_model::{Bare, Coupled, Scene};
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// The least number of steps of a run of so many seconds by the exact method: those of its flight. Contacts add to them.
+/// The least number of steps of a run of `seconds` (s) by [`Method::Hybrid`]: those of its flight. Contacts add to them.
 pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
     let Scene { primary, forcing, damper } = scene;
     let step = match damper {

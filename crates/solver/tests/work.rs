@@ -5,7 +5,7 @@ mod problems;
 
 use problems::scenes::{SSVI, TMD};
 use retune_solver::methods::{Ode23s, Ode45, OneStep, Tolerance};
-use retune_solver::{Contacts, Method, Settings, System, Window, Work, simulate};
+use retune_solver::{Contacts, Method, Settings, System, Window, Work, least_steps, simulate};
 
 /// The first step from a state: MATLAB's `ode45` and `ode23s`, formula by formula, of numbers that are easily followed by hand.
 #[test]
@@ -56,4 +56,16 @@ fn regress_work_of_every_method() {
         });
         assert_eq!(found, expected, "{method:?} at {rtol:e}, {contacts:?}");
     }
+}
+
+/// A run without contacts takes just those, one with contacts more.
+#[test]
+fn exact_the_least_steps_of_a_run_are_those_of_its_flight() {
+    let steps = |scene| {
+        let window = Window { from: 0.0, to: 20.0 };
+        simulate(&scene, window, &Settings::default()).expect("a run").work.steps as f64
+    };
+    let least = |scene| least_steps(&scene, 20.0).ceil();
+    assert_eq!(steps(TMD.scene()), least(TMD.scene()));
+    assert!(steps(SSVI.scene()) > least(SSVI.scene()));
 }

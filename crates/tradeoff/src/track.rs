@@ -141,6 +141,6 @@ fn paper(tuned: &Tuned) -> Option<Row> {
         none: tuned.study.energy_without_damper(),
         verdict: "",
         reason: "the paper's design is not certified here".to_owned(),
-        needs: Largest::of(&tuned.study.goal(), &tuned.study.scene_at(&at)?, &tuned.study),
+        needs: Largest::of(&tuned.study, &tuned.study.scene_at(&at)?),
     })
 }

@@ -36,7 +36,7 @@ pub struct Needs {
 }
 
 /// The largest value of each measure over the band, the stiffnesses, the members and the terms of an objective.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest(pub retune_optim::Needs);
 
 /// The best damper without walls.
@@ -78,9 +78,9 @@ impl Serialize for Largest {
 }
 
 impl Largest {
-    /// Of a scene by a goal; none where it cannot be run.
-    pub fn of(goal: &Goal, scene: &Scene, study: &Study) -> Option<Self> {
-        goal.needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
+    /// Of a scene by the objective of a study, whatever its limits; none where it cannot be run.
+    pub fn of(study: &Study, scene: &Scene) -> Option<Self> {
+        study.goal().needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
     }
 
     /// The largest value of a measure, from rest on.
@@ -179,13 +179,13 @@ impl Needs {
         let goal = Goal { limits: Limits::default(), ..study.goal() };
         let settings = study.solver.settings();
         let (damper, (none, linear)) = rayon::join(
-            || Largest::of(&goal, design, study),
+            || Largest::of(study, design),
             || {
-                let none = Largest::of(&goal, &Scene { damper: None, ..*design }, study);
+                let none = Largest::of(study, &Scene { damper: None, ..*design });
                 let linear = goal.best_linear(design, &settings).and_then(|scene| {
                     let found = goal.evaluate(&scene, &settings, f64::INFINITY).ok()?;
                     let damper = scene.damper?;
-                    let needs = Largest::of(&goal, &scene, study)?;
+                    let needs = Largest::of(study, &scene)?;
                     let better = found.energy < (1.0 - BETTER) * value;
                     Some(Linear {
                         k2: damper.stiffness.get(),

@@ -10,7 +10,6 @@ use crate::searches::Searches;
 use crate::summary::TunedDamper;
 use crate::{Error, Observer, Request};
 use retune_model::Positive;
-use retune_optim::{Goal, Limits};
 use retune_study::{PaperStudy, read_table2};
 use serde_json::json;
 
@@ -61,7 +60,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
                 e1_max: paper.energy,
                 verdict: certificate.short().verdict(),
                 reason: certificate.reason().to_owned(),
-                needs: Largest::of(&Goal { limits: Limits::default(), ..study.goal() }, &study.scene, study),
+                needs: Largest::of(study, &study.scene),
                 ..again.clone()
             };
             table.extend([paper, again]);

@@ -61,8 +61,8 @@ fn located(branch: &Branch, i: usize, quantity: impl Fn(&Orbit) -> f64) -> Optio
     best
 }
 
-/// Where three values, the middle one the largest, promise the most, and how much more: at the vertex of their parabola, if it is not within a
-/// hundredth of an end of the wider side; else in the golden section of that side.
+/// Where three values, the middle one the largest, promise the most, and how much more: at the vertex of their parabola, or, once one side is
+/// below a thousandth of both, in the golden section of the other.
 fn higher([(a, low), (b, most), (c, high)]: &[(f64, f64); 3]) -> (f64, f64) {
     let [left, right] = [(most - low) / (b - a), (high - most) / (c - b)];
     let curvature = (right - left) / (c - a);
@@ -71,7 +71,7 @@ fn higher([(a, low), (b, most), (c, high)]: &[(f64, f64); 3]) -> (f64, f64) {
     let gain = -0.25 * slope * slope / curvature;
     let (side, width) = if c - b > b - a { (1.0, c - b) } else { (-1.0, b - a) };
     let narrow = (b - a).min(c - b) < 1e-3 * (c - a);
-    if curvature < 0.0 && (vertex - b).abs() < 0.99 * width && !narrow {
+    if curvature < 0.0 && !narrow {
         (vertex, gain)
     } else {
         (b + side * 0.382 * width, most - low.min(*high))

@@ -4,7 +4,7 @@ use super::spec::{Objective, STARTS};
 use super::unusable::Unusable;
 use retune_dynamics::periodic::branches::{Plan, Watch, branches};
 use retune_dynamics::periodic::worst::{Motions, quantity};
-use retune_dynamics::periodic::{Branches, Seed, from_rest_and};
+use retune_dynamics::periodic::{Seed, from_rest_and};
 use retune_model::{Measure, Parameter, PerMeasure, Scene, Worst};
 use retune_solver::Settings;
 use std::sync::{Mutex, PoisonError};
@@ -70,22 +70,12 @@ pub(super) fn largest_motion(
         }
         found
     };
-    Ok(largest_of(&found, &kinds, &measures, from))
-}
-
-/// The largest value of each measure.
-fn largest_of(
-    found: &Branches,
-    kinds: &[fn(&retune_dynamics::periodic::seen::Seen) -> f64],
-    measures: &[Measure],
-    from: f64,
-) -> Found {
-    let found = Motions::of(found, kinds);
+    let found = Motions::of(&found, &kinds);
     let mut worst = found.largest.iter().map(|largest| match largest {
         Some(largest) => Worst { value: largest.value, frequency: largest.at },
         None => Worst { value: 0.0, frequency: from },
     });
     let largest = worst.next().unwrap_or(Worst { value: 0.0, frequency: from });
-    let also = measures.iter().copied().skip(1).zip(worst).collect();
-    Found { largest, also, settled: found.irregular.is_empty() }
+    let also = measures.into_iter().skip(1).zip(worst).collect();
+    Ok(Found { largest, also, settled: found.irregular.is_empty() })
 }

@@ -177,7 +177,7 @@ impl PeakEnergy {
     }
 
     /// The same for a search: where its goal asks for all motions, those that runs from rest lead to are looked at, and those that it
-    /// [learns](Self::learn), which takes a fiftieth of the time.
+    /// [learns](Self::learn), which takes a small part of the time.
     #[must_use]
     pub fn following(self) -> Self {
         Self { known: Some(Known::default()), ..self }

@@ -100,8 +100,7 @@ pub(super) struct Nodes {
     states: [[f64; 4]; FOLLOWED],
 }
 
-/// Nodes of a piece of a contact that is followed step by step: derivatives by 8 and by 12 differ by at most 4e-12, also of a damper that is
-/// pressed to its wall.
+/// Nodes of a piece of a contact that is followed step by step: Gauss's rule on 8 is of order 16, the steps themselves are of order 8.
 const FOLLOWED: usize = 8;
 
 /// Nodes of Gauss's rule on `[0, 1]`, the integrals to each of them, and over all.

@@ -1,8 +1,9 @@
 //! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
-use retune_model::{Design, PerMeasure};
+use retune_model::Design;
 use retune_study::{Sweep, fields};
 use retune_workbench::certify::Verdict;
+use retune_workbench::needs::Largest;
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -30,8 +31,8 @@ pub struct Candidate {
     pub verdict: &'static str,
     /// The reason for it, if it has a certificate.
     pub reason: String,
-    /// The largest value of each measure from rest on, each at its own frequency, if it has a certificate.
-    pub needs: Option<PerMeasure<f64>>,
+    /// What it needs and what the structure does, if it has a certificate.
+    pub needs: Option<Largest>,
 }
 
 impl Candidate {

@@ -6,11 +6,12 @@
 use super::again::certifiable;
 use super::candidate::{Candidate, SAME};
 use rayon::prelude::*;
-use retune_model::{Measure, PerMeasure};
+use retune_model::Measure;
 use retune_study::{FrontsPlan, Sweep};
 use retune_workbench::Error;
 use retune_workbench::certify::{Certificate, certify};
 use retune_workbench::designs::quoted;
+use retune_workbench::needs::Largest;
 
 /// The verdict of a damper that no search found.
 pub(super) const GIVEN: &str = "of the study";
@@ -41,7 +42,7 @@ pub struct Fronts {
     /// The dampers in the scenes of the studies, where they can be run.
     pub given: Vec<Candidate>,
     /// What the structure does without a damper, from rest on.
-    pub none: Option<PerMeasure<f64>>,
+    pub none: Option<Largest>,
     /// The certificates of the designs that are furthest below the first damper under the same bound, each value once.
     pub certified: Vec<Certified>,
 }
@@ -167,7 +168,7 @@ impl Fronts {
         let mut text = format!("{}_most,damper,{},{needs},verdict\n", sweep.name(), Candidate::COLUMNS);
         for Row { bound, damper, design, .. } in self.rows(sweep) {
             let fields = design.map_or(",,,,,,,".to_owned(), Candidate::fields);
-            let need = |measure| design.and_then(|design| Some(design.needs?.get(measure).to_string()));
+            let need = |measure| design.and_then(|design| Some(design.needs?.value(measure).to_string()));
             let needs = NEEDS.map(|measure| need(measure).unwrap_or_default()).join(",");
             let verdict = design.map_or("none keeps it", |design| design.verdict);
             text += &format!("{bound},{},{fields},{needs},{verdict}\n", quoted(self.name(damper)));

@@ -135,14 +135,14 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
         let mut cells = vec![row.bound.to_string(), fronts.name(row.damper).to_owned()];
         cells.extend([metre(design.stroke), format!("{:.0}", design.force)]);
         cells.extend(
-            NEEDS.map(|measure| design.needs.map_or(String::new(), |all| rounded(all.get(measure), 4))),
+            NEEDS.map(|measure| design.needs.map_or(String::new(), |all| rounded(all.value(measure), 4))),
         );
         Some(cells)
     };
     let mut rows: Vec<Vec<String>> = fronts.rows(sweep).into_iter().filter_map(row).collect();
     if let Some(none) = fronts.none {
         let mut cells = ["", "no damper", "", ""].map(str::to_owned).to_vec();
-        cells.extend(NEEDS.map(|measure| rounded(none.get(measure), 4)));
+        cells.extend(NEEDS.map(|measure| rounded(none.value(measure), 4)));
         rows.push(cells);
     }
     Block::Table(

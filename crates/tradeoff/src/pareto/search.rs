@@ -7,8 +7,8 @@ use super::descents::Task;
 use super::fronts::{Fronts, GIVEN};
 use super::refinement::Under;
 use rayon::prelude::*;
-use retune_model::{Design, Measure, PerMeasure, Scene};
-use retune_optim::{Goal, Limit, Limits};
+use retune_model::{Design, Measure, Scene};
+use retune_optim::Limit;
 use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep, clipped};
 use retune_workbench::certify::judge;
 use retune_workbench::look::{finer, look};
@@ -45,7 +45,7 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
         .plan
         .dampers
         .last()
-        .and_then(|(_, study)| largest(study, &Scene { damper: None, ..study.scene }));
+        .and_then(|(_, study)| Largest::of(study, &Scene { damper: None, ..study.scene }));
     fronts.certified = fronts.certify()?;
     Ok(fronts)
 }
@@ -150,7 +150,7 @@ impl Fronts {
         }
         let study = self.bounded(under, Vec::new())?;
         let scene = study.scene_at(at).unwrap_or(study.scene);
-        let needs = largest(&study, &scene);
+        let needs = Largest::of(&study, &scene);
         let certificate = judge(&Study { scene, ..study })?;
         let (verdict, reason) = (certificate.short().verdict(), certificate.reason().to_owned());
         Ok(Candidate { verdict, reason, needs, ..design.clone() })
@@ -166,11 +166,4 @@ impl Fronts {
         }
         all
     }
-}
-
-/// The largest value of each measure over the band of a study from rest on.
-fn largest(study: &Study, scene: &Scene) -> Option<PerMeasure<f64>> {
-    let goal = Goal { limits: Limits::default(), ..study.goal() };
-    let needs = Largest::of(&goal, scene, study)?;
-    Some(PerMeasure(Measure::ALL.map(|measure| needs.value(measure))))
 }

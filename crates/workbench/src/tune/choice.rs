@@ -70,6 +70,42 @@ fn is_less(other: &[f64; 2], own: &[f64; 2]) -> bool {
     less(0) || !more(0) && less(1)
 }
 
+/// Of ends in one valley, where values differ by nothing that matters, the place among those `seen` of the one that needs the least and is as
+/// safe as that at `chosen`; ends that were not seen are certified for it.
+///
+/// # Errors
+/// As [`judge`].
+fn lightest(
+    chosen: usize,
+    seen: &mut Vec<(usize, Certificate)>,
+    as_good: &[usize],
+    values: &[f64],
+    of: &impl Fn(usize) -> Result<Study, Error>,
+) -> Result<usize, Error> {
+    let (number, certificate) = &seen[chosen];
+    let burden =
+        |number: usize| of(number).ok().and_then(|study| burden(&study)).unwrap_or([f64::INFINITY; 2]);
+    let own = burden(*number);
+    let within = |other: &usize| values[*other] <= (1.0 + VALLEY) * values[*number];
+    let mut lighter: Vec<(usize, [f64; 2])> =
+        as_good.iter().copied().filter(within).map(|other| (other, burden(other))).collect();
+    lighter.retain(|(_, other)| is_less(other, &own));
+    lighter.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let least = rank(certificate.verdict, certificate.safe_to());
+    for (number, _) in lighter {
+        let known = seen.iter().position(|(known, _)| *known == number);
+        if known.is_none() {
+            seen.push((number, judge(&of(number)?)?));
+        }
+        let place = known.unwrap_or(seen.len() - 1);
+        let certificate = &seen[place].1;
+        if rank(certificate.verdict, certificate.safe_to()) <= least {
+            return Ok(place);
+        }
+    }
+    Ok(chosen)
+}
+
 /// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
 /// margin of the force, of those the best, and of those within 0.1 % of it the one with the least contact force, then stroke. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
 ///
@@ -108,29 +144,7 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     }
     let all: Vec<(Option<Verdict>, f64)> =
         seen.iter().map(|(_, certificate)| (certificate.verdict, certificate.safe_to())).collect();
-    let mut chosen = place(&all);
-    // In a valley, where values differ by nothing that matters, the design that needs the least.
-    let (number, certificate) = &seen[chosen];
-    let burden =
-        |number: usize| of(number).ok().and_then(|study| burden(&study)).unwrap_or([f64::INFINITY; 2]);
-    let own = burden(*number);
-    let within = |other: &usize| values[*other] <= (1.0 + VALLEY) * values[*number];
-    let mut lighter: Vec<(usize, [f64; 2])> =
-        as_good.iter().copied().filter(within).map(|other| (other, burden(other))).collect();
-    lighter.retain(|(_, other)| is_less(other, &own));
-    lighter.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let least = rank(certificate.verdict, certificate.safe_to());
-    for (number, _) in lighter {
-        if seen.iter().all(|(known, _)| *known != number) {
-            seen.push((number, judge(&of(number)?)?));
-        }
-        let place = seen.iter().position(|(known, _)| *known == number).unwrap_or(chosen);
-        let certificate = &seen[place].1;
-        if rank(certificate.verdict, certificate.safe_to()) <= least {
-            chosen = place;
-            break;
-        }
-    }
+    let chosen = lightest(place(&all), &mut seen, &as_good, &values, &of)?;
     let taken = rank(seen[chosen].1.verdict, seen[chosen].1.safe_to());
     let smaller = |(number, _): &&(usize, Certificate)| values[*number] < values[seen[chosen].0];
     let passed = seen.iter().filter(smaller).map(|(number, certificate)| PassedOver {
