@@ -3,7 +3,8 @@
 
 Random structures get a TMD (steady, in closed form) or an SSVI NES (short runs from rest) and a limit that decides the optimum. Each is tuned by
 `retune optimize`; differential evolution then makes the same energy small under the same limits, over the same box, through
-`retune evaluate --json`. Both begin with nothing but the box, and for the TMD in one of three kinds of search Den Hartog's damper. Writes the
+`retune evaluate --json`. Both begin with nothing but the box, and for the TMD in one of three kinds of search Den Hartog's damper. Where differential
+evolution has less, both designs are evaluated on eight times the samples: less by a peak that the samples miss is not less. Writes the
 rows of results/robustness/limits.md; `just hunt-limits` puts them behind tests/limits.md.
 
     python3 tests/limits.py target/release/retune TMDS SSVIS
@@ -22,6 +23,7 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 TIMES = 20
+FINER = 8
 WORSE = {"TMD": 0.01, "SSVI NES": 0.02}
 CONTACT = {"R": 2, "q": 0.318, "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4}
 
@@ -93,9 +95,9 @@ def ssvi(random):
 
 
 def evolve(retune, study, box, evaluations, seed):
-    """The least energy under the limits that differential evolution finds; None where no design that it saw keeps them."""
+    """The least energy under the limits that differential evolution finds, and its design; None where no design that it saw keeps them."""
     program = subprocess.Popen([retune, "evaluate", study, "--json"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    best = [math.inf]
+    best = [math.inf, None]
     sides = [(math.log(low), math.log(high)) if low > 0 else (low, high) for low, high in box]
     logs = np.array([low > 0 for low, _ in box])
 
@@ -106,7 +108,7 @@ def evolve(retune, study, box, evaluations, seed):
         for row in x.T:
             program.stdin.write(" ".join(map(repr, map(float, row))) + "\n")
         program.stdin.flush()
-        for _ in x.T:
+        for row in x.T:
             answer = json.loads(program.stdout.readline())
             energy, violation = answer.get("E1max"), answer.get("violation", 0)
             if energy is None:
@@ -114,7 +116,8 @@ def evolve(retune, study, box, evaluations, seed):
             elif violation > 0:
                 out.append(1e100 * (1 + violation))
             else:
-                best[0] = min(best[0], energy)
+                if energy < best[0]:
+                    best[:] = [energy, [float(value) for value in row]]
                 out.append(energy)
         return np.array(out)
 
@@ -122,7 +125,20 @@ def evolve(retune, study, box, evaluations, seed):
     differential_evolution(values, sides, popsize=15, maxiter=max(1, evaluations // members - 1), tol=0, atol=0, polish=False, seed=seed, vectorized=True, updating="deferred")
     program.stdin.close()
     program.wait()
-    return best[0] if math.isfinite(best[0]) else None
+    return best if best[1] else (None, None)
+
+
+def between_samples(retune, study, designs):
+    """Energies of designs on more samples of the band."""
+    sampled = study["optimize"]["objective"]["omega"]
+    finer = json.loads(json.dumps(study))
+    finer["optimize"]["objective"]["omega"] = sampled | {"samples": FINER * sampled["samples"]}
+    with tempfile.TemporaryDirectory() as place:
+        file = pathlib.Path(place, "study.json")
+        file.write_text(json.dumps(finer))
+        lines = "".join(" ".join(map(repr, design)) + "\n" for design in designs)
+        ran = subprocess.run([retune, "evaluate", str(file), "--json"], input=lines, capture_output=True, text=True, check=True)
+    return [json.loads(line)["E1max"] for line in ran.stdout.splitlines()]
 
 
 def one(retune, kind, number):
@@ -130,9 +146,10 @@ def one(retune, kind, number):
     primary, forcing, damper, window, optimize = (tmd if kind == "TMD" else ssvi)(random)
     scene = {"primary": primary, "forcing": forcing, "damper": damper}
     with tempfile.TemporaryDirectory() as place:
-        study = pathlib.Path(place, "study.json")
-        study.write_text(json.dumps({"name": "study", "scene": scene, "window": window, "solver": {"rtol": 1e-8}, "optimize": optimize}))
-        done = subprocess.run([retune, "optimize", str(study), "--out", f"{place}/out", "--quiet"], capture_output=True, text=True, check=False)
+        study = {"name": "study", "scene": scene, "window": window, "solver": {"rtol": 1e-8}, "optimize": optimize}
+        file = pathlib.Path(place, "study.json")
+        file.write_text(json.dumps(study))
+        done = subprocess.run([retune, "optimize", str(file), "--out", f"{place}/out", "--quiet"], capture_output=True, text=True, check=False)
         if done.returncode not in (0, 3):
             sys.exit(f"{kind} {number}: {done.stderr}")
         optimum = json.loads(pathlib.Path(place, "out", "optimum.json").read_text())
@@ -140,7 +157,14 @@ def one(retune, kind, number):
         found = optimum["E1max"] if limits["feasible"] else None
         evaluations = limits["evaluations"]
         box = [optimize["bounds"][name] for name in optimize["vary"]]
-        return found, evolve(retune, str(study), box, TIMES * evaluations, number), evaluations
+        other, design = evolve(retune, str(file), box, TIMES * evaluations, number)
+        missed_peak = False
+        if None not in (found, other) and found > (1 + WORSE[kind]) * other and "samples" in optimize["objective"]["omega"]:
+            own = [optimum[name] for name in optimize["vary"]]
+            truly, otherwise = between_samples(retune, study, [own, design])
+            print(f"{kind} {number}: {found} for {other}; between the samples {truly} for {otherwise}", file=sys.stderr, flush=True)
+            missed_peak = truly <= (1 + WORSE[kind]) * otherwise
+        return found, other, evaluations, missed_peak
 
 
 def main():
@@ -149,21 +173,21 @@ def main():
         rows = []
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             for number, row in enumerate(pool.map(lambda number: one(retune, kind, number), range(count))):
-                found, other, _ = row
                 rows.append(row)
-                if found is None and other is not None or None not in (found, other) and found > (1 + WORSE[kind]) * other:
-                    print(f"{kind} {number}: {found} for {other}", file=sys.stderr, flush=True)
+                if row[0] is None and row[1] is not None:
+                    print(f"{kind} {number}: none for {row[1]}", file=sys.stderr, flush=True)
         if not rows:
             continue
-        both = [found / other - 1 for found, other, _ in rows if None not in (found, other)]
+        both = [found / other - 1 for found, other, _, missed_peak in rows if None not in (found, other) and not missed_peak]
         share = WORSE[kind]
         cells = [
             kind,
             count,
-            int(np.median([evaluations for *_, evaluations in rows])),
-            sum(found is None and other is not None for found, other, _ in rows),
-            sum(found is not None and other is None for found, other, _ in rows),
-            sum(found is None and other is None for found, other, _ in rows),
+            int(np.median([evaluations for _, _, evaluations, _ in rows])),
+            sum(found is None and other is not None for found, other, *_ in rows),
+            sum(found is not None and other is None for found, other, *_ in rows),
+            sum(found is None and other is None for found, other, *_ in rows),
+            sum(missed_peak for *_, missed_peak in rows),
             f"{sum(excess > share for excess in both)} by more than {100 * share:g} %",
             f"{100 * max(both):.3g} %",
             f"{sum(excess < -share for excess in both)} by more than {100 * share:g} %",

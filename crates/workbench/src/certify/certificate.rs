@@ -21,6 +21,9 @@ use retune_optim::Evaluation;
 use retune_study::Study;
 use serde::Serialize;
 
+/// What the samples of a study may miss without a word, as a share of the value.
+const MISSED_PEAK: f64 = 0.01;
+
 /// A certificate. SI units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certificate {
@@ -68,6 +71,9 @@ pub struct Short {
     /// What the comparison of methods came to.
     #[serde(skip)]
     compared: String,
+    /// What the samples of the study miss, in words, where it is more than 1 %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) missed_peak: Option<String>,
     predictable: bool,
     regime: String,
     exponent: f64,
@@ -187,6 +193,17 @@ impl Certificate {
         self.short().check_limits(self.made_by.study())
     }
 
+    /// What the samples of the study miss, in words, where it is more than 1 %.
+    pub(crate) fn missed_peak(&self) -> Option<String> {
+        let finer = self.finer.filter(|finer| !(*finer <= (1.0 + MISSED_PEAK) * self.value.value))?;
+        let quantity = self.value.quantity;
+        let name = quantity.name();
+        let finer = verdict::or_none(finer, quantity);
+        Some(format!(
+            "{name} of this design is more between the samples of the study: {FINER} times as many have {finer}"
+        ))
+    }
+
     /// The reason for the verdict, in words.
     pub fn reason(&self) -> &str {
         &self.words
@@ -197,6 +214,16 @@ impl Certificate {
         let Self { verdict, words, error_bar, predictable, motion, .. } = self.clone();
         let compared = self.compared();
         let Motion { regime, exponent, sentence, .. } = motion;
-        Short { verdict, words, error_bar, compared, predictable, regime, exponent, sentence }
+        Short {
+            verdict,
+            words,
+            error_bar,
+            compared,
+            missed_peak: self.missed_peak(),
+            predictable,
+            regime,
+            exponent,
+            sentence,
+        }
     }
 }

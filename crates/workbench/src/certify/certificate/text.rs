@@ -1,15 +1,9 @@
 //! A certificate as text.
 
-use super::verdict::{NONE, between};
+use super::verdict::{NONE, between, or_none};
 use super::{Certificate, FINER, Motion, Neighbourhood, Run, Sensitivity, Short, WorstRun};
-use crate::amount::{Amount, measured};
-use retune_model::Measure;
+use crate::amount::Amount;
 use retune_study::short;
-
-/// A value; one that is not finite is of a design that cannot be computed.
-fn said(value: f64, quantity: Measure) -> String {
-    if value.is_finite() { measured(value, quantity) } else { NONE.to_owned() }
-}
 
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -27,7 +21,7 @@ impl std::fmt::Display for Certificate {
         let predictable = if self.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());
-        let said = |value: f64| said(value, quantity);
+        let said = |value: f64| or_none(value, quantity);
         writeln!(f, "{name:<14}{}, {predictable}: {}", said(value), self.compared())?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };

@@ -19,7 +19,7 @@ const SENSITIVE: f64 = 0.1;
 pub enum Verdict {
     /// Small errors change little.
     Robust,
-    /// Small errors change little, but other starts, or frequencies between the samples, lead to a motion with much more.
+    /// Small errors change little, but other starts, or frequencies between the samples, lead to much more.
     #[serde(rename = "from rest only")]
     FromRest,
     /// Small errors change the value little, but break a limit, or bring a motion with much more from other starts.
@@ -88,86 +88,142 @@ fn judge(value: Amount, error_bar: f64, predictable: bool, measured: &Measured) 
     }
 }
 
-/// The verdict on the value, whatever the limits.
-fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -> (Verdict, String) {
-    let Measured { neighbourhood, motion, sensitivity, .. } = all;
-    let Amount { quantity, value: own, .. } = own;
-    let Neighbourhood { low, high, errors, .. } = neighbourhood;
-    // Not a number is no evidence of anything small.
-    let small = |value: f64| value <= WIDE * own;
-    let narrow = small(neighbourhood.width()) && small(error_bar);
-    let near = format!("designs within {} % of it have {}", 100.0 * errors, between(*low, *high, quantity));
-    if !narrow && (motion.irregular || !predictable) {
-        let width = measured(neighbourhood.width().max(error_bar), quantity);
-        return (
-            Verdict::SingleChaoticRealisation,
-            format!("a single chaotic realisation of a distribution of width {width}: {near}"),
-        );
-    }
-    if !narrow {
-        return (Verdict::Sensitive, format!("sensitive: {near}"));
-    }
-    if let Some(finer) = all.finer.filter(|finer| !small(finer - own)) {
-        let finer = if finer.is_finite() { measured(finer, quantity) } else { NONE.to_owned() };
-        let words =
-            format!("robust on the samples of the study only: {FINER} times as many have {finer}; {near}");
-        return (Verdict::FromRest, words);
-    }
-    // The parameter whose error of 1 % raises E1max most.
-    let worst = sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
-    let said = worst.map_or(String::new(), |Sensitivity { parameter, worst, worst_at_percent, .. }| {
-        let gives = if worst.is_finite() {
-            format!("gives {}", measured(*worst, quantity))
-        } else {
-            NO_VALUE.to_owned()
-        };
-        format!("{parameter} off by {worst_at_percent:+} % {gives}")
-    });
-    match worst {
-        Some(worst) if worst.worst.is_infinite() => (Verdict::Sensitive, format!("sensitive: {said}")),
-        Some(worst) if worst.worst > (1.0 + SENSITIVE) * own => {
-            (Verdict::Sensitive, format!("sensitive: {said}, {} times as much", short(worst.worst / own)))
-        }
-        _ => judge_motions(all, &said),
-    }
+/// Something that a robust design does not have.
+struct Finding {
+    verdict: Verdict,
+    /// In words, where it is the first.
+    alone: String,
+    /// In words, behind others.
+    beside: String,
 }
 
-/// The verdict on the other motions of a design that is robust from rest; `said` is what the worst of its errors does.
-fn judge_motions(all: &Measured, said: &str) -> (Verdict, String) {
-    let Some(motions) = &all.motions else {
-        return (Verdict::Robust, format!("robust: at worst {said}; other starts not looked at"));
+/// The verdict on the value, whatever the limits: that of the gravest finding, in words that name them all.
+fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -> (Verdict, String) {
+    let Amount { quantity, value, .. } = own;
+    let worst = all.sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
+    let said = worst.map_or(String::new(), |worst| off_by(worst, quantity));
+    let findings = [
+        wide_finding(own, error_bar, predictable, all),
+        worst.and_then(|worst| sensitive_finding(value, worst, &said)),
+        finer_finding(own, all),
+        motion_finding(all, &said),
+        margin_finding(all, &said),
+    ];
+    let mut findings = findings.into_iter().flatten();
+    let Some(Finding { verdict, alone, .. }) = findings.next() else {
+        return (Verdict::Robust, robust_words(all, &said));
     };
-    if let Some(other) = motions.largest.as_ref().filter(|_| motions.ratio() > 1.0 + WIDE) {
-        let motion = other.words();
-        let words = if other.from_rest {
-            format!(
-                "robust on the runs of the study only: {said}; but runs from rest between its samples, or longer ones, lead to {motion}"
-            )
-        } else {
-            format!("robust from rest only: {said}; but a motion has {motion}; {}", other.reached())
-        };
-        return (Verdict::FromRest, words);
+    let words = findings.fold(alone, |words, Finding { beside, .. }| format!("{words}; {beside}"));
+    (verdict, words)
+}
+
+/// Whether a difference is small beside the design's own value. Not a number is no evidence of anything small.
+fn small(difference: f64, own: f64) -> bool {
+    difference <= WIDE * own
+}
+
+/// The values of the design's neighbours in words.
+fn near(Neighbourhood { low, high, errors, .. }: &Neighbourhood, quantity: Measure) -> String {
+    format!("designs within {} % of it have {}", 100.0 * errors, between(*low, *high, quantity))
+}
+
+/// What an error of one parameter does, in words.
+fn off_by(Sensitivity { parameter, worst, worst_at_percent, .. }: &Sensitivity, quantity: Measure) -> String {
+    let gives =
+        if worst.is_finite() { format!("gives {}", measured(*worst, quantity)) } else { NO_VALUE.to_owned() };
+    format!("{parameter} off by {worst_at_percent:+} % {gives}")
+}
+
+/// Neighbours, or methods, whose values lie far apart.
+fn wide_finding(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -> Option<Finding> {
+    let Amount { quantity, value, .. } = own;
+    let width = all.neighbourhood.width();
+    if small(width, value) && small(error_bar, value) {
+        return None;
     }
-    match all.margin.as_ref() {
-        Some(margin) if margin.is_short() => {
-            (Verdict::Edge, format!("on the edge of another motion: {}; from rest, {said}", margin.words()))
-        }
-        margin => {
-            let margin = margin.map_or(String::new(), |margin| format!("; {}", margin.words()));
-            let starts = motions.starts;
-            let words = format!(
-                "robust: at worst {said}; none of {starts} starts leads to 5 % more{margin}{}",
-                motions.members_words()
-            );
-            (Verdict::Robust, words)
-        }
-    }
+    let near = near(&all.neighbourhood, quantity);
+    let (verdict, alone) = if all.motion.irregular || !predictable {
+        let width = measured(width.max(error_bar), quantity);
+        (
+            Verdict::SingleChaoticRealisation,
+            format!("a single chaotic realisation of a distribution of width {width}: {near}"),
+        )
+    } else {
+        (Verdict::Sensitive, format!("sensitive: {near}"))
+    };
+    Some(Finding { verdict, alone, beside: near })
+}
+
+/// A parameter whose error of 1 % raises the value much, or leaves none.
+fn sensitive_finding(own: f64, Sensitivity { worst, .. }: &Sensitivity, said: &str) -> Option<Finding> {
+    let beside = if worst.is_infinite() {
+        said.to_owned()
+    } else if *worst > (1.0 + SENSITIVE) * own {
+        format!("{said}, {} times as much", short(worst / own))
+    } else {
+        return None;
+    };
+    Some(Finding { verdict: Verdict::Sensitive, alone: format!("sensitive: {beside}"), beside })
+}
+
+/// A peak that the samples of the study miss.
+fn finer_finding(own: Amount, all: &Measured) -> Option<Finding> {
+    let Amount { quantity, value, .. } = own;
+    let finer = all.finer.filter(|finer| !small(finer - value, value))?;
+    let finer = or_none(finer, quantity);
+    let near = near(&all.neighbourhood, quantity);
+    Some(Finding {
+        verdict: Verdict::FromRest,
+        alone: format!("robust on the samples of the study only: {FINER} times as many have {finer}; {near}"),
+        beside: format!("{FINER} times as many samples have {finer}"),
+    })
+}
+
+/// Another motion that has more under the design's own force.
+fn motion_finding(all: &Measured, said: &str) -> Option<Finding> {
+    let motions = all.motions.as_ref()?;
+    let other = motions.largest.as_ref().filter(|_| motions.ratio() > 1.0 + WIDE)?;
+    let motion = other.words();
+    let (alone, beside) = if other.from_rest {
+        let beside = format!("runs from rest between its samples, or longer ones, lead to {motion}");
+        (format!("robust on the runs of the study only: {said}; but {beside}"), beside)
+    } else {
+        let beside = format!("a motion has {motion}; {}", other.reached());
+        (format!("robust from rest only: {said}; but {beside}"), beside)
+    };
+    Some(Finding { verdict: Verdict::FromRest, alone, beside })
+}
+
+/// Another motion that has more under a little more force, or with a small error of a parameter.
+fn margin_finding(all: &Measured, said: &str) -> Option<Finding> {
+    let margin = all.margin.as_ref().filter(|margin| margin.is_short())?;
+    let beside = margin.words();
+    Some(Finding {
+        verdict: Verdict::Edge,
+        alone: format!("on the edge of another motion: {beside}; from rest, {said}"),
+        beside,
+    })
+}
+
+/// What is said of a design without any finding.
+fn robust_words(all: &Measured, said: &str) -> String {
+    let Some(motions) = &all.motions else {
+        return format!("robust: at worst {said}; other starts not looked at");
+    };
+    let margin = all.margin.as_ref().map_or(String::new(), |margin| format!("; {}", margin.words()));
+    let (starts, members) = (motions.starts, motions.members_words());
+    format!("robust: at worst {said}; none of {starts} starts leads to 5 % more{margin}{members}")
 }
 
 /// What is said of a design that cannot be computed.
 const NO_VALUE: &str = "has no value";
 /// What stands in the place of its value.
 pub(super) const NONE: &str = "no value";
+
+/// A value in words; one that is not finite is of a design that cannot be computed.
+pub(super) fn or_none(value: f64, quantity: Measure) -> String {
+    if value.is_finite() { measured(value, quantity) } else { NONE.to_owned() }
+}
 
 /// A range of values in words; one that is infinite is of designs that cannot be computed.
 pub(super) fn between(low: f64, high: f64, quantity: Measure) -> String {

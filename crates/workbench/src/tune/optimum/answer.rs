@@ -21,7 +21,9 @@ impl Optimum {
         let mut lines = vec![String::new()];
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
         say(self.headline());
-        self.needs.iter().flat_map(Needs::warnings).for_each(|words| say(format!("  note: {words}")));
+        let missed = self.certificate.missed_peak.as_ref().map(|words| format!("{words}; take more samples"));
+        let warnings = missed.into_iter().chain(self.needs.iter().flat_map(Needs::warnings));
+        warnings.for_each(|words| say(format!("  note: {words}")));
         say(format!("  {}", self.compared()));
         let values = self.damper.words(|variable| self.digits(variable)).replace(", ", ",");
         say(format!("  build    {}", values.replace(' ', HELD).replace(',', ", ")));

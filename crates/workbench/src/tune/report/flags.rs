@@ -22,6 +22,11 @@ pub fn flags(findings: &Findings) -> Vec<Flag> {
     let flag = |name, words| Flag { name, words, change: None };
     let all = [
         broken(findings),
+        findings.certificate.missed_peak().map(|words| Flag {
+            name: "missed-peak",
+            words: format!("{words}."),
+            change: Some("more samples in optimize.objective.omega".to_owned()),
+        }),
         near_a_limit(findings),
         on_bound(findings),
         edge(findings),
