@@ -1,7 +1,7 @@
 //! What makes the structure move: a harmonic force, a rotating imbalance, a moving base, or a start away from rest. `docs/theory.md`
 //! has the equations of each; all but the last are a harmonic force on the structure.
 
-use crate::{Finite, NonNegative};
+use crate::{Finite, NonNegative, Parameter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,12 +69,12 @@ impl Forcing {
         }
     }
 
-    /// The number that sets the size of the motion, by its name in study files: P, imbalance, base. A free decay has none.
-    pub fn amplitude(&self) -> Option<(&'static str, NonNegative)> {
+    /// The number that sets the size of the motion, one of [`Parameter::AMPLITUDES`]. A free decay has none.
+    pub fn amplitude(&self) -> Option<(Parameter, NonNegative)> {
         match self.source {
-            Source::Force(amplitude) => Some(("P", amplitude)),
-            Source::Imbalance(amplitude) => Some(("imbalance", amplitude)),
-            Source::Base(amplitude) => Some(("base", amplitude)),
+            Source::Force(amplitude) => Some((Parameter::P, amplitude)),
+            Source::Imbalance(amplitude) => Some((Parameter::Imbalance, amplitude)),
+            Source::Base(amplitude) => Some((Parameter::Base, amplitude)),
             Source::Decay(_) => None,
         }
     }

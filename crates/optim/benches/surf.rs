@@ -6,7 +6,7 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_optim::{Axis, Grid, PeakEnergy, Scale, Variable, surf};
+use retune_optim::{Axis, Grid, Parameter, PeakEnergy, Scale, surf};
 use retune_solver::{Settings, Window};
 use scenes::SSVI;
 use std::time::Instant;
@@ -16,7 +16,7 @@ const LARGE: usize = 32;
 const SMALL: usize = 10;
 const PAIRS: usize = 5;
 
-/// The ranges of `studies/ssvi-resonance.json`, in the order of [`Variable::ALL`]: N/m, N·s/m, m, m.
+/// The ranges of `studies/ssvi-resonance.json`, in the order of [`Parameter::VARIED`]: N/m, N·s/m, m, m.
 const RANGES: [(f64, f64, Scale); 4] = [
     (50.0, 1600.0, Scale::Log),
     (10.0, 400.0, Scale::Log),
@@ -60,7 +60,8 @@ fn timed(points: usize, threads: usize, (rtol, most): (f64, f64)) -> (f64, u64) 
     let grid = Grid::new(RANGES.map(axis).to_vec(), points.pow(4)).expect("a grid");
     let window = Window { from: 50.0, to: 100.0 };
     let settings = Settings { rtol, ..Settings::default() };
-    let objective = PeakEnergy::new(SSVI.scene(), SSVI.damper(), Variable::ALL.to_vec(), window, settings);
+    let objective =
+        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, settings);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let begun = Instant::now();
     pool.install(|| surf(&grid, |design| objective.value_up_to(design, most), |_| ()));

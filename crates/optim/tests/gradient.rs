@@ -5,8 +5,8 @@ mod scenes;
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limits, Objective, Part, PeakEnergy, Response, Statistic,
-    StiffnessRange, Stiffnesses, Unusable, Variable,
+    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limits, Objective, Parameter, Part, PeakEnergy, Response,
+    Statistic, StiffnessRange, Stiffnesses, Unusable,
 };
 use retune_solver::{Settings, Settle, Window};
 use scenes::{Numbers, SSVI, TMD};
@@ -24,7 +24,7 @@ fn band(samples: usize) -> Option<FrequencyBand> {
     Some(FrequencyBand { from: positive(5.0), to: positive(8.0), samples, relative: false })
 }
 
-fn problem(scene: Scene, variables: &[Variable], goal: Goal) -> PeakEnergy {
+fn problem(scene: Scene, variables: &[Parameter], goal: Goal) -> PeakEnergy {
     let settings = Settings { rtol: 1e-13, ..Settings::default() };
     PeakEnergy::new(scene, scene.damper.expect("a damper"), variables.to_vec(), goal, settings)
 }
@@ -67,8 +67,8 @@ fn agree(objective: &PeakEnergy, share: f64, tolerance: f64) {
     }
 }
 
-const ALL: [Variable; 5] = Variable::ALL;
-const LINEAR: [Variable; 3] = [Variable::K2, Variable::C2, Variable::M2];
+const ALL: [Parameter; 6] = Parameter::VARIED;
+const LINEAR: [Parameter; 3] = [Parameter::K2, Parameter::C2, Parameter::M2];
 
 #[test]
 fn reference_a_steady_damper_of_every_measure() {
@@ -165,7 +165,7 @@ fn reference_broken_limits() {
 #[test]
 fn invariant_a_kink_has_a_subgradient() {
     let objective = Objective { omega: band(2), response: Response::Steady, ..Objective::default() };
-    let objective = problem(Numbers { c2: 60.0, ..TUNED }.open_scene(), &[Variable::K2], goal(objective));
+    let objective = problem(Numbers { c2: 60.0, ..TUNED }.open_scene(), &[Parameter::K2], goal(objective));
     let at = |k2: f64| {
         let (found, by) = objective.gradient(&[k2], &|| true).expect("a value");
         (found.worst.scene.forcing.frequency.get(), by[0], found.value)

@@ -5,8 +5,8 @@ mod scenes;
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, PeakEnergy, Response,
-    Variable, energy, minimize, ranked,
+    Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, Parameter, PeakEnergy,
+    Response, energy, minimize, ranked,
 };
 use retune_solver::{Settings, Window, simulate};
 use scenes::{Numbers, SSVI, TMD};
@@ -87,7 +87,7 @@ fn exact_each_measure_is_limited_by_what_the_run_has_of_it() {
         let found = evaluate(&Goal { limits, ..WINDOW.into() }, &scene, f64::INFINITY);
         assert!((found.violation - 0.25).abs() < 1e-7, "{limit}: {}", found.violation);
         // Stroke and contact force are of one observer, and come together.
-        let of_the_damper = |measure| matches!(measure, Measure::Stroke | Measure::ContactForce);
+        let of_the_damper = |measure: Measure| measure.is_of_damper();
         let mut others = Measure::ALL
             .into_iter()
             .filter(|other| *other != measure && !(of_the_damper(measure) && of_the_damper(*other)));
@@ -147,7 +147,7 @@ fn exact_a_search_ends_on_an_active_limit() {
     let goal = Goal { objective: steady(), limits: limits(Some(limit), None, None), ..WINDOW.into() };
     let numbers = of(150.0);
     let objective =
-        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Variable::C2], goal, Settings::default());
+        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Parameter::C2], goal, Settings::default());
     for start in [130.0, 480.0] {
         let options =
             Options { tol_x: 1e-8, tol_fun: 1e-8, bounds: vec![Bounds::default()], ..Options::default() };

@@ -3,7 +3,7 @@
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;
 
-use retune_optim::{Options, PeakEnergy, Procedure, Variable, minimize};
+use retune_optim::{Options, Parameter, PeakEnergy, Procedure, minimize};
 use retune_solver::{Settings, Window};
 use scenes::{Numbers, ROW1, ROW2, ROW3, SSVI, Spread};
 use std::cell::RefCell;
@@ -49,7 +49,7 @@ fn paper_table1_row3() {
 fn paper_table1_refined_rows_are_better() {
     let window = Window { from: 50.0, to: 100.0 };
     let objective =
-        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Variable::ALL.to_vec(), window, Settings::default());
+        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, Settings::default());
     let median = |row: &Numbers| {
         let mut spread = Spread::new(1);
         let mut values: Vec<f64> = (0..51)

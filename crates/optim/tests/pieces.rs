@@ -5,7 +5,7 @@ mod scenes;
 
 use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
-    FrequencyBand, Goal, Limits, Objective, PeakEnergy, Response, Scale, Side, Space, Variable, minimax,
+    FrequencyBand, Goal, Limits, Objective, Parameter, PeakEnergy, Response, Scale, Side, Space, minimax,
 };
 use retune_solver::{Settings, Window};
 use scenes::TMD;
@@ -23,7 +23,7 @@ fn objective(limits: Limits) -> PeakEnergy {
     let objective = Objective { omega: Some(band), ..Objective::default() };
     let settings = Settings { rtol: 1e-12, atol: 1e-14, ..Settings::default() };
     let goal = Goal { objective, limits, ..WINDOW.into() };
-    PeakEnergy::new(TMD.scene(), TMD.damper(), Variable::PAPER.to_vec(), goal, settings)
+    PeakEnergy::new(TMD.scene(), TMD.damper(), Parameter::PAPER.to_vec(), goal, settings)
 }
 
 /// The derivatives of the largest peaks of energy and stroke against central differences of the whole objective.
@@ -76,7 +76,7 @@ fn exact_steady_slopes_are_differences_of_the_closed_form() {
     let goal = objective(limits).goal().clone();
     let steady = Objective { response: Response::Steady, ..goal.objective.clone() };
     let goal = Goal { objective: steady, ..goal };
-    let variables = vec![Variable::K2, Variable::C2];
+    let variables = vec![Parameter::K2, Parameter::C2];
     let of = PeakEnergy::new(TMD.scene(), TMD.damper(), variables, goal, Settings::default());
     let at = [2083.0, 100.0];
     let sorted = |x: &[f64]| {

@@ -5,6 +5,7 @@ use crate::jobs;
 use crate::problem::json;
 use crate::watch::{Watch, watched};
 use pyo3::prelude::*;
+use retune_model::Parameter;
 use retune_study::Setting;
 use retune_sweep::Asked;
 use retune_tradeoff::{pareto, track};
@@ -79,7 +80,8 @@ fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
         Job::Sweep(swept) => return swept.made(request, watch),
         Job::Table2 => drop(table2::table2(request, watch)?),
         Job::Track(k1) => {
-            let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
+            let settings: Vec<Setting> =
+                k1.into_iter().map(|value| Setting::new(Parameter::K1, value)).collect();
             track::track(request, &settings, watch)?;
         }
     }

@@ -135,7 +135,7 @@ fn paper(tuned: &Tuned) -> Option<Row> {
     Some(Row {
         label: Tuning::Paper.name().to_owned(),
         damper: tuned.name.clone(),
-        found: TunedDamper::of(&at.on(damper)),
+        found: TunedDamper::of(&at.on(damper), tuned.study.varied()),
         printed: None,
         e1_max: tuned.energy(&at, tuned.nominal()),
         none: tuned.study.energy_without_damper(),

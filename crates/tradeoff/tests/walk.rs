@@ -2,9 +2,9 @@
 //! good on both.
 
 use rayon::prelude::*;
-use retune_model::Variable;
+use retune_model::{Parameter, PerVariable};
 use retune_optim::PeakEnergy;
-use retune_study::{PerVariable, Study, read};
+use retune_study::{Study, read};
 use retune_workbench::tune::objective::objective;
 use std::path::Path;
 
@@ -102,16 +102,10 @@ fn over(study: &Study, samples: usize) -> PeakEnergy {
     let optimize = study.optimize.as_mut().expect("a search");
     optimize.objective.omega.as_mut().expect("a band").samples = samples;
     optimize.global = None;
-    optimize.starts = vec![PerVariable {
-        k2: Some(300.0),
-        c2: Some(200.0),
-        d: Some(0.4),
-        c: Some(0.0),
-        ..PerVariable::default()
-    }];
+    optimize.starts = vec![PerVariable::of(&Parameter::PAPER, &[300.0, 200.0, 0.4, 0.0])];
     let mut search = study.search().expect("a search");
-    Variable::C.set(&mut search.damper, 0.0).expect("in range");
-    objective(&study, &search, &[Variable::K2, Variable::C2, Variable::D])
+    Parameter::C.set_damper(&mut search.damper, 0.0).expect("in range");
+    objective(&study, &search, &[Parameter::K2, Parameter::C2, Parameter::D])
 }
 
 /// A random step from a design within the bound.

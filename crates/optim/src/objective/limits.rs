@@ -5,7 +5,7 @@
 //! breaks them by less in total is better. They are written as one number, [`ranked`], so that every search follows them
 //! without knowing of them.
 
-use retune_model::{Measure, NonNegative, PerMeasure, Positive, Variable};
+use retune_model::{Measure, NonNegative, Parameter, PerMeasure, Positive};
 use retune_solver::Also;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
@@ -214,6 +214,6 @@ pub fn energy(value: f64) -> f64 {
 }
 
 /// The derivative of the cavity D + C by a parameter.
-pub(super) fn widens(by: Variable) -> f64 {
-    if matches!(by, Variable::D | Variable::C) { 1.0 } else { 0.0 }
+pub(super) fn widens(by: Parameter) -> f64 {
+    if by.is_gap() { 1.0 } else { 0.0 }
 }

@@ -2,8 +2,8 @@
 
 use super::tuned::{Kept, Tuned, Tuning, energy, over};
 use crate::pareto::SAME;
-use retune_model::{Design, Variable};
-use retune_study::{self as study, PaperStudy, PerVariable, Setting, SpringBounds, Study, Table2, short};
+use retune_model::{Design, Parameter, PerVariable};
+use retune_study::{self as study, PaperStudy, Setting, SpringBounds, Study, Table2, short};
 use retune_workbench::designs::Row;
 use retune_workbench::searches::Searches;
 use retune_workbench::tune::{Found, Optimum};
@@ -55,7 +55,12 @@ pub(super) fn tune(
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
     let mut kept = Vec::new();
-    kept.extend(study.scene.damper.map(|damper| Kept { tuning: Tuning::Paper, at: Design::of(&damper) }));
+    kept.extend(
+        study
+            .scene
+            .damper
+            .map(|damper| Kept { tuning: Tuning::Paper, at: Design::of_varied(&damper, study.varied()) }),
+    );
     kept.push(Kept { tuning: Tuning::Nominal, at: first });
     if designs.len() > 1 {
         let study = robust(study, &designs)?;
@@ -110,29 +115,31 @@ fn anew(study: &Study, k1: f64, from: Option<(f64, Design)>, bounds: SpringBound
     };
     let mut scaled = study.clone();
     if let Some(optimize) = &mut scaled.optimize {
-        if let Some((low, high)) = optimize.bounds.get_mut(Variable::K2) {
+        if let Some((low, high)) = optimize.bounds.get_mut(Parameter::K2) {
             (*low, *high) = (ratio * *low, high.map(|high| ratio * high));
         }
-        let side = optimize.global.as_mut().and_then(|global| global.sides.get_mut(Variable::K2).as_mut());
+        let side = optimize.global.as_mut().and_then(|global| global.sides.get_mut(Parameter::K2));
         if let Some(side) = side {
             (side.from, side.to) = (ratio * side.from, ratio * side.to);
         }
-        if let Some(axis) = optimize.surf.as_mut().and_then(|axes| axes.get_mut(Variable::K2).as_mut()) {
+        if let Some(axis) = optimize.surf.as_mut().and_then(|axes| axes.get_mut(Parameter::K2)) {
             (axis.from, axis.to) = (ratio * axis.from, ratio * axis.to);
         }
         for start in &mut optimize.starts {
-            start.k2 = start.k2.map(|k2| ratio * k2);
+            start.get_mut(Parameter::K2).into_iter().for_each(|k2| *k2 *= ratio);
         }
         if let Some((own, design)) = from {
             // A spring in proportion to k1 is in tune as before, as far as the bounds allow it.
-            let bounds = optimize.bounds.get(Variable::K2).unwrap_or((0.0, None));
-            let k2 = design.k2.get() * k1 / own;
+            let bounds = optimize.bounds.get(Parameter::K2).unwrap_or((0.0, None));
+            let k2 = design.get(Parameter::K2) * k1 / own;
             let mut start = PerVariable::of_design(&design, &optimize.vary);
-            start.k2 = start.k2.map(|_| k2.min(bounds.1.unwrap_or(k2)).max(bounds.0));
+            if let Some(start) = start.get_mut(Parameter::K2) {
+                *start = k2.min(bounds.1.unwrap_or(k2)).max(bounds.0);
+            }
             optimize.starts.push(start);
         }
     }
-    Ok(scaled.with(&[Setting::new("k1", k1)])?)
+    Ok(scaled.with(&[Setting::new(Parameter::K1, k1)])?)
 }
 
 /// The study for the worst over all stiffnesses. One more search starts at the design of its own.

@@ -7,7 +7,7 @@ use super::tracked::Tracked;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
 use crate::pareto::SAME;
-use retune_model::Variable;
+use retune_model::Parameter;
 use retune_study::{design_words, rounded, short};
 
 /// The answer: what the title asks first, then a line for each damper.
@@ -102,7 +102,7 @@ fn keeps(tracked: &Tracked, point: &Point) -> String {
 
 /// The largest stiffness of a spring that the study of a damper allows, N/m.
 fn stiffest(damper: &Tuned) -> Option<f64> {
-    damper.study.optimize.as_ref()?.bounds.get(Variable::K2)?.1
+    damper.study.optimize.as_ref()?.bounds.get(Parameter::K2)?.1
 }
 
 /// The k1-robust designs, those under one bound on k2 side by side.

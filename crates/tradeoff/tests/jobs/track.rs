@@ -3,6 +3,7 @@
 use crate::desk::{Desk, committed, global};
 use crate::observers::{Record, cut_off, good, refused};
 use crate::{request, restart, resume};
+use retune_model::Parameter;
 use retune_store::Error as StoreError;
 use retune_study::Setting;
 use retune_tradeoff::track::{Point, track};
@@ -10,7 +11,7 @@ use retune_workbench::{Done, Error, Silent};
 use serde_json::json;
 
 fn stiffnesses(k1: &[f64]) -> Vec<Setting> {
-    k1.iter().map(|k1| Setting::new("k1", *k1)).collect()
+    k1.iter().map(|k1| Setting::new(Parameter::K1, *k1)).collect()
 }
 
 /// The studies of Table 2 with short runs and coarse grids.

@@ -3,6 +3,7 @@
 use crate::observers::good;
 use crate::request;
 use crate::verified::{a_changed_digit_is_found, desk};
+use retune_model::Parameter;
 use retune_study::Setting;
 use retune_tradeoff::OTHERS;
 use retune_tradeoff::pareto::pareto;
@@ -12,7 +13,7 @@ use retune_workbench::Silent;
 #[test]
 fn contract_results_are_verified_and_a_changed_digit_is_found() {
     let desk = desk();
-    good(track(&request(&desk, "table2.json", "retune"), &[Setting::new("k1", 3e4)], &Silent));
+    good(track(&request(&desk, "table2.json", "retune"), &[Setting::new(Parameter::K1, 3e4)], &Silent));
     a_changed_digit_is_found(
         &desk,
         "retune",
