@@ -1,5 +1,5 @@
 //! Verdicts "robust" beside a look from many more starts: perturbed designs of `results`, gaps drawn anew, other structures with scaled designs.
-//! `just hunt-robust` runs it.
+//! `just lab hunt-robust` runs it.
 
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::motions;
@@ -59,7 +59,7 @@ fn structure(u: &mut dyn FnMut() -> f64) -> Vec<(&'static str, f64)> {
 }
 
 #[test]
-#[ignore = "minutes: `just hunt-robust`"]
+#[ignore = "minutes: `just lab hunt-robust`"]
 fn reference_robust_beside_a_harder_look() {
     let draws: u32 = std::env::var("RETUNE_ROBUST").map_or(2, |count| count.parse().expect("a number"));
     let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/ssvi-isola.json");
