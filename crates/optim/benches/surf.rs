@@ -1,6 +1,6 @@
 //! Time and memory of a `surf` of a million points, each a run of 100 s of the paper's SSVI NES, and its speed-up by threads: as exact as it need
 //! be to say where a search starts, and as exact as results.
-//! `just bench-surf`.
+//! `just lab bench-surf`.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
 #[path = "../../model/tests/scenes/mod.rs"]

@@ -1,5 +1,5 @@
 //! What a search of the peaks between 31 samples of a band finds and takes, beside 1201 samples: the paper's structure with dampers drawn
-//! from the ranges of the main job's grid, and from about its result. `just hunt-peaks` draws more than the tests do.
+//! from the ranges of the main job's grid, and from about its result. `just lab hunt-peaks` draws more than the tests do.
 
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;

@@ -1,4 +1,4 @@
-//! Cost of a run of 100 s on one core, beside what it must not cost. `just bench`.
+//! Cost of a run of 100 s on one core, beside what it must not cost. `just lab bench`.
 
 #[path = "../../model/tests/scenes/mod.rs"]
 mod scenes;

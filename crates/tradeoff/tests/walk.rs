@@ -30,7 +30,7 @@ const FEW: usize = 41;
 /// where the descents of `retune fronts` end, on 601 frequencies; the frequencies between them then have more: it has fitted its design to
 /// the samples. From there a walk on 5000 finds designs that have less on both.
 #[test]
-#[ignore = "minutes: `just hunt-walk`"]
+#[ignore = "minutes: `just lab hunt-walk`"]
 fn invariant_a_walk_fits_its_design_to_its_samples_unless_they_are_fine() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/fronts-ssvi.json");
     let study = read(&path).expect("the study of fronts");

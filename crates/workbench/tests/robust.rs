@@ -1,5 +1,5 @@
 //! Verdicts "robust" beside a look from many more starts: perturbed designs of `results`, gaps drawn anew, other structures with scaled designs.
-//! `just hunt-robust` runs it.
+//! `just lab hunt-robust` runs it.
 
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::motions;
@@ -62,7 +62,7 @@ fn structure(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
 }
 
 #[test]
-#[ignore = "minutes: `just hunt-robust`"]
+#[ignore = "minutes: `just lab hunt-robust`"]
 fn reference_robust_beside_a_harder_look() {
     // So many draws, or those from a first to before a last one: "100..200".
     let draws = std::env::var("RETUNE_ROBUST").unwrap_or("2".to_owned());

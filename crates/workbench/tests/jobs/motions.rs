@@ -12,7 +12,7 @@ use retune_workbench::tune::tune;
 use serde_json::{Value, json};
 
 /// The best damper by runs from rest that `fronts` once found: an isola from 5.8155 to 6.0684 rad/s reaches 735.639 J
-/// (`just branches-all`, results/branches/isola).
+/// (`just lab branches-all`, results/branches/isola).
 fn isola() -> Study {
     retune_study::read(&studies().join("ssvi-isola.json")).expect("a study")
 }
