@@ -88,6 +88,13 @@ impl Design {
         Parameter::PAPER.map(|parameter| self.get(parameter))
     }
 
+    /// The values of some parameters that are not left out.
+    pub fn only(&self, parameters: &[Parameter]) -> PerVariable<f64> {
+        let mut all = PerVariable::default();
+        parameters.iter().for_each(|&parameter| all.set(parameter, self.0.get(parameter)));
+        all
+    }
+
     /// A damper with this design, all else as it is in `damper`. What a damper without walls lacks is not given to it.
     #[must_use]
     pub fn on(&self, mut damper: Damper) -> Damper {

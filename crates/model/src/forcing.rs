@@ -1,7 +1,7 @@
 //! What makes the structure move: a harmonic force, a rotating imbalance, a moving base, or a start away from rest. `docs/theory.md`
 //! has the equations of each; all but the last are a harmonic force on the structure.
 
-use crate::{Finite, NonNegative, Parameter};
+use crate::{Finite, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -66,16 +66,6 @@ impl Forcing {
         match &mut self.source {
             Source::Decay(start) => *start = at,
             _ => self.start = Some(at),
-        }
-    }
-
-    /// The number that sets the size of the motion, one of [`Parameter::AMPLITUDES`]. A free decay has none.
-    pub fn amplitude(&self) -> Option<(Parameter, NonNegative)> {
-        match self.source {
-            Source::Force(amplitude) => Some((Parameter::P, amplitude)),
-            Source::Imbalance(amplitude) => Some((Parameter::Imbalance, amplitude)),
-            Source::Base(amplitude) => Some((Parameter::Base, amplitude)),
-            Source::Decay(_) => None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Something for some of the parameters that a search may vary; in a file, an object with their symbols.
 
-use crate::{Design, Parameter};
+use crate::Parameter;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -66,15 +66,6 @@ impl PerVariable<f64> {
         let mut all = Self::default();
         for (&parameter, &value) in parameters.iter().zip(values) {
             all.set(parameter, Some(value));
-        }
-        all
-    }
-
-    /// Those of a design that are among `parameters` and not left out.
-    pub fn of_design(design: &Design, parameters: &[Parameter]) -> Self {
-        let mut all = Self::default();
-        for &parameter in parameters {
-            all.set(parameter, Some(design.get(parameter)).filter(|value| !value.is_nan()));
         }
         all
     }

@@ -2,7 +2,7 @@
 
 use super::tuned::{Kept, Tuned, Tuning, energy, over};
 use crate::pareto::SAME;
-use retune_model::{Design, Parameter, PerVariable};
+use retune_model::{Design, Parameter};
 use retune_study::{self as study, PaperStudy, Setting, SpringBounds, Study, Table2, short};
 use retune_workbench::designs::Row;
 use retune_workbench::searches::Searches;
@@ -96,7 +96,7 @@ fn searched(
     }
     if let Some(optimize) = &mut study.optimize {
         (optimize.global, optimize.surf) = (None, None);
-        optimize.starts = vec![PerVariable::of_design(&damper.design, &optimize.vary)];
+        optimize.starts = vec![damper.design.only(&optimize.vary)];
         if let Some(band) = &mut optimize.objective.omega {
             band.samples = samples.unwrap_or(band.samples);
         }
@@ -132,7 +132,7 @@ fn anew(study: &Study, k1: f64, from: Option<(f64, Design)>, bounds: SpringBound
             // A spring in proportion to k1 is in tune as before, as far as the bounds allow it.
             let bounds = optimize.bounds.get(Parameter::K2).unwrap_or((0.0, None));
             let k2 = design.get(Parameter::K2) * k1 / own;
-            let mut start = PerVariable::of_design(&design, &optimize.vary);
+            let mut start = design.only(&optimize.vary);
             if let Some(start) = start.get_mut(Parameter::K2) {
                 *start = k2.min(bounds.1.unwrap_or(k2)).max(bounds.0);
             }
@@ -149,7 +149,7 @@ fn robust(study: &Study, designs: &[(f64, Design)]) -> Result<Study, Error> {
     let mut study = over(study, &all);
     if let Some(optimize) = &mut study.optimize {
         let own = designs.iter().find(|(k1, _)| *k1 == nominal);
-        optimize.starts.extend(own.map(|(_, design)| PerVariable::of_design(design, &optimize.vary)));
+        optimize.starts.extend(own.map(|(_, design)| design.only(&optimize.vary)));
     }
     let refuse = Error::rule(&study);
     study.check().map_err(refuse)?;
