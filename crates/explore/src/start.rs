@@ -1,10 +1,11 @@
 //! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
 
 use crate::limits::bounded;
+use crate::motion::IMPACTS;
 use crate::protocol::{Answer, Hung, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
-use retune_model::{Contact, Damper, NonNegative, Parameter};
+use retune_model::{Contact, Damper, Measure, NonNegative, Parameter};
 use retune_study::{Rule, Setting, Study, StudyError};
 use serde::Serialize;
 use serde_json::json;
@@ -109,6 +110,7 @@ impl Start {
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
             .with("quantity", of)
+            .with("figures", figures())
             .with("tunes", study.optimize.is_some())
             .with("motions", of_all_motions(study))
     }
@@ -208,6 +210,13 @@ impl Start {
             _ => [0.0, 1.0],
         }
     }
+}
+
+/// What is told in figures: name, unit and words of each.
+fn figures() -> Vec<[&'static str; 3]> {
+    let largest = Measure::ALL.map(|measure| [measure.name(), measure.unit(), measure.words()]);
+    let impacts = [IMPACTS, "", "impacts in the window, on the structure and on the obstacle"];
+    largest.into_iter().chain([impacts]).collect()
 }
 
 /// The numbers of a place as `--set` has them.

@@ -5,8 +5,8 @@ mod scenes;
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limits, Objective, Parameter, Part, PeakEnergy, Response,
-    Statistic, StiffnessRange, Stiffnesses, Unusable,
+    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Parameter, Part, PeakEnergy,
+    Response, Statistic, StiffnessRange, Stiffnesses, Unusable,
 };
 use retune_solver::{Settings, Settle, Window};
 use scenes::{Numbers, SSVI, TMD};
@@ -139,14 +139,9 @@ fn reference_compositions() {
 /// A design that breaks limits has the derivatives of its violation, so that value and derivatives belong together everywhere.
 #[test]
 fn reference_broken_limits() {
-    let [stroke, force, cavity] = [0.2, 1e4, 0.3].map(|limit| Some(positive(limit)));
-    let limits = Limits {
-        stroke,
-        contact_force: force,
-        cavity,
-        from: NonNegative::new(1.0).ok(),
-        ..Limits::default()
-    };
+    let [stroke, force] = [Measure::Stroke, Measure::ContactForce].map(Limit::Of);
+    let limits = Limits::default().with(stroke, positive(0.2)).with(force, positive(1e4));
+    let limits = limits.with(Limit::Cavity, positive(0.3)).since(NonNegative::new(1.0).ok());
     // No contact at the end, which would cut the largest force off; and the largest values come before the window.
     let window = Window { from: 8.2, to: 8.3 };
     for omega in [None, band(31)] {
@@ -155,7 +150,7 @@ fn reference_broken_limits() {
         assert!(objective.value(&[], f64::INFINITY) > INFEASIBLE);
         agree(&objective, 1e-5, 1e-6);
     }
-    let kept = Limits { stroke: Some(positive(9.0)), ..Limits::default() };
+    let kept = Limits::default().with(stroke, positive(9.0));
     let free = goal(Objective::default());
     let by = |goal: Goal| both(&problem(SSVI.scene(), &ALL, goal), 1e-5)[0].clone();
     assert_eq!(by(Goal { limits: kept, ..free.clone() }), by(free), "limits that are kept change nothing");

@@ -27,8 +27,12 @@ fn steady() -> Objective {
 }
 
 fn limits(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Limits {
-    let [stroke, contact_force, cavity] = [stroke, force, cavity].map(|limit| limit.map(positive));
-    Limits { stroke, contact_force, cavity, ..Limits::default() }
+    let all = [Limit::Of(Measure::Stroke), Limit::Of(Measure::ContactForce), Limit::Cavity];
+    let given = all.into_iter().zip([stroke, force, cavity]);
+    given.fold(Limits::default(), |limits, (limit, most)| match most {
+        Some(most) => limits.with(limit, positive(most)),
+        None => limits,
+    })
 }
 
 fn goal(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Goal {
@@ -169,7 +173,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
     let run = |from| simulate(&scene, Window { from, ..window }, &Settings::default()).expect("a run");
     let reached = |from| {
         let from = NonNegative::new(from).ok();
-        let goal = Goal { limits: Limits { from, ..limits(Some(1.0), Some(1e9), None) }, ..window.into() };
+        let goal = Goal { limits: limits(Some(1.0), Some(1e9), None).since(from), ..window.into() };
         let found = evaluate(&goal, &scene, f64::INFINITY);
         assert_eq!(found.value, run(4.0).e1_max.value);
         [found.reached.get(Limit::Of(Measure::Stroke)), found.reached.get(Limit::Of(Measure::ContactForce))]
@@ -215,7 +219,7 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
     for (limit, numbers) in designs {
         let found = |samples, allowed: f64| {
             let objective = Objective { omega: band(samples), ..Objective::default() };
-            let limits = Limits { from: NonNegative::new(50.0).ok(), ..Limits::default() };
+            let limits = Limits::default().since(NonNegative::new(50.0).ok());
             let limits = limits.with(limit, positive(allowed));
             let goal = Goal { objective, limits, ..Window { from: 50.0, to: 100.0 }.into() };
             evaluate(&goal, &numbers.scene(), f64::INFINITY)

@@ -5,7 +5,8 @@ mod scenes;
 
 use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
-    FrequencyBand, Goal, Limits, Objective, Parameter, PeakEnergy, Response, Scale, Side, Space, minimax,
+    FrequencyBand, Goal, Limit, Limits, Objective, Parameter, PeakEnergy, Response, Scale, Side, Space,
+    minimax,
 };
 use retune_solver::{Settings, Window};
 use scenes::TMD;
@@ -29,8 +30,8 @@ fn objective(limits: Limits) -> PeakEnergy {
 /// The derivatives of the largest peaks of energy and stroke against central differences of the whole objective.
 #[test]
 fn reference_slopes_are_differences_of_the_objective() {
-    let limits =
-        Limits { stroke: Some(positive(0.3)), from: NonNegative::new(50.0).ok(), ..Limits::default() };
+    let limits = Limits::default().with(Limit::Of(Measure::Stroke), positive(0.3));
+    let limits = limits.since(NonNegative::new(50.0).ok());
     let of = objective(limits);
     let look = |x: &[f64]| {
         let (height, runs) = of.look(x, f64::INFINITY);
@@ -72,7 +73,7 @@ fn regress_a_descent_ends_in_the_kink() {
 /// The slopes of the peaks of a steady response, at each of its two peaks and of the stroke, against differences.
 #[test]
 fn exact_steady_slopes_are_differences_of_the_closed_form() {
-    let limits = Limits { stroke: Some(positive(0.3)), ..Limits::default() };
+    let limits = Limits::default().with(Limit::Of(Measure::Stroke), positive(0.3));
     let goal = objective(limits).goal().clone();
     let steady = Objective { response: Response::Steady, ..goal.objective.clone() };
     let goal = Goal { objective: steady, ..goal };
