@@ -102,19 +102,19 @@ impl Forcing {
     { "required": ["start"], "properties": { "omega": false } }
 ]))]
 struct InFile {
-    /// P, amplitude of a force P cos(omega t) on the structure, N.
+    /// P, amplitude of the force on the primary structure, N: P cos(omega t).
     #[serde(rename = "P", default, skip_serializing_if = "Option::is_none")]
     force: Option<NonNegative>,
-    /// A rotating imbalance, the unbalanced mass times its distance from the axis, kg·m: the force imbalance omega² cos(omega t).
+    /// imbalance, rotating imbalance, mass times its distance from the axis, kg·m: the force imbalance omega² cos(omega t).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     imbalance: Option<NonNegative>,
-    /// Amplitude of a moving base, base cos(omega t), m.
+    /// base, amplitude of the moving base, m: base cos(omega t).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     base: Option<NonNegative>,
     /// The state at t = 0, rest if left out; alone it is a free decay, without any force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<Start>,
-    /// omega, angular frequency of the force, of the rotation or of the base, rad/s.
+    /// omega, angular frequency of the forcing, rad/s: of the force, of the rotation or of the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     omega: Option<NonNegative>,
 }
