@@ -130,7 +130,7 @@ test-tutorial:
 # Kill runs at random moments, KILLS times, and say in which stage each fell: results/robustness/kills.md
 test-kills KILLS="240":
     mkdir -p results/robustness
-    RETUNE_KILLS={{KILLS}} cargo test --package retune --test kills -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
+    RETUNE_KILLS={{KILLS}} cargo test --package retune --test program kills:: -- --nocapture | grep -E '^(\||[0-9]+ kills)' > results/robustness/kills.md.tmp
     mv results/robustness/kills.md.tmp results/robustness/kills.md && cat results/robustness/kills.md
 
 # Open the pages of results in a browser, narrow and wide, light and dark (needs python3 and chromium); for instance `just test-pages --shots target/pages`
@@ -164,30 +164,30 @@ bench-scale:
 
 # Compare the exact method with DOP853 on SCENES scenes over fifteen orders of magnitude
 test-scenes SCENES="30000":
-    RETUNE_SCENES={{SCENES}} cargo test --package retune-solver --test any_scene reference_any_scene -- --nocapture
+    RETUNE_SCENES={{SCENES}} cargo test --package retune-solver --test solver any_scene::reference_any_scene -- --nocapture
 
 # Hunt for a largest value that is missed, SCENES scenes three times over (half an hour for 150000 on two cores): results/robustness/hunt.md
 hunt SCENES="150000":
     mkdir -p results/robustness
-    RETUNE_HUNT={{SCENES}} cargo test --package retune-solver --test hunt -- --nocapture --test-threads 1 | grep -E '^\|' > results/robustness/hunt.rows
+    RETUNE_HUNT={{SCENES}} cargo test --package retune-solver --test solver hunt:: -- --nocapture --test-threads 1 | grep -E '^\|' > results/robustness/hunt.rows
     cat tests/hunt.md results/robustness/hunt.rows > results/robustness/hunt.md && rm results/robustness/hunt.rows && cat results/robustness/hunt.md
 
 # Compare runs that end when their motion repeats with the same runs to the end, SCENES scenes: results/robustness/repeats.md
 hunt-repeats SCENES="42000":
     mkdir -p results/robustness
-    RETUNE_REPEATS={{SCENES}} cargo test --package retune-solver --test repeats -- --nocapture | grep -E '^\|' > results/robustness/repeats.rows
+    RETUNE_REPEATS={{SCENES}} cargo test --package retune-solver --test solver repeats:: -- --nocapture | grep -E '^\|' > results/robustness/repeats.rows
     cat tests/repeats.md results/robustness/repeats.rows > results/robustness/repeats.md && rm results/robustness/repeats.rows && cat results/robustness/repeats.md
 
 # Compare what is told of designs with runs at 2001 frequencies, DAMPERS random structures and dampers of two kinds: results/robustness/needs.md
 hunt-needs DAMPERS="50":
     mkdir -p results/robustness
-    RETUNE_NEEDS={{DAMPERS}} cargo test --release --package retune-optim --test needs reference_ -- --nocapture | grep -E '^\|' > results/robustness/needs.rows
+    RETUNE_NEEDS={{DAMPERS}} cargo test --release --package retune-optim --test optim needs::reference_ -- --nocapture | grep -E '^\|' > results/robustness/needs.rows
     cat tests/needs.md results/robustness/needs.rows > results/robustness/needs.md && rm results/robustness/needs.rows && cat results/robustness/needs.md
 
 # Compare what a search of peaks between 31 samples finds with 1201 samples, DAMPERS dampers of two kinds: results/robustness/peaks.md
 hunt-peaks DAMPERS="3000":
     mkdir -p results/robustness
-    RETUNE_PEAKS={{DAMPERS}} cargo test --release --package retune-optim --test peaks -- --nocapture | grep -E '^\|' > results/robustness/peaks.rows
+    RETUNE_PEAKS={{DAMPERS}} cargo test --release --package retune-optim --test optim peaks:: -- --nocapture | grep -E '^\|' > results/robustness/peaks.rows
     cat tests/peaks.md results/robustness/peaks.rows > results/robustness/peaks.md && rm results/robustness/peaks.rows && cat results/robustness/peaks.md
 
 # Hold searches under limits against SciPy's differential evolution with twenty times the evaluations, TMDS and SSVIS random structures (needs numpy and scipy for python3): results/robustness/limits.md
@@ -200,16 +200,16 @@ hunt-limits TMDS="300" SSVIS="40":
 # Look at designs that certificates call robust from eight times as many starts, DESIGNS of each of three families: results/robustness/robust.md
 hunt-robust DESIGNS="100":
     mkdir -p results/robustness
-    RETUNE_ROBUST={{DESIGNS}} cargo test --release --package retune-workbench --test robust -- --nocapture --ignored | grep -E '^\|' > results/robustness/robust.rows
+    RETUNE_ROBUST={{DESIGNS}} cargo test --release --package retune-workbench --test jobs robust:: -- --nocapture --ignored | grep -E '^\|' > results/robustness/robust.rows
     cat tests/robust.md results/robustness/robust.rows > results/robustness/robust.md && rm results/robustness/robust.rows && cat results/robustness/robust.md
 
 # Compare settled responses with much longer runs on SCENES random scenes of dampers that creep, touch one wall, two or none
 test-settled SCENES="4000":
-    RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test settled invariant_what_has_settled_stays -- --nocapture
+    RETUNE_SETTLED={{SCENES}} cargo test --package retune-solver --test solver settled::invariant_what_has_settled_stays -- --nocapture
 
 # Compare the worst over a band with a search in twice the precision, on DAMPERS dampers with damping down to 1e-9 N s/m and none
 test-bands DAMPERS="1000000":
-    RETUNE_BANDS={{DAMPERS}} cargo test --package retune-model --test band_hunt reference_no_damper -- --nocapture
+    RETUNE_BANDS={{DAMPERS}} cargo test --package retune-model --test model band_hunt::reference_no_damper -- --nocapture
 
 # Find values of results/retune and results/fronts again with SciPy (needs numpy and scipy for python3; some minutes)
 test-retention *OPTIONS:
@@ -222,19 +222,19 @@ test-branches *OPTIONS:
 # Walk under k2 <= 300 N/m to less and less E1max on 601 frequencies alone, then on 5000 (a quarter of an hour and more): results/robustness/walk.md
 hunt-walk:
     mkdir -p results/robustness
-    cargo test --release --package retune-tradeoff --test walk -- --nocapture --ignored | grep -E '^\||^#' | sed -E 's/^#.*/\n&\n/' > results/robustness/walk.md.tmp
+    cargo test --release --package retune-tradeoff --test jobs walk:: -- --nocapture --ignored | grep -E '^\||^#' | sed -E 's/^#.*/\n&\n/' > results/robustness/walk.md.tmp
     mv results/robustness/walk.md.tmp results/robustness/walk.md && cat results/robustness/walk.md
 
 # Run four dampers from rest at FREQUENCIES frequencies: whatever settles must lie on a branch that was found; follow the branches of eight structures, which must keep their period: results/robustness/branches.md
 hunt-branches FREQUENCIES="3001":
     mkdir -p results/robustness
-    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test on_branches -- --nocapture --test-threads 1 | grep -E '^\||^#|^[0-9]+ (settled|of those)' | sed -E 's/^#.*/\n&\n/; s/^[0-9].*/\n&/' > results/robustness/branches.md.tmp
+    RETUNE_FREQUENCIES={{FREQUENCIES}} cargo test --package retune-dynamics --test dynamics on_branches:: -- --nocapture --test-threads 1 | grep -E '^\||^#|^[0-9]+ (settled|of those)' | sed -E 's/^#.*/\n&\n/; s/^[0-9].*/\n&/' > results/robustness/branches.md.tmp
     mv results/robustness/branches.md.tmp results/robustness/branches.md && cat results/robustness/branches.md
 
 # Follow the branches of EACH dampers of twelve families, D = 0, C = 0, light, heavy, hard, soft, other structures: whether each change of stability is named, and branches reach their ends: results/robustness/dampers.md
 hunt-dampers EACH="7":
     mkdir -p results/robustness
-    RETUNE_DAMPERS={{EACH}} cargo test --release --package retune-dynamics --test dampers invariant -- --nocapture | grep -E '^\|' > results/robustness/dampers.rows
+    RETUNE_DAMPERS={{EACH}} cargo test --release --package retune-dynamics --test dynamics dampers::invariant -- --nocapture | grep -E '^\|' > results/robustness/dampers.rows
     cat tests/dampers.md results/robustness/dampers.rows > results/robustness/dampers.md && rm results/robustness/dampers.rows && cat results/robustness/dampers.md
 
 # Fuzz a target, `study` or `numbers`, for some seconds (needs a nightly toolchain and `cargo install cargo-fuzz`)
@@ -261,12 +261,12 @@ bench-python *OPTIONS:
 deny:
     .ci/deny
 
-# Pack every crate that is published (all but the comparison and the Python package), and build each from its package, on the packages of the others
+# Pack every crate that is published (all but the comparison, the Python package and what tests share), and build each from its package, on the packages of the others
 package:
     # cargo unpacks each package in target/packing and builds it there, as a registry would serve it: a file that lies outside of its crate is
     # missing. What it unpacked and built of an earlier packing of the same version it would take for the new one.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
-    cargo package --target-dir target/packing --workspace --exclude retune-bench --exclude retune-python --allow-dirty
+    cargo package --target-dir target/packing --workspace --exclude retune-bench --exclude retune-python --exclude retune-testkit --allow-dirty
 
 # Measure speed
 bench *OPTIONS:

@@ -1,13 +1,10 @@
 //! Cost of a run of 100 s on one core, beside what it must not cost. `just bench`.
 
-#[path = "../../model/tests/scenes/mod.rs"]
-mod scenes;
-
 use criterion::{Criterion, criterion_group, criterion_main};
 use retune_model::{Bare, Coupled, Parameter, Scene};
 use retune_solver::observe::{PrimaryEnergy, RunningMaximum, Unobserved};
 use retune_solver::{Follower, Method, Motion, Phase, Settings, Tangent, Window, e1_max};
-use scenes::{ROW3, SSVI, TMD};
+use retune_testkit::scenes::{ROW3, SSVI, TMD};
 use std::hint::black_box;
 
 const WHOLE: Window = Window { from: 0.0, to: 100.0 };

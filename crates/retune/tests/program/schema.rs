@@ -1,7 +1,7 @@
 //! The committed JSON Schemas: they are current, and every study is valid.
 
-use crate::common::Desk;
-use crate::common::desk::studies;
+use crate::common::{Desk, Program};
+use retune_testkit::desk::studies;
 use serde_json::Value;
 
 #[test]
