@@ -270,7 +270,7 @@ package:
 
 # Measure speed
 bench *OPTIONS:
-    cargo bench --bench runs "$@"
+    cargo bench --package retune-bench --bench runs "$@"
 
 # Time the branches of two dampers on one core, each beside runs from rest at 3001 frequencies, the most of E1max that each finds, and the ratio of the times
 bench-branches:

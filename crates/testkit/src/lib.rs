@@ -7,5 +7,7 @@ pub mod desk;
 #[cfg(feature = "jobs")]
 pub mod observers;
 pub mod scenes;
+#[cfg(feature = "desk")]
+pub mod schema;
 #[cfg(feature = "jobs")]
 pub mod verified;
