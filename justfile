@@ -174,4 +174,4 @@ package:
     # cargo unpacks each package in target/packing and builds it there, as a registry would serve it: a file outside its crate is missing.
     # An earlier packing of the same version would be reused, so it is removed first.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
-    cargo package --target-dir target/packing --workspace --exclude retune-bench --exclude retune-python --allow-dirty
+    cargo package --target-dir target/packing --workspace --exclude retune-bench --exclude retune-python --exclude retune-testkit --allow-dirty

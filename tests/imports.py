@@ -30,8 +30,9 @@ BELOW = {
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "explore": "model solver optim dynamics study figures workbench",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches explore paper",
+    "testkit": "model solver workbench",
     "python": "model solver optim dynamics study sweep store workbench tradeoff branches paper",
-    "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper",
+    "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper testkit",
 }
 
 MOST_LINES = 300

@@ -1,11 +1,8 @@
 //! The scenes of the comparison: the paper's structure (Table 2, R = 2 m, q = 0.318) with six dampers.
 
-/// The paper's scenes, the same copy as in the tests of every crate.
-#[path = "../../model/tests/scenes/mod.rs"]
-mod paper;
-
 use retune_model::{Contact, Coupled, Damper, NonNegative, OutOfRange, Positive, Scene};
 use retune_solver::{Hybrid, Motion, Phase, SolverError, observe::Unobserved};
+use retune_testkit::scenes as paper;
 
 /// A scene and the span of time over which its motion can be predicted.
 pub struct Case {

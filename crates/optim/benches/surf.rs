@@ -3,12 +3,9 @@
 //! `just lab bench-surf`.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
-#[path = "../../model/tests/scenes/mod.rs"]
-mod scenes;
-
 use retune_optim::{Axis, Grid, Parameter, PeakEnergy, Scale, surf};
 use retune_solver::{Settings, Window};
-use scenes::SSVI;
+use retune_testkit::scenes::SSVI;
 use std::time::Instant;
 
 /// Points along each axis of the large surf, and of the small one that is timed with one thread and with all.

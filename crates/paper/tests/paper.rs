@@ -1,17 +1,11 @@
 //! Every table and figure of the paper from end to end, on a plan of short runs and few points.
 
-#[path = "../../workbench/tests/jobs/desk.rs"]
-mod desk;
-#[path = "../../workbench/tests/jobs/observers.rs"]
-mod observers;
-#[path = "../../workbench/tests/jobs/verified.rs"]
-mod verified;
-
-use desk::{Desk, committed};
-use observers::{Record, good, refused};
 use retune_paper::{OTHERS, reproduce};
 use retune_store::Error as StoreError;
 use retune_study::StudyError;
+use retune_testkit::desk::{Desk, committed};
+use retune_testkit::observers::{Record, good, refused};
+use retune_testkit::verified;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

@@ -4,11 +4,8 @@
 //! The program runs itself under callgrind, with many runs and with few; the difference is that of the runs alone.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
-#[path = "../../model/tests/scenes/mod.rs"]
-mod scenes;
-
 use retune_solver::{Settings, Window, e1_max};
-use scenes::{Numbers, ROW3, SSVI, TMD};
+use retune_testkit::scenes::{Numbers, ROW3, SSVI, TMD};
 use std::hint::black_box;
 use std::process::Command;
 use std::time::Instant;

@@ -1,9 +1,7 @@
 //! Nothing is allocated in a run. In a file of its own: the counting allocator is the whole program's.
 
-mod problems;
-
-use problems::scenes::{SSVI, TMD, TWO_SIDED};
 use retune_solver::{Method, Settings, Window, e1_max, simulate};
+use retune_testkit::scenes::{SSVI, TMD, TWO_SIDED};
 use std::hint::black_box;
 
 #[test]

@@ -1,21 +1,14 @@
 //! The job as another program calls it, on a short stretch of the paper's damper.
 
-#[path = "../../../workbench/tests/jobs/desk.rs"]
-mod desk;
-#[path = "../../../workbench/tests/jobs/observers.rs"]
-mod observers;
-#[path = "../../../workbench/tests/jobs/verified.rs"]
-mod verified;
-
-use desk::{Desk, committed};
-use observers::{good, refused};
 use retune_branches::{Asked, OTHERS, branches};
 use retune_dynamics::Parameter;
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::{EventKind, Onset};
+use retune_testkit::desk::{Desk, committed};
+use retune_testkit::observers::{good, refused};
+use retune_testkit::verified::{End, a_changed_digit_is_found, holds, look};
 use retune_workbench::{Done, Error, Request, Silent};
 use serde_json::Value;
-use verified::{End, a_changed_digit_is_found, holds, look};
 
 /// The paper's damper of Table 2, about its first period doubling.
 fn desk() -> Desk {

@@ -1,7 +1,7 @@
 //! An installed program: any directory, any file name.
 
-use crate::common::desk::tiny;
-use crate::common::{Answer, Desk, begun};
+use crate::common::{Answer, Desk, Program, begun};
+use retune_testkit::desk::tiny;
 
 /// Without `studies/` the plans built in are used, and it says so.
 #[test]

@@ -1,7 +1,7 @@
 //! Each command from its arguments to the screen, on studies of a few runs.
 
-use crate::common::Desk;
-use crate::common::desk::{RESULTS, committed, global, tiny};
+use crate::common::{Desk, Program};
+use retune_testkit::desk::{RESULTS, committed, global, tiny};
 use serde_json::{Value, json};
 use std::process::{Child, Output, Stdio};
 

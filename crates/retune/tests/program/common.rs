@@ -1,11 +1,7 @@
 //! Runs the program as a user would, in a directory of its own.
 
-#![allow(dead_code, reason = "each test file uses a part of this")]
-
-#[path = "../../../workbench/tests/jobs/desk.rs"]
-pub mod desk;
-
-pub use desk::Desk;
+pub use retune_testkit::desk::Desk;
+use retune_testkit::desk::count_lines;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -23,28 +19,40 @@ impl From<Output> for Answer {
     }
 }
 
-impl Desk {
-    pub fn command(&self, arguments: &[&str]) -> Command {
+/// The program run in a directory.
+pub trait Program {
+    fn command(&self, arguments: &[&str]) -> Command;
+
+    fn run(&self, arguments: &[&str]) -> Answer;
+
+    /// Runs a command that must succeed.
+    fn good(&self, arguments: &[&str]) -> String;
+
+    /// Runs a command that must be refused without a result; returns its message.
+    #[track_caller]
+    fn refused(&self, arguments: &[&str]) -> String;
+}
+
+impl Program for Desk {
+    fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_retune"));
         // A `just test` must not be told from the tests.
         command.args(arguments).current_dir(self.path(".")).env_remove("RETUNE_RUN_AS");
         command
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Answer {
+    fn run(&self, arguments: &[&str]) -> Answer {
         self.command(arguments).output().expect("the program").into()
     }
 
-    /// Runs a command that must succeed.
-    pub fn good(&self, arguments: &[&str]) -> String {
+    fn good(&self, arguments: &[&str]) -> String {
         let Answer { code, stdout, stderr } = self.run(arguments);
         assert_eq!((code, stderr.as_str()), (Some(0), ""), "{arguments:?}");
         stdout
     }
 
-    /// Runs a command that must be refused without a result; returns its message.
     #[track_caller]
-    pub fn refused(&self, arguments: &[&str]) -> String {
+    fn refused(&self, arguments: &[&str]) -> String {
         let Answer { code, stdout, stderr } = self.run(arguments);
         assert_eq!((code, stdout.as_str()), (Some(2), ""), "{arguments:?}: {stderr}");
         stderr
@@ -61,7 +69,7 @@ pub fn started(mut command: Command, desk: &Desk, out: &str, lines: usize) -> Ch
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program");
     let journal = desk.path(out).join("unfinished/journal");
     let patience = Instant::now();
-    while desk::count_lines(&journal) < lines {
+    while count_lines(&journal) < lines {
         assert!(patience.elapsed() < Duration::from_secs(60), "the run does not begin");
         std::thread::sleep(Duration::from_millis(2));
     }

@@ -1,9 +1,7 @@
 //! The files, commands and studies that the documents name exist.
 
-#[path = "../../../model/tests/scenes/mod.rs"]
-mod scenes;
-
-use crate::common::desk::committed;
+use retune_testkit::desk::committed;
+use retune_testkit::scenes;
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {

@@ -1,7 +1,7 @@
 //! `retune evaluate`: the objective of a study, from standard input to standard output.
 
-use crate::common::desk::{studies, tiny};
-use crate::common::{Answer, Desk};
+use crate::common::{Answer, Desk, Program};
+use retune_testkit::desk::{studies, tiny};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 

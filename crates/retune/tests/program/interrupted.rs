@@ -1,8 +1,8 @@
 //! Processes that are stopped, killed, locked out or out of disk space: nothing is lost, and the final results have the bytes of
 //! an uninterrupted run. (Where a run may be cut off is tried in the tests of `workbench` and in `kills.rs`.)
 
-use crate::common::desk::{count_lines, longer};
-use crate::common::{Answer, Desk, begun, started};
+use crate::common::{Answer, Desk, Program, begun, started};
+use retune_testkit::desk::{count_lines, longer};
 use serde_json::json;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};

@@ -7,6 +7,7 @@ mod common;
 mod documents;
 mod evaluate;
 mod interrupted;
+mod kills;
 mod numbers;
 mod refused;
 mod schema;

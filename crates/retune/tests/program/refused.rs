@@ -1,8 +1,8 @@
 //! Refusals as a user sees them: one clear message each, an exit code that says whose fault it is, and no file left. The messages
 //! about studies are tested in `study`, those of results in `workbench`.
 
-use crate::common::desk::{edited, flat, global, studies, tiny};
-use crate::common::{Answer, Desk};
+use crate::common::{Answer, Desk, Program};
+use retune_testkit::desk::{edited, flat, global, studies, tiny};
 use serde_json::{Value, json};
 
 #[test]

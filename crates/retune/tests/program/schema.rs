@@ -1,7 +1,8 @@
 //! The committed JSON Schemas: they are current, and every study is valid.
 
-use crate::common::Desk;
-use crate::common::desk::studies;
+use crate::common::{Desk, Program};
+use retune_testkit::desk::studies;
+use retune_testkit::schema::errors;
 use serde_json::Value;
 
 #[test]
@@ -32,8 +33,7 @@ fn contract_every_study_of_the_repository_is_valid() {
         let schema = study["$schema"].as_str().expect("each study names its schema");
         let schema = std::fs::read_to_string(path.with_file_name(schema)).expect("a schema");
         let schema = serde_json::from_str(&schema).expect("JSON");
-        let validator = jsonschema::validator_for(&schema).expect("a schema");
-        let errors: Vec<String> = validator.iter_errors(&study).map(|error| error.to_string()).collect();
+        let errors = errors(&schema, &study);
         assert!(errors.is_empty(), "{name}: {errors:?}");
         assert!(desk.good(&["check", path.to_str().expect("UTF-8")]).ends_with("good\n"));
         seen += 1;

@@ -1,17 +1,12 @@
 //! The jobs made of many searches, as another program calls them, on studies of a few runs.
 
-#[path = "../../../workbench/tests/jobs/desk.rs"]
-mod desk;
-#[path = "../../../workbench/tests/jobs/observers.rs"]
-mod observers;
 mod pareto;
 mod track;
-#[path = "../../../workbench/tests/jobs/verified.rs"]
-mod verified;
 mod verify;
+mod walk;
 
-use desk::Desk;
 use retune_store::Begin;
+use retune_testkit::desk::Desk;
 use retune_workbench::Request;
 
 /// A request for the results of a study of the desk, in a directory of it.

@@ -1,9 +1,9 @@
 //! Pareto fronts of dampers: the least E1max under bounds on the spring and on the stroke.
 
-use crate::desk::{Desk, committed};
-use crate::observers::{good, refused};
 use crate::request;
 use retune_study::{Rule, StudyError};
+use retune_testkit::desk::{Desk, committed};
+use retune_testkit::observers::{good, refused};
 use retune_tradeoff::pareto::pareto;
 use retune_workbench::describe;
 use retune_workbench::{Error, Request, Silent};

@@ -1,11 +1,11 @@
 //! `track`: dampers tuned anew for other stiffnesses of the structure.
 
-use crate::desk::{Desk, committed, global};
-use crate::observers::{Record, cut_off, good, refused};
 use crate::{request, restart, resume};
 use retune_model::Parameter;
 use retune_store::Error as StoreError;
 use retune_study::Setting;
+use retune_testkit::desk::{Desk, committed, global};
+use retune_testkit::observers::{Record, cut_off, good, refused};
 use retune_tradeoff::track::{Point, track};
 use retune_workbench::{Done, Error, Silent};
 use serde_json::json;

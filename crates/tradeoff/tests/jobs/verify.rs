@@ -1,10 +1,10 @@
 //! `verify` of the results of `track` and `fronts`.
 
-use crate::observers::good;
 use crate::request;
-use crate::verified::{a_changed_digit_is_found, desk};
 use retune_model::Parameter;
 use retune_study::Setting;
+use retune_testkit::observers::good;
+use retune_testkit::verified::{a_changed_digit_is_found, desk};
 use retune_tradeoff::OTHERS;
 use retune_tradeoff::pareto::pareto;
 use retune_tradeoff::track::track;

@@ -1,9 +1,9 @@
 //! The worst over a band as an objective, from the study to the results.
 
-use crate::desk::{Desk, committed, flat, number, tiny};
-use crate::observers::{good, refused};
 use crate::{request, search};
 use retune_optim::Unusable;
+use retune_testkit::desk::{Desk, committed, flat, number, tiny};
+use retune_testkit::observers::{good, refused};
 use retune_workbench::tune::tune;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::{Value, json};

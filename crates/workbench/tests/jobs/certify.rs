@@ -1,11 +1,11 @@
 //! Limits and certificates: whether a design keeps its limits, and whether its E1max can be relied on.
 
-use crate::desk::{Desk, committed, flat, global, number, studies, tiny};
-use crate::observers::{Record, good, refused};
 use crate::{found, request, resume, search};
 use retune_model::{Coupled, Parameter, Scene};
 use retune_store::Error as StoreError;
 use retune_study::{Rule, Setting, StudyError};
+use retune_testkit::desk::{Desk, committed, flat, global, number, studies, tiny};
+use retune_testkit::observers::{Record, good, refused};
 use retune_workbench::certify::{certify, certify_file};
 use retune_workbench::simulate::simulate;
 use retune_workbench::tune::tune;

@@ -1,10 +1,10 @@
 //! Journals damaged by a disk, a power cut or a person: every whole record is kept, lost ones are reported and computed
 //! again, and a journal of unknown origin is refused.
 
-use crate::desk::{Desk, edited, tiny};
-use crate::observers::{Record, cut_off, good, refused};
 use crate::{replace, request, restart, resume, search};
 use retune_store::Error as StoreError;
+use retune_testkit::desk::{Desk, edited, tiny};
+use retune_testkit::observers::{Record, cut_off, good, refused};
 use retune_workbench::tune::tune;
 use retune_workbench::{Error, Silent};
 

@@ -1,8 +1,8 @@
 //! Descriptions of studies in words.
 
 use crate::band::ssvi_band;
-use crate::desk::{committed, global};
 use retune_study::read::from_text;
+use retune_testkit::desk::{committed, global};
 use retune_workbench::describe;
 use serde_json::{Value, json};
 

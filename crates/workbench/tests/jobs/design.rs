@@ -1,11 +1,11 @@
 //! `design`: from a structure to two dampers, on structures of very different size.
 
-use crate::desk::Desk;
-use crate::observers::{good, refused};
 use retune_model::{Coupled, Design, Parameter};
 use retune_optim::{Options, Scaling, minimize};
 use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
+use retune_testkit::desk::Desk;
+use retune_testkit::observers::{good, refused};
 use retune_workbench::design::{Wishes, design};
 use retune_workbench::tune::optimize;
 use retune_workbench::{Error, Request, Silent};

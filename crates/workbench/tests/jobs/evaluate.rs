@@ -1,10 +1,10 @@
 //! `evaluate`: the objective of a study, from lines of designs to lines of values.
 
-use crate::desk::{Desk, committed, tiny};
-use crate::observers::{good, refused};
 use crate::search;
 use retune_study::Rule;
 use retune_study::read::from_text;
+use retune_testkit::desk::{Desk, committed, tiny};
+use retune_testkit::observers::{good, refused};
 use retune_workbench::evaluate::{Streams, evaluate};
 use retune_workbench::{Error, Request};
 use serde_json::{Value, json};

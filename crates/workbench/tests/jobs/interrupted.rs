@@ -1,10 +1,10 @@
 //! Jobs that are cut off at one of their evaluations: nothing is lost, and the final results have the bytes of an uninterrupted
 //! run. (Processes that are killed are in the tests of the program.)
 
-use crate::desk::{Desk, count_lines, edited, longer, tiny};
-use crate::observers::{Record, cut_off, good, refused};
 use crate::{request, restart, resume, search};
 use retune_store::Error as StoreError;
+use retune_testkit::desk::{Desk, count_lines, edited, longer, tiny};
+use retune_testkit::observers::{Record, cut_off, good, refused};
 use retune_workbench::Done;
 use retune_workbench::tune::tune;
 use retune_workbench::{Error, Request, Silent};

@@ -1,9 +1,9 @@
 //! Searches under limits: what a simplex alone ended with, and what they find.
 
-use crate::desk::{Desk, committed, number};
-use crate::observers::good;
 use crate::{found, request};
 use retune_store::{Identity, Journal};
+use retune_testkit::desk::{Desk, committed, number};
+use retune_testkit::observers::good;
 use retune_workbench::Silent;
 use retune_workbench::tune::ends::ends;
 use retune_workbench::tune::tune;

@@ -1,9 +1,9 @@
 //! Places that cannot be written, and links that are not followed.
 
-use crate::desk::{Desk, tiny};
-use crate::observers::refused;
 use crate::{request, restart};
 use retune_store::Error as StoreError;
+use retune_testkit::desk::{Desk, tiny};
+use retune_testkit::observers::refused;
 use retune_workbench::tune::tune;
 use retune_workbench::{Error, Silent};
 

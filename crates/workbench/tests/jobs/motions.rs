@@ -1,10 +1,10 @@
 //! Motions beside those from rest: what certificates and searches make of them.
 
-use crate::desk::{Desk, committed, number, studies, tiny};
-use crate::observers::good;
 use crate::{found, request};
 use retune_model::Parameter;
 use retune_study::{Margins, Settable, Setting, Study};
+use retune_testkit::desk::{Desk, committed, number, studies, tiny};
+use retune_testkit::observers::good;
 use retune_workbench::Silent;
 use retune_workbench::certify::certify;
 use retune_workbench::tune::objective::searched;

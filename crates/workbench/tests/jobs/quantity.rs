@@ -1,10 +1,10 @@
 //! Objectives other than E1max: `optimize.objective.quantity`.
 
-use crate::desk::{Desk, committed, flat, number, tiny};
-use crate::observers::good;
 use crate::search;
 use retune_model::{Primary, den_hartog};
 use retune_solver::{Settings, Window, simulate};
+use retune_testkit::desk::{Desk, committed, flat, number, tiny};
+use retune_testkit::observers::good;
 use retune_workbench::{Silent, verify};
 use serde_json::json;
 

@@ -1,9 +1,9 @@
 //! Replacement of results: without an option, only those that the same command made of the same study are replaced.
 
-use crate::desk::{Desk, edited, tiny};
-use crate::observers::{good, refused};
 use crate::{replace, request, restart, resume, search};
 use retune_store::Error as StoreError;
+use retune_testkit::desk::{Desk, edited, tiny};
+use retune_testkit::observers::{good, refused};
 use retune_workbench::certify::certify_file;
 use retune_workbench::table2::table2;
 use retune_workbench::tune::tune;

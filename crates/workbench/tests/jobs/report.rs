@@ -1,8 +1,8 @@
 //! The page of a search: whole, true to the files beside it, and with the flags that they call for.
 
 use crate::band::ssvi_band;
-use crate::desk::{Desk, committed, global, number, tiny};
 use crate::search;
+use retune_testkit::desk::{Desk, committed, global, number, tiny};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 

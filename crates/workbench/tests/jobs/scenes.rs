@@ -1,8 +1,8 @@
 //! Whole searches of scenes that are not the paper's: no walls, a varied mass, other forcings.
 
-use crate::desk::{Desk, committed, flat, number, tiny};
-use crate::observers::good;
 use crate::search;
+use retune_testkit::desk::{Desk, committed, flat, number, tiny};
+use retune_testkit::observers::good;
 use retune_workbench::certify::certify;
 use retune_workbench::{Silent, verify};
 use serde_json::{Value, json};

@@ -1,9 +1,9 @@
 //! A grid in parts: the bytes of a single process, and the errors of wrong parts.
 
-use crate::desk::{Desk, edited, tiny};
-use crate::observers::{Record, good, refused};
 use crate::{request, search};
 use retune_study::Rule;
+use retune_testkit::desk::{Desk, edited, tiny};
+use retune_testkit::observers::{Record, good, refused};
 use retune_workbench::tune::merge::merge;
 use retune_workbench::tune::tune_share;
 use retune_workbench::{Error, Request, Silent};

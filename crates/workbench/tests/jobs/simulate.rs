@@ -1,12 +1,12 @@
 //! `simulate`: one run, its summary and its motion.
 
-use crate::desk::{Desk, studies, tiny};
-use crate::observers::{good, refused};
 use crate::{read, request, search};
 use retune_model::Parameter;
 use retune_solver::{Remedy, SolverError};
 use retune_store::Error as StoreError;
 use retune_study::{Setting, Study};
+use retune_testkit::desk::{Desk, studies, tiny};
+use retune_testkit::observers::{good, refused};
 use retune_workbench::simulate::{Trajectory, simulate};
 use retune_workbench::table2::table2;
 use retune_workbench::{Error, Silent};

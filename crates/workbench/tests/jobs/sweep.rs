@@ -1,10 +1,10 @@
 //! `sweep`: its files, in parallel, in parts, cut off, and checked. What its numbers are is in the tests of `retune-sweep`.
 
-use crate::desk::{Desk, count_lines, tiny};
-use crate::observers::{Record, cut_off, good, refused};
 use crate::{request, resume, search};
 use retune_model::Parameter;
 use retune_sweep::Asked;
+use retune_testkit::desk::{Desk, count_lines, tiny};
+use retune_testkit::observers::{Record, cut_off, good, refused};
 use retune_workbench::sweep::{Points, sweep};
 use retune_workbench::verify::verify;
 use retune_workbench::{Error, Observer, Request, Silent};

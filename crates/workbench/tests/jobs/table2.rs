@@ -1,9 +1,9 @@
 //! `table2`: several dampers, each from the paper's own design.
 
-use crate::desk::Desk;
-use crate::observers::{cut_off, good, refused};
 use crate::{request, resume};
 use retune_store::Error as StoreError;
+use retune_testkit::desk::Desk;
+use retune_testkit::observers::{cut_off, good, refused};
 use retune_workbench::table2::table2;
 use retune_workbench::{Error, Silent};
 use serde_json::json;

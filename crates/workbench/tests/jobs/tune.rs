@@ -1,11 +1,11 @@
 //! `tune`: from a study to its results.
 
-use crate::desk::{Desk, RESULTS, flat, global, number, tiny};
-use crate::observers::{Record, good};
-use crate::verified;
 use crate::{found, read, request, search};
 use retune_model::Parameter;
 use retune_study::Setting;
+use retune_testkit::desk::{Desk, RESULTS, flat, global, number, tiny};
+use retune_testkit::observers::{Record, good};
+use retune_testkit::verified;
 use retune_workbench::Request;
 use retune_workbench::tune::tune;
 use serde_json::json;

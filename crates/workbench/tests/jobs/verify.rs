@@ -1,11 +1,11 @@
 //! `verify`: results are computed again, and differences are reported.
 
 use crate::band::ssvi_band;
-use crate::desk::{Desk, tiny};
-use crate::observers::{good, refused};
-use crate::verified::{self, End};
 use crate::{request, search};
 use retune_store::Error as StoreError;
+use retune_testkit::desk::{Desk, tiny};
+use retune_testkit::observers::{good, refused};
+use retune_testkit::verified::{self, End};
 use retune_workbench::Done;
 use retune_workbench::certify::certify_file;
 use retune_workbench::table2::table2;

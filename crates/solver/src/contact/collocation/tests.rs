@@ -11,9 +11,7 @@ use crate::response::Work;
 use crate::system::LinearSystem;
 use retune_model::{Coupled, Side};
 
-#[path = "../../../../model/tests/scenes/mod.rs"]
-mod scenes;
-use scenes::{Numbers, SSVI};
+use retune_testkit::scenes::{Numbers, SSVI};
 
 /// Numbers drawn evenly from `[0, 1)`, always the same (a linear congruential generator, Knuth's MMIX).
 struct Draw(u64);

@@ -1,0 +1,5 @@
+//! The comparison: its scenes, its peers, its atlas.
+
+mod accuracy;
+mod atlas;
+mod integrators;

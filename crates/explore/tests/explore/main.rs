@@ -1,0 +1,6 @@
+//! The explorer: its server, its sessions, what it thins out.
+
+mod branches;
+mod server;
+mod session;
+mod thin;

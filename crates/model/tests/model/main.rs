@@ -1,0 +1,9 @@
+//! The physics from outside of the crate.
+
+mod band;
+mod band_hunt;
+mod bounds;
+mod derivatives;
+mod energies;
+mod regularised;
+mod steady;

@@ -1,0 +1,223 @@
+//! The derivatives of a run by its first state and by parameters.
+
+use nalgebra::Matrix4;
+use rayon::prelude::*;
+use retune_model::{Coupled, Measure, Parameter};
+use retune_solver::observe::Unobserved;
+use retune_solver::{
+    Also, Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, gradients,
+};
+use retune_testkit::scenes::{Numbers, SSVI, Spread, TMD, TWO_SIDED};
+use std::f64::consts::TAU;
+
+fn settings() -> Settings {
+    Settings { rtol: 1e-13, ..Settings::default() }
+}
+
+fn motion(system: &Coupled, y: [f64; 4]) -> Motion {
+    Motion { t: 0.0, y, phase: Phase::of(system, &y) }
+}
+
+/// The state after some time.
+fn after(numbers: &Numbers, y: [f64; 4], seconds: f64) -> [f64; 4] {
+    let system = numbers.coupled();
+    let mut follower = Follower::new(&system, &settings(), seconds);
+    follower.propagate(motion(&system, y), seconds, &mut Unobserved).expect("a run").y
+}
+
+/// The parameters of a scene under a force by which there are derivatives.
+const BY: [Parameter; 10] = [
+    Parameter::Omega,
+    Parameter::P,
+    Parameter::K1,
+    Parameter::C1,
+    Parameter::M2,
+    Parameter::K2,
+    Parameter::C2,
+    Parameter::D,
+    Parameter::C,
+    Parameter::R,
+];
+
+fn tangent(numbers: &Numbers, y: [f64; 4], seconds: f64) -> Transition {
+    let system = numbers.coupled();
+    let mut tangent = Tangent::new(&system, &settings(), seconds, &BY);
+    tangent.propagate(motion(&system, y), seconds, &mut Unobserved).expect("a run")
+}
+
+/// The numbers with one parameter changed by a share of it.
+fn moved(numbers: &Numbers, parameter: Parameter, by: f64) -> Numbers {
+    let mut moved = *numbers;
+    let value = match parameter {
+        Parameter::Omega => &mut moved.omega,
+        Parameter::P => &mut moved.p,
+        Parameter::K1 => &mut moved.k1,
+        Parameter::C1 => &mut moved.c1,
+        Parameter::M2 => &mut moved.m2,
+        Parameter::K2 => &mut moved.k2,
+        Parameter::C2 => &mut moved.c2,
+        Parameter::D => &mut moved.d,
+        Parameter::C => &mut moved.c,
+        Parameter::R => &mut moved.r,
+        other => panic!("no derivative by {other}"),
+    };
+    *value += by;
+    moved
+}
+
+fn size(numbers: &Numbers, parameter: Parameter) -> f64 {
+    match parameter {
+        Parameter::Omega => numbers.omega,
+        Parameter::P => numbers.p,
+        Parameter::K1 => numbers.k1,
+        Parameter::C1 => numbers.c1,
+        Parameter::M2 => numbers.m2,
+        Parameter::K2 => numbers.k2,
+        Parameter::C2 => numbers.c2,
+        Parameter::D => numbers.d,
+        Parameter::C => numbers.c,
+        Parameter::R => numbers.r,
+        other => panic!("no derivative by {other}"),
+    }
+}
+
+/// Richardson's extrapolation of central differences with steps `h`, `h/2`, `h/4`, `h/8`.
+fn richardson(h: f64, at: impl Fn(f64) -> [f64; 4]) -> [f64; 4] {
+    let difference = |h: f64| -> [f64; 4] {
+        let (above, below) = (at(h), at(-h));
+        std::array::from_fn(|i| (above[i] - below[i]) / (2.0 * h))
+    };
+    let mut table: Vec<[f64; 4]> = (0..4).map(|k| difference(h / f64::from(1 << k))).collect();
+    for order in 1..4 {
+        let factor = f64::from(1 << (2 * order));
+        table = table
+            .windows(2)
+            .map(|pair| std::array::from_fn(|i| (factor * pair[1][i] - pair[0][i]) / (factor - 1.0)))
+            .collect();
+    }
+    table[0]
+}
+
+/// The largest error of derivatives beside differences, relative to the largest derivative of the column, over scales of the state.
+fn error(found: &[f64; 4], expected: &[f64; 4]) -> f64 {
+    let size = expected.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
+    found.iter().zip(expected).fold(0.0, |error, (a, b)| f64::max(error, (a - b).abs())) / size
+}
+
+fn random(spread: &mut Spread, two_walls: bool) -> (Numbers, [f64; 4]) {
+    let base = if two_walls { TWO_SIDED } else { SSVI };
+    let mut near = |value: f64| value * (1.0 + 0.2 * spread.signed());
+    let numbers = Numbers {
+        k1: near(base.k1),
+        c1: near(base.c1),
+        k2: near(base.k2),
+        c2: near(base.c2),
+        m2: near(base.m2),
+        d: near(base.d),
+        c: near(base.c),
+        r: near(base.r),
+        p: near(base.p),
+        omega: near(base.omega),
+        ..base
+    };
+    let r = 0.5 * numbers.d;
+    (numbers, spread.state(r))
+}
+
+#[test]
+fn reference_derivatives_agree_with_differences() {
+    let mut spread = Spread::new(5);
+    let mut worst: f64 = 0.0;
+    for scene in 0..120 {
+        let (numbers, y) = random(&mut spread, scene % 2 == 1);
+        let seconds = 1.5;
+        let found = tangent(&numbers, y, seconds);
+        for j in 0..4 {
+            let expected = richardson(2e-5, |h| {
+                let mut y = y;
+                y[j] += h;
+                after(&numbers, y, seconds)
+            });
+            let error = error(&found.by_state[j], &expected);
+            worst = worst.max(error);
+        }
+        for (column, &parameter) in found.by.iter().zip(&BY) {
+            let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
+            let step = share * size(&numbers, parameter);
+            let expected = richardson(step, |h| after(&moved(&numbers, parameter, h), y, seconds));
+            let error = error(column, &expected);
+            worst = worst.max(error);
+        }
+    }
+    assert!(worst < 1e-8, "{worst:e}");
+}
+
+/// Liouville: the volume shrinks at the rate of the trace, contact or not.
+#[test]
+fn exact_the_determinant_over_a_period() {
+    let mut spread = Spread::new(6);
+    for scene in 0..200 {
+        let (numbers, y) =
+            if scene == 0 { (TMD, [0.0, 0.0, 2.08, 0.0]) } else { random(&mut spread, scene % 2 == 1) };
+        let period = TAU / numbers.omega;
+        let by_state = tangent(&numbers, y, period).by_state;
+        let found = Matrix4::from_fn(|i, j| by_state[j][i]).determinant();
+        let Numbers { m1, c1, m2, c2, .. } = numbers;
+        let expected = (-period * (c1 / m1 + c2 / m1 + c2 / m2)).exp();
+        assert!((found / expected - 1.0).abs() < 1e-9, "{scene}: {found} {expected}");
+    }
+}
+
+/// Largest values over a window of a few periods, from rest. A scene is left out where the largest value is reached at another maximum for
+/// a step to either side: there it has no derivative.
+#[test]
+fn reference_gradients_of_largest_values_agree_with_differences() {
+    let mut spread = Spread::new(8);
+    let window = Window { from: 1.0, to: 5.0 };
+    let scenes: Vec<Numbers> = (0..60).map(|scene| random(&mut spread, scene % 2 == 1).0).collect();
+    let largest = |numbers: &Numbers, measure: Measure| {
+        let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
+        extremes(&numbers.scene(), window, &settings(), ask).expect("a run").largest
+    };
+    // How many derivatives are compared, and the largest error of them.
+    let compare = |numbers: &Numbers, measure: Measure| -> (usize, f64) {
+        let (mut compared, mut worst) = (0, 0.0_f64);
+        let found = gradients(&numbers.coupled(), window, &settings(), measure, &BY).expect("a run");
+        let first = &found[0];
+        let expected = largest(numbers, measure).value;
+        assert!((first.at.value - expected).abs() <= 1e-11 * expected, "{numbers:?} {measure:?}");
+        if first.at.value == 0.0 {
+            return (0, 0.0);
+        }
+        for (by, parameter) in first.by.iter().zip(BY) {
+            let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
+            let step = share * size(numbers, parameter);
+            let at = |h: f64| largest(&moved(numbers, parameter, h), measure);
+            if [-step, step].iter().any(|&h| (at(h).time - first.at.time).abs() > 0.02) {
+                continue;
+            }
+            let expected = richardson(step, |h| [at(h).value, 0.0, 0.0, 0.0])[0];
+            // Beside the change of the value by a change of the parameter as large as itself.
+            let scale = expected.abs().max(1e-3 * first.at.value / size(numbers, parameter));
+            worst = worst.max((by - expected).abs() / scale);
+            compared += 1;
+        }
+        (compared, worst)
+    };
+    let all =
+        scenes.par_iter().flat_map_iter(|numbers| Measure::ALL.map(|measure| compare(numbers, measure)));
+    let (compared, worst) = all.reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)));
+    assert!(compared > 3000 && worst < 1e-6, "{compared} {worst:e}");
+}
+
+/// A settled motion reaches its largest value in every period: each has a gradient, and for the derivative they agree.
+#[test]
+fn invariant_ties_are_reported() {
+    let window = Window { from: 200.0, to: 210.0 };
+    let found =
+        gradients(&TMD.coupled(), window, &settings(), Measure::Energy, &[Parameter::K2]).expect("a run");
+    assert!(found.len() >= 9, "{found:?}");
+    for tie in &found {
+        assert!((tie.by[0] / found[0].by[0] - 1.0).abs() < 1e-6, "{found:?}");
+    }
+}

@@ -1,0 +1,69 @@
+//! How much work a run is. A mistake that only makes runs slow is seen here, on a busy machine as on a quiet one; times and
+//! instructions are measured by `just lab bench` and `just lab bench-instructions`.
+
+use retune_solver::methods::{Ode23s, Ode45, OneStep, Tolerance};
+use retune_solver::{Contacts, Method, Settings, System, Window, Work, least_steps, simulate};
+use retune_testkit::scenes::{SSVI, TMD};
+
+/// The first step from a state: MATLAB's `ode45` and `ode23s`, formula by formula, of numbers that are easily followed by hand.
+#[test]
+fn exact_first_steps_are_matlabs() {
+    struct Given;
+    impl System<2> for Given {
+        fn derivative(&self, _t: f64, _y: &[f64; 2]) -> [f64; 2] {
+            [6.0, -8.0]
+        }
+        fn jacobian(&self, _t: f64, _y: &[f64; 2]) -> nalgebra::SMatrix<f64, 2, 2> {
+            nalgebra::SMatrix::<f64, 2, 2>::from_row_slice(&[0.0, 2.0, -9.0, 1.0])
+        }
+        fn time_derivative(&self, _t: f64, _y: &[f64; 2]) -> [f64; 2] {
+            [0.0, 12.0]
+        }
+    }
+    let (y, f) = ([3.0, 0.1], [6.0, -8.0]);
+    let tolerance = Tolerance { rtol: 1e-5, threshold: 0.5 };
+    // max |f / max(|y|, threshold)| = 16, and 10 = rtol^(-1/5): rh = 16 / (0.8 · 0.1) = 200.
+    let first = |longest| Ode45::first_step(&Given, 0.0, &y, &f, tolerance, longest);
+    assert!((first(1.0) * 200.0 - 1.0).abs() < 1e-14, "{}", first(1.0));
+    assert_eq!(first(0.004), 0.004, "no longer than allowed");
+    // y'' = J f + ∂f/∂t = [-16, -62 + 12] = [-16, -50]: rh = 1.25 √(0.5 · 100 / rtol).
+    let first = |longest| Ode23s::first_step(&Given, 0.0, &y, &f, tolerance, longest);
+    let expected = 1.0 / (1.25 * f64::sqrt(0.5 * 100.0 / 1e-5));
+    assert!((first(1.0) / expected - 1.0).abs() < 1e-14, "{}", first(1.0));
+    assert_eq!(first(1e-4), 1e-4, "no longer than allowed");
+}
+
+/// Steps, rejected steps and evaluations of every method. A change for a reason changes the numbers here; more of them need one.
+#[test]
+fn regress_work_of_every_method() {
+    let window = Window { from: 2.0, to: 12.0 };
+    for (method, rtol, contacts, expected) in [
+        (Method::Ode45, 1e-6, Contacts::Located, [[434, 18, 2713], [448, 2, 2701], [837, 108, 6037]]),
+        (Method::Ode45, 1e-6, Contacts::Stepped, [[434, 18, 2713], [448, 2, 2701], [837, 100, 5623]]),
+        (Method::Ode23s, 1e-4, Contacts::Located, [[1014, 39, 3160], [1117, 61, 3535], [1763, 133, 5896]]),
+        (Method::Ode23, 1e-4, Contacts::Located, [[819, 45, 2593], [893, 68, 2884], [1391, 163, 4828]]),
+        (Method::Dop853, 1e-8, Contacts::Located, [[170, 6, 2641], [177, 6, 2746], [616, 199, 13006]]),
+        (Method::Hybrid, 1e-6, Contacts::Located, [[65, 0, 0], [118, 0, 0], [127, 0, 224]]),
+        (Method::Hybrid, 1e-10, Contacts::Located, [[65, 0, 0], [118, 0, 0], [127, 0, 736]]),
+    ] {
+        let settings = Settings { method, rtol, atol: 1e-2 * rtol, contacts, ..Settings::default() };
+        let found = [SSVI.bare_scene(), TMD.scene(), SSVI.scene()].map(|scene| {
+            let Work { steps, rejected, evaluations } =
+                simulate(&scene, window, &settings).expect("a run").work;
+            [steps, rejected, evaluations]
+        });
+        assert_eq!(found, expected, "{method:?} at {rtol:e}, {contacts:?}");
+    }
+}
+
+/// A run without contacts takes just those, one with contacts more.
+#[test]
+fn exact_the_least_steps_of_a_run_are_those_of_its_flight() {
+    let steps = |scene| {
+        let window = Window { from: 0.0, to: 20.0 };
+        simulate(&scene, window, &Settings::default()).expect("a run").work.steps as f64
+    };
+    let least = |scene| least_steps(&scene, 20.0).ceil();
+    assert_eq!(steps(TMD.scene()), least(TMD.scene()));
+    assert!(steps(SSVI.scene()) > least(SSVI.scene()));
+}

@@ -1,0 +1,4 @@
+//! Study files and their schema.
+
+mod refused;
+mod schema;

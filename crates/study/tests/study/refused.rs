@@ -1,0 +1,407 @@
+//! Wrong studies: one clear message each, which names the field and what is allowed.
+
+use retune_model::{Absent, Parameter};
+use retune_study::read::from_text;
+use retune_study::{Rule, Setting, SettingError, StudyError};
+use retune_testkit::desk::{Desk, global, tiny};
+use serde_json::{Value, json};
+
+/// What is wrong with this study, without the place in its file.
+#[track_caller]
+fn problem(text: &str) -> String {
+    match from_text(text, "bad.json").expect_err("a wrong study") {
+        StudyError::Field { file, line, column, problem } => {
+            assert!(file == "bad.json" && line > 0, "{file}:{line}:{column}");
+            problem
+        }
+        StudyError::List { file, field } => {
+            assert_eq!(file, "bad.json");
+            format!("{field}: wrong type: list, expected an object")
+        }
+        StudyError::Rule { file, rule } => {
+            assert_eq!(file, "bad.json");
+            rule.to_string()
+        }
+        other => panic!("{other}"),
+    }
+}
+
+#[track_caller]
+fn refused_text(text: &str, message: &str) {
+    assert_eq!(problem(text), message);
+}
+
+/// The tiny study with `value` at `pointer`.
+#[track_caller]
+fn refused(pointer: &str, value: Value, message: &str) {
+    let mut study = tiny();
+    *study.pointer_mut(pointer).unwrap_or_else(|| panic!("no {pointer}")) = value;
+    refused_text(&study.to_string(), message);
+}
+
+#[test]
+fn contract_unknown_fields_are_named_with_a_suggestion() {
+    let mut study = tiny();
+    study["scene"]["primary"]["k3"] = json!(1);
+    refused_text(
+        &study.to_string(),
+        "scene.primary: unknown field `k3`; did you mean `k1`? allowed: m1, c1, k1",
+    );
+    let mut study = tiny();
+    study["optimize"]["refine"]["tolx"] = json!(1);
+    refused_text(
+        &study.to_string(),
+        "optimize.refine: unknown field `tolx`; did you mean `TolX`? \
+         allowed: starts, apart, TolX, TolFun, scaled, MaxIter, MaxFunEvals",
+    );
+    refused(
+        "/optimize/vary",
+        json!(["c3"]),
+        "optimize.vary[0]: \"c3\" is not allowed here; did you mean `c2`? allowed: k2, c2, D, C, m2",
+    );
+}
+
+#[test]
+fn contract_missing_fields_are_named() {
+    for (pointer, field, path) in [
+        ("/scene/primary", "k1", "scene.primary.k1"),
+        ("", "window", "window"),
+        ("/scene/damper/contact", "R", "scene.damper.contact.R"),
+        ("/optimize", "vary", "optimize.vary"),
+    ] {
+        let mut study = tiny();
+        let parent = study.pointer_mut(pointer).and_then(Value::as_object_mut).expect(pointer);
+        parent.remove(field).expect(field);
+        refused_text(&study.to_string(), &format!("{path}: missing, and it has no default"));
+    }
+}
+
+#[test]
+fn contract_values_out_of_range_are_named_with_what_is_allowed() {
+    refused(
+        "/scene/primary/m1",
+        json!(-1),
+        "scene.primary.m1: -1 is not allowed here: give a finite number above 0",
+    );
+    refused(
+        "/scene/damper/D",
+        json!(-0.1),
+        "scene.damper.D: -0.1 is not allowed here: give a finite number not below 0",
+    );
+    refused(
+        "/scene/damper/C",
+        json!(-1),
+        "scene.damper.C: -1 is not allowed here: give a finite number not below 0",
+    );
+    refused(
+        "/scene/damper/contact/nu2",
+        json!(0.7),
+        "scene.damper.contact.nu2: 0.7 is not allowed here: give a number above -1 and at most 0.5",
+    );
+    refused("/window/T", json!(0), "window.T: 0 is not allowed here: give a finite number above 0");
+    refused("/window/t0", json!(4), "window: t0 = 4 s is not before T = 4 s: the window is empty");
+    refused(
+        "/optimize/refine/starts",
+        json!(0),
+        "optimize.refine.starts: 0 is not allowed here: give a whole number above 0",
+    );
+    let mut study = tiny();
+    study["solver"] = json!({ "rtol": 0 });
+    refused_text(
+        &study.to_string(),
+        "solver.rtol: 0 is not allowed here: give a number above 0 and at most 0.1",
+    );
+    study["solver"] = json!({ "search_rtol": 0.2 });
+    refused_text(
+        &study.to_string(),
+        "solver.search_rtol: 0.2 is not allowed here: give a number above 0 and at most 0.1",
+    );
+    study["solver"] = json!({});
+    study["optimize"]["coarse"] = json!({ "rtol": 0.0 });
+    refused_text(
+        &study.to_string(),
+        "optimize.coarse.rtol: 0 is not allowed here: give a number above 0 and at most 0.1",
+    );
+    study["optimize"]["coarse"] = json!({ "most": 0.0 });
+    refused_text(
+        &study.to_string(),
+        "optimize.coarse.most: 0 is not allowed here: give a finite number above 0",
+    );
+    study["optimize"]["coarse"] = json!({});
+    study["solver"] = json!({ "method": "ode45s" });
+    refused_text(
+        &study.to_string(),
+        "solver.method: \"ode45s\" is not allowed here; did you mean `ode45`? allowed: hybrid, ode23s, ode45, ode23, dop853, rk4, euler",
+    );
+}
+
+#[test]
+fn contract_wrong_types_are_named() {
+    refused(
+        "/scene/damper/k2",
+        json!("215"),
+        "scene.damper.k2: wrong type: string \"215\", expected a number",
+    );
+    refused("/scene/damper/k2", Value::Null, "scene.damper.k2: wrong type: null, expected a number");
+    refused("/window", json!(100), "window: wrong type: number `100`, expected an object");
+    refused("/window", json!([1, 4]), "window: wrong type: list, expected an object");
+    refused(
+        "/scene/primary",
+        json!([1000, 452, 39500]),
+        "scene.primary: wrong type: list, expected an object",
+    );
+    refused(
+        "/optimize/surf/k2/points",
+        json!(1.5),
+        "optimize.surf.k2.points: wrong type: number `1.5`, expected a whole number not below 0",
+    );
+}
+
+#[test]
+fn contract_contradictions_in_a_search_are_named() {
+    let from_to = |from: f64, to: f64, points: u64| json!({ "from": from, "to": to, "points": points });
+    refused(
+        "/optimize/surf/k2",
+        from_to(300.0, 200.0, 3),
+        "optimize.surf.k2: the range is empty: `from` 300 is above `to` 200",
+    );
+    refused(
+        "/optimize/surf/k2",
+        from_to(5.0, 200.0, 3),
+        "optimize.surf.k2: from 5 to 200 leaves the bounds [10, 1000]",
+    );
+    refused(
+        "/optimize/surf/k2/from",
+        json!(0),
+        "optimize.surf.k2: `from` is 0: both ends of a logarithmic axis must be above zero",
+    );
+    refused(
+        "/optimize/bounds/k2",
+        json!([400, 100]),
+        "optimize.bounds.k2: [400, 100] is not allowed here: give [smallest, largest] with 0 <= smallest < largest",
+    );
+    refused("/optimize/vary", json!([]), "optimize.vary: empty: name at least one of k2, c2, D, C, m2");
+    refused("/optimize/vary", json!(["k2", "C", "k2"]), "optimize.vary: `k2` is named twice");
+    refused(
+        "/optimize/vary",
+        json!(["k2", "c2", "D"]),
+        "optimize.surf.C: `C` is not tuned: add it to `vary` or leave it out here",
+    );
+    refused("/scene/damper", Value::Null, "scene.damper: missing, but `optimize` tunes the damper");
+    let mut study = tiny();
+    study["optimize"]["surf"] = Value::Null;
+    study["scene"]["damper"]["k2"] = json!(5);
+    refused_text(
+        &study.to_string(),
+        "scene.damper.k2: 5 is where the refinement starts, but lies outside the bounds [10, 1000]",
+    );
+}
+
+#[test]
+fn contract_invalid_bands_are_refused() {
+    let refused = |objective: Value, message: &str| {
+        let mut study = tiny();
+        study["optimize"]["objective"] = objective;
+        refused_text(&study.to_string(), message);
+    };
+    refused(
+        json!({ "omega": { "from": 8, "to": 5 } }),
+        "optimize.objective.omega: from = 8 rad/s is not below to = 5 rad/s: the band is empty",
+    );
+    refused(
+        json!({ "omega": { "from": 5, "to": 8, "samples": 1 } }),
+        "optimize.objective.omega.samples: 1 is not allowed here: give a whole number from 2 to 10000",
+    );
+    refused(
+        json!({ "omega": { "from": 0, "to": 8 } }),
+        "optimize.objective.omega.from: 0 is not allowed here: give a finite number above 0",
+    );
+    refused(
+        json!({ "omega": { "from": 5, "till": 8 } }),
+        "optimize.objective.omega: unknown field `till`; allowed: from, to, samples, relative",
+    );
+    refused(json!({ "omega": { "from": 5 } }), "optimize.objective.omega.to: missing, and it has no default");
+    refused(
+        json!({ "omega": 6.5 }),
+        "optimize.objective.omega: wrong type: number `6.5`, expected an object",
+    );
+    refused(
+        json!({ "omga": { "from": 5, "to": 8 } }),
+        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, response, starts, settle, ensemble, sum",
+    );
+    refused(
+        json!({ "response": "stead" }),
+        "optimize.objective.response: \"stead\" is not allowed here; did you mean `steady`? allowed: window, steady, settled, motions",
+    );
+}
+
+#[test]
+fn contract_a_million_million_points_are_refused_at_once() {
+    let mut study = tiny();
+    for axis in ["k2", "c2", "D", "C"] {
+        study["optimize"]["surf"][axis]["points"] = json!(1000);
+    }
+    refused_text(&study.to_string(), "optimize.surf: the grid has 1e12 points: at most 10000000 are allowed");
+}
+
+#[test]
+fn contract_text_that_is_not_json_is_refused() {
+    let text = tiny().to_string();
+    let number = |replacement: &str| text.replace("\"m1\":1000", replacement);
+    refused_text(
+        &number("\"m1\":NaN"),
+        "not valid JSON at scene.primary.m1: expected a value (a number, \"text\", true, false, null, [...] or {...}; \
+         JSON has no NaN or Infinity)",
+    );
+    refused_text(
+        &number("\"m1\":1e999"),
+        "not valid JSON at scene.primary.m1: number out of range: its magnitude must be below 1.8e308",
+    );
+    refused_text(&number("\"m1\":1000,\"m1\":3"), "scene.primary.m1: given twice");
+    refused_text("", "not valid JSON: the text ends too early (EOF while parsing a value)");
+    refused_text(&format!("{text}}}"), "not valid JSON: there is more text after the end of the study");
+    let desk = Desk::new();
+    desk.write("bad.json", b"{\"name\":\"\xe9\"}");
+    let error = retune_study::read(&desk.path("bad.json")).expect_err("no text");
+    assert!(matches!(error, StudyError::NotText { byte: 9, .. }), "{error}");
+}
+
+#[test]
+fn contract_a_byte_order_mark_is_accepted() {
+    let desk = Desk::new();
+    desk.write("study.json", format!("\u{feff}{}", tiny()));
+    let study = retune_study::read(&desk.path("study.json")).expect("a study");
+    assert_eq!(study, from_text(&tiny().to_string(), "study.json").expect("a study"));
+}
+
+#[test]
+fn contract_a_missing_file_is_named() {
+    let desk = Desk::new();
+    let path = desk.path("none.json");
+    match retune_study::read(&path).expect_err("no file") {
+        StudyError::Unreadable { file, source } => {
+            assert_eq!((file, source.kind()), (path.display().to_string(), std::io::ErrorKind::NotFound));
+        }
+        other => panic!("{other}"),
+    }
+}
+
+/// Rules that several fields break together are values as well as words.
+#[test]
+fn contract_contradictions_are_typed() {
+    let rule = |pointer: &str, value: Value| {
+        let mut study = tiny();
+        *study.pointer_mut(pointer).expect(pointer) = value;
+        match from_text(&study.to_string(), "bad.json").expect_err("a contradiction") {
+            StudyError::Rule { rule, .. } => rule,
+            other => panic!("{other}"),
+        }
+    };
+    assert_eq!(rule("/window/t0", json!(4)), Rule::EmptyWindow { t0: 4.0, end: 4.0 });
+    assert_eq!(rule("/scene/damper", Value::Null), Rule::NoDamper);
+    assert_eq!(rule("/optimize/vary", json!([])), Rule::NothingVaried);
+    assert_eq!(rule("/optimize/refine/starts", json!(0)), Rule::NoStarts);
+}
+
+#[test]
+fn contract_invalid_objectives_are_refused() {
+    for (objective, message) in [
+        (
+            json!({ "k1": { "set": [] } }),
+            "optimize.objective.k1.set: an empty list is not allowed here: give at least one",
+        ),
+        (
+            json!({ "k1": { "range": { "from": 4e4, "to": 4e4, "samples": 3 } } }),
+            "optimize.objective.k1.range: from = 40000 N/m is not below to = 40000 N/m: the band is empty",
+        ),
+        (json!({ "settle": { "blocks": 1 } }), "optimize.objective.settle.blocks: 1 is not allowed here"),
+        (
+            json!({ "ensemble": { "members": 0 } }),
+            "optimize.objective.ensemble.members: 0 is not allowed here",
+        ),
+        (
+            json!({ "ensemble": { "members": 2, "statistic": { "quantile": 1.5 } } }),
+            "optimize.objective.ensemble.statistic.quantile: 1.5 is not allowed here: give a number above 0 and at most 1",
+        ),
+        (
+            json!({ "response": "steady", "sum": [{ "weight": 1, "objective": {} }] }),
+            "optimize.objective.sum: stands in the place of quantity, omega, k1, response, starts, settle and ensemble",
+        ),
+        (
+            json!({ "quantity": "contact_force", "response": "steady" }),
+            "optimize.objective.quantity: contact_force is not allowed here: give another quantity, or another response",
+        ),
+        (
+            json!({ "sum": [
+                { "weight": 1, "objective": {} }, { "weight": 1, "objective": { "quantity": "x1max" } }
+            ] }),
+            "optimize.objective.sum[1].objective.quantity: x1max is not allowed here: give the same quantity in all parts",
+        ),
+        (
+            json!({ "sum": [{ "weight": 1, "objective": { "omega": { "from": 8, "to": 5 } } }] }),
+            "optimize.objective.sum[0].objective.omega: from = 8 rad/s is not below to = 5 rad/s",
+        ),
+    ] {
+        let said = problem(&global(objective, json!({})).to_string());
+        assert!(said.starts_with(message), "{message}: {said}");
+    }
+    let mut based = global(json!({ "response": "steady" }), json!({ "ground_force": 100 }));
+    based["scene"]["forcing"] = json!({ "base": 0.01, "omega": 6.3 });
+    let said = problem(&based.to_string());
+    let message =
+        "optimize.limits.ground_force: 100 is not allowed here: give another response: on a moving base";
+    assert!(said.starts_with(message), "{said}");
+    let mut open = global(json!({}), json!({}));
+    open["optimize"]["bounds"] = json!({});
+    let said = problem(&open.to_string());
+    let message = "optimize.global.box.k2: missing, and optimize.bounds.k2 has no largest value";
+    assert!(said.starts_with(message), "{said}");
+}
+
+#[test]
+fn contract_settings_are_checked_like_the_file() {
+    let study = from_text(&tiny().to_string(), "study.json").expect("a study");
+    for (setting, message) in [
+        ("m1=-1", "m1: -1 is not allowed here: give a finite number above 0"),
+        ("k2=nan", "k2: NaN is not allowed here: give a finite number not below 0"),
+        ("R=0", "R: 0 is not allowed here: give a finite number above 0"),
+        ("t0=9", "window: t0 = 9 s is not before T = 4 s: the window is empty"),
+    ] {
+        let setting: Setting = setting.parse().expect("a setting");
+        let error = study.with(std::slice::from_ref(&setting)).expect_err("a wrong value");
+        assert_eq!(error.to_string(), message);
+        assert_eq!(
+            matches!(error, SettingError::Rule(Rule::EmptyWindow { .. })),
+            message.starts_with("window")
+        );
+    }
+    for (text, error) in [
+        ("k3=1", SettingError::Name { name: "k3".into() }),
+        ("k1", SettingError::Form { text: "k1".into() }),
+        (
+            "omega=1kHz",
+            SettingError::Number {
+                name: Parameter::Omega.into(),
+                problem: "\"1kHz\" is not a number in rad/s, nor one with its unit: rad/s, Hz, rpm".into(),
+            },
+        ),
+        (
+            "k1=soft",
+            SettingError::Number {
+                name: Parameter::K1.into(),
+                problem: "\"soft\" is not a number in N/m, nor one with its unit: N/m, kN/m, MN/m, N/mm"
+                    .into(),
+            },
+        ),
+    ] {
+        assert_eq!(text.parse::<Setting>(), Err(error));
+    }
+    let mut bare = tiny();
+    bare["scene"]["damper"] = Value::Null;
+    bare["optimize"] = Value::Null;
+    let bare = from_text(&bare.to_string(), "study.json").expect("a study");
+    assert_eq!(
+        bare.with(&[Setting::new(Parameter::K2, 1.0)]),
+        Err(SettingError::Absent { name: Parameter::K2, source: Absent::NoDamper })
+    );
+}

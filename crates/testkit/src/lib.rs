@@ -1,0 +1,13 @@
+//! What the tests of several crates share. No part of the program: only tests, benchmarks, the fuzzer and the comparison use it.
+
+#[cfg(feature = "anything")]
+pub mod anything;
+#[cfg(feature = "desk")]
+pub mod desk;
+#[cfg(feature = "jobs")]
+pub mod observers;
+pub mod scenes;
+#[cfg(feature = "desk")]
+pub mod schema;
+#[cfg(feature = "jobs")]
+pub mod verified;

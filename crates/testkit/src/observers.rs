@@ -1,0 +1,119 @@
+//! Observers that tests need, and calls of jobs that must succeed or be refused.
+
+use retune_workbench::{Error, Observer, Progress, Silent};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+/// Keeps what a job says: as many lines of each kind as there were.
+#[derive(Default)]
+pub struct Record {
+    said: Mutex<Vec<(Kind, String)>>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Result,
+    Log,
+    Warning,
+}
+
+impl Record {
+    fn keep(&self, kind: Kind, line: &str) -> Result<(), Error> {
+        self.said.lock().expect("no panic").push((kind, line.to_owned()));
+        Ok(())
+    }
+
+    fn of(&self, kinds: &[Kind]) -> String {
+        let said = self.said.lock().expect("no panic");
+        said.iter().filter(|(kind, _)| kinds.contains(kind)).map(|(_, line)| format!("{line}\n")).collect()
+    }
+
+    /// The lines of the result.
+    pub fn results(&self) -> String {
+        self.of(&[Kind::Result])
+    }
+
+    /// Those and the lines of the log, in their order.
+    pub fn all(&self) -> String {
+        self.of(&[Kind::Result, Kind::Log])
+    }
+
+    /// The warnings.
+    pub fn warnings(&self) -> String {
+        self.of(&[Kind::Warning])
+    }
+}
+
+impl Observer for Record {
+    fn result(&self, line: &str) -> Result<(), Error> {
+        self.keep(Kind::Result, line)
+    }
+    fn log(&self, line: &str) -> Result<(), Error> {
+        self.keep(Kind::Log, line)
+    }
+    fn warn(&self, words: &str) {
+        let _ = self.keep(Kind::Warning, words);
+    }
+    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
+        Box::new(Silent)
+    }
+    fn resumable(&self) {}
+}
+
+/// Ends a job at one of its evaluations or lines of the log, as a crash would: the job has no chance to save anything.
+struct Cut(Arc<AtomicU64>);
+
+impl Cut {
+    fn count(&self) {
+        if self.0.fetch_sub(1, Relaxed) == 1 {
+            resume_unwind(Box::new("cut off")); // no message, unlike a panic
+        }
+    }
+}
+
+impl Observer for Cut {
+    fn result(&self, _line: &str) -> Result<(), Error> {
+        Ok(())
+    }
+    fn log(&self, _line: &str) -> Result<(), Error> {
+        self.count();
+        Ok(())
+    }
+    fn warn(&self, _words: &str) {}
+    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
+        Box::new(Self(Arc::clone(&self.0)))
+    }
+    fn resumable(&self) {}
+}
+
+impl Progress for Cut {
+    fn known(&self) {}
+    fn inc(&self, more: u64) {
+        (0..more).for_each(|_| self.count());
+    }
+    fn finish(&self) {}
+}
+
+/// Begins a job and cuts it off at the `at`-th moment that it tells of.
+#[track_caller]
+pub fn cut_off<T>(at: u64, job: impl FnOnce(&dyn Observer) -> Result<T, Error>) {
+    let watch = Cut(Arc::new(AtomicU64::new(at)));
+    let ended = catch_unwind(AssertUnwindSafe(|| job(&watch).map(drop)));
+    assert!(ended.is_err(), "the job has fewer moments than {at}: {ended:?}");
+}
+
+/// The error of a job that must be refused.
+#[track_caller]
+pub fn refused<T>(result: Result<T, Error>) -> Error {
+    match result {
+        Ok(_) => panic!("it is not refused"),
+        Err(error) => error,
+    }
+}
+
+/// The result of a job that must succeed.
+#[track_caller]
+pub fn good<T>(result: Result<T, Error>) -> T {
+    result.unwrap_or_else(|error| panic!("{error}"))
+}
