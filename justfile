@@ -80,10 +80,8 @@ check STUDY *OPTIONS:
 
 # Retention of tuning along the stiffness k1, N/m, into results/retune, e.g. `just retune 20000 30000 50000 60000`
 [group('compare')]
-track +K1:
-    {{retune}} track "$@"
-
-alias retune := track
+retune +K1:
+    {{retune}} retention "$@"
 
 # Pareto fronts of both dampers under bounds on k2 and stroke, into results/fronts; also `just fronts studies/fronts-soft.json`
 [group('compare')]

@@ -106,8 +106,8 @@ pub enum Command {
         #[command(flatten)]
         running: Running,
     },
-    /// Track the optimum along k1: retune both dampers for other stiffnesses of the structure, and plot the loss by detuning
-    Track {
+    /// Retention of tuning along k1: tune dampers again for other stiffnesses of the structure, and plot what detuning costs
+    Retention {
         /// Stiffnesses of the primary structure, N/m
         #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
         k1: Vec<Setting>,

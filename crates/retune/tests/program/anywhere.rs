@@ -12,7 +12,7 @@ fn contract_plans_are_found_in_an_empty_directory() {
     assert!(said.starts_with(note) && said.contains("results in results/paper: "), "{said}");
     for (arguments, out) in [
         (vec!["table2", "--quiet"], "results/table2/table2-ssvi"),
-        (vec!["track", "30000", "--quiet"], "results/retune/k1-39500/retune-ssvi"),
+        (vec!["retention", "30000", "--quiet"], "results/retune/k1-39500/retune-ssvi"),
         (vec!["fronts", "--quiet"], "results/fronts"),
     ] {
         let mut child = begun(&desk, &arguments, out, 2);

@@ -108,7 +108,7 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
         "merge",
         "certify",
         "table2",
-        "track",
+        "retention",
         "fronts",
         "branches",
         "reproduce",

@@ -1,8 +1,8 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
 use super::candidate::SAME;
+use super::designs::{Certified, Fronts, NEEDS, Row};
 use super::draw;
-use super::fronts::{Certified, Fronts, NEEDS, Row};
 use retune_model::Parameter;
 use retune_store::Directory;
 use retune_study::{Sweep, design_cells, design_words, rounded, short};

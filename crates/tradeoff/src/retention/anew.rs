@@ -1,7 +1,7 @@
-//! The searches of `track`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
+//! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
 use super::tuned::{Kept, Tuned, Tuning, energy, over};
-use crate::pareto::SAME;
+use crate::fronts::SAME;
 use retune_model::{Design, Parameter};
 use retune_study::{self as study, PaperStudy, Setting, SpringBounds, Study, Table2, short};
 use retune_workbench::designs::Row;

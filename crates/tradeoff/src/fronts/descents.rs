@@ -7,7 +7,7 @@
 //! at; and all this as long as it brings anything anywhere. The tasks of a round are independent of each other, so that every thread has work.
 
 use super::candidate::{CONTINUED, Candidate, by_excess};
-use super::fronts::Fronts;
+use super::designs::Fronts;
 use super::refinement::{Under, about, descend, on_sides, scattered, screen, set_samples, starts};
 use rayon::prelude::*;
 use retune_model::{Design, Parameter, PerVariable};

@@ -4,7 +4,7 @@
 
 use super::candidate::{CONTINUED, Candidate};
 use super::descents::Task;
-use super::fronts::{Fronts, GIVEN};
+use super::designs::{Fronts, GIVEN};
 use super::refinement::Under;
 use rayon::prelude::*;
 use retune_model::{Design, Measure, PerVariable, Scene};

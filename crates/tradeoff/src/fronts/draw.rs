@@ -1,7 +1,7 @@
 //! The figures of `fronts`.
 
 use super::candidate::Candidate;
-use super::fronts::{Fronts, Row};
+use super::designs::{Fronts, Row};
 use crate::caption::{made_by, words};
 use retune_figures::colour::{BLACK, BLUE, Colour, ORANGE, PURPLE, VERMILION};
 use retune_figures::{Axis, Chart, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing};
