@@ -1,7 +1,7 @@
 //! `branches`, computed again: motions from their states, what runs settle on.
 
-use crate::asked::plan_of;
 use crate::basins::STARTS;
+use crate::options::plan_of;
 use crate::tables::{ATTRACTORS, STATES};
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::branches::{Plan, sample};

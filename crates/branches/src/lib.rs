@@ -1,26 +1,26 @@
 //! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
 //! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
 //!
-//! The motions are found by `retune_dynamics::periodic`. Read `asked` (what is asked for), `tables` (what is written), `draw`, `page`, `basins`, and
+//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `tables` (what is written), `draw`, `page`, `basins`, and
 //! `again`, which computes rows of the tables again.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod again;
-mod asked;
 mod basins;
 mod draw;
 mod found;
 mod margin;
+mod options;
 mod page;
 mod remedy;
 mod tables;
 mod words;
 
-pub use asked::Asked;
 pub use found::{Found, Margin};
+pub use options::Options;
 pub use tables::summary;
 
-use asked::plan_json;
+use options::plan_json;
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::basins::SIDE;
 use retune_dynamics::periodic::branches::{Watch, branches as motions};
@@ -57,9 +57,9 @@ pub static OTHERS: &Others = &[(&KIND, again::again)];
 ///
 /// # Errors
 /// The study or what is asked for is wrong, a scene in the range cannot be run, or the results cannot be written.
-pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Result<Done<Found>, Error> {
+pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> Result<Done<Found>, Error> {
     let study = read(&request.study)?;
-    let (plan, basins_at) = asked.plan(&study)?;
+    let (plan, basins_at) = options.plan(&study)?;
     let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
     let out = request.out.clone().unwrap_or_else(|| {
         Path::new("results").join(format!("branches-{}{tuned}-{}", study.name(), plan.parameter.symbol()))
@@ -67,7 +67,7 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
     let request = Request { out: Some(out), ..request.clone() };
     let studies = [(study.name(), &study)];
     let mut said = plan_json(&plan);
-    if asked.margin {
+    if options.margin {
         said["margin"] = true.into();
     }
     if let Some(value) = basins_at {
@@ -84,7 +84,7 @@ pub fn branches(request: &Request, asked: &Asked, watch: &dyn Observer) -> Resul
         )?;
         bar.finish();
         let mut found = Found::new(study.clone(), branches);
-        if asked.margin {
+        if options.margin {
             found.margin = margin::margin(&found)?;
         }
         if let Some(value) = basins_at {

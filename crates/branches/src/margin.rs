@@ -14,9 +14,9 @@ use retune_workbench::Error;
 const STEPS: [f64; 10] = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0];
 /// How far below a birth another is looked for, as a share of the force, and how often.
 const BELOW: f64 = 0.995;
-const AGAIN: usize = 4;
+const ROUNDS: usize = 4;
 /// A branch counts whose largest energy is by this factor above that of all motions that runs from rest lead to.
-const MUCH: f64 = 1.05;
+const NOTABLE: f64 = 1.05;
 
 /// Looks for it. None where the answer is not along ω, or nothing has an amplitude. Where there is such a motion already, nothing above the own force is
 /// tried.
@@ -41,7 +41,7 @@ pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
     };
     for step in STEPS {
         let Some(mut born) = first_birth(step * own)? else { continue };
-        for _ in 0..AGAIN {
+        for _ in 0..ROUNDS {
             let below = BELOW * born.value;
             match if below > own { first_birth(below)? } else { None } {
                 Some(earlier) => born = earlier,
@@ -58,7 +58,7 @@ fn others(found: &Found) -> impl Iterator<Item = &Branch> {
     let energy = |i: usize| found.largest[i].as_ref().map_or(0.0, |orbit| orbit.seen.e1_max);
     let from_rest = |i: &usize| found.branches.is_reached_from_rest(*i);
     let usual = (0..found.largest.len()).filter(from_rest).map(energy).fold(0.0, f64::max);
-    let is_other = move |(i, _): &(usize, &Branch)| !from_rest(i) && energy(*i) > MUCH * usual;
+    let is_other = move |(i, _): &(usize, &Branch)| !from_rest(i) && energy(*i) > NOTABLE * usual;
     found.branches.branches.iter().enumerate().filter(is_other).map(|(_, branch)| branch)
 }
 

@@ -45,7 +45,7 @@ pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
     let document = Document {
         title: format!("{}: periodic motions along {symbol}", found.study.name()),
         command: "retune branches",
-        opening: vec![Block::Words(asked(found)), Block::List(answer(found))],
+        opening: vec![Block::Words(plan_words(found)), Block::List(answer(found))],
         sections,
     };
     directory.write("README.md", &document.markdown())?;
@@ -57,7 +57,7 @@ const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions
     begins or ends, at no speed; a Hertz contact is soft enough for the branch to go on.";
 
 /// What was done.
-fn asked(found: &Found) -> String {
+fn plan_words(found: &Found) -> String {
     let plan = &found.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
     let damper = found

@@ -129,7 +129,7 @@ pub fn summary(found: &Found) -> Value {
         .collect();
     json!({
         "study": found.study.name(),
-        "plan": crate::asked::plan_json(&found.branches.plan),
+        "plan": crate::options::plan_json(&found.branches.plan),
         "stable": stable,
         "irregular": irregular,
         "branches": branches,

@@ -2,7 +2,7 @@
 
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
-use retune_explore::protocol::{Hung, Place};
+use retune_explore::protocol::{DamperKind, Place};
 use retune_explore::start::Start;
 use retune_explore::{kind, motion, response};
 use retune_solver::{Rows, Window, trajectory};
@@ -23,7 +23,7 @@ fn median(mut call: impl FnMut()) -> f64 {
 
 fn main() {
     let start = Start::read(None).expect("the built-in study");
-    let place = Place { damper: Hung::Ssvi, set: std::collections::BTreeMap::default() };
+    let place = Place { damper: DamperKind::Ssvi, set: std::collections::BTreeMap::default() };
     let study = start.at(&place).expect("a study");
     let curve = response::Curve::of(&study);
     let over = |samples: usize| {

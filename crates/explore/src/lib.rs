@@ -8,18 +8,18 @@
 //! [`tuning`].
 //!
 //! ```
-//! use retune_explore::protocol::{Hung, Place};
+//! use retune_explore::protocol::{DamperKind, Place};
 //! use retune_explore::{motion, start::Start};
 //!
 //! // The paper's SSVI NES with another spring, as a page shows it in 800 columns of pixels.
 //! let start = Start::read(None)?;
-//! let place = Place { damper: Hung::Ssvi, set: [("k2".to_owned(), 300.0)].into() };
+//! let place = Place { damper: DamperKind::Ssvi, set: [("k2".to_owned(), 300.0)].into() };
 //! let study = start.at(&place).map_err(|refused| refused.problem)?;
 //! let shown = motion::look(&study, [50.0, 100.0], 800).map_err(|refused| refused.problem)?;
 //! assert!(shown.get("text").and_then(|text| text.as_str()).is_some_and(|text| text.contains("E1max")));
 //!
 //! // The rules are those of study files.
-//! let refused = start.at(&Place { damper: Hung::Tmd, set: [("D".to_owned(), 0.1)].into() });
+//! let refused = start.at(&Place { damper: DamperKind::Tmd, set: [("D".to_owned(), 0.1)].into() });
 //! assert!(refused.is_err_and(|refused| refused.problem == "D: the damper has no walls"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -43,4 +43,4 @@ pub mod thin;
 pub mod tuning;
 
 pub use refused::Refused;
-pub use server::{Asked, Server, explore};
+pub use server::{Options, Server, explore};

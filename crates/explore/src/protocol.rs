@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// The kinds of damper that a page may hang on the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Hung {
+pub enum DamperKind {
     /// No damper.
     None,
     /// A damper without walls.
@@ -23,7 +23,7 @@ pub enum Hung {
 #[serde(deny_unknown_fields)]
 pub struct Place {
     /// The damper.
-    pub damper: Hung,
+    pub damper: DamperKind,
     /// Numbers by the names of `--set`, SI units. What is left out is the study's.
     pub set: BTreeMap<String, f64>,
 }

@@ -21,9 +21,9 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Connections at once, files and pages.
 const MOST_CONNECTIONS: usize = 4 * MOST_PAGES;
 
-/// What is asked on the command line.
+/// The options of the command line.
 #[derive(Clone, Debug, Default)]
-pub struct Asked {
+pub struct Options {
     /// A study, an `optimum.json` or a directory of results; the paper's SSVI NES if none is named.
     pub study: Option<PathBuf>,
     /// The port; any that is free if it is 0.
@@ -36,10 +36,10 @@ pub struct Asked {
 ///
 /// # Errors
 /// The study is wrong, or the port is taken.
-pub fn explore(asked: &Asked, watch: &dyn Observer) -> Result<(), Error> {
-    let server = Server::open(asked)?;
+pub fn explore(options: &Options, watch: &dyn Observer) -> Result<(), Error> {
+    let server = Server::open(options)?;
     watch.result(&format!("{}\nends with Ctrl-C", server.address()))?;
-    if asked.browser
+    if options.browser
         && let Err(error) = open::that_detached(server.address())
     {
         watch.warn(&format!("no browser could be opened ({error}): open the address yourself"));
@@ -68,14 +68,14 @@ impl Server {
     ///
     /// # Errors
     /// The study is wrong, or the port is taken.
-    pub fn open(asked: &Asked) -> Result<Self, Error> {
-        let start = Start::read(asked.study.as_deref())?;
-        let refuse = |error: &dyn std::fmt::Display| Error::Asked {
+    pub fn open(options: &Options) -> Result<Self, Error> {
+        let start = Start::read(options.study.as_deref())?;
+        let refuse = |error: &dyn std::fmt::Display| Error::Argument {
             option: "--port",
-            problem: format!("{} cannot be listened on: {error}", asked.port),
+            problem: format!("{} cannot be listened on: {error}", options.port),
         };
         let listener =
-            TcpListener::bind((Ipv4Addr::LOCALHOST, asked.port)).map_err(|error| refuse(&error))?;
+            TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)).map_err(|error| refuse(&error))?;
         let port = listener.local_addr().map_err(|error| refuse(&error))?.port();
         let mut secret = [0_u8; 16];
         getrandom::fill(&mut secret).map_err(|error| refuse(&error))?;

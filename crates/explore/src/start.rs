@@ -2,7 +2,7 @@
 
 use crate::limits::bounded;
 use crate::motion::IMPACTS;
-use crate::protocol::{Answer, Hung, Place};
+use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
 use retune_model::{Contact, Damper, Measure, NonNegative, Parameter};
@@ -39,7 +39,7 @@ pub struct Control {
     /// Whether the slider is logarithmic.
     pub log: bool,
     /// The dampers that have it.
-    pub dampers: &'static [Hung],
+    pub dampers: &'static [DamperKind],
 }
 
 /// The numbers that a page can turn, in its order.
@@ -58,13 +58,13 @@ const TURNED: [Parameter; 11] = [
 ];
 
 /// The dampers that have a parameter.
-const fn dampers(parameter: Parameter) -> &'static [Hung] {
+const fn dampers(parameter: Parameter) -> &'static [DamperKind] {
     if parameter.is_gap() || parameter.is_of_contact() {
-        &[Hung::Ssvi]
+        &[DamperKind::Ssvi]
     } else if parameter.is_of_damper() {
-        &[Hung::Tmd, Hung::Ssvi]
+        &[DamperKind::Tmd, DamperKind::Ssvi]
     } else {
-        &[Hung::None, Hung::Tmd, Hung::Ssvi]
+        &[DamperKind::None, DamperKind::Tmd, DamperKind::Ssvi]
     }
 }
 
@@ -105,7 +105,7 @@ impl Start {
         Answer::new("hello")
             .with("version", env!("CARGO_PKG_VERSION"))
             .with("study", study.name())
-            .with("damper", self.hung())
+            .with("damper", self.damper_kind())
             .with("controls", self.controls())
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
@@ -116,11 +116,11 @@ impl Start {
     }
 
     /// The damper that the study has.
-    pub fn hung(&self) -> Hung {
+    pub fn damper_kind(&self) -> DamperKind {
         match &self.study.scene.damper {
-            None => Hung::None,
-            Some(damper) if damper.contact.is_some() => Hung::Ssvi,
-            Some(_) => Hung::Tmd,
+            None => DamperKind::None,
+            Some(damper) if damper.contact.is_some() => DamperKind::Ssvi,
+            Some(_) => DamperKind::Tmd,
         }
     }
 
@@ -141,24 +141,24 @@ impl Start {
     /// As [`Self::at`]; or a rule of the search, for instance a value out of its bounds.
     pub fn file_at(&self, place: &Place) -> Result<Study, Refused> {
         let mut study = self.with(place.damper);
-        if place.damper == Hung::None {
+        if place.damper == DamperKind::None {
             study.optimize = None;
         }
         Ok(study.with(&settings(place)?)?)
     }
 
     /// The study with another damper.
-    fn with(&self, hung: Hung) -> Study {
+    fn with(&self, damper_kind: DamperKind) -> Study {
         let mut study = self.study.clone();
         let Damper { mass, stiffness, damping, .. } = self.damper;
         let zero = NonNegative::default();
         let open = Damper { mass, stiffness, damping, rest_distance: zero, clearance: zero, contact: None };
-        study.scene.damper = match hung {
-            Hung::None => None,
-            Hung::Tmd => Some(open),
-            Hung::Ssvi => Some(self.damper),
+        study.scene.damper = match damper_kind {
+            DamperKind::None => None,
+            DamperKind::Tmd => Some(open),
+            DamperKind::Ssvi => Some(self.damper),
         };
-        if let Some(optimize) = study.optimize.as_mut().filter(|_| hung == Hung::Tmd) {
+        if let Some(optimize) = study.optimize.as_mut().filter(|_| damper_kind == DamperKind::Tmd) {
             // Without walls there are no gaps to tune.
             for gap in [Parameter::D, Parameter::C] {
                 optimize.vary.retain(|variable| *variable != gap);
@@ -173,7 +173,7 @@ impl Start {
 
     /// What a page can turn, whichever damper it hangs there.
     pub fn controls(&self) -> Vec<Control> {
-        let walled = Study { optimize: None, ..self.with(Hung::Ssvi) };
+        let walled = Study { optimize: None, ..self.with(DamperKind::Ssvi) };
         let control = |parameter: Parameter| {
             let value = parameter.of(&walled.scene)?;
             let [from, to] = self.range(parameter, value);

@@ -68,7 +68,7 @@ fn named(start: &Start, place: &Place) -> Result<Named, Refused> {
         name.parse().ok().and_then(|what: Settable| start.study().value_of(what)) != Some(**value)
     };
     match &start.file {
-        Some(file) if start.hung() == place.damper => {
+        Some(file) if start.damper_kind() == place.damper => {
             let set = place.set.iter().filter(differs).map(|(name, value)| format!("{name}={value}"));
             Ok(Named { file: file.clone(), set: set.collect(), note: "" })
         }

@@ -61,13 +61,13 @@ struct Found {
     paper_value: f64,
     /// Between nodes.
     step: [f64; 2],
-    /// Nodes with springs no stiffer than asked for, and those among them that are better than the paper's point.
+    /// Nodes with springs no stiffer than plotted for, and those among them that are better than the paper's point.
     nodes: usize,
     better: usize,
 }
 
 /// An objective of the surfaces.
-struct Asked {
+struct Plotted {
     /// What is added to names and titles.
     name: &'static str,
     words: &'static str,
@@ -92,14 +92,14 @@ pub fn figure2(plan: &Plan) -> Result<Item, Error> {
     let [fine, coarse] = if plan.is_brief { BRIEF } else { [POINTS, COARSE] };
     let bar = plan.watch.progress("figure 2", (3 * (fine * fine + coarse * coarse)) as u64);
     let done = || bar.inc(1);
-    let at_one = Asked {
+    let at_one = Plotted {
         name: "",
         words: "at ω = 6.28 rad/s",
         points: fine,
         objective: Objective::default(),
         stiffest: f64::INFINITY,
     };
-    let worst = |response, stiffest| Asked {
+    let worst = |response, stiffest| Plotted {
         name: "-worst",
         words: "at its worst over 5 to 8 rad/s (coarse)",
         points: coarse,
@@ -168,14 +168,14 @@ fn surface(
     plan: &Plan,
     study: &Study,
     surface: &Surface,
-    asked: &Asked,
+    plotted: &Plotted,
     item: &mut Item,
     done: &(impl Fn() + Sync),
 ) -> Result<Found, Error> {
     let refuse = |problem: String| Error::Figure { name: surface.name.to_owned(), problem };
     let damper = study.scene.damper.ok_or_else(|| refuse("the study has no damper".into()))?;
-    let &Asked { name, words, points, stiffest, .. } = asked;
-    let goal = Goal { objective: asked.objective.clone(), ..plan.window().into() };
+    let &Plotted { name, words, points, stiffest, .. } = plotted;
+    let goal = Goal { objective: plotted.objective.clone(), ..plan.window().into() };
     let objective = PeakEnergy::new(study.scene, damper, surface.variables.to_vec(), goal, plan.settings());
     let [xs, ys] = surface.ranges.map(|(from, to)| evenly(from, to, points));
     let designs: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();

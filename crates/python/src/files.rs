@@ -7,21 +7,21 @@ use crate::watch::{Watch, watched};
 use pyo3::prelude::*;
 use retune_model::Parameter;
 use retune_study::Setting;
-use retune_sweep::Asked;
+use retune_sweep::Options;
 use retune_tradeoff::{fronts, retention};
-use retune_workbench::design::Wishes;
+use retune_workbench::design::Requirements;
 use retune_workbench::sweep::Points;
 use retune_workbench::{Error, Request, certify, design, sweep, table2, tune};
 use serde::Deserialize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// What a job is asked, beside its study file and [`jobs::Asked`].
+/// What a job is asked, beside its study file and [`jobs::JobOptions`].
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Job {
     Certify,
-    Design(Wishes),
+    Design(Requirements),
     Fronts,
     Merge { parts: Vec<PathBuf> },
     Reproduce { only: Option<String> },
@@ -54,7 +54,7 @@ pub fn job(
     py: Python<'_>,
     study: PathBuf,
     job: &str,
-    asked: jobs::Asked,
+    asked: jobs::JobOptions,
     tell: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let job: Job = serde_json::from_str(job).map_err(|error| Fault::Other(error.to_string()))?;
@@ -66,7 +66,7 @@ fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
     let mut out = request.out_of_file();
     match job {
         Job::Certify => return json(&certify::certify_file(request, watch)?),
-        Job::Design(wishes) => drop(design::design(&wishes, request, watch)?),
+        Job::Design(requirements) => drop(design::design(&requirements, request, watch)?),
         Job::Fronts => drop(fronts::fronts(request, watch)?),
         Job::Merge { parts } => {
             tune::merge::merge(request, &parts, watch)?;
@@ -101,8 +101,8 @@ impl Swept {
         let quantities =
             quantities.iter().map(|name| read("quantities", name)).collect::<Result<Vec<_>, _>>()?;
         let shard = shard.map(|shard| read("shard", &shard)).transpose()?;
-        let asked = Asked { over, from, to, unit: None, points, log, quantities, objective };
-        let table = sweep::sweep(request, &asked, &Points::asked(shard, merge), watch)?;
+        let options = Options { over, from, to, unit: None, points, log, quantities, objective };
+        let table = sweep::sweep(request, &options, &Points::of(shard, merge), watch)?;
         Ok(table.unwrap_or_else(|| "null".to_owned()))
     }
 }

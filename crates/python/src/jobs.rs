@@ -7,7 +7,7 @@ use crate::watch::{caught, on_pool, watched};
 use pyo3::prelude::*;
 use retune_model::{Contact, Parameter, Positive};
 use retune_store::Begin;
-use retune_workbench::design::Wishes;
+use retune_workbench::design::Requirements;
 use retune_workbench::job::Done;
 use retune_workbench::{Request, tune, verify as verification};
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 /// and the number of threads.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Asked {
+pub struct JobOptions {
     out: Option<PathBuf>,
     resume: bool,
     restart: bool,
@@ -24,7 +24,7 @@ pub struct Asked {
     threads: Option<i64>,
 }
 
-impl Asked {
+impl JobOptions {
     pub(crate) fn request(self, study: PathBuf) -> Result<Request, Fault> {
         let Self { out, resume, restart, replace, threads } = self;
         let threads = threads.map(check).transpose()?;
@@ -58,7 +58,12 @@ pub fn study_text(path: PathBuf) -> PyResult<String> {
 /// # Errors
 /// Those of the job, or Ctrl-C.
 #[pyfunction]
-pub fn optimize(py: Python<'_>, core: &Core, asked: Asked, tell: Option<Py<PyAny>>) -> PyResult<PathBuf> {
+pub fn optimize(
+    py: Python<'_>,
+    core: &Core,
+    asked: JobOptions,
+    tell: Option<Py<PyAny>>,
+) -> PyResult<PathBuf> {
     let study = &core.study;
     let mut request = asked.request(PathBuf::new())?;
     let out = request.out_of(study);
@@ -118,11 +123,12 @@ pub fn verify(
 /// # Errors
 /// A wish cannot be fulfilled.
 #[pyfunction]
-pub fn design_study(wishes: &str, kind: &str) -> PyResult<String> {
+pub fn design_study(requirements: &str, kind: &str) -> PyResult<String> {
     let made = || {
-        let wishes: Wishes = serde_json::from_str(wishes).map_err(|error| Fault::Other(error.to_string()))?;
-        wishes.check()?;
-        json(&if kind == "TMD" { wishes.tmd()? } else { wishes.ssvi()? })
+        let requirements: Requirements =
+            serde_json::from_str(requirements).map_err(|error| Fault::Other(error.to_string()))?;
+        requirements.check()?;
+        json(&if kind == "TMD" { requirements.tmd()? } else { requirements.ssvi()? })
     };
     Ok(caught(made)?)
 }
@@ -150,13 +156,13 @@ pub fn branches(
     py: Python<'_>,
     study: PathBuf,
     along: Along,
-    asked: Asked,
+    asked: JobOptions,
     tell: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let request = asked.request(study)?;
     let Along { over, from, to, samples, starts, apart, fine } = along;
     let over = over.parse().map_err(Fault::Other)?;
-    let asked = retune_branches::Asked {
+    let asked = retune_branches::Options {
         over,
         from,
         to,
@@ -164,7 +170,7 @@ pub fn branches(
         starts,
         apart,
         fine,
-        ..retune_branches::Asked::default()
+        ..retune_branches::Options::default()
     };
     watched(py, tell.as_ref(), |watch| match retune_branches::branches(&request, &asked, watch)? {
         Done::Made(found) => json(&retune_branches::summary(&found)),

@@ -4,9 +4,9 @@ use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
 use retune_study as study;
-use retune_sweep::Asked;
+use retune_sweep::Options;
 use retune_tradeoff::{fronts, retention};
-use retune_workbench::design::Wishes;
+use retune_workbench::design::Requirements;
 use retune_workbench::designs::Designs;
 use retune_workbench::evaluate::Streams;
 use retune_workbench::observer::Quiet;
@@ -55,7 +55,7 @@ pub fn run(command: Command) -> Result<(), Error> {
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
         Command::Explore { study, port, no_browser } => {
-            retune_explore::explore(&retune_explore::Asked { study, port, browser: !no_browser }, &all)
+            retune_explore::explore(&retune_explore::Options { study, port, browser: !no_browser }, &all)
         }
         Command::Sweep(arguments) => sweep(arguments),
         Command::Branches(arguments) => branches(arguments),
@@ -96,8 +96,8 @@ fn design(arguments: &cli::Design) -> Result<(), Error> {
     let (mut request, screen) = running.request(&out);
     request.out = Some(out);
     let band = [band.first(), band.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-    let wishes = Wishes { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error };
-    retune_workbench::design::design(&wishes, &request, &screen).map(drop)
+    let requirements = Requirements { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error };
+    retune_workbench::design::design(&requirements, &request, &screen).map(drop)
 }
 
 /// A design that breaks the limits of its study has an exit code of its own.
@@ -138,11 +138,11 @@ fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
 fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
     let cli::Sweep { study, over, from, to, unit, points, log, quantity, objective, .. } = arguments;
     let (request, screen) = arguments.running.request(&study);
-    let asked = Asked { over, from, to, unit, points, log, quantities: quantity, objective };
-    let points = Points::asked(arguments.shard, arguments.merge);
+    let options = Options { over, from, to, unit, points, log, quantities: quantity, objective };
+    let points = Points::of(arguments.shard, arguments.merge);
     let quiet = Quiet(&screen);
     let watch: &dyn Observer = if arguments.json { &quiet } else { &screen };
-    let table = retune_workbench::sweep::sweep(&request, &asked, &points, watch)?;
+    let table = retune_workbench::sweep::sweep(&request, &options, &points, watch)?;
     table.filter(|_| arguments.json).map_or(Ok(()), |table| screen.line(table.trim_end()))
 }
 
@@ -150,11 +150,11 @@ fn branches(arguments: cli::Branches) -> Result<(), Error> {
     let (request, screen) = arguments.running.request(&arguments.study);
     let cli::Branches { over, from, to, samples, starts, apart, fine, margin, basins, json: as_json, .. } =
         arguments;
-    let asked = retune_branches::Asked { over, from, to, samples, starts, apart, fine, margin, basins };
+    let options = retune_branches::Options { over, from, to, samples, starts, apart, fine, margin, basins };
     if !as_json {
-        return retune_branches::branches(&request, &asked, &screen).map(drop);
+        return retune_branches::branches(&request, &options, &screen).map(drop);
     }
-    let found = retune_branches::branches(&request, &asked, &Quiet(&screen))?;
+    let found = retune_branches::branches(&request, &options, &Quiet(&screen))?;
     made(found, |found| screen.line(json(&retune_branches::summary(&found))?))
 }
 

@@ -22,7 +22,7 @@ pub fn code_of(error: &Error) -> u8 {
         | Error::Setting(_)
         | Error::Rule { .. }
         | Error::Sweep(_)
-        | Error::Asked { .. }
+        | Error::Argument { .. }
         | Error::Interval { .. }
         | Error::Part { .. }
         | Error::MissingParts { .. } => WRONG,

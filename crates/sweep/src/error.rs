@@ -4,7 +4,7 @@ use retune_optim::AxisError;
 use retune_study::{Rule, SettingError};
 use thiserror::Error;
 
-/// What is wrong with what was asked, by its name on the command line.
+/// What is wrong with what was options, by its name on the command line.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Error {
     /// An end cannot be read.

@@ -7,7 +7,7 @@
 //! - [`draw`]: the figure.
 //!
 //! ```
-//! use retune_sweep::{Asked, Plan, Sweep};
+//! use retune_sweep::{Options, Plan, Sweep};
 //!
 //! let study = retune_study::read::from_text(
 //!     r#"{
@@ -19,8 +19,8 @@
 //!     }"#,
 //!     "bare.json",
 //! )?;
-//! let asked = Asked { from: "0.8Hz".into(), to: "1.2Hz".into(), points: 5, ..Asked::over("omega".parse()?) };
-//! let sweep = Sweep::new(Plan::read(&asked)?, study)?;
+//! let options = Options { from: "0.8Hz".into(), to: "1.2Hz".into(), points: 5, ..Options::over("omega".parse()?) };
+//! let sweep = Sweep::new(Plan::read(&options)?, study)?;
 //! let points: Vec<f64> = (0..sweep.len()).flat_map(|i| sweep.numbers(sweep.value(i)).0).collect();
 //! let table = sweep.table(&points);
 //! assert_eq!(table.column("f_Hz").map(|column| column[2]), Some(1.0)); // resonance is at 1 Hz
@@ -39,7 +39,7 @@ pub mod table;
 pub mod words;
 
 pub use error::Error;
-pub use plan::{Asked, Plan};
+pub use plan::{Options, Plan};
 pub use quantity::Quantity;
 pub use retune_model::Parameter;
 pub use sweep::Sweep;

@@ -11,7 +11,7 @@ pub const MOST_POINTS: usize = 100_000;
 
 /// What is asked for, as it is typed.
 #[derive(Clone, Debug)]
-pub struct Asked {
+pub struct Options {
     /// The parameter.
     pub over: Parameter,
     /// Its first value; a frequency may have a unit.
@@ -49,7 +49,7 @@ pub struct Plan {
     pub objective: bool,
 }
 
-impl Asked {
+impl Options {
     /// A sweep of 61 evenly spaced values, the ends of which are still to be given.
     pub fn over(over: Parameter) -> Self {
         let [from, to] = [String::new(), String::new()];
@@ -62,17 +62,17 @@ impl Plan {
     ///
     /// # Errors
     /// An end is no number, or there are no such values.
-    pub fn read(asked: &Asked) -> Result<Self, Error> {
-        let Asked { over, points, objective, .. } = *asked;
+    pub fn read(options: &Options) -> Result<Self, Error> {
+        let Options { over, points, objective, .. } = *options;
         let end = |option, text: &str| {
             // A number that has no unit of its own has that of all.
             let unit =
-                asked.unit.as_deref().filter(|_| text.trim().parse::<f64>().is_ok()).unwrap_or_default();
+                options.unit.as_deref().filter(|_| text.trim().parse::<f64>().is_ok()).unwrap_or_default();
             over.read(&format!("{text}{unit}")).map_err(|problem| Error::End { option, problem })
         };
-        let (from, to) = (end("from", &asked.from)?, end("to", &asked.to)?);
+        let (from, to) = (end("from", &options.from)?, end("to", &options.to)?);
         let mut quantities: Vec<Quantity> = Vec::new();
-        for quantity in &asked.quantities {
+        for quantity in &options.quantities {
             if !quantities.contains(quantity) {
                 quantities.push(*quantity);
             }
@@ -80,7 +80,7 @@ impl Plan {
         if quantities.is_empty() {
             quantities.push(Quantity::Largest(Measure::Energy));
         }
-        let scale = if asked.log { Scale::Log } else { Scale::Linear };
+        let scale = if options.log { Scale::Log } else { Scale::Linear };
         Ok(Self { over, from, to, points, scale, quantities, objective })
     }
 

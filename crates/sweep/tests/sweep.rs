@@ -2,7 +2,7 @@
 
 use retune_model::Bare;
 use retune_study::{Study, read::from_text};
-use retune_sweep::{Asked, Error, Plan, Sweep, Table, words};
+use retune_sweep::{Error, Options, Plan, Sweep, Table, words};
 
 const SCENE: &str = r#"{
     "scene": {
@@ -20,12 +20,12 @@ fn study(optimize: &str) -> Study {
     from_text(&SCENE.replace("OPTIMIZE", optimize), "tmd.json").expect("a study")
 }
 
-fn asked(over: &str, from: &str, to: &str, points: usize) -> Asked {
-    Asked { from: from.into(), to: to.into(), points, ..Asked::over(over.parse().expect("a parameter")) }
+fn options(over: &str, from: &str, to: &str, points: usize) -> Options {
+    Options { from: from.into(), to: to.into(), points, ..Options::over(over.parse().expect("a parameter")) }
 }
 
-fn sweep(asked: &Asked, optimize: &str) -> Result<Sweep, Error> {
-    Sweep::new(Plan::read(asked)?, study(optimize))
+fn sweep(options: &Options, optimize: &str) -> Result<Sweep, Error> {
+    Sweep::new(Plan::read(options)?, study(optimize))
 }
 
 fn table(sweep: &Sweep) -> Table {
@@ -40,9 +40,9 @@ fn column(table: &Table, name: &str) -> Vec<f64> {
 /// After 200 s the transient of the structure has died out, and the response is that of the closed form.
 #[test]
 fn exact_a_sweep_over_frequency_is_the_steady_response_of_the_structure() {
-    let sweep = sweep(&asked("omega", "0.8Hz", "1.2", 3), "");
+    let sweep = sweep(&options("omega", "0.8Hz", "1.2", 3), "");
     assert!(sweep.is_err(), "1.2 rad/s is below 0.8 Hz");
-    let sweep = self::sweep(&Asked { unit: Some("Hz".into()), ..asked("omega", "0.8", "72rpm", 5) }, "")
+    let sweep = self::sweep(&Options { unit: Some("Hz".into()), ..options("omega", "0.8", "72rpm", 5) }, "")
         .expect("a sweep");
     let table = table(&sweep);
     assert!(column(&table, "f_Hz").iter().zip([0.8, 0.9, 1.0, 1.1, 1.2]).all(|(a, b)| (a - b).abs() < 1e-12));
@@ -61,7 +61,7 @@ fn exact_a_sweep_over_frequency_is_the_steady_response_of_the_structure() {
 /// Every motion of a linear scene is proportional to the force, and its energy to the square of it.
 #[test]
 fn exact_a_linear_motion_is_proportional_to_the_force() {
-    let table = table(&sweep(&Asked { log: true, ..asked("P", "100", "800", 4) }, "").expect("a sweep"));
+    let table = table(&sweep(&Options { log: true, ..options("P", "100", "800", 4) }, "").expect("a sweep"));
     let force = column(&table, "P");
     assert!(force.windows(2).all(|pair| (pair[1] / pair[0] - 2.0).abs() < 1e-12), "{force:?}");
     for (name, power) in
@@ -79,7 +79,7 @@ fn exact_a_linear_motion_is_proportional_to_the_force() {
 /// The objective of the study itself, at its own value of the parameter and beside it.
 #[test]
 fn contract_a_point_of_the_objective_is_what_the_study_says() {
-    let sweep = sweep(&Asked { objective: true, ..asked("k2", "500", "700", 3) }, BAND).expect("a sweep");
+    let sweep = sweep(&Options { objective: true, ..options("k2", "500", "700", 3) }, BAND).expect("a sweep");
     let study = study(BAND);
     let table = table(&sweep);
     let (energy, none) = (column(&table, "E1max"), column(&table, "E1max_none"));
@@ -95,8 +95,8 @@ fn contract_a_table_fits_the_screen_and_the_answer_comes_first() {
     let quantities: Vec<_> = all.split(',').map(|name| name.parse().expect("a quantity")).collect();
     for quantities in [Vec::new(), quantities] {
         for over in ["omega", "k1", "c2"] {
-            let asked = Asked { quantities: quantities.clone(), ..asked(over, "5", "8", 15) };
-            let sweep = sweep(&asked, "").expect("a sweep");
+            let options = Options { quantities: quantities.clone(), ..options(over, "5", "8", 15) };
+            let sweep = sweep(&options, "").expect("a sweep");
             let text = words::text(&sweep, &table(&sweep), &[], false);
             let wide: Vec<&str> =
                 text.lines().filter(|line| line.chars().count() > 80 || line.ends_with(' ')).collect();
@@ -108,43 +108,43 @@ fn contract_a_table_fits_the_screen_and_the_answer_comes_first() {
 
 #[test]
 fn contract_what_cannot_be_swept_is_refused_with_what_to_do() {
-    let cases: [(Asked, &str, &str); 8] = [
-        (asked("omega", "1kHz", "8", 3), "", "--from: \"1kHz\" is no frequency: give a number in rad/s"),
-        (asked("k1", "soft", "8", 3), "", "--from: \"soft\" is not a number: give one in N/m"),
-        (asked("k1", "8", "3", 3), "", "--from, --to, --points: the range is empty"),
+    let cases: [(Options, &str, &str); 8] = [
+        (options("omega", "1kHz", "8", 3), "", "--from: \"1kHz\" is no frequency: give a number in rad/s"),
+        (options("k1", "soft", "8", 3), "", "--from: \"soft\" is not a number: give one in N/m"),
+        (options("k1", "8", "3", 3), "", "--from, --to, --points: the range is empty"),
         (
-            asked("k1", "3", "8", 1),
+            options("k1", "3", "8", 1),
             "",
             "--points: 1 is not allowed here: give a whole number from 2 to 100000",
         ),
-        (asked("m1", "0", "8", 3), "", "--over: m1: 0 is not allowed here: give a finite number above 0"),
+        (options("m1", "0", "8", 3), "", "--over: m1: 0 is not allowed here: give a finite number above 0"),
         (
-            Asked { log: true, ..asked("D", "0", "1", 3) },
+            Options { log: true, ..options("D", "0", "1", 3) },
             "",
             "--from, --to, --points: `from` is 0: both ends of a log",
         ),
         (
-            Asked { objective: true, ..asked("omega", "5", "8", 3) },
+            Options { objective: true, ..options("omega", "5", "8", 3) },
             BAND,
             "--over omega: the objective takes its own",
         ),
-        (Asked { objective: true, ..asked("k1", "5", "8", 3) }, "", "--objective: optimize: missing"),
+        (Options { objective: true, ..options("k1", "5", "8", 3) }, "", "--objective: optimize: missing"),
     ];
-    for (asked, optimize, message) in cases {
-        let error = sweep(&asked, optimize).expect_err(message).to_string();
+    for (options, optimize, message) in cases {
+        let error = sweep(&options, optimize).expect_err(message).to_string();
         assert!(error.starts_with(message), "{error}");
     }
-    let unit = Asked { unit: Some("kN/m".into()), ..asked("k1", "3", "8", 3) };
-    assert_eq!(
-        sweep(&unit, "").expect_err("another unit").to_string(),
-        "--from: k1 is given in N/m, not in kN/m"
-    );
+    let unit = |unit: &str| Options { unit: Some(unit.into()), ..options("k1", "3", "8", 3) };
+    let said = sweep(&unit("kg"), "").expect_err("another unit").to_string();
+    assert_eq!(said, "--from: \"3kg\" is not a number in N/m, nor one with its unit: N/m, kN/m, MN/m, N/mm");
+    let ends = sweep(&unit("kN/m"), "").map(|sweep| [sweep.value(0), sweep.value(2)]);
+    assert_eq!(ends, Ok([3e3, 8e3]));
 }
 
 /// A value at which nothing can be computed is a gap with its reason, not the end of the sweep.
 #[test]
 fn contract_a_point_without_a_value_is_a_gap_with_a_reason() {
-    let sweep = sweep(&Asked { objective: true, ..asked("D", "0.01", "1", 2) }, BAND).expect("a sweep");
+    let sweep = sweep(&Options { objective: true, ..options("D", "0.01", "1", 2) }, BAND).expect("a sweep");
     let (numbers, reason) = sweep.numbers(0.01);
     assert!(numbers[0].is_infinite() && numbers[3].is_finite(), "{numbers:?}");
     let reason = reason.expect("a reason");

@@ -3,10 +3,10 @@
 
 mod answer;
 mod designed;
-mod wishes;
+mod requirements;
 
 pub use designed::Designed;
-pub use wishes::{Wish, Wishes};
+pub use requirements::{Requirements, Wish};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::designs::{Designs, Row};
@@ -35,26 +35,26 @@ pub static KIND: Kind = Kind {
 /// # Errors
 /// A wish cannot be fulfilled, nothing can be computed, or the results cannot be written.
 pub fn design(
-    wishes: &Wishes,
+    requirements: &Requirements,
     request: &Request,
     watch: &dyn Observer,
 ) -> Result<Done<Vec<Designed>>, Error> {
-    wishes.check()?;
-    let dampers = [("TMD", wishes.tmd()?), ("SSVI NES", wishes.ssvi()?)];
+    requirements.check()?;
+    let dampers = [("TMD", requirements.tmd()?), ("SSVI NES", requirements.ssvi()?)];
     let studies = dampers.iter().map(|(name, study)| (*name, study));
-    let job = Job::of_studies(&KIND, request, json!(wishes), studies)?;
+    let job = Job::of_studies(&KIND, request, json!(requirements), studies)?;
     job.run(request, watch, |directory| {
         let mut searches = Searches::new(directory, &job.order, watch);
         let designed = dampers
             .iter()
-            .map(|(name, study)| one(wishes, name, study, &mut searches, watch))
+            .map(|(name, study)| one(requirements, name, study, &mut searches, watch))
             .collect::<Result<Vec<Designed>, Error>>()?;
         let rows = designed.iter().flat_map(|damper| damper.rows.clone()).collect();
         Designs { column: "limits", rows, infeasible: None }.write("designs", directory)?;
         for Designed { study, .. } in &designed {
             directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
         }
-        let answer = answer::answer(wishes, &designed, &job.out);
+        let answer = answer::answer(requirements, &designed, &job.out);
         directory.write("answer.txt", &(answer.clone() + "\n"))?;
         Ok(Made { answer: designed, report: format!("\n{answer}"), parts: searches.results })
     })
@@ -62,7 +62,7 @@ pub fn design(
 
 /// Tunes one damper under all limits, then without each of them.
 fn one(
-    wishes: &Wishes,
+    requirements: &Requirements,
     name: &'static str,
     study: &Study,
     searches: &mut Searches,
@@ -71,8 +71,8 @@ fn one(
     watch.log(&format!("\n{name}"))?;
     let found = searches.tune(study, "")?;
     let mut rows = vec![Row::of_optimum("all", name, study, &found)];
-    for limit in wishes.limits() {
-        let free = wishes.without(limit);
+    for limit in requirements.limits() {
+        let free = requirements.without(limit);
         let mut free = if name == "TMD" { free.tmd()? } else { free.ssvi()? };
         // What a limit costs is measured from a search that is at least as good as that under it.
         if let Some(optimize) = &mut free.optimize {
@@ -91,7 +91,8 @@ fn one(
         let k1 = study.scene.primary.stiffness.get() * (1.0 + share);
         Ok(study.energy(&tuned.scene_with(&[Setting::new(Parameter::K1, k1)])?).unwrap_or(f64::NAN))
     };
-    let detuned = wishes.k1_error.map(|error| Ok::<_, Error>([off(-error)?, off(error)?])).transpose()?;
+    let detuned =
+        requirements.k1_error.map(|error| Ok::<_, Error>([off(-error)?, off(error)?])).transpose()?;
     let needs = found.needs.as_ref().map_or([f64::NAN; 2], |needs| {
         [Measure::Stroke, Measure::ContactForce].map(|measure| needs.damper.value(measure))
     });

@@ -31,7 +31,7 @@ pub enum Error {
     Sweep(#[from] retune_sweep::Error),
     /// What is asked for on the command line cannot be done.
     #[error("command line: {option}: {problem}")]
-    Asked {
+    Argument {
         /// The option.
         option: &'static str,
         /// What is wrong, and what to give.

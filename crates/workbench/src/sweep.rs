@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use retune_store::identity::VERSION;
 use retune_store::{Directory, Journal};
 use retune_study::{found_in, read};
-use retune_sweep::{Asked, Plan, Sweep, Table, draw, words};
+use retune_sweep::{Options, Plan, Sweep, Table, draw, words};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub enum Points {
 
 impl Points {
     /// Those that two options ask for.
-    pub fn asked(shard: Option<Shard>, merge: bool) -> Self {
+    pub fn of(shard: Option<Shard>, merge: bool) -> Self {
         shard.map_or(if merge { Self::Merged } else { Self::All }, Self::Share)
     }
 }
@@ -61,11 +61,11 @@ impl Points {
 /// The study or what is asked for is wrong, parts are missing, or the results cannot be written.
 pub fn sweep(
     request: &Request,
-    asked: &Asked,
+    options: &Options,
     points: &Points,
     watch: &dyn Observer,
 ) -> Result<Option<String>, Error> {
-    let sweep = Sweep::new(Plan::read(asked)?, read(&request.study)?)?;
+    let sweep = Sweep::new(Plan::read(options)?, read(&request.study)?)?;
     let out = out(request, &sweep)?;
     let request = Request { out: Some(out.clone()), ..request.clone() };
     let plan = json!(sweep.plan());

@@ -1,6 +1,6 @@
 //! The job as another program calls it, on a short stretch of the paper's damper.
 
-use retune_branches::{Asked, OTHERS, branches};
+use retune_branches::{OTHERS, Options, branches};
 use retune_dynamics::Parameter;
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::{EventKind, Onset};
@@ -15,9 +15,9 @@ fn desk() -> Desk {
     Desk::with(&committed("ssvi.json"))
 }
 
-fn asked() -> Asked {
+fn options() -> Options {
     let [from, to] = ["5.2", "5.4"].map(|end| Some(end.to_owned()));
-    Asked { from, to, samples: 5, starts: 2, ..Asked::default() }
+    Options { from, to, samples: 5, starts: 2, ..Options::default() }
 }
 
 fn request(desk: &Desk, threads: u16) -> Request {
@@ -28,8 +28,10 @@ fn request(desk: &Desk, threads: u16) -> Request {
 #[test]
 fn invariant_the_motions_of_a_study_are_the_same_for_any_number_of_threads() {
     let desk = desk();
-    let Done::Made(found) = good(branches(&request(&desk, 1), &asked(), &Silent)) else { panic!("not made") };
-    good(branches(&request(&desk, 2), &asked(), &Silent));
+    let Done::Made(found) = good(branches(&request(&desk, 1), &options(), &Silent)) else {
+        panic!("not made")
+    };
+    good(branches(&request(&desk, 2), &options(), &Silent));
     for name in
         ["branches.csv", "bifurcations.csv", "attractors.csv", "states.csv", "branches.svg", "README.md"]
     {
@@ -51,31 +53,31 @@ fn invariant_the_motions_of_a_study_are_the_same_for_any_number_of_threads() {
 #[test]
 fn contract_results_are_verified_and_a_changed_digit_is_found() {
     let desk = desk();
-    good(branches(&request(&desk, 2), &asked(), &Silent));
+    good(branches(&request(&desk, 2), &options(), &Silent));
     a_changed_digit_is_found(&desk, "out2", OTHERS, &["branches.csv", "bifurcations.csv", "attractors.csv"]);
 }
 
 #[test]
 fn contract_what_is_asked_for_is_checked() {
     let desk = desk();
-    let wrong = |asked: Asked, words: &str| {
-        let error = refused(branches(&request(&desk, 1), &asked, &Silent));
-        assert!(matches!(error, Error::Asked { .. }), "{error}");
+    let wrong = |options: Options, words: &str| {
+        let error = refused(branches(&request(&desk, 1), &options, &Silent));
+        assert!(matches!(error, Error::Argument { .. }), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     };
     let text = |text: &str| Some(text.to_owned());
-    wrong(Asked { from: text("fast"), ..asked() }, "--from: ");
-    wrong(Asked { from: text("6"), ..asked() }, "--to: 5.4 is not above --from 6");
-    wrong(Asked { samples: 1, ..asked() }, "2 to 10000 samples");
+    wrong(Options { from: text("fast"), ..options() }, "--from: ");
+    wrong(Options { from: text("6"), ..options() }, "--to: 5.4 is not above --from 6");
+    wrong(Options { samples: 1, ..options() }, "2 to 10000 samples");
     wrong(
-        Asked { over: Parameter::K2, from: text("-1"), to: text("9"), ..asked() },
+        Options { over: Parameter::K2, from: text("-1"), to: text("9"), ..options() },
         "-1 N/m: give a value above 0",
     );
     let mut bare = committed("ssvi.json");
     bare["scene"]["damper"] = Value::Null;
     bare["optimize"] = Value::Null;
     let desk = Desk::with(&bare);
-    let error = refused(branches(&request(&desk, 1), &asked(), &Silent));
+    let error = refused(branches(&request(&desk, 1), &options(), &Silent));
     assert!(error.to_string().contains("no damper"), "{error}");
 }
 
@@ -86,9 +88,9 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
     let mut study = committed("ssvi-isola.json");
     study["scene"]["damper"]["D"] = (0.607_212_882_590_035_9 + 0.04).into();
     let [from, to] = ["5.6", "6.3"].map(|end| Some(end.to_owned()));
-    let asked = Asked { from, to, samples: 15, margin: true, ..Asked::default() };
+    let options = Options { from, to, samples: 15, margin: true, ..Options::default() };
     let desk = Desk::with(&study);
-    let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("not made") };
+    let Done::Made(found) = good(branches(&request(&desk, 2), &options, &Silent)) else { panic!("not made") };
     let Onset { value, omega, orbit } =
         found.margin.expect("asked for").birth.expect("within twice the force");
     assert!(value > 800.0, "{value}");
@@ -98,13 +100,13 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
         let desk = Desk::with(&study);
         // Samples about the place where it begins, for just above its birth it is narrow.
         let [from, to] = [-0.05, 0.05].map(|way| Some((omega + way).to_string()));
-        let asked = Asked { from, to, samples: 15, starts: 32, ..Asked::default() };
-        let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("made") };
+        let options = Options { from, to, samples: 15, starts: 32, ..Options::default() };
+        let Done::Made(found) = good(branches(&request(&desk, 2), &options, &Silent)) else { panic!("made") };
         let energies = found.largest.iter().flatten().map(|orbit| orbit.seen.e1_max);
         let most = energies.fold(0.0, f64::max);
         assert_eq!(most > 0.8 * orbit.seen.e1_max, is_there, "{most} J at {share} of the force");
     }
-    let wrong = Asked { over: Parameter::K1, margin: true, ..Asked::default() };
+    let wrong = Options { over: Parameter::K1, margin: true, ..Options::default() };
     let error = refused(branches(&request(&desk, 1), &wrong, &Silent));
     assert!(error.to_string().contains("--margin"), "{error}");
 }
@@ -115,10 +117,10 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
 fn exact_starts_of_a_plane_end_where_their_runs_settle() {
     let desk = Desk::with(&committed("ssvi-isola.json"));
     let [from, to] = ["5.97", "5.99"].map(|end| Some(end.to_owned()));
-    let asked =
-        Asked { from, to, samples: 3, starts: 16, basins: Some("5.98".to_owned()), ..Asked::default() };
-    let Done::Made(found) = good(branches(&request(&desk, 2), &asked, &Silent)) else { panic!("not made") };
-    good(branches(&request(&desk, 1), &asked, &Silent));
+    let options =
+        Options { from, to, samples: 3, starts: 16, basins: Some("5.98".to_owned()), ..Options::default() };
+    let Done::Made(found) = good(branches(&request(&desk, 2), &options, &Silent)) else { panic!("not made") };
+    good(branches(&request(&desk, 1), &options, &Silent));
     for name in ["starts.csv", "basins.svg", "README.md"] {
         assert_eq!(desk.read(&format!("out1/{name}")), desk.read(&format!("out2/{name}")), "{name}");
     }

@@ -1,7 +1,7 @@
 //! The motions beside those from rest: as `retune branches` finds them, and given up as soon as another place is shown.
 
 use retune_explore::branches::{SAMPLES, STARTS, follow};
-use retune_explore::protocol::{Answer, Hung, Message, Place};
+use retune_explore::protocol::{Answer, DamperKind, Message, Place};
 use retune_explore::response::Stale;
 use retune_explore::session::serve;
 use retune_explore::start::Start;
@@ -75,7 +75,7 @@ fn reference_the_largest_motion_is_that_of_the_branches() {
 
 #[test]
 fn contract_what_is_not_struck_has_no_other_motions() {
-    let place = Place { damper: Hung::Tmd, set: [("k2".to_owned(), 300.0)].into() };
+    let place = Place { damper: DamperKind::Tmd, set: [("k2".to_owned(), 300.0)].into() };
     let study = isola().at(&place).expect("a place");
     let found = follow(&study, &|_| panic!("no search"), &|| false).expect("not stale");
     assert!(found.get("problem").is_some_and(Value::is_string));
@@ -95,7 +95,7 @@ fn contract_a_stale_search_ends_at_its_next_run() {
 #[test]
 fn contract_another_place_ends_the_search() {
     let look = |id: u64, k2: f64, branches: bool| {
-        let place = Place { damper: Hung::Ssvi, set: [("k2".to_owned(), k2)].into() };
+        let place = Place { damper: DamperKind::Ssvi, set: [("k2".to_owned(), k2)].into() };
         serde_json::to_string(&Message::Look { id, place, span: None, columns: 400, branches })
             .expect("a message")
     };

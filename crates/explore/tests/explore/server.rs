@@ -1,6 +1,6 @@
 //! Who is let in: the host, the origin and the token of a request.
 
-use retune_explore::{Asked, Server};
+use retune_explore::{Options, Server};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ struct Desk {
 
 /// A server of its own for a test; it ends with the process.
 fn desk() -> Desk {
-    let server = Arc::new(Server::open(&Asked::default()).expect("a server"));
+    let server = Arc::new(Server::open(&Options::default()).expect("a server"));
     let address = server.address();
     let (host, path) = address.trim_start_matches("http://").split_once('/').expect("a path");
     let (host, path) = (host.to_owned(), format!("/{path}"));

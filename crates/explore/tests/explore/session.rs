@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use retune_explore::limits::{self, MOST_BYTES, MOST_COLUMNS};
-use retune_explore::protocol::{Answer, Hung, Message, Place, What, read};
+use retune_explore::protocol::{Answer, DamperKind, Message, Place, What, read};
 use retune_explore::session::serve;
 use retune_explore::start::Start;
 use retune_explore::{motion, response, texts};
@@ -18,14 +18,14 @@ fn start() -> Start {
     Start::read(None).expect("the built-in study")
 }
 
-fn place(damper: Hung, set: &[(&str, f64)]) -> Place {
+fn place(damper: DamperKind, set: &[(&str, f64)]) -> Place {
     let set: BTreeMap<String, f64> = set.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
     Place { damper, set }
 }
 
 fn look(id: u64, set: &[(&str, f64)]) -> String {
     let message =
-        Message::Look { id, place: place(Hung::Ssvi, set), span: None, columns: 400, branches: false };
+        Message::Look { id, place: place(DamperKind::Ssvi, set), span: None, columns: 400, branches: false };
     serde_json::to_string(&message).expect("a message")
 }
 
@@ -72,7 +72,7 @@ fn contract_figures_are_those_of_simulate() {
     let set = [("k2", 583.9), ("c2", 94.97), ("D", 0.02885), ("C", 1.105), ("omega", 6.631)];
     let found = answers(vec![look(7, &set)], |answer| kind(answer) == "done");
     let motion = found.iter().find(|answer| kind(answer) == "motion").expect("a motion");
-    let study = start().file_at(&place(Hung::Ssvi, &set)).expect("a study");
+    let study = start().file_at(&place(DamperKind::Ssvi, &set)).expect("a study");
     let run = simulate(&study, None).expect("a run");
     assert_eq!(motion.get("text"), Some(&json!(run.to_string())));
     let e1_max = json!(run)["E1max"].clone();
@@ -193,16 +193,16 @@ fn contract_a_page_that_has_gone_ends_its_session() {
 
 #[test]
 fn contract_wrong_messages_are_refused_with_the_field() {
-    let refused = |set: &[(&str, f64)]| start().at(&place(Hung::Ssvi, set)).expect_err("wrong");
+    let refused = |set: &[(&str, f64)]| start().at(&place(DamperKind::Ssvi, set)).expect_err("wrong");
     assert_eq!(refused(&[("k2", -1.0)]).field.as_deref(), Some("k2"));
     assert!(refused(&[("k2", -1.0)]).problem.contains("-1 is not allowed here"));
     assert!(refused(&[("k3", 1.0)]).problem.contains("unknown parameter `k3`"));
     assert!(refused(&[("t0", 100.0)]).problem.contains("the window is empty"));
     assert_eq!(refused(&[("T", 1e6)]).field.as_deref(), Some("T"));
     assert!(refused(&[("omega", 1e5)]).problem.contains("periods is too long for this page"));
-    let walls = start().at(&place(Hung::Tmd, &[("D", 0.1)])).expect_err("no walls");
+    let walls = start().at(&place(DamperKind::Tmd, &[("D", 0.1)])).expect_err("no walls");
     assert_eq!(walls.problem, "D: the damper has no walls");
-    let none = start().at(&place(Hung::None, &[("k2", 1.0)])).expect_err("no damper");
+    let none = start().at(&place(DamperKind::None, &[("k2", 1.0)])).expect_err("no damper");
     assert_eq!(none.problem, "k2: the scene has no damper");
 }
 
@@ -232,9 +232,9 @@ fn contract_messages_are_capped() {
 #[test]
 fn contract_a_saved_study_is_read_again() {
     for (damper, set) in [
-        (Hung::Ssvi, &[("k2", 300.0), ("omega", 6.5)][..]),
-        (Hung::Tmd, &[("k2", 450.0)][..]),
-        (Hung::None, &[("P", 500.0)][..]),
+        (DamperKind::Ssvi, &[("k2", 300.0), ("omega", 6.5)][..]),
+        (DamperKind::Tmd, &[("k2", 450.0)][..]),
+        (DamperKind::None, &[("P", 500.0)][..]),
     ] {
         let place = place(damper, set);
         let written =
@@ -243,8 +243,13 @@ fn contract_a_saved_study_is_read_again() {
         let study = retune_study::read::from_text(text, "saved.json").expect("a study");
         assert_eq!(study.scene, start().at(&place).expect("a place").scene, "{damper:?}");
     }
-    let outside =
-        texts::written(&start(), &place(Hung::Ssvi, &[("k2", -5.0)]), What::Study, &[None, None], &|| false);
+    let outside = texts::written(
+        &start(),
+        &place(DamperKind::Ssvi, &[("k2", -5.0)]),
+        What::Study,
+        &[None, None],
+        &|| false,
+    );
     assert_eq!(outside.expect_err("refused").field.as_deref(), Some("k2"));
 }
 
@@ -257,10 +262,10 @@ fn contract_the_command_line_says_what_differs() {
         let written = texts::written(start, place, what, &[None, None], &|| false).expect("written");
         written.get("text").and_then(Value::as_str).expect("text").to_owned()
     };
-    let here = place(Hung::Ssvi, &[("k2", 300.0), ("c2", 232.0)]);
+    let here = place(DamperKind::Ssvi, &[("k2", 300.0), ("c2", 232.0)]);
     assert!(text(&named, &here, What::Command).ends_with("src/study.json --set k2=300"));
     assert!(text(&named, &here, What::Python).contains(".at(k2=300)\nrun = problem.simulate()"));
-    let other = place(Hung::Tmd, &[("k2", 300.0)]);
+    let other = place(DamperKind::Tmd, &[("k2", 300.0)]);
     assert!(text(&named, &other, What::Command).starts_with("retune simulate study-explored.json  #"));
     assert!(text(&start(), &here, What::Motion).starts_with("t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment\n50,"));
     for what in [What::Picture, What::Response] {
@@ -271,10 +276,11 @@ fn contract_the_command_line_says_what_differs() {
 /// A figure of the response has what the page has: each curve, and which design it is.
 #[test]
 fn contract_a_figure_has_the_pinned_designs() {
-    let pin = |k2: f64| Some(place(Hung::Ssvi, &[("k2", k2)]));
+    let pin = |k2: f64| Some(place(DamperKind::Ssvi, &[("k2", k2)]));
     let text = |pins: [Option<Place>; 2]| {
-        let written = texts::written(&start(), &place(Hung::Ssvi, &[]), What::Response, &pins, &|| false)
-            .expect("written");
+        let written =
+            texts::written(&start(), &place(DamperKind::Ssvi, &[]), What::Response, &pins, &|| false)
+                .expect("written");
         written.get("text").and_then(Value::as_str).expect("text").to_owned()
     };
     let lines = |text: &str| text.matches("<path").count();
@@ -286,14 +292,16 @@ fn contract_a_figure_has_the_pinned_designs() {
     let second = text([None, pin(450.0)]);
     assert!(second.contains(">B<") && !second.contains(">A<"));
     let wrong =
-        texts::written(&start(), &place(Hung::Ssvi, &[]), What::Response, &[pin(-1.0), None], &|| false);
+        texts::written(&start(), &place(DamperKind::Ssvi, &[]), What::Response, &[pin(-1.0), None], &|| {
+            false
+        });
     assert_eq!(wrong.expect_err("refused").field.as_deref(), Some("k2"));
 }
 
 /// The search starts from here, every iteration is logged, and after a stop the best design is kept.
 #[test]
 fn contract_tune_from_here_stops_and_keeps_the_best() {
-    let tune = serde_json::to_string(&Message::Tune { place: place(Hung::Tmd, &[("k2", 500.0)]) });
+    let tune = serde_json::to_string(&Message::Tune { place: place(DamperKind::Tmd, &[("k2", 500.0)]) });
     let (sender, receiver) = channel();
     let (sender, found) = (Mutex::new(sender), Mutex::new(Vec::new()));
     let mut messages = vec![tune.expect("a message"), r#"{"stop":{}}"#.to_owned()].into_iter();
@@ -409,7 +417,7 @@ fn regress_a_span_of_no_length_is_refused() {
     let look = |span: [f64; 2]| {
         let message = Message::Look {
             id: 1,
-            place: place(Hung::Ssvi, &[]),
+            place: place(DamperKind::Ssvi, &[]),
             span: Some(span),
             columns: 400,
             branches: false,
@@ -421,7 +429,7 @@ fn regress_a_span_of_no_length_is_refused() {
         let refused = found.last().expect("an answer");
         assert_eq!(refused.get("field"), Some(&json!("span")), "{span:?}");
     }
-    let study = start().at(&place(Hung::Ssvi, &[])).expect("a study");
+    let study = start().at(&place(DamperKind::Ssvi, &[])).expect("a study");
     for (asked, expected) in
         [(None, [50.0, 100.0]), (Some([20.0, 1e308]), [20.0, 100.0]), (Some([1e300, 1e308]), [50.0, 100.0])]
     {
@@ -448,7 +456,7 @@ proptest! {
         sets in prop::collection::vec((0..NAMES.len(), extreme()), 0..3),
         span in prop::option::of([extreme(), extreme()]),
         columns in 1..2000_usize,
-        damper in prop::sample::select(vec![Hung::None, Hung::Tmd, Hung::Ssvi]),
+        damper in prop::sample::select(vec![DamperKind::None, DamperKind::Tmd, DamperKind::Ssvi]),
     ) {
         let set: Vec<(&str, f64)> = sets.iter().map(|(name, value)| (NAMES[*name], *value)).collect();
         let message = Message::Look { id: 1, place: place(damper, &set), span, columns, branches: false };

@@ -2,7 +2,7 @@
 
 use super::running::Running;
 use clap::Args;
-use retune_branches::Asked;
+use retune_branches::Options;
 use retune_model::Parameter;
 use std::path::PathBuf;
 
@@ -21,16 +21,16 @@ pub struct Branches {
     #[arg(long, value_name = "B")]
     pub to: Option<String>,
     /// Number of values at which runs are started from rest
-    #[arg(long, value_name = "N", default_value_t = Asked::default().samples)]
+    #[arg(long, value_name = "N", default_value_t = Options::default().samples)]
     pub samples: usize,
     /// Number of other starts for each, spread over the whole range and the states that the force can reach
-    #[arg(long, value_name = "N", default_value_t = Asked::default().starts)]
+    #[arg(long, value_name = "N", default_value_t = Options::default().starts)]
     pub starts: usize,
     /// Number of runs at each from whose states Newton's iteration is led to motions of one and two periods other than those known
-    #[arg(long, value_name = "N", default_value_t = Asked::default().apart)]
+    #[arg(long, value_name = "N", default_value_t = Options::default().apart)]
     pub apart: usize,
     /// Number of values at which a run from rest alone is followed as well, for motions that are stable over little of the range
-    #[arg(long, value_name = "N", default_value_t = Asked::default().fine)]
+    #[arg(long, value_name = "N", default_value_t = Options::default().fine)]
     pub fine: usize,
     /// Look for the force at which an isola begins, up to twice the study's
     #[arg(long)]

@@ -61,9 +61,9 @@ fn contract_a_sweep_is_one_object_on_standard_output() {
 #[test]
 fn contract_branches_are_one_object_on_standard_output_and_are_verified() {
     let desk = Desk::with(&tiny());
-    let asked = ["--from", "5.2", "--to", "0.86Hz", "--samples", "3", "--starts", "1", "--out", "out"];
+    let options = ["--from", "5.2", "--to", "0.86Hz", "--samples", "3", "--starts", "1", "--out", "out"];
     let json: serde_json::Value =
-        serde_json::from_str(&desk.good(&[&["branches", "study.json", "--json"], &asked[..]].concat()))
+        serde_json::from_str(&desk.good(&[&["branches", "study.json", "--json"], &options[..]].concat()))
             .expect("an object");
     assert_eq!(json, desk.read_json("out/branches.json"));
     assert_eq!(json["branches"][0]["events"][1]["kind"], "period doubling", "{json}");

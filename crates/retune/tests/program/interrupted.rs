@@ -19,11 +19,11 @@ const RUN: [&str; 5] = ["optimize", "study.json", "--quiet", "--out", "out"];
 /// Sends a signal to a run that has to stop because of it; returns what it says.
 #[cfg(unix)]
 fn stop(mut child: Child, signal: &str) -> String {
-    let asked = Instant::now();
+    let begun = Instant::now();
     let kill = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status();
     assert!(kill.expect("kill").success());
     let status = child.wait().expect("the run");
-    assert!(asked.elapsed() < Duration::from_secs(1), "{:?}", asked.elapsed());
+    assert!(begun.elapsed() < Duration::from_secs(1), "{:?}", begun.elapsed());
     assert_eq!(status.code(), Some(130), "{signal}");
     let mut said = String::new();
     std::io::Read::read_to_string(&mut child.stderr.take().expect("stderr"), &mut said).expect("text");

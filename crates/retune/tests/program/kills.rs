@@ -152,7 +152,7 @@ fn make_parts(desk: &Desk, draw: &mut Draw, limit: Duration, count: &mut impl Fn
 
 #[test]
 fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
-    let asked: usize = std::env::var("RETUNE_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
+    let kills: usize = std::env::var("RETUNE_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
     let desk = desk();
     let mut draw = Draw(20_261_121);
     let mut table: BTreeMap<(&str, &str), usize> = BTreeMap::new();
@@ -172,7 +172,7 @@ fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
         assert!(ends_before(&mut start(&desk, work, "whole"), Duration::from_secs(600)));
         let usual = begun.elapsed();
         let expected = desk.everything("whole");
-        let wanted = (asked as f64 * work.share).ceil() as usize;
+        let wanted = (kills as f64 * work.share).ceil() as usize;
         let mut kills = 0;
         while kills < wanted {
             // Moments are uniform from the start of the program to somewhat beyond its whole duration.
@@ -214,5 +214,5 @@ fn contract_killed_runs_end_in_the_bytes_of_an_unbroken_one() {
         println!("| {name} | {stage} | {count} |");
     }
     println!("\n{total} kills, {endings} runs that came to their end, every byte as in an unbroken run.");
-    assert!(total >= asked);
+    assert!(total >= kills);
 }

@@ -1,7 +1,7 @@
 //! The margin of a design: what is found at more force is followed back along the force, and along each parameter, to where it begins.
 
 use super::certificate::{Margin, Other, ParameterError};
-use super::motions::{AtForce, MUCH, Place, with_force};
+use super::motions::{AtForce, NOTABLE, Place, with_force};
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::periodic::branches::equations;
@@ -42,7 +42,7 @@ impl Place {
         let errors = 0.01 * margin.needed_percent;
         // As a power of the force between the two that are known.
         let power = (found.from_rest / self.from_rest).ln() / found.times.ln();
-        let much = move |times: f64| MUCH * self.from_rest * times.powf(power);
+        let much = move |times: f64| NOTABLE * self.from_rest * times.powf(power);
         let counts = |orbit: &Orbit| of(&orbit.seen) > much(orbit.value / own);
         let k1 = self.scene.primary.stiffness.get();
         let largest = found.branches.largest(of);

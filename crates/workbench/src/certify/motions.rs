@@ -20,7 +20,7 @@ const MORE: f64 = 1.2;
 /// At more force motions are followed that have this share of the value from rest.
 const FOLLOWED: f64 = 0.8;
 /// A motion counts that has by this factor more than the runs from rest.
-pub(super) const MUCH: f64 = 1.05;
+pub(super) const NOTABLE: f64 = 1.05;
 
 /// What was found.
 pub(super) struct Found {
@@ -82,7 +82,7 @@ pub(super) fn coexisting(
         (look(1.0)?, Vec::new())
     };
     let is_safe = |(place, found): (&Place, &AtForce)| {
-        found.branches.largest(quantity(measure)).is_none_or(|one| one.value <= MUCH * place.from_rest)
+        found.branches.largest(quantity(measure)).is_none_or(|one| one.value <= NOTABLE * place.from_rest)
     };
     let mut margin = force.filter(|_| places.iter().zip(&here).all(is_safe)).map(|_| Margin::new(&needed));
     if let Some(margin) = &mut margin {

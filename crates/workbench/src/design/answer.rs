@@ -1,7 +1,7 @@
 //! The answer of `design` in words. Lines fit 80 columns.
 
 use super::designed::Designed;
-use super::wishes::Wishes;
+use super::requirements::Requirements;
 use crate::designs::Row;
 use retune_study::rounded;
 use std::f64::consts::TAU;
@@ -11,43 +11,43 @@ use std::path::Path;
 const SAME: f64 = 0.05;
 
 /// The whole answer.
-pub(super) fn answer(wishes: &Wishes, designed: &[Designed], out: &Path) -> String {
+pub(super) fn answer(requirements: &Requirements, designed: &[Designed], out: &Path) -> String {
     let none = designed.first().and_then(|first| first.rows.first()).map_or(f64::NAN, |row| row.none);
-    let table = [header(wishes), format!("{:<9}{:>9}", "none", number(none))];
-    let table = table.into_iter().chain(designed.iter().map(|damper| line(wishes, damper)));
+    let table = [header(requirements), format!("{:<9}{:>9}", "none", number(none))];
+    let table = table.into_iter().chain(designed.iter().map(|damper| line(requirements, damper)));
     let out = out.display();
     let studies = format!("Go on with {out}/studies-tmd.json and {out}/studies-ssvi.json.");
     let words = build(designed)
         .into_iter()
-        .chain(costs(wishes, designed))
+        .chain(costs(requirements, designed))
         .chain(designed.iter().filter_map(sure))
-        .chain(walls(wishes))
+        .chain(walls(requirements))
         .chain([studies]);
     let broken = textwrap::Options::new(80).subsequent_indent("  ");
     let words: Vec<String> = words.map(|line| textwrap::fill(&line, &broken)).collect();
-    let structure = textwrap::fill(&structure(wishes), &broken);
+    let structure = textwrap::fill(&structure(requirements), &broken);
     let table: Vec<String> = table.collect();
     format!("{structure}\n\n{}\n\n{}", table.join("\n"), words.join("\n"))
 }
 
 /// The walls that were chosen: whoever builds the damper has others.
-fn walls(wishes: &Wishes) -> Option<String> {
-    let [k1, k3] = wishes.contact().ok()?.stiffness().map(|stiffness| rounded(stiffness, 3));
+fn walls(requirements: &Requirements) -> Option<String> {
+    let [k1, k3] = requirements.contact().ok()?.stiffness().map(|stiffness| rounded(stiffness, 3));
     Some(format!(
         "Walls were not given: the paper's, in proportion to the mass (K = {k1} and {k3} N/m^1.5); write your own into the studies."
     ))
 }
 
-fn structure(wishes: &Wishes) -> String {
-    let natural = wishes.natural_frequency();
-    let [from, to] = wishes.band;
+fn structure(requirements: &Requirements) -> String {
+    let natural = requirements.natural_frequency();
+    let [from, to] = requirements.band;
     format!(
         "Structure of {} kg at {} rad/s ({} Hz), damping {} %, {} N from {} to {} rad/s ({} to {} Hz)",
-        short(wishes.m1),
+        short(requirements.m1),
         short(natural),
         short(natural / TAU),
-        short(50.0 * wishes.c1 / (wishes.m1 * natural)),
-        short(wishes.force),
+        short(50.0 * requirements.c1 / (requirements.m1 * natural)),
+        short(requirements.force),
         short(from),
         short(to),
         short(from / TAU),
@@ -55,19 +55,19 @@ fn structure(wishes: &Wishes) -> String {
     )
 }
 
-fn header(wishes: &Wishes) -> String {
+fn header(requirements: &Requirements) -> String {
     let mut text = format!(
         "{:<10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>8}",
         "damper", "E1max, J", "k2, N/m", "c2", "stroke", "D, m", "C, m"
     );
-    if let Some(error) = wishes.k1_error {
+    if let Some(error) = requirements.k1_error {
         let percent = short(100.0 * error);
         text += &format!("{:>8}{:>8}", format!("k1-{percent}%"), format!("k1+{percent}%"));
     }
     text
 }
 
-fn line(wishes: &Wishes, damper: &Designed) -> String {
+fn line(requirements: &Requirements, damper: &Designed) -> String {
     let Some(row) = damper.rows.first() else { return String::new() };
     let [_, k2, c2, d, c] = row.found.values();
     let gaps = if touches(damper) { [metres(d), metres(c)] } else { ["-".to_owned(), "-".to_owned()] };
@@ -81,7 +81,7 @@ fn line(wishes: &Wishes, damper: &Designed) -> String {
         gaps[0],
         gaps[1]
     );
-    if let (Some(_), Some([less, more])) = (wishes.k1_error, damper.detuned) {
+    if let (Some(_), Some([less, more])) = (requirements.k1_error, damper.detuned) {
         text += &format!("{:>8}{:>8}", number(less), number(more));
     }
     text
@@ -128,9 +128,9 @@ fn build(designed: &[Designed]) -> Vec<String> {
 }
 
 /// What each limit costs.
-fn costs(wishes: &Wishes, designed: &[Designed]) -> Vec<String> {
+fn costs(requirements: &Requirements, designed: &[Designed]) -> Vec<String> {
     let mut lines = Vec::new();
-    for (number_of, limit) in wishes.limits().into_iter().enumerate() {
+    for (number_of, limit) in requirements.limits().into_iter().enumerate() {
         let cost = |damper: &Designed| {
             let [own, free] =
                 [0, number_of + 1].map(|i| damper.rows.get(i).map_or(f64::NAN, |row: &Row| row.e1_max));

@@ -1,7 +1,7 @@
 //! A damper that was designed.
 
 #[cfg(doc)]
-use super::wishes::Wishes;
+use super::requirements::Requirements;
 use crate::designs::Row;
 use retune_study::Study;
 
@@ -12,7 +12,7 @@ pub struct Designed {
     pub name: &'static str,
     /// Its study, under all limits.
     pub study: Study,
-    /// Its design under all limits, and those without one of them, in the order of [`Wishes::limits`].
+    /// Its design under all limits, and those without one of them, in the order of [`Requirements::limits`].
     pub rows: Vec<Row>,
     /// The largest stroke of the design under all limits, m, and the largest contact force, N.
     pub needs: [f64; 2],

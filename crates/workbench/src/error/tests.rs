@@ -193,7 +193,7 @@ fn errors() -> Vec<Error> {
         Error::Setting(SettingError::Absent { name: Parameter::K2, source: Absent::NoDamper }),
         Error::Rule { name: "ssvi".into(), rule: Rule::NoOptimize },
         Error::Sweep(retune_sweep::Error::OwnValues { parameter: "omega" }),
-        Error::Asked { option: "--to", problem: "5 is not above --from 8".into() },
+        Error::Argument { option: "--to", problem: "5 is not above --from 8".into() },
         Error::Interval { value: 0.0, most: 100 },
         Error::Part { path: path.clone(), problem: "it is damaged at point 23: make it again".into() },
         Error::MissingParts {
@@ -229,7 +229,7 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
-        each!(errors(), Error: Store Study Setting Rule Sweep Asked Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
+        each!(errors(), Error: Store Study Setting Rule Sweep Argument Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),

@@ -6,7 +6,7 @@ use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
 use retune_testkit::desk::Desk;
 use retune_testkit::observers::{good, refused};
-use retune_workbench::design::{Wishes, design};
+use retune_workbench::design::{Requirements, design};
 use retune_workbench::tune::optimize;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::{Value, json};
@@ -14,8 +14,8 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 /// The example of the README, a machine foundation of 5 t at 12 Hz, a bench model of 2 kg at 25 Hz.
-fn structures() -> [Wishes; 3] {
-    let example = Wishes {
+fn structures() -> [Requirements; 3] {
+    let example = Requirements {
         m1: 500.0,
         k1: 2e4,
         c1: 100.0,
@@ -30,7 +30,7 @@ fn structures() -> [Wishes; 3] {
         let natural = TAU * hertz;
         let k1 = m1 * natural * natural;
         let band = [0.8 * natural, 1.25 * natural];
-        Wishes {
+        Requirements {
             m1,
             k1,
             c1: 0.02 * m1 * natural,
@@ -54,8 +54,8 @@ fn searched(study: &Study) -> Value {
 /// The worst steady energy over the band is a closed form; another search of it, from Den Hartog's damper, finds the same optimum.
 #[test]
 fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
-    for wishes in structures() {
-        let study = good(wishes.tmd());
+    for requirements in structures() {
+        let study = good(requirements.tmd());
         let found = searched(&study);
         let damper = study.scene.damper.expect("a damper");
         let worst = |x: &[f64], _: f64| {
@@ -63,16 +63,18 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
             let [k2, c2] = [x[0], x[1]].map(retune_model::NonNegative::new);
             let (Ok(k2), Ok(c2)) = (k2, c2) else { return f64::INFINITY };
             (damper.stiffness, damper.damping) = (k2, c2);
-            Coupled::new(&study.scene.primary, &study.scene.forcing, &damper).steady_e1_max(wishes.band).value
+            Coupled::new(&study.scene.primary, &study.scene.forcing, &damper)
+                .steady_e1_max(requirements.band)
+                .value
         };
         let start = [damper.stiffness.get(), damper.damping.get()];
         let options = Options { scaling: Scaling::Start, tol_x: 1e-9, tol_fun: 1e-15, ..Options::default() };
         let own = minimize(worst, &start, options, |_| ControlFlow::Continue(())).expect("an optimum");
         let e1_max = found["E1max"].as_f64().expect("a number");
-        assert!((e1_max / own.value - 1.0).abs() < 1e-8, "{e1_max} {} {wishes:?}", own.value);
+        assert!((e1_max / own.value - 1.0).abs() < 1e-8, "{e1_max} {} {requirements:?}", own.value);
         for (name, value) in [("k2", own.x[0]), ("c2", own.x[1])] {
             let found = found[name].as_f64().expect("a number");
-            assert!((found / value - 1.0).abs() < 1e-3, "{name} {found} {value} {wishes:?}");
+            assert!((found / value - 1.0).abs() < 1e-3, "{name} {found} {value} {requirements:?}");
         }
     }
 }
@@ -80,8 +82,8 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
 /// The worst run of the SSVI NES by methods that share nothing with the hybrid but the equations.
 #[test]
 fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
-    for wishes in structures() {
-        let mut study = good(wishes.ssvi());
+    for requirements in structures() {
+        let mut study = good(requirements.ssvi());
         let optimize = study.optimize.as_mut().expect("a search");
         optimize.surf = None;
         optimize.refine = Refine { max_fun_evals: Some(12), ..optimize.refine };
@@ -101,44 +103,53 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         let found_scene = study.scene_at(&design).expect("a damper");
         // The damper that was found, and the one where the search starts, which strikes its walls.
         let worst = found["objective"]["worst_omega"].as_f64().expect("a number");
-        let omegas = [wishes.band[0], worst, wishes.natural_frequency()];
+        let omegas = [requirements.band[0], worst, requirements.natural_frequency()];
         let mut impacts = 0;
         for (mut scene, omega) in
             [found_scene, study.scene].into_iter().flat_map(|scene| omegas.map(|omega| (scene, omega)))
         {
             scene.forcing.frequency = retune_model::NonNegative::new(omega).expect("a frequency");
-            let window = Window { from: 0.0, to: 20.0 * TAU / wishes.natural_frequency() };
+            let window = Window { from: 0.0, to: 20.0 * TAU / requirements.natural_frequency() };
             let [own, other] = [(Method::Hybrid, 1e-10), (Method::Dop853, 1e-12)].map(|(method, rtol)| {
                 let settings = Settings { method, rtol, atol: 1e-14, ..Settings::default() };
                 e1_max(&scene, window, &settings, f64::INFINITY).expect("a run").value
             });
-            assert!((own / other - 1.0).abs() < 1e-6, "{own} {other} at {omega}: {wishes:?}");
+            assert!((own / other - 1.0).abs() < 1e-6, "{own} {other} at {omega}: {requirements:?}");
             let run = retune_solver::simulate(&scene, window, &Settings::default()).expect("a run");
             impacts += run.impacts.iter().sum::<u64>();
         }
-        assert!(impacts > 3, "{impacts}: {wishes:?}");
+        assert!(impacts > 3, "{impacts}: {requirements:?}");
     }
 }
 
 #[test]
 fn contract_wishes_that_cannot_be_are_refused_by_name() {
-    let [wishes, ..] = structures();
+    let [requirements, ..] = structures();
     let desk = Desk::new();
-    let said = |wishes: &Wishes| {
+    let said = |requirements: &Requirements| {
         let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
-        match refused(design(wishes, &request, &Silent)) {
+        match refused(design(requirements, &request, &Silent)) {
             Error::Rule { name, rule } => format!("{name}: {rule}"),
             other => panic!("{other}"),
         }
     };
-    for (wishes, words) in [
-        (Wishes { m1: -1.0, ..wishes.clone() }, "design: --m1: -1 is not allowed here"),
-        (Wishes { band: [8.0, 5.0], ..wishes.clone() }, "design: --band: 8 to 5 rad/s is not allowed here"),
-        (Wishes { mass: 501.0, ..wishes.clone() }, "design: --mass: 501 is not allowed here"),
-        (Wishes { k1_error: Some(10.0), ..wishes.clone() }, "design: --k1-error: 10 is not allowed here"),
-        (Wishes { stroke: Some(f64::NAN), ..wishes.clone() }, "design: --stroke: NaN is not allowed here"),
+    for (requirements, words) in [
+        (Requirements { m1: -1.0, ..requirements.clone() }, "design: --m1: -1 is not allowed here"),
+        (
+            Requirements { band: [8.0, 5.0], ..requirements.clone() },
+            "design: --band: 8 to 5 rad/s is not allowed here",
+        ),
+        (Requirements { mass: 501.0, ..requirements.clone() }, "design: --mass: 501 is not allowed here"),
+        (
+            Requirements { k1_error: Some(10.0), ..requirements.clone() },
+            "design: --k1-error: 10 is not allowed here",
+        ),
+        (
+            Requirements { stroke: Some(f64::NAN), ..requirements.clone() },
+            "design: --stroke: NaN is not allowed here",
+        ),
     ] {
-        let sentence = said(&wishes);
+        let sentence = said(&requirements);
         assert!(sentence.starts_with(words), "{sentence}");
     }
     assert!(desk.names(".").is_empty(), "nothing is left behind");

@@ -2,7 +2,7 @@
 
 use crate::{request, resume, search};
 use retune_model::Parameter;
-use retune_sweep::Asked;
+use retune_sweep::Options;
 use retune_testkit::desk::{Desk, count_lines, tiny};
 use retune_testkit::observers::{Record, cut_off, good, refused};
 use retune_workbench::sweep::{Points, sweep};
@@ -10,14 +10,14 @@ use retune_workbench::verify::verify;
 use retune_workbench::{Error, Observer, Request, Silent};
 
 /// A sweep of seven frequencies about resonance.
-fn asked() -> Asked {
+fn options() -> Options {
     let over = "omega".parse().expect("a parameter");
     let quantities = ["E1max", "stroke"].map(|name| name.parse().expect("a quantity")).to_vec();
-    Asked { from: "0.9Hz".into(), to: "1.1Hz".into(), points: 7, quantities, ..Asked::over(over) }
+    Options { from: "0.9Hz".into(), to: "1.1Hz".into(), points: 7, quantities, ..Options::over(over) }
 }
 
 fn swept(request: &Request, points: &Points, watch: &dyn Observer) -> Result<Option<String>, Error> {
-    sweep(request, &asked(), points, watch)
+    sweep(request, &options(), points, watch)
 }
 
 /// The sweep of the tiny study in `whole`, by one thread.
@@ -29,7 +29,7 @@ fn desk() -> Desk {
 }
 
 fn share(desk: &Desk, study: &str, shard: &str) {
-    let shard = Points::asked(Some(shard.parse().expect("a share")), false);
+    let shard = Points::of(Some(shard.parse().expect("a share")), false);
     good(swept(&request(desk, study, "out"), &shard, &Silent));
 }
 
@@ -116,8 +116,9 @@ fn contract_results_stand_for_the_design_that_was_found() {
     let found = search(&desk, "study.json", "tuned").found();
     let over = Parameter::K2;
     let k2 = found.damper.design.get(over);
-    let asked = Asked { from: k2.to_string(), to: (2.0 * k2).to_string(), points: 2, ..Asked::over(over) };
-    good(sweep(&request(&desk, "tuned", "out"), &asked, &Points::All, &Silent));
+    let options =
+        Options { from: k2.to_string(), to: (2.0 * k2).to_string(), points: 2, ..Options::over(over) };
+    good(sweep(&request(&desk, "tuned", "out"), &options, &Points::All, &Silent));
     assert_eq!(desk.rows("out/sweep.csv")[1][1].parse(), Ok(found.e1_max));
 }
 

@@ -11,7 +11,7 @@ const MOST: usize = 10_000;
 
 /// What is asked for, as it is typed.
 #[derive(Clone, Debug)]
-pub struct Asked {
+pub struct Options {
     /// The parameter.
     pub over: Parameter,
     /// Its least value; by default that of the band of the study, or 0.8 of its own.
@@ -32,7 +32,7 @@ pub struct Asked {
     pub basins: Option<String>,
 }
 
-impl Default for Asked {
+impl Default for Options {
     fn default() -> Self {
         Self {
             over: Parameter::Omega,
@@ -48,7 +48,7 @@ impl Default for Asked {
     }
 }
 
-impl Asked {
+impl Options {
     /// The plan for a study, and the value at which basins are asked for.
     ///
     /// # Errors
@@ -58,25 +58,25 @@ impl Asked {
         study.begins_at_rest().map_err(Error::rule(study))?;
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
-            return Err(Error::Asked { option: "STUDY", problem });
+            return Err(Error::Argument { option: "STUDY", problem });
         }
         if self.margin && over != Parameter::Omega {
             let problem = format!("an isola is looked for over omega, not over {}", over.symbol());
-            return Err(Error::Asked { option: "--margin", problem });
+            return Err(Error::Argument { option: "--margin", problem });
         }
         if !over.has_derivative() {
             let known = Parameter::ALL.into_iter().filter(|one| one.has_derivative()).map(Parameter::symbol);
             let known: Vec<&str> = known.collect();
             let problem = format!("{over}: branches are followed over one of {}", known.join(", "));
-            return Err(Error::Asked { option: "--over", problem });
+            return Err(Error::Argument { option: "--over", problem });
         }
         let [low, high] = default_range(over, study)?;
         let end = |option, text: &Option<String>, otherwise: f64| {
             let value = text.as_ref().map_or(Ok(otherwise), |text| over.read(text));
-            let value = value.map_err(|problem| Error::Asked { option, problem })?;
+            let value = value.map_err(|problem| Error::Argument { option, problem })?;
             match over.at(study.scene, value) {
                 Ok(_) if value.is_finite() && value > 0.0 => Ok(value),
-                _ => Err(Error::Asked {
+                _ => Err(Error::Argument {
                     option,
                     problem: format!("{value} {}: give a value above 0", over.unit()),
                 }),
@@ -85,7 +85,7 @@ impl Asked {
         let range = [end("--from", &self.from, low)?, end("--to", &self.to, high)?];
         if range[0] >= range[1] {
             let problem = format!("{} is not above --from {}", range[1], range[0]);
-            return Err(Error::Asked { option: "--to", problem });
+            return Err(Error::Argument { option: "--to", problem });
         }
         if !(2..=MOST).contains(&samples)
             || starts.max(apart) > MOST
@@ -94,7 +94,7 @@ impl Asked {
             let problem = format!(
                 "give 2 to {MOST} samples, at most {MOST} starts of each kind at each, and 0 or 2 to {MOST} fine runs"
             );
-            return Err(Error::Asked { option: "--samples, --starts, --apart, --fine", problem });
+            return Err(Error::Argument { option: "--samples, --starts, --apart, --fine", problem });
         }
         let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
         let plan = Plan { samples, starts, apart, fine, looks: SPACINGS.len(), ..Plan::over(over, range) };
@@ -110,7 +110,7 @@ fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
     }
     match over.of(&study.scene) {
         Some(own) => Ok([0.8 * own, 1.25 * own]),
-        None => Err(Error::Asked {
+        None => Err(Error::Argument {
             option: "--over",
             problem: format!("the scene of study {} has no {}", study.name(), over.symbol()),
         }),

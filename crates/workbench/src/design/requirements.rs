@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 /// What is asked of a design. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Wishes {
+pub struct Requirements {
     /// Mass of the structure, kg.
     pub m1: f64,
     /// Its stiffness, N/m.
@@ -62,8 +62,8 @@ impl Wish {
     }
 }
 
-impl Wishes {
-    /// Checks the wishes one by one.
+impl Requirements {
+    /// Checks the requirements one by one.
     ///
     /// # Errors
     /// The first that cannot be fulfilled, by its name on the command line.
@@ -112,12 +112,12 @@ impl Wishes {
     /// The same without one limit.
     #[must_use]
     pub fn without(&self, limit: Wish) -> Self {
-        let mut wishes = self.clone();
+        let mut requirements = self.clone();
         match limit {
-            Wish::Stroke => wishes.stroke = None,
-            Wish::K2 => wishes.k2_max = None,
+            Wish::Stroke => requirements.stroke = None,
+            Wish::K2 => requirements.k2_max = None,
         }
-        wishes
+        requirements
     }
 
     /// The structure and the force on it, at the frequency of the band that is nearest to its own.
