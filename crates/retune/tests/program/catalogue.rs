@@ -60,3 +60,59 @@ fn contract_the_schema_describes_parameters_as_the_catalogue_does() {
     }
     assert_eq!(count, Parameter::ALL.len());
 }
+
+/// The words of the catalogue stand nowhere else in what makes screens, pages and files: a second list would drift.
+#[test]
+fn contract_no_second_list_of_words() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let words: Vec<&str> =
+        Parameter::ALL.map(Parameter::words).into_iter().chain(Measure::ALL.map(Measure::words)).collect();
+    let mut sources = 0;
+    for name in [
+        "bench",
+        "branches",
+        "dynamics",
+        "explore",
+        "figures",
+        "optim",
+        "paper",
+        "python",
+        "retune",
+        "solver",
+        "study",
+        "sweep",
+        "tradeoff",
+        "workbench",
+    ] {
+        let mut folders = vec![
+            crates.join(name).join("src"),
+            crates.join(name).join("page"),
+            crates.join(name).join("python"),
+        ];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+                let path = entry.path();
+                let ending = path.extension().and_then(|ending| ending.to_str());
+                if path.is_dir() {
+                    folders.push(path);
+                } else if matches!(ending, Some("rs" | "py" | "js")) {
+                    sources += 1;
+                    let text = std::fs::read_to_string(&path).expect("a source");
+                    let said = text
+                        .lines()
+                        .filter(|line| !line.trim_start().starts_with("//") && line.contains('"'));
+                    let quoted =
+                        |word: &&&str| said.clone().any(|line| line.contains(&format!("\"{word}\"")));
+                    let again = words.iter().find(quoted);
+                    assert!(
+                        again.is_none(),
+                        "{}: \"{}\" is said again",
+                        path.display(),
+                        again.unwrap_or(&"")
+                    );
+                }
+            }
+        }
+    }
+    assert!(sources > 250, "{sources} files looked at");
+}

@@ -2,6 +2,7 @@
 
 use crate::band::ssvi_band;
 use crate::search;
+use retune_model::Parameter;
 use retune_testkit::desk::{Desk, committed, global, number, tiny};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -191,13 +192,9 @@ fn assert_numbers(desk: &Desk, out: &str, said: &str) {
     holds(format!("E1max, is |{} J|", four(e1_max)));
     holds(format!("{} rad/s ({} Hz)", four(omega), four(0.5 / std::f64::consts::PI * omega)));
     holds(format!("--set omega={omega}"));
-    for (name, meaning) in [("m2", "mass"), ("k2", "stiffness of the spring"), ("c2", "damping")] {
-        holds(format!("|{name}||{meaning}||{}|", four(number(&optimum, &format!("/{name}")))));
-    }
-    for (name, meaning) in
-        [("D", "distance to the structure at rest"), ("C", "clearance to the obstacle at rest")]
-    {
-        holds(format!("|{name}||{meaning}||{}|", four(number(&optimum, &format!("/{name}")))));
+    for parameter in [Parameter::M2].into_iter().chain(Parameter::PAPER) {
+        let value = four(number(&optimum, &format!("/{parameter}")));
+        holds(format!("|{parameter}||{}||{value}|", parameter.words()));
     }
     holds(format!("|stroke||{} mm|", four(1e3 * number(&optimum, "/simulation/spring_deflection_max"))));
     for (side, wall) in [("primary", "structure"), ("obstacle", "obstacle")] {

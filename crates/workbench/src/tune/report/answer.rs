@@ -7,7 +7,7 @@ use crate::html::{Section, Table};
 use crate::needs::{Needs, sized};
 use crate::summary::whose;
 use maud::{Markup, html};
-use retune_model::{Damper, Measure, Parameter};
+use retune_model::{Measure, Parameter};
 use retune_optim::{Evaluation, Response, Unusable};
 use retune_study::over;
 
@@ -137,38 +137,22 @@ fn others(needs: &Needs, measure: Measure) -> String {
     none.unwrap_or_default() + &linear.unwrap_or_default()
 }
 
-/// A parameter of the damper as a study file names it, with its name and its value.
-fn named(damper: &Damper) -> [(&'static str, &'static str, &'static str, f64, Option<Parameter>); 5] {
-    let of = |variable: Parameter, name| {
-        (variable.symbol(), name, variable.unit(), variable.get(damper), Some(variable))
-    };
-    [
-        ("m2", "mass", "kg", damper.mass.get(), None),
-        of(Parameter::K2, "stiffness of the spring"),
-        of(Parameter::C2, "damping"),
-        of(Parameter::D, "distance to the structure at rest"),
-        of(Parameter::C, "clearance to the obstacle at rest"),
-    ]
-}
-
 fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
+    let varied = &findings.search.variables;
     let mut table =
         Table::new("The damper", &["symbol", "name", "value", "unit", whose(&findings.study.scene), "tuned"]);
-    let known = named(&damper).into_iter().filter(|one| !one.3.is_nan());
-    for (symbol, name, unit, value, variable) in known {
-        let before = findings.study.scene.damper.as_ref().map(named);
-        let before =
-            before.and_then(|all| all.into_iter().find(|one| one.0 == symbol)).map_or(f64::NAN, |one| one.3);
-        let tuned = variable.is_some_and(|variable| findings.search.variables.contains(&variable));
-        let tuned = if tuned { "tuned" } else { "given" };
+    let mut shown = vec![Parameter::M2];
+    shown.extend(Parameter::columns(varied).into_iter().filter(|one| *one != Parameter::M2));
+    for parameter in shown {
+        let Some(value) = parameter.of_damper(&damper) else { continue };
         table.row([
-            symbol.to_owned(),
-            name.to_owned(),
+            parameter.to_string(),
+            parameter.words().to_owned(),
             four(value),
-            unit.to_owned(),
-            four(before),
-            tuned.to_owned(),
+            parameter.unit().to_owned(),
+            four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN)),
+            if varied.contains(&parameter) { "tuned" } else { "given" }.to_owned(),
         ]);
     }
     table.markup()
