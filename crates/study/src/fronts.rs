@@ -124,18 +124,18 @@ impl Sweep {
     /// Its name in studies and of its table.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::K2 => "k2",
-            Self::Stroke => "stroke",
-            Self::ContactForce => "contact_force",
+            Self::K2 => Parameter::K2.symbol(),
+            Self::Stroke => Measure::Stroke.name(),
+            Self::ContactForce => Measure::ContactForce.name(),
         }
     }
 
     /// The SI unit.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::K2 => "N/m",
-            Self::Stroke => "m",
-            Self::ContactForce => "N",
+            Self::K2 => Parameter::K2.unit(),
+            Self::Stroke => Measure::Stroke.unit(),
+            Self::ContactForce => Measure::ContactForce.unit(),
         }
     }
 
