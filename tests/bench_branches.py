@@ -1,4 +1,4 @@
-"""Times the branches of two dampers on one core beside what a sampled search does: runs from rest at 3001 frequencies (`just bench-branches`).
+"""Times the branches of two dampers on one core beside what a sampled search does: runs from rest at 3001 frequencies (`just lab bench-branches`).
 
 Each pair is run in turns, three times; the least times count.
 """

@@ -520,7 +520,7 @@ def bench(program, seconds):
     loads = page.js("performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation')).map((e) => [e.name, e.decodedBodySize])")
     size = sum(count for _, count in loads)
     print(
-        f"`just bench-explore`: results/ssvi at 1280 px, headless Chromium and the server on {os.cpu_count()} cores,"
+        f"`just lab bench-explore`: results/ssvi at 1280 px, headless Chromium and the server on {os.cpu_count()} cores,"
         f" priority {-os.getpriority(os.PRIO_PROCESS, 0)}; load of the machine before: {os.getloadavg()[0]:.1f}\n"
     )
     print(f"page with all that it loads: {size / 1000:.0f} kB in {len(loads)} files (target 300 kB): {met(size <= LARGEST_PAGE)}")

@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 DESIGNS = {"regular": "583.92141 94.97052 0.028850 1.104545", "irregular": "215 232 0.06 0.36"}
 # Values in one process, so that its start counts for little.
 VALUES = 40
-# A `surf`, each point one run at one frequency: points along each side, its ranges (those of `just bench-surf`), and how coarse it may be to say
+# A `surf`, each point one run at one frequency: points along each side, its ranges (those of `just lab bench-surf`), and how coarse it may be to say
 # where a search starts: its tolerance, and an eighth of what the structure has without a damper.
 POINTS = 12
 RANGES = {"k2": (50, 1600, "log"), "c2": (10, 400, "log"), "D": (0.02, 0.26, "linear"), "C": (0.06, 0.78, "linear")}
@@ -179,7 +179,7 @@ def fronts(programs, directory):
         with open(place / "out/k2.csv", newline="") as table:
             rows = [row for row in csv.DictReader(table) if row["damper"] == "SSVI NES"]
         found.append({float(row["k2_most"]): float(row["E1max"]) for row in rows})
-    print(f"`just bench-fronts`: fronts by the plan of commit {commit(programs[1])}, all cores\n")
+    print(f"`just lab bench-fronts`: fronts by the plan of commit {commit(programs[1])}, all cores\n")
     print(f"{'':<42}" + "".join(f"{name:>10}" for name in columns))
     print(f"{'wall clock, s':<42}" + "".join(f"{wall:>10.1f}" for wall in took))
     against = [3, 4, 4, 3, 4]  # "then" and the searches alone make no certificate of the best
@@ -223,7 +223,7 @@ def main():
     if given.fronts:
         with tempfile.TemporaryDirectory() as directory:
             return fronts(programs, Path(directory))
-    print(f"`just bench-job`: processor time on one thread, beside commit {commit(programs[1])}; the certificate of today follows other motions, too\n")
+    print(f"`just lab bench-job`: processor time on one thread, beside commit {commit(programs[1])}; the certificate of today follows other motions, too\n")
     with tempfile.TemporaryDirectory() as directory:
         compare(programs, Path(directory), given.repeats)
         tolerances(programs[0], Path(directory))

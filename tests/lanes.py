@@ -90,7 +90,7 @@ def main():
     listed = subprocess.run(["objdump", "-d", "--no-show-raw-insn", bench], text=True, capture_output=True, check=True).stdout
     lines = re.findall(r"(?m)^\s*([0-9a-f]+):\s+(\S+)[ \t]*(.*)$", listed)
     instructions = {int(address, 16): (name, operands) for address, name, operands in lines}
-    print("`just count-lanes`: instructions of a run of 100 s by their kind; what lanes over runs could save at most\n")
+    print("`just lab count-lanes`: instructions of a run of 100 s by their kind; what lanes over runs could save at most\n")
     print(f"{'scene':<22}{'rtol':>6}{'instructions':>14}" + "".join(f"{kind:>21}" for kind in KINDS) + f"{'4 lanes':>9}{'8 lanes':>9}")
     for scene, name in enumerate(SCENES):
         for rtol, number in RTOLS.items():

@@ -5,7 +5,7 @@ Random structures get a TMD (steady, in closed form) or an SSVI NES (short runs 
 `retune optimize`; differential evolution then makes the same energy small under the same limits, over the same box, through
 `retune evaluate --json`. Both begin with nothing but the box, and for the TMD in one of three kinds of search Den Hartog's damper. Where differential
 evolution has less, both designs are evaluated on eight times the samples: less by a peak that the samples miss is not less. Writes the
-rows of results/robustness/limits.md; `just hunt-limits` puts them behind tests/limits.md.
+rows of results/robustness/limits.md; `just lab hunt-limits` puts them behind tests/limits.md.
 
     python3 tests/limits.py target/release/retune TMDS SSVIS
 """

@@ -1,4 +1,4 @@
-"""Whether the tests see a mistake: mutants drawn at random, each against the tests of its own crate. `just mutants`.
+"""Whether the tests see a mistake: mutants drawn at random, each against the tests of its own crate. `just lab mutants`.
 
 cargo-mutants makes the mutants; which of them are drawn follows from the seed and from what they change, not from the lines that they
 stand on, so that a draw stays nearly the same when code moves. Those of each crate are built in a copy of the project inside
@@ -105,7 +105,7 @@ def tried(package, names, tests, timeout):
 def table(seed, draw, outcomes, reasons):
     lines = [
         "# Whether the tests see a mistake", "",
-        f"`just mutants`: mutants of cargo-mutants, drawn at random (seed {seed}), shared among the crates by their lines, each against the tests",
+        f"`just lab mutants`: mutants of cargo-mutants, drawn at random (seed {seed}), shared among the crates by their lines, each against the tests",
         "of its own crate. Caught: a test fails, or none ends in time. Unviable: does not compile. Without effect: listed below with the reason.", "",
         "| crate | drawn | not yet tried | caught | of these out of time | unviable | without effect | missed | caught of those with effect |",
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",

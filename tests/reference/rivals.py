@@ -1,6 +1,6 @@
 """SciPy's global optimisers beside Retune's own searches, on the same objective: evaluations until 1 % and 0.1 % of the best.
 
-Needs numpy, SciPy and a built program. From the root of the repository (`just rivals` builds first; named problems only, if any):
+Needs numpy, SciPy and a built program. From the root of the repository (`just lab rivals` builds first; named problems only, if any):
 
     python3 tests/reference/rivals.py target/release/retune tmd-free ssvi-global
 
@@ -180,7 +180,7 @@ def median(counts):
 
 def page(rows, best, version):
     text = ["# Retune's searches beside SciPy's", "",
-            "Made by `just rivals` (`tests/reference/rivals.py`); do not edit. Each row of `rivals.csv` is one search with one seed. All",
+            "Made by `just lab rivals` (`tests/reference/rivals.py`); do not edit. Each row of `rivals.csv` is one search with one seed. All",
             "make the same objective small: SciPy's methods ask `retune evaluate`, in the coordinates of Retune's global search (logarithms of",
             f"k2 and c2), with SciPy's own settings ({version}). Counted are evaluations of a design, not time.", ""]
     for name, problem in PROBLEMS.items():

@@ -5,7 +5,7 @@ use crate::scenes::Case;
 use std::path::Path;
 use std::{fs, io};
 
-/// The tables, made by `just accuracy-external`.
+/// The tables, made by `just lab accuracy-external`.
 const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/reference/external/scipy.csv"];
 
 /// The runs of a scene. The scripts give the number of contacts, not their times.

@@ -1,6 +1,6 @@
 //! Retune's methods and other people's integrators on the same scenes: speed against accuracy, and where methods fail.
 //!
-//! No crate imports this one, and it is not built with the program (`just accuracy` and `just stability` build it). Other people's
+//! No crate imports this one, and it is not built with the program (`just lab accuracy` and `just lab stability` build it). Other people's
 //! integrators come with the feature `integrators`.
 
 pub mod atlas;

@@ -42,7 +42,7 @@ pub fn text(
     chaos: &[Statistics],
 ) -> String {
     let mut out = String::from(
-        "# Speed against accuracy\n\nWritten by `just accuracy` from `runs.csv`, where every run stands, failures with their reason.\n\n\
+        "# Speed against accuracy\n\nWritten by `just lab accuracy` from `runs.csv`, where every run stands, failures with their reason.\n\n\
          ![error of E1max against time](time.svg)\n",
     );
     in_short(&mut out, cases, rows);
@@ -51,7 +51,7 @@ pub fn text(
     out += "\n## How to read the charts\n\nAn error counts only if no tighter setting of the same method exceeds it: a lucky run does not. Each \
         method is shown with the way to meet contacts, located or stepped over, that serves it better. A run's time is the least \
         of several. Retune's contains the search for E1max, that of the Rust crates does not. Evaluations are of right-hand sides \
-        and Jacobians; the hybrid's exact flight steps count as one each. GNU Octave, SciPy and SUNDIALS ran out of process (`just accuracy-external`); \
+        and Jacobians; the hybrid's exact flight steps count as one each. GNU Octave, SciPy and SUNDIALS ran out of process (`just lab accuracy-external`); \
         their time contains that of their interpreted right-hand sides. Where a program has no dense output (Octave, CVODE), E1 between its \
         steps is that of the quintic that meets position, velocity and acceleration; from SciPy's dense output E1max is read to about 1e-8.\n\n\
         ![error of E1max against evaluations](evaluations.svg)\n![error of the final state against time](state.svg)\n";

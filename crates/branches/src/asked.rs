@@ -2,7 +2,7 @@
 
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_model::Parameter;
-use retune_study::{Study, angular_frequency};
+use retune_study::Study;
 use retune_workbench::Error;
 use serde_json::{Value, json};
 
@@ -64,16 +64,15 @@ impl Asked {
             let problem = format!("an isola is looked for over omega, not over {}", over.symbol());
             return Err(Error::Asked { option: "--margin", problem });
         }
+        if !over.has_derivative() {
+            let known = Parameter::ALL.into_iter().filter(|one| one.has_derivative()).map(Parameter::symbol);
+            let known: Vec<&str> = known.collect();
+            let problem = format!("{over}: branches are followed over one of {}", known.join(", "));
+            return Err(Error::Asked { option: "--over", problem });
+        }
         let [low, high] = default_range(over, study)?;
         let end = |option, text: &Option<String>, otherwise: f64| {
-            let value = match (text, over) {
-                (None, _) => Ok(otherwise),
-                (Some(text), Parameter::Omega) => angular_frequency(text),
-                (Some(text), _) => text
-                    .trim()
-                    .parse()
-                    .map_err(|_| format!("\"{text}\" is not a number: give one in {}", over.unit())),
-            };
+            let value = text.as_ref().map_or(Ok(otherwise), |text| over.read(text));
             let value = value.map_err(|problem| Error::Asked { option, problem })?;
             match over.at(study.scene, value) {
                 Ok(_) if value.is_finite() && value > 0.0 => Ok(value),

@@ -25,17 +25,18 @@ const MUCH: f64 = 1.05;
 /// A scene cannot be run.
 pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
     let plan = found.branches.plan;
-    let own = Parameter::P.of(&found.study.scene).filter(|own| *own > 0.0);
-    let Some(own) = own.filter(|_| plan.parameter == Parameter::Omega) else { return Ok(None) };
+    let amplitude = found.study.scene.forcing.amplitude().map(|(amplitude, own)| (amplitude, own.get()));
+    let amplitude = amplitude.filter(|(_, own)| *own > 0.0 && plan.parameter == Parameter::Omega);
+    let Some((amplitude, own)) = amplitude else { return Ok(None) };
     if others(found).next().is_some() {
         return Ok(Some(Margin { own, birth: None, tried: own }));
     }
     let first_birth = |force: f64| -> Result<Option<Onset>, Error> {
-        let scene = Parameter::P.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
+        let scene = amplitude.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
         let there = branches(&scene, plan, &found.study.solver.settings(), Watch::default())?;
         let there = Found::new(found.study.clone(), there);
         let births =
-            others(&there).filter_map(|branch| onset(&branch.seeds(|_| true), Parameter::P, own, &|_| true));
+            others(&there).filter_map(|branch| onset(&branch.seeds(|_| true), amplitude, own, &|_| true));
         Ok(births.min_by(|a, b| a.value.total_cmp(&b.value)))
     };
     for step in STEPS {

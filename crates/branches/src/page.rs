@@ -60,8 +60,11 @@ const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions
 fn asked(found: &Found) -> String {
     let plan = &found.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
-    let damper =
-        found.study.scene.damper.map_or(String::new(), |damper| TunedDamper::of(&damper).words(|_| 5));
+    let damper = found
+        .study
+        .scene
+        .damper
+        .map_or(String::new(), |damper| TunedDamper::of(&damper, found.study.varied()).words(|_| 5));
     let more = [
         (plan.fine, "value", " A run from rest at each of # leads to the branches that this has missed."),
         (plan.apart, "run", " From # at each of the former, Newton's iteration looks for other motions."),

@@ -4,8 +4,16 @@ use retune_dynamics::periodic::trace::trace;
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit};
 use retune_model::Parameter;
 
-/// The parameters that are tried: the gaps, the dashpot, the spring, the force.
-const TRIED: [Parameter; 5] = [Parameter::D, Parameter::C, Parameter::C2, Parameter::K2, Parameter::P];
+/// The parameters that are tried: the gaps, the dashpot, the spring, whatever forces the structure.
+const TRIED: [Parameter; 7] = [
+    Parameter::D,
+    Parameter::C,
+    Parameter::C2,
+    Parameter::K2,
+    Parameter::P,
+    Parameter::Imbalance,
+    Parameter::Base,
+];
 /// How far a parameter is changed, as a share of its value.
 const REACH: [f64; 2] = [0.3, 3.0];
 

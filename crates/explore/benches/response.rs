@@ -1,4 +1,4 @@
-//! How long the parts of an answer take, on all cores: `just bench-explore`.
+//! How long the parts of an answer take, on all cores: `just lab bench-explore`.
 
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 

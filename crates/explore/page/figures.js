@@ -1,15 +1,5 @@
 // The figures, with their units: what the page says in numbers. They come as text from the server, to the digits that are printed.
 
-const ROWS = [
-    ["E1max", "J", "largest energy of the structure"],
-    ["x1max", "m", "largest displacement of the structure"],
-    ["stroke", "m", "largest deflection of the damper's spring"],
-    ["force", "N", "largest contact force on the structure and on the obstacle"],
-    ["ground", "N", "largest force on the ground"],
-    ["impacts", "", "impacts in the window, on the structure and on the obstacle"],
-];
-const NAMES = { force: "wall forces", ground: "ground force", E1max: "E1max", x1max: "x1 max", stroke: "stroke", impacts: "impacts" };
-
 export class Figures {
     constructor({ heroes, table, irregular, said, text }) {
         Object.assign(this, { heroes, table, irregular, said, text });
@@ -20,8 +10,9 @@ export class Figures {
         this.other = null;
     }
 
-    begin({ quantity, band }) {
+    begin({ quantity, band, figures }) {
         this.quantity = quantity;
+        this.rows = figures;
         this.band = band;
     }
 
@@ -95,12 +86,12 @@ export class Figures {
         const times = (answer) => (answer?.reduction ? `${answer.reduction}×` : "–");
         const rows = [
             ["", ...columns.map(([name]) => name)],
-            ...ROWS.map(([name, unit]) => [unit ? `${NAMES[name]}, ${unit}` : NAMES[name], ...columns.map(([, figures]) => worded(figures?.[name]))]),
+            ...this.rows.map(([name, unit]) => [(unit ? `${name}, ${unit}` : name).replace("_", " "), ...columns.map(([, figures]) => worded(figures?.[name]))]),
             ["reduction", "", times(worst), ...pinned.map((whose) => times(this.worst[whose]))],
             ["motion", kind?.label ?? "–", "", ...pinned.map((whose) => this.kinds[whose]?.label ?? "–")],
         ];
         // The cells stay while their numbers change: a table that is made anew at every step of a drag is laid out anew.
-        update(this.table, `pinned ${pinned}`, () => rows.map((row, i) => tableRow(row, i, columns)));
+        update(this.table, `pinned ${pinned}`, () => rows.map((row, i) => tableRow(row, i, columns, this.rows[i - 1]?.[2])));
         rows.forEach((row, i) => row.forEach((words, j) => write(this.table.children[i].children[j], words)));
     }
 
@@ -124,13 +115,13 @@ export class Figures {
 
 const worded = (value) => (Array.isArray(value) ? value.map((one) => one ?? "–").join(", ") : (value ?? "–"));
 
-function tableRow(row, i, columns) {
+function tableRow(row, i, columns, meaning) {
     const made = element("tr");
     made.append(
         ...row.map((_, j) => {
             const cell = element(j && i ? "td" : "th", j ? columns[j - 1][2] : "");
             if (cell.tagName === "TH") cell.scope = j ? "col" : "row";
-            if (!j && ROWS[i - 1]) cell.title = ROWS[i - 1][2];
+            if (!j && meaning) cell.title = meaning;
             return cell;
         }),
     );

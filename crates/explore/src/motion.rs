@@ -5,7 +5,7 @@ use crate::limits::rows;
 use crate::protocol::Answer;
 use crate::refused::Refused;
 use crate::thin::{Thin, Thinning};
-use retune_model::Coupled;
+use retune_model::{Coupled, Measure};
 use retune_solver::{Moment, Sample, Window, trajectory};
 use retune_study::{Study, rounded};
 use retune_workbench::simulate::{Simulation, simulate};
@@ -126,16 +126,21 @@ fn walls(study: &Study) -> Option<[f64; 2]> {
     Some(retune_model::Side::BOTH.map(|side| system.wall(side)))
 }
 
-/// The figures of a run that are shown large, to four digits: what `retune simulate --json` prints in full.
+/// The figures of a run that are shown large, to four digits: its largest values and its impacts.
 pub fn figures(simulation: &Simulation) -> Value {
-    let run = json!(simulation);
-    let of = |value: &Value| value.as_f64().map(|value| rounded(value, 4));
-    json!({
-        "E1max": of(&run["E1max"]),
-        "x1max": of(&run["x1max"]),
-        "stroke": of(&run["spring_deflection_max"]),
-        "force": [of(&run["force_max"]["primary"]), of(&run["force_max"]["obstacle"])],
-        "impacts": [run["impacts"]["primary"], run["impacts"]["obstacle"]],
-        "ground": of(&run["ground_force_max"]),
-    })
+    let run = &simulation.summary;
+    let mut figures = largest(|measure| run.largest(measure));
+    figures.insert(IMPACTS.to_owned(), json!(run.impacts()));
+    figures.into()
+}
+
+/// The name of the number of impacts.
+pub const IMPACTS: &str = "impacts";
+
+/// The largest value of each quantity by its name, to four digits.
+pub fn largest(of: impl Fn(Measure) -> f64) -> serde_json::Map<String, Value> {
+    Measure::ALL
+        .map(|measure| (measure.name().to_owned(), json!(rounded(of(measure), 4))))
+        .into_iter()
+        .collect()
 }

@@ -1,6 +1,6 @@
 //! Why a message is not answered.
 
-use retune_study::SettingError;
+use retune_study::{Settable, SettingError};
 use serde::Serialize;
 
 /// Why a message is not answered.
@@ -28,6 +28,6 @@ impl From<SettingError> for Refused {
     fn from(error: SettingError) -> Self {
         let problem = error.to_string();
         let field = problem.split([':', '`']).next().map(str::to_owned);
-        Self { field: field.filter(|name| retune_study::PARAMETERS.iter().any(|(n, _)| n == name)), problem }
+        Self { field: field.filter(|name| name.parse::<Settable>().is_ok()), problem }
     }
 }

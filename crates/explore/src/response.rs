@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{Band, FrequencyBand, Goal, Objective, Response, worst_over};
 use retune_study::{Study, rounded};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Samples of the first curve, and of the final one.
 pub const CURVES: [usize; 2] = [31, 301];
@@ -149,12 +149,10 @@ fn largest(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option
         return Err(Stale);
     }
     let Ok(needs) = found else { return Ok(None) };
-    let of = |measure| rounded(needs.whole.get(measure).value, 4);
-    Ok(Some(json!({
-        "E1max": rounded(needs.own.get(Measure::Energy).value, 4),
-        "x1max": of(Measure::Displacement),
-        "stroke": of(Measure::Stroke),
-        "force": [of(Measure::ContactForce)],
-        "ground": of(Measure::GroundForce),
-    })))
+    // The energy is that of the objective, in its window; all else is of the whole run.
+    let of = |measure| match measure {
+        Measure::Energy => needs.own.get(measure).value,
+        _ => needs.whole.get(measure).value,
+    };
+    Ok(Some(crate::motion::largest(of).into()))
 }

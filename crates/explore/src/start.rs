@@ -1,11 +1,12 @@
 //! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
 
 use crate::limits::bounded;
+use crate::motion::IMPACTS;
 use crate::protocol::{Answer, Hung, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
-use retune_model::{Contact, Damper, NonNegative, Variable};
-use retune_study::{PARAMETERS, Rule, Setting, Study, StudyError};
+use retune_model::{Contact, Damper, Measure, NonNegative, Parameter};
+use retune_study::{Rule, Setting, Study, StudyError};
 use serde::Serialize;
 use serde_json::json;
 use std::path::Path;
@@ -41,24 +42,31 @@ pub struct Control {
     pub dampers: &'static [Hung],
 }
 
-const ANY: &[Hung] = &[Hung::None, Hung::Tmd, Hung::Ssvi];
-const DAMPED: &[Hung] = &[Hung::Tmd, Hung::Ssvi];
-const WALLED: &[Hung] = &[Hung::Ssvi];
-
 /// The numbers that a page can turn, in its order.
-const TURNED: [(&str, &str, &[Hung]); 11] = [
-    ("omega", "frequency of the force", ANY),
-    ("k2", "spring of the damper", DAMPED),
-    ("c2", "dashpot of the damper", DAMPED),
-    ("D", "gap to the structure", WALLED),
-    ("C", "gap to the obstacle", WALLED),
-    ("m2", "mass of the damper", DAMPED),
-    ("k1", "spring of the structure", ANY),
-    ("c1", "dashpot of the structure", ANY),
-    ("P", "amplitude of the force", ANY),
-    ("imbalance", "rotating imbalance", ANY),
-    ("base", "amplitude of the base", ANY),
+const TURNED: [Parameter; 11] = [
+    Parameter::Omega,
+    Parameter::K2,
+    Parameter::C2,
+    Parameter::D,
+    Parameter::C,
+    Parameter::M2,
+    Parameter::K1,
+    Parameter::C1,
+    Parameter::P,
+    Parameter::Imbalance,
+    Parameter::Base,
 ];
+
+/// The dampers that have a parameter.
+const fn dampers(parameter: Parameter) -> &'static [Hung] {
+    if parameter.is_gap() || parameter.is_of_contact() {
+        &[Hung::Ssvi]
+    } else if parameter.is_of_damper() {
+        &[Hung::Tmd, Hung::Ssvi]
+    } else {
+        &[Hung::None, Hung::Tmd, Hung::Ssvi]
+    }
+}
 
 impl Start {
     /// From a study file or results; from the paper's SSVI NES if none are named.
@@ -102,6 +110,7 @@ impl Start {
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
             .with("quantity", of)
+            .with("figures", figures())
             .with("tunes", study.optimize.is_some())
             .with("motions", of_all_motions(study))
     }
@@ -151,12 +160,12 @@ impl Start {
         };
         if let Some(optimize) = study.optimize.as_mut().filter(|_| hung == Hung::Tmd) {
             // Without walls there are no gaps to tune.
-            for gap in [Variable::D, Variable::C] {
+            for gap in [Parameter::D, Parameter::C] {
                 optimize.vary.retain(|variable| *variable != gap);
-                *optimize.bounds.get_mut(gap) = None;
-                optimize.surf.iter_mut().for_each(|axes| *axes.get_mut(gap) = None);
-                optimize.starts.iter_mut().for_each(|start| *start.get_mut(gap) = None);
-                optimize.global.iter_mut().for_each(|global| *global.sides.get_mut(gap) = None);
+                optimize.bounds.set(gap, None);
+                optimize.surf.iter_mut().for_each(|axes| axes.set(gap, None));
+                optimize.starts.iter_mut().for_each(|start| start.set(gap, None));
+                optimize.global.iter_mut().for_each(|global| global.sides.set(gap, None));
             }
         }
         study
@@ -165,35 +174,49 @@ impl Start {
     /// What a page can turn, whichever damper it hangs there.
     pub fn controls(&self) -> Vec<Control> {
         let walled = Study { optimize: None, ..self.with(Hung::Ssvi) };
-        let control = |&(name, words, dampers): &(&'static str, &'static str, &'static [Hung])| {
-            let value = walled.value_of(name)?;
-            let unit = PARAMETERS.iter().find(|(other, _)| *other == name)?.1;
-            let [from, to] = self.range(name, value);
+        let control = |parameter: Parameter| {
+            let value = parameter.of(&walled.scene)?;
+            let [from, to] = self.range(parameter, value);
             let range = [from.min(value), to.max(value)];
             let log = range[0] > 0.0 && range[1] >= 10.0 * range[0];
-            Some(Control { name, words, unit, value, range, log, dampers })
+            Some(Control {
+                name: parameter.symbol(),
+                words: parameter.words(),
+                unit: parameter.unit(),
+                value,
+                range,
+                log,
+                dampers: dampers(parameter),
+            })
         };
-        TURNED.iter().filter_map(control).collect()
+        TURNED.into_iter().filter_map(control).collect()
     }
 
     /// The range of a slider: of the search's bounds or the band, else about the value.
-    fn range(&self, name: &str, value: f64) -> [f64; 2] {
-        if name == "omega" {
+    fn range(&self, parameter: Parameter, value: f64) -> [f64; 2] {
+        if parameter.is_frequency() {
             let band = band(&self.study);
             return [band.from, band.to];
         }
-        let variable = Variable::ALL.into_iter().find(|variable| variable.to_string() == name);
-        let optimize = self.study.optimize.as_ref();
-        let bounds = variable.and_then(|variable| optimize?.bounds.get(variable));
-        match (bounds, name) {
+        let bounds = self.study.optimize.as_ref().and_then(|optimize| optimize.bounds.get(parameter));
+        match (bounds, parameter) {
             (Some((lower, Some(upper))), _) => [lower, upper],
-            (_, "k1") => [0.4 * value, 2.5 * value],
-            (_, "m2") => [0.25 * value, 4.0 * value],
-            (_, "P" | "imbalance" | "base" | "D" | "C") => [0.0, if value > 0.0 { 4.0 * value } else { 1.0 }],
+            (_, Parameter::K1) => [0.4 * value, 2.5 * value],
+            (_, Parameter::M2) => [0.25 * value, 4.0 * value],
+            (_, parameter) if parameter.is_gap() || Parameter::AMPLITUDES.contains(&parameter) => {
+                [0.0, if value > 0.0 { 4.0 * value } else { 1.0 }]
+            }
             _ if value > 0.0 => [0.1 * value, 10.0 * value],
             _ => [0.0, 1.0],
         }
     }
+}
+
+/// What is told in figures: name, unit and words of each.
+fn figures() -> Vec<[&'static str; 3]> {
+    let largest = Measure::ALL.map(|measure| [measure.name(), measure.unit(), measure.words()]);
+    let impacts = [IMPACTS, "", "impacts in the window, on the structure and on the obstacle"];
+    largest.into_iter().chain([impacts]).collect()
 }
 
 /// The numbers of a place as `--set` has them.

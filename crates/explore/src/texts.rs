@@ -5,7 +5,7 @@ use crate::refused::Refused;
 use crate::response::Stale;
 use crate::sheets;
 use crate::start::Start;
-use retune_study::Study;
+use retune_study::{Settable, Study};
 use retune_workbench::simulate::write_rows;
 
 /// Time between two rows of a motion, s, as `retune simulate --trajectory` has it.
@@ -64,7 +64,9 @@ struct Named {
 
 fn named(start: &Start, place: &Place) -> Result<Named, Refused> {
     start.file_at(place)?;
-    let differs = |(name, value): &(&String, &f64)| start.study().value_of(name) != Some(**value);
+    let differs = |(name, value): &(&String, &f64)| {
+        name.parse().ok().and_then(|what: Settable| start.study().value_of(what)) != Some(**value)
+    };
     match &start.file {
         Some(file) if start.hung() == place.damper => {
             let set = place.set.iter().filter(differs).map(|(name, value)| format!("{name}={value}"));

@@ -4,7 +4,7 @@ use crate::limits::{MOST_EVALUATIONS, MOST_RUNS};
 use crate::protocol::{Answer, Place};
 use crate::refused::Refused;
 use crate::start::Start;
-use retune_model::Variable;
+use retune_model::Parameter;
 use retune_optim::{Objective, PeakEnergy, Response, Scale, Stiffnesses, Stop, energy, minimize};
 use retune_study::{Search, Study, rounded};
 use retune_workbench::tune::{log, objective::searched};
@@ -54,7 +54,7 @@ pub fn tune(
         finished.store(true, std::sync::atomic::Ordering::SeqCst);
         let found = found.map_err(Refused::whole)?;
         let damper = objective.damper(&found.x).map_err(Refused::whole)?;
-        let design: serde_json::Map<_, _> = Variable::columns(&search.variables)
+        let design: serde_json::Map<_, _> = Parameter::columns(&search.variables)
             .iter()
             .map(|column| (column.to_string(), serde_json::json!(column.get(&damper))))
             .filter(|(_, value)| !value.is_null())
@@ -96,7 +96,7 @@ fn refine(
     };
     minimize(value_at, first, options, |row| {
         if let Ok(damper) = objective.damper(&row.best) {
-            let columns = Variable::columns(&search.variables);
+            let columns = Parameter::columns(&search.variables);
             let values: Vec<f64> = columns.iter().map(|column| column.get(&damper)).collect();
             let answer =
                 Answer::new("row").with("text", log::screen(row, &values)).with("value", energy(row.value));

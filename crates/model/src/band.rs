@@ -46,7 +46,7 @@ impl Bare {
     /// Largest steady value of a quantity over a band; as [`Self::steady_e1_max`]. Stroke and contact force are zero without a
     /// damper; the force on the ground under a moving base is not known in closed form, and infinite.
     pub fn steady_max(&self, measure: Measure, [from, to]: [f64; 2]) -> Worst {
-        if matches!(measure, Measure::Stroke | Measure::ContactForce) {
+        if measure.is_of_damper() {
             return Worst { value: 0.0, frequency: from };
         }
         let mut worst = Worst::NONE;

@@ -69,16 +69,6 @@ impl Forcing {
         }
     }
 
-    /// The number that sets the size of the motion, by its name in study files: P, imbalance, base. A free decay has none.
-    pub fn amplitude(&self) -> Option<(&'static str, NonNegative)> {
-        match self.source {
-            Source::Force(amplitude) => Some(("P", amplitude)),
-            Source::Imbalance(amplitude) => Some(("imbalance", amplitude)),
-            Source::Base(amplitude) => Some(("base", amplitude)),
-            Source::Decay(_) => None,
-        }
-    }
-
     /// The transmissibility of a motion with these largest values (m, N): the force on the ground over the amplitude of the force on
     /// the structure; on a moving base the displacement of the structure over that of the base. NaN or infinite where nothing moves it.
     pub fn transmissibility(&self, displacement: f64, ground_force: f64) -> f64 {
@@ -112,19 +102,19 @@ impl Forcing {
     { "required": ["start"], "properties": { "omega": false } }
 ]))]
 struct InFile {
-    /// P, amplitude of a force P cos(omega t) on the structure, N.
+    /// P, amplitude of the force on the primary structure, N: P cos(omega t).
     #[serde(rename = "P", default, skip_serializing_if = "Option::is_none")]
     force: Option<NonNegative>,
-    /// A rotating imbalance, the unbalanced mass times its distance from the axis, kg·m: the force imbalance omega² cos(omega t).
+    /// imbalance, rotating imbalance, mass times its distance from the axis, kg·m: the force imbalance omega² cos(omega t).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     imbalance: Option<NonNegative>,
-    /// Amplitude of a moving base, base cos(omega t), m.
+    /// base, amplitude of the moving base, m: base cos(omega t).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     base: Option<NonNegative>,
     /// The state at t = 0, rest if left out; alone it is a free decay, without any force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<Start>,
-    /// omega, angular frequency of the force, of the rotation or of the base, rad/s.
+    /// omega, angular frequency of the forcing, rad/s: of the force, of the rotation or of the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     omega: Option<NonNegative>,
 }

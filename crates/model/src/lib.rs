@@ -49,11 +49,14 @@ mod excitation;
 mod forcing;
 mod hertz;
 mod measure;
+mod parameter;
+mod per_variable;
 mod regularised;
 mod scene;
 mod sensitivity;
 mod settling;
 mod steady;
+pub mod unit;
 mod value;
 
 pub use band::Worst;
@@ -61,16 +64,19 @@ pub use bare::Bare;
 pub use coupled::{Coupled, Side};
 pub use damper::{Contact, Damper};
 pub use den_hartog::den_hartog;
-pub use design::{Design, Variable};
+pub use design::{Design, NoDesign};
 pub use excitation::Excitation;
 pub use forcing::{Forcing, Source, Start};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
 pub use measure::{Measure, PerMeasure};
+pub use parameter::Parameter;
+pub use parameter::place::{Absent, Unsettable};
+pub use per_variable::{PerVariable, VARIED, varied};
 pub use regularised::bounds::{Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene};
-pub use sensitivity::Parameter;
 pub use steady::Steady;
+pub use unit::Unit;
 pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive};
 
 /// Energy ratios of section 3: `R1 = E1max / (E1max + E2max)` and `R2 = E2max / (E1max + E2max)`, dimensionless.

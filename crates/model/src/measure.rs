@@ -1,32 +1,27 @@
-//! What is measured of a motion, by the names of study files.
+//! The catalogue of quantities: each largest value of a motion once, with its name, words and unit.
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A quantity whose largest value tells how much a motion matters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "Cow<'_, str>", into = "&'static str")]
 pub enum Measure {
-    /// E1max, the largest energy of the primary structure, J.
+    /// E1, the energy of the primary structure.
     #[default]
-    #[serde(rename = "E1max")]
     Energy,
-    /// x1max, the largest displacement |x1| of the primary structure, m.
-    #[serde(rename = "x1max")]
+    /// |x1|.
     Displacement,
-    /// v1max, its largest velocity |v1|, m/s.
-    #[serde(rename = "v1max")]
+    /// |v1|.
     Velocity,
-    /// a1max, its largest acceleration |a1|, m/s².
-    #[serde(rename = "a1max")]
+    /// |a1|.
     Acceleration,
-    /// The largest force transmitted to the ground, |k1 x1 + c1 v1|, N.
-    #[serde(rename = "ground_force")]
+    /// |k1 x1 + c1 v1|.
     GroundForce,
-    /// The stroke: largest spring deflection |x2 - x1 - D|, m.
-    #[serde(rename = "stroke")]
+    /// The spring's deflection |x2 - x1 - D|.
     Stroke,
-    /// Largest contact force on either wall, N.
-    #[serde(rename = "contact_force")]
+    /// The force on either wall.
     ContactForce,
 }
 
@@ -42,41 +37,85 @@ impl Measure {
         Self::ContactForce,
     ];
 
-    /// Its name in studies.
-    pub const fn name(self) -> &'static str {
+    /// Those that a structure has without a damper, too: the first of [`Self::ALL`].
+    pub const OF_STRUCTURE: [Self; 5] =
+        [Self::Energy, Self::Displacement, Self::Velocity, Self::Acceleration, Self::GroundForce];
+    /// Those that only a damper has.
+    pub const OF_DAMPER: [Self; 2] = [Self::Stroke, Self::ContactForce];
+
+    /// Name in files, short name, words, SI unit: its own entry of the catalogue.
+    const fn entry(self) -> [&'static str; 4] {
         match self {
-            Self::Energy => "E1max",
-            Self::Displacement => "x1max",
-            Self::Velocity => "v1max",
-            Self::Acceleration => "a1max",
-            Self::GroundForce => "ground_force",
-            Self::Stroke => "stroke",
-            Self::ContactForce => "contact_force",
+            Self::Energy => ["E1max", "E1", "the largest energy of the structure", "J"],
+            Self::Displacement => ["x1max", "x1", "the largest displacement of the structure", "m"],
+            Self::Velocity => ["v1max", "v1", "the largest velocity of the structure", "m/s"],
+            Self::Acceleration => ["a1max", "a1", "the largest acceleration of the structure", "m/s²"],
+            Self::GroundForce => ["ground_force", "ground", "the largest force on the ground", "N"],
+            Self::Stroke => ["stroke", "stroke", "the largest stroke of the damper", "m"],
+            Self::ContactForce => ["contact_force", "walls", "the largest contact force", "N"],
         }
     }
 
-    /// What it is, in words.
+    /// Its name in files.
+    pub const fn name(self) -> &'static str {
+        self.entry()[0]
+    }
+
+    /// Its name where room is short.
+    pub const fn short_name(self) -> &'static str {
+        self.entry()[1]
+    }
+
+    /// What it is.
     pub const fn words(self) -> &'static str {
-        match self {
-            Self::Energy => "the largest energy of the structure",
-            Self::Displacement => "the largest displacement of the structure",
-            Self::Velocity => "the largest velocity of the structure",
-            Self::Acceleration => "the largest acceleration of the structure",
-            Self::GroundForce => "the largest force on the ground",
-            Self::Stroke => "the largest stroke of the damper",
-            Self::ContactForce => "the largest contact force",
-        }
+        self.entry()[2]
     }
 
     /// The SI unit.
     pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Energy => "J",
-            Self::Displacement | Self::Stroke => "m",
-            Self::Velocity => "m/s",
-            Self::Acceleration => "m/s²",
-            Self::GroundForce | Self::ContactForce => "N",
-        }
+        self.entry()[3]
+    }
+
+    /// Whether only a motion with a damper has it.
+    pub const fn is_of_damper(self) -> bool {
+        matches!(self, Self::Stroke | Self::ContactForce)
+    }
+
+    /// Name, words and unit, as schemas describe it.
+    pub fn sentence(self) -> String {
+        format!("{}, {}, {}.", self.name(), self.words(), self.unit())
+    }
+}
+
+impl TryFrom<Cow<'_, str>> for Measure {
+    type Error = String;
+
+    fn try_from(name: Cow<'_, str>) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|measure| measure.name() == name);
+        known.ok_or_else(|| {
+            let all = Self::ALL.map(|measure| format!("`{}`", measure.name())).join(", ");
+            format!("unknown variant `{name}`, expected one of {all}")
+        })
+    }
+}
+
+impl From<Measure> for &'static str {
+    fn from(measure: Measure) -> Self {
+        measure.name()
+    }
+}
+
+impl JsonSchema for Measure {
+    fn schema_name() -> Cow<'static, str> {
+        "Measure".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let one = |measure: Self| json_schema!({ "type": "string", "const": measure.name(), "description": measure.sentence() });
+        json_schema!({
+            "description": "A quantity whose largest value tells how much a motion matters.",
+            "oneOf": Self::ALL.map(one)
+        })
     }
 }
 

@@ -1,137 +1,6 @@
 //! The derivatives of equation (1) by its parameters, at a fixed state and a fixed time.
 
-use crate::{
-    Bare, Coupled, Damper, Excitation, Measure, NonNegative, OutOfRange, Positive, Scene, Side, Source,
-    Variable, hertz_force_slope,
-};
-
-/// A parameter by which derivatives are taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// ω, angular frequency of the force, rad/s.
-    Omega,
-    /// P, amplitude of the force, N; the size of an imbalance (kg·m) or of the motion of a base (m) where that is what forces.
-    P,
-    /// k1, stiffness of the structure, N/m.
-    K1,
-    /// c1, damping of the structure, N·s/m.
-    C1,
-    /// m2, mass of the damper, kg.
-    M2,
-    /// k2, stiffness of the damper's spring, N/m.
-    K2,
-    /// c2, damping of the damper, N·s/m.
-    C2,
-    /// D, distance of the damper from the structure where its spring is at rest, m. The obstacle moves with it.
-    D,
-    /// C, clearance between the damper at rest and the obstacle, m.
-    C,
-    /// R, radius of the surfaces in contact, m.
-    R,
-}
-
-impl Parameter {
-    /// All of them.
-    pub const ALL: [Self; 10] =
-        [Self::Omega, Self::P, Self::K1, Self::C1, Self::M2, Self::K2, Self::C2, Self::D, Self::C, Self::R];
-
-    /// The parameter of the damper that may be varied; none if it is another.
-    const fn variable(self) -> Option<Variable> {
-        match self {
-            Self::M2 => Some(Variable::M2),
-            Self::K2 => Some(Variable::K2),
-            Self::C2 => Some(Variable::C2),
-            Self::D => Some(Variable::D),
-            Self::C => Some(Variable::C),
-            Self::Omega | Self::P | Self::K1 | Self::C1 | Self::R => None,
-        }
-    }
-
-    /// Its symbol in the paper.
-    pub const fn symbol(self) -> &'static str {
-        match (self.variable(), self) {
-            (Some(variable), _) => variable.symbol(),
-            (None, Self::Omega) => "omega",
-            (None, Self::P) => "P",
-            (None, Self::K1) => "k1",
-            (None, Self::C1) => "c1",
-            (None, _) => "R",
-        }
-    }
-
-    /// Its SI unit.
-    pub const fn unit(self) -> &'static str {
-        match (self.variable(), self) {
-            (Some(variable), _) => variable.unit(),
-            (None, Self::Omega) => "rad/s",
-            (None, Self::P) => "N",
-            (None, Self::K1) => "N/m",
-            (None, Self::C1) => "N·s/m",
-            (None, _) => "m",
-        }
-    }
-}
-
-impl From<Variable> for Parameter {
-    fn from(variable: Variable) -> Self {
-        match variable {
-            Variable::M2 => Self::M2,
-            Variable::K2 => Self::K2,
-            Variable::C2 => Self::C2,
-            Variable::D => Self::D,
-            Variable::C => Self::C,
-        }
-    }
-}
-
-impl std::str::FromStr for Parameter {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let known = Self::ALL.into_iter().find(|parameter| parameter.symbol() == text);
-        known.ok_or_else(|| {
-            let all = Self::ALL.map(Self::symbol).join(", ");
-            format!("there is no parameter \"{text}\" here: give one of {all}")
-        })
-    }
-}
-
-impl Parameter {
-    /// Its value in a scene, in its SI unit; none where the scene has no such parameter.
-    pub fn of(self, scene: &Scene) -> Option<f64> {
-        if let Some(variable) = self.variable() {
-            return scene.damper.as_ref().map(|damper| variable.get(damper)).filter(|value| !value.is_nan());
-        }
-        match self {
-            Self::Omega => Some(scene.forcing.frequency.get()),
-            Self::P => scene.forcing.amplitude().map(|(_, amplitude)| amplitude.get()),
-            Self::K1 => Some(scene.primary.stiffness.get()),
-            Self::C1 => Some(scene.primary.damping.get()),
-            _ => scene.damper.and_then(|damper| damper.contact).map(|contact| contact.radius.get()),
-        }
-    }
-
-    /// The scene with this parameter at `value`, in its SI unit; as it is where it has no such parameter.
-    ///
-    /// # Errors
-    /// The value is out of the parameter's range.
-    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, OutOfRange> {
-        match (self.variable(), &mut scene.damper) {
-            (Some(variable), Some(damper)) => variable.set(damper, value)?,
-            (None, Some(Damper { contact: Some(contact), .. })) if self == Self::R => {
-                contact.radius = Positive::new(value)?;
-            }
-            _ => match self {
-                Self::Omega => scene.forcing.frequency = NonNegative::new(value)?,
-                Self::P => scene.forcing = scene.forcing.with_amplitude(NonNegative::new(value)?),
-                Self::K1 => scene.primary.stiffness = NonNegative::new(value)?,
-                Self::C1 => scene.primary.damping = NonNegative::new(value)?,
-                _ => {}
-            },
-        }
-        Ok(scene)
-    }
-}
+use crate::{Bare, Coupled, Excitation, Measure, Parameter, Side, Source, hertz_force_slope};
 
 impl Bare {
     /// `∂[P cos(ωt + φ), P sin(ωt + φ)]/∂parameter` at time `t` (s), N per unit of the parameter.
@@ -144,13 +13,13 @@ impl Bare {
 
     /// The derivative of the logarithm of the force's amplitude, and that of the angle by which it leads at t = 0.
     fn forcing_by(&self, parameter: Parameter) -> [f64; 2] {
-        let size = |value: f64| {
-            if parameter == Parameter::P && value != 0.0 { [1.0 / value, 0.0] } else { [0.0; 2] }
+        let size = |amplitude: Parameter, value: f64| {
+            if parameter == amplitude && value != 0.0 { [1.0 / value, 0.0] } else { [0.0; 2] }
         };
         match self.source() {
-            Source::Force(force) => size(force.get()),
+            Source::Force(force) => size(Parameter::P, force.get()),
             Source::Imbalance(_) if parameter == Parameter::Omega => [2.0 / self.omega, 0.0],
-            Source::Imbalance(imbalance) => size(imbalance.get()),
+            Source::Imbalance(imbalance) => size(Parameter::Imbalance, imbalance.get()),
             // It pushes by k1 y + c1 dy/dt: a complex stiffness k1 + iωc1.
             Source::Base(base) => {
                 let (k1, loss) = (self.k1, self.omega * self.c1);
@@ -160,7 +29,7 @@ impl Bare {
                     Parameter::K1 => [k1 / square, -loss / square],
                     Parameter::C1 => by_loss.map(|by| by * self.omega),
                     Parameter::Omega => by_loss.map(|by| by * self.c1),
-                    _ => size(base.get()),
+                    _ => size(Parameter::Base, base.get()),
                 }
             }
             Source::Decay(_) => [0.0; 2],

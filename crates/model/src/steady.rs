@@ -1,6 +1,6 @@
 //! Steady response of the linear scenes in closed form: no damper, or a damper that never touches.
 
-use crate::{Bare, Coupled, Measure, Variable};
+use crate::{Bare, Coupled, Measure, Parameter};
 use nalgebra::Complex;
 
 /// Amplitudes of a steady harmonic motion `x1 = Re(X1 e^{iωt})`, `x2 - D = Re(X2 e^{iωt})`.
@@ -88,19 +88,20 @@ impl Coupled {
     }
 
     /// The derivative of [`Steady::largest`] by a parameter of the damper, in the unit of the measure per SI unit of the parameter, at a
-    /// fixed angular frequency (rad/s). With `N = S d - m2 ω² Q` and primes for derivatives,
+    /// fixed angular frequency (rad/s); NaN by a parameter of the structure or the force. With `N = S d - m2 ω² Q` and primes for derivatives,
     /// `X1' = (P e^{iφ} d' - X1 N') / N` and `X2' = (P e^{iφ} Q' - X2 N') / N`; walls that are not touched do not matter.
-    pub fn steady_by(&self, measure: Measure, variable: Variable, omega: f64) -> f64 {
+    pub fn steady_by(&self, measure: Measure, parameter: Parameter, omega: f64) -> f64 {
         let steady = self.steady(omega);
         let bare = self.bare();
         let Bare { m1, c1, k1, .. } = *bare;
         let (m2, k2, c2) = self.damper();
         let (omega2, one) = (omega * omega, Complex::new(1.0, 0.0));
-        let [by_spring, by_mass] = match variable {
-            Variable::K2 => [one, 0.0 * one],
-            Variable::C2 => [Complex::new(0.0, omega), 0.0 * one],
-            Variable::M2 => [0.0 * one, one],
-            Variable::D | Variable::C => return 0.0,
+        let [by_spring, by_mass] = match parameter {
+            Parameter::K2 => [one, 0.0 * one],
+            Parameter::C2 => [Complex::new(0.0, omega), 0.0 * one],
+            Parameter::M2 => [0.0 * one, one],
+            _ if parameter.is_gap() || parameter.is_of_contact() => return 0.0,
+            _ => return f64::NAN,
         };
         let spring = Complex::new(k2, omega * c2);
         let primary = Complex::new(k1 - m1 * omega2, omega * c1);

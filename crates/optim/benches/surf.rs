@@ -1,9 +1,9 @@
 //! Time and memory of a `surf` of a million points, each a run of 100 s of the paper's SSVI NES, and its speed-up by threads: as exact as it need
 //! be to say where a search starts, and as exact as results.
-//! `just bench-surf`.
+//! `just lab bench-surf`.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
-use retune_optim::{Axis, Grid, PeakEnergy, Scale, Variable, surf};
+use retune_optim::{Axis, Grid, Parameter, PeakEnergy, Scale, surf};
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::SSVI;
 use std::time::Instant;
@@ -13,7 +13,7 @@ const LARGE: usize = 32;
 const SMALL: usize = 10;
 const PAIRS: usize = 5;
 
-/// The ranges of `studies/ssvi-resonance.json`, in the order of [`Variable::ALL`]: N/m, N·s/m, m, m.
+/// The ranges of `studies/ssvi-resonance.json`, in the order of [`Parameter::VARIED`]: N/m, N·s/m, m, m.
 const RANGES: [(f64, f64, Scale); 4] = [
     (50.0, 1600.0, Scale::Log),
     (10.0, 400.0, Scale::Log),
@@ -57,7 +57,8 @@ fn timed(points: usize, threads: usize, (rtol, most): (f64, f64)) -> (f64, u64) 
     let grid = Grid::new(RANGES.map(axis).to_vec(), points.pow(4)).expect("a grid");
     let window = Window { from: 50.0, to: 100.0 };
     let settings = Settings { rtol, ..Settings::default() };
-    let objective = PeakEnergy::new(SSVI.scene(), SSVI.damper(), Variable::ALL.to_vec(), window, settings);
+    let objective =
+        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, settings);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let begun = Instant::now();
     pool.install(|| surf(&grid, |design| objective.value_up_to(design, most), |_| ()));

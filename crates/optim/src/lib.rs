@@ -24,7 +24,7 @@ pub use objective::peak_energy::{Counts, Failures, PeakEnergy};
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;
 pub use objective::watch::GoesOn;
-pub use retune_model::{Design, Variable};
+pub use retune_model::{Design, Parameter};
 pub use search::fminsearch::{
     Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize,
 };

@@ -100,7 +100,7 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     for case in &CASES {
         let scene = case.scene(plan)?;
         draw(plan, case, &scene, &mut item)?;
-        let own = plan.ssvi.value_of("R").unwrap_or(f64::NAN);
+        let own = plan.ssvi.value_of(Parameter::R).unwrap_or(f64::NAN);
         let mut variants: Vec<(f64, f64)> = vec![(own, case.omega)];
         if !plan.is_brief {
             variants.extend(near.map(|shift| (own, case.omega + shift)));
@@ -110,7 +110,7 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
         let judged: Vec<Result<Regime, Error>> = variants
             .par_iter()
             .map(|&(radius, omega)| {
-                let settings = [("k1", case.k1), ("omega", omega), ("R", radius)]
+                let settings = [(Parameter::K1, case.k1), (Parameter::Omega, omega), (Parameter::R, radius)]
                     .map(|(name, value)| Setting::new(name, value));
                 let scene = plan.ssvi.scene_with(&settings)?;
                 let regime = judge(&scene, plan);

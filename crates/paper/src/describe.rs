@@ -3,7 +3,7 @@
 use crate::kind::KIND;
 use crate::plan::Plan;
 use retune_study::{self as study, Kind};
-use retune_tradeoff::{pareto, track};
+use retune_tradeoff::{fronts, retention};
 use retune_workbench::{Error, Silent, artefact, describe, table2, tune};
 use std::path::Path;
 
@@ -13,8 +13,8 @@ use std::path::Path;
 /// It, or a file that it names, is wrong.
 pub fn describe(path: &Path) -> Result<(String, Vec<&'static artefact::Kind>), Error> {
     Ok(match study::kind_of(path)? {
-        Kind::Table2 => (describe::table2(&study::read_table2(path)?), vec![&table2::KIND, &track::KIND]),
-        Kind::Fronts => (describe::fronts(&study::read_fronts(path)?), vec![&pareto::KIND]),
+        Kind::Table2 => (describe::table2(&study::read_table2(path)?), vec![&table2::KIND, &retention::KIND]),
+        Kind::Fronts => (describe::fronts(&study::read_fronts(path)?), vec![&fronts::KIND]),
         Kind::Paper => {
             Plan::read(path, &Silent)?;
             ("every table and figure of the paper".to_owned(), vec![&KIND])

@@ -64,7 +64,7 @@ pub fn whole(plan: &Plan, scene: &Scene) -> f64 {
 pub fn best_tmd(plan: &Plan) -> Result<Scene, Error> {
     let scene = plan.tmd.scene;
     let damper = scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))?;
-    Ok(Scene { damper: Some(retune_tradeoff::track::best_tmd(&scene, damper, BAND)?.0), ..scene })
+    Ok(Scene { damper: Some(retune_tradeoff::retention::best_tmd(&scene, damper, BAND)?.0), ..scene })
 }
 
 /// Its spring and its damping in words.

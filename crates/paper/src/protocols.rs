@@ -4,7 +4,7 @@ use super::item::{Grid, Item, Verdict};
 use super::measures::{Spread, energy, near};
 use super::plan::Plan;
 use rayon::prelude::*;
-use retune_model::Scene;
+use retune_model::{Parameter, Scene};
 use retune_optim::Objective;
 use retune_solver::Window;
 use retune_study::Setting;
@@ -62,8 +62,8 @@ pub fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     bar.finish();
     all.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let own = |of: &Protocol| {
-        let here =
-            plan.ssvi.value_of("R") == Some(of.radius) && plan.ssvi.value_of("omega") == Some(of.omega);
+        let here = plan.ssvi.value_of(Parameter::R) == Some(of.radius)
+            && plan.ssvi.value_of(Parameter::Omega) == Some(of.omega);
         here && of.window == plan.window()
     };
     let head = [
@@ -119,7 +119,14 @@ fn look(plan: &Plan, radius: f64, omega: f64, window: Window) -> Result<Protocol
     let mut rows = Vec::new();
     let (mut squares, mut inside) = (0.0, 0);
     for ([k2, c2, d, c], printed) in PAPER {
-        let settings = [("k2", k2), ("c2", c2), ("D", d), ("C", c), ("R", radius), ("omega", omega)];
+        let settings = [
+            (Parameter::K2, k2),
+            (Parameter::C2, c2),
+            (Parameter::D, d),
+            (Parameter::C, c),
+            (Parameter::R, radius),
+            (Parameter::Omega, omega),
+        ];
         let scene = plan.ssvi.scene_with(&settings.map(|(name, value)| Setting::new(name, value)))?;
         let value = |scene: &Scene| energy(scene, &Objective::default(), window, &plan.settings());
         let spread = near(FEW, &scene, value);

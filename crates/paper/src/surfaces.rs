@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use retune_dynamics::parameter::evenly;
 use retune_figures::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
 use retune_model::Measure;
-use retune_optim::{Goal, Objective, PeakEnergy, Response, Variable};
+use retune_optim::{Goal, Objective, Parameter, PeakEnergy, Response};
 use retune_study::Study;
 use retune_study::short;
 use retune_workbench::Error;
@@ -18,7 +18,7 @@ use retune_workbench::tune::pictures::label;
 struct Surface {
     name: &'static str,
     title: &'static str,
-    variables: [Variable; 2],
+    variables: [Parameter; 2],
     ranges: [(f64, f64); 2],
 }
 
@@ -35,20 +35,20 @@ const AMONG: f64 = 0.05;
 const TMD: Surface = Surface {
     name: "figure2-tmd",
     title: "TMD",
-    variables: [Variable::K2, Variable::C2],
+    variables: [Parameter::K2, Parameter::C2],
     ranges: [(100.0, 4000.0), (20.0, 500.0)],
 };
 const SSVI: [Surface; 2] = [
     Surface {
         name: "figure2-ssvi-k2-c2",
         title: "SSVI NES",
-        variables: [Variable::K2, Variable::C2],
+        variables: [Parameter::K2, Parameter::C2],
         ranges: [(50.0, 800.0), (40.0, 440.0)],
     },
     Surface {
         name: "figure2-ssvi-D-C",
         title: "SSVI NES",
-        variables: [Variable::D, Variable::C],
+        variables: [Parameter::D, Parameter::C],
         ranges: [(0.01, 0.2), (0.05, 0.65)],
     },
 ];
@@ -188,7 +188,7 @@ fn surface(
     let best = (0..values.len()).min_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0);
     let paper = surface.variables.map(|variable| variable.get(&damper));
     let paper_value = objective.value(&paper, f64::INFINITY);
-    let springs = surface.variables[0] == Variable::K2;
+    let springs = surface.variables[0] == Parameter::K2;
     let ranked: Vec<f64> = designs
         .iter()
         .zip(&values)

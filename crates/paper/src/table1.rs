@@ -8,7 +8,7 @@ use super::stiff::stiffness;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Measure, Scene};
-use retune_optim::{Failures, Minimum, Objective, Options, PeakEnergy, Row, Stop, Variable, minimize};
+use retune_optim::{Failures, Minimum, Objective, Options, Parameter, PeakEnergy, Row, Stop, minimize};
 use retune_solver::{Settings, Window};
 use retune_study::Setting;
 use retune_workbench::Error;
@@ -36,7 +36,7 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
     );
     let damper = plan.ssvi.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))?;
     let objective = |window: Window, settings: Settings| {
-        PeakEnergy::new(plan.ssvi.scene, damper, Variable::PAPER.to_vec(), window, settings)
+        PeakEnergy::new(plan.ssvi.scene, damper, Parameter::PAPER.to_vec(), window, settings)
     };
     let own = objective(plan.window(), plan.settings());
     worth(plan, &objective, &mut item)?;
@@ -138,13 +138,19 @@ fn left_out(plan: &Plan) -> Result<Grid, Error> {
     let mut row = vec!["the paper".to_owned(), String::new()];
     row.extend(PAPER.iter().map(|(_, paper)| format!("{paper:.1}")));
     grid.rows.push(row);
-    let own = plan.ssvi.value_of("R").unwrap_or(f64::NAN);
+    let own = plan.ssvi.value_of(Parameter::R).unwrap_or(f64::NAN);
     let late = plan.window();
     let radii = RADII.into_iter().filter(|radius| *radius != own).map(|radius| (radius, late));
     for (radius, window) in [(own, late), (own, Window { from: 0.0, ..late })].into_iter().chain(radii) {
         let mut row = vec![format!("{radius}"), format!("{}–{}", window.from, window.to)];
         for ([k2, c2, d, c], _) in PAPER {
-            let design = [("k2", k2), ("c2", c2), ("D", d), ("C", c), ("R", radius)];
+            let design = [
+                (Parameter::K2, k2),
+                (Parameter::C2, c2),
+                (Parameter::D, d),
+                (Parameter::C, c),
+                (Parameter::R, radius),
+            ];
             let scene = plan.ssvi.scene_with(&design.map(|(name, value)| Setting::new(name, value)))?;
             let value = |scene: &Scene| energy(scene, &Objective::default(), window, &plan.settings());
             row.push(format!("{:.0}", near(FEW, &scene, value).median));

@@ -4,13 +4,13 @@ use super::item::{Grid, Item, Verdict};
 use super::ladder::{self, Ladder};
 use super::measures::{at_omega, over_band, whole};
 use super::plan::{Plan, Tuner};
-use retune_model::{Design, Scene, Variable};
+use retune_model::{Design, Parameter, PerVariable, Scene};
 use retune_optim::{Failures, Limits, Objective, Response};
-use retune_study::{Coarse, Optimize, PerVariable, Refine, Setting, Study};
+use retune_study::{Coarse, Optimize, Refine, Setting, Study};
 use retune_workbench::Error;
 
 /// The best node of Figure 2's surface over k2 and c2, rounded: another start for the SSVI NES.
-const STIFFER: [(&str, f64); 2] = [("k2", 500.0), ("c2", 160.0)];
+const STIFFER: [(Parameter, f64); 2] = [(Parameter::K2, 500.0), (Parameter::C2, 160.0)];
 /// Samples of the band while the SSVI NES is tuned; the TMD's steady response is exact.
 const SAMPLES: usize = 31;
 /// Largest stiffness of a spring, N/m: that of the paper's TMD, its stiffest.
@@ -34,7 +34,7 @@ struct Search<'a> {
     origin: &'static str,
     name: &'static str,
     base: &'a Study,
-    vary: &'a [Variable],
+    vary: &'a [Parameter],
     objective: Objective,
     most_k2: Option<f64>,
     evaluations: u64,
@@ -54,7 +54,7 @@ pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
     let bar = plan.watch.progress("table 2", 8);
     let stiffer = plan.ssvi.with(&STIFFER.map(|(name, value)| Setting::new(name, value)))?;
     let [ssvi, tmd] = [&plan.ssvi, &plan.tmd];
-    let (all, linear) = (&Variable::PAPER[..], &[Variable::K2, Variable::C2][..]);
+    let (all, linear) = (&Parameter::PAPER[..], &[Parameter::K2, Parameter::C2][..]);
     let sampled = || over_band(SAMPLES, Response::Window);
     let steady = || over_band(SAMPLES, Response::Steady);
     let search = |origin, name, base, vary, objective, most_k2, evaluations| Search {
@@ -108,8 +108,8 @@ impl Search<'_> {
         let mut bounds = PerVariable::default();
         for &variable in self.vary {
             let start = self.base.scene.damper.map_or(0.0, |damper| variable.get(&damper));
-            let most = if variable == Variable::K2 { self.most_k2 } else { None };
-            *bounds.get_mut(variable) = Some((0.0, Some(most.unwrap_or(20.0 * start))));
+            let most = if variable == Parameter::K2 { self.most_k2 } else { None };
+            bounds.set(variable, Some((0.0, Some(most.unwrap_or(20.0 * start)))));
         }
         let refine = Refine { scaled: true, max_fun_evals: Some(self.evaluations), ..Refine::default() };
         let optimize = Optimize {

@@ -3,7 +3,8 @@
 use super::item::{Grid, Item, Verdict};
 use super::plan::{Plan, Range};
 use super::{cases, curves, energies, ratios, regimes, surfaces};
-use retune_study::{Setting, Study, short};
+use retune_model::Parameter;
+use retune_study::{Settable, Setting, Study, short};
 use retune_workbench::observer::Quiet;
 use retune_workbench::{Error, Observer};
 use std::collections::BTreeMap;
@@ -47,11 +48,14 @@ pub fn figures(plan: &Plan) -> Result<Item, Error> {
     let own = plan.window();
     let mut settings: Vec<(String, Vec<Setting>)> = RADII
         .iter()
-        .map(|radius| (format!("R = {} m", short(*radius)), vec![Setting::new("R", *radius)]))
+        .map(|radius| (format!("R = {} m", short(*radius)), vec![Setting::new(Parameter::R, *radius)]))
         .collect();
     for share in BEFORE {
         let from = share * own.to;
-        settings.push((format!("{} to {} s", short(from), short(own.to)), vec![Setting::new("t0", from)]));
+        settings.push((
+            format!("{} to {} s", short(from), short(own.to)),
+            vec![Setting::new(Settable::From, from)],
+        ));
     }
     let bar = plan.watch.progress("figures, settings", (settings.len() * FIGURES.len()) as u64);
     let mut head = vec!["figure".to_owned(), "statement".to_owned()];

@@ -1,7 +1,7 @@
 """What the Python package costs beside Rust, and what it saves beside SciPy. Each comparison is made in many short turns, and the least times
 are compared: the machine may have other work, which only ever adds.
 
-    just bench-python
+    just lab bench-python
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def main() -> None:
     )
     ssvi = rt.Problem(structure, rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36), P=800, omega=6.28, window=(50, 100), vary=list(bounds), bounds=bounds)
 
-    print("What the Python package costs, and what it saves: `just test-python && just bench-python`\n")
+    print("What the Python package costs, and what it saves: `just test-python && just lab bench-python`\n")
     print(f"retune {rt.__version__}, Python {platform.python_version()}, numpy {np.__version__}, SciPy {scipy.__version__}")
     print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the beginning; least times, taken in turns\n")
 

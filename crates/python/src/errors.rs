@@ -3,6 +3,7 @@
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyFloat;
+use retune_model::Unsettable;
 use retune_optim::Unusable;
 use retune_solver::SolverError;
 use retune_study::StudyError;
@@ -91,7 +92,10 @@ impl From<Unusable> for Fault {
     fn from(error: Unusable) -> Self {
         match error {
             Unusable::Run(error) => Self::Solver(error),
-            Unusable::OutOfRange { source, .. }
+            Unusable::Value { source: Unsettable::Absent(_), .. } => {
+                Self::study(error.to_string(), Given::Nothing)
+            }
+            Unusable::Value { source: Unsettable::OutOfRange(source), .. }
             | Unusable::Stiffness(source)
             | Unusable::Member(source)
             | Unusable::Frequency(source) => Self::study(error.to_string(), Given::Number(source.value)),

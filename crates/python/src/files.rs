@@ -5,9 +5,10 @@ use crate::jobs;
 use crate::problem::json;
 use crate::watch::{Watch, watched};
 use pyo3::prelude::*;
+use retune_model::Parameter;
 use retune_study::Setting;
 use retune_sweep::Asked;
-use retune_tradeoff::{pareto, track};
+use retune_tradeoff::{fronts, retention};
 use retune_workbench::design::Wishes;
 use retune_workbench::sweep::Points;
 use retune_workbench::{Error, Request, certify, design, sweep, table2, tune};
@@ -27,7 +28,7 @@ enum Job {
     Share(String),
     Sweep(Swept),
     Table2,
-    Track(Vec<f64>),
+    Retention(Vec<f64>),
 }
 
 /// A sweep as it is typed.
@@ -66,7 +67,7 @@ fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
     match job {
         Job::Certify => return json(&certify::certify_file(request, watch)?),
         Job::Design(wishes) => drop(design::design(&wishes, request, watch)?),
-        Job::Fronts => drop(pareto::pareto(request, watch)?),
+        Job::Fronts => drop(fronts::fronts(request, watch)?),
         Job::Merge { parts } => {
             tune::merge::merge(request, &parts, watch)?;
             out = out_of_one(request)?;
@@ -78,9 +79,10 @@ fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
         }
         Job::Sweep(swept) => return swept.made(request, watch),
         Job::Table2 => drop(table2::table2(request, watch)?),
-        Job::Track(k1) => {
-            let settings: Vec<Setting> = k1.into_iter().map(|value| Setting::new("k1", value)).collect();
-            track::track(request, &settings, watch)?;
+        Job::Retention(k1) => {
+            let settings: Vec<Setting> =
+                k1.into_iter().map(|value| Setting::new(Parameter::K1, value)).collect();
+            retention::retention(request, &settings, watch)?;
         }
     }
     json(&out)

@@ -5,7 +5,7 @@ use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use crate::watch::{caught, on_pool, watched};
 use pyo3::prelude::*;
-use retune_model::{Contact, Positive};
+use retune_model::{Contact, Parameter, Positive};
 use retune_store::Begin;
 use retune_workbench::design::Wishes;
 use retune_workbench::job::Done;
@@ -172,6 +172,12 @@ pub fn branches(
             Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
         }
     })
+}
+
+/// The catalogue of parameters: the symbol, the SI unit and the words of each.
+#[pyfunction]
+pub fn parameters() -> Vec<(&'static str, &'static str, &'static str)> {
+    Parameter::ALL.map(|one| (one.symbol(), one.unit(), one.words())).to_vec()
 }
 
 /// The walls of a damper of so many kg for which none are given, as JSON.

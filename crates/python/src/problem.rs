@@ -9,7 +9,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use retune_model::Measure;
-use retune_optim::{Evaluation, GoesOn, Limit, Objective, PeakEnergy, Response, Variable};
+use retune_optim::{Evaluation, GoesOn, Limit, Objective, Parameter, PeakEnergy, Response};
 use retune_study::{Rule, Setting, Study, read::from_text};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -75,7 +75,7 @@ impl Core {
     #[getter]
     fn bounds(&self) -> Vec<(f64, f64)> {
         let Some(optimize) = &self.study.optimize else { return Vec::new() };
-        let bounds = |variable: &Variable| optimize.bounds.get(*variable).unwrap_or((0.0, None));
+        let bounds = |variable: &Parameter| optimize.bounds.get(*variable).unwrap_or((0.0, None));
         let with_end = |(lower, upper): (f64, Option<f64>)| (lower, upper.unwrap_or(f64::INFINITY));
         self.variables().iter().map(|variable| with_end(bounds(variable))).collect()
     }
@@ -98,7 +98,7 @@ impl Core {
     #[pyo3(signature = (x, /))]
     fn __call__(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<f64> {
         let objective = self.objective()?;
-        let mut row = [0.0; Variable::ALL.len()];
+        let mut row = [0.0; Parameter::VARIED.len()];
         let row = &mut row[..objective.variables().len()];
         self.design(x, row)?;
         Ok(self.found(py, objective, row)?.value)
@@ -226,7 +226,7 @@ impl Core {
         Ok(Self { study, file, objective, takes_long, knows })
     }
 
-    fn variables(&self) -> &[Variable] {
+    fn variables(&self) -> &[Parameter] {
         self.objective.as_ref().map_or(&[], |objective| objective.variables())
     }
 

@@ -260,7 +260,7 @@ def test_contract_jobs_on_files_have_the_bytes_of_the_command_line(program: Path
 
     # A tuning at another stiffness takes most of a minute: what is asked for arrives.
     with pytest.raises(rt.Error, match="k1: -3 is not allowed"):
-        rt.track(tmp_path / "several.json", [4e4, -3], out("track"), **quiet)
+        rt.retention(tmp_path / "several.json", [4e4, -3], out("retention"), **quiet)
 
     plan = {"kind": "fronts", "dampers": [{"damper": "SSVI NES", "study": "small.json"}], "k2": [600], "samples": 9, "check": 9, "certificates": 1}
     (tmp_path / "fronts.json").write_text(json.dumps(plan))
@@ -275,7 +275,7 @@ def test_contract_every_command_is_reachable(program: Path) -> None:
     """A command that comes new is missed here until it has its place."""
     said = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
     commands = re.findall(r"^  (\w+) {2,}", said.partition("Commands:")[2].partition("Options:")[0], re.M)
-    functions = {"optimize", "design", "merge", "verify", "certify", "sweep", "branches", "table2", "track", "fronts", "reproduce"}
+    functions = {"optimize", "design", "merge", "verify", "certify", "sweep", "branches", "table2", "retention", "fronts", "reproduce"}
     assert functions <= set(dir(rt))
     # By another name: `problem.simulate`, `problem.batch`, `reproduce("figure3")`, `Problem.from_study`.
     elsewhere = {"simulate", "evaluate", "figure", "table", "check"}

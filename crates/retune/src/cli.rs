@@ -13,8 +13,9 @@ pub use sweep::Sweep;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use retune_model::Start;
+use retune_model::VARIED;
 use retune_solver::{Contacts, Method};
-use retune_study::{Setting, SettingError};
+use retune_study::{Settable, Setting, SettingError};
 use retune_workbench::parts::Shard;
 use std::path::PathBuf;
 
@@ -105,8 +106,8 @@ pub enum Command {
         #[command(flatten)]
         running: Running,
     },
-    /// Track the optimum along k1: retune both dampers for other stiffnesses of the structure, and plot the loss by detuning
-    Track {
+    /// Retention of tuning along k1: tune dampers again for other stiffnesses of the structure, and plot what detuning costs
+    Retention {
         /// Stiffnesses of the primary structure, N/m
         #[arg(required = true, value_name = "K1", value_parser = stiffness, allow_negative_numbers = true)]
         k1: Vec<Setting>,
@@ -189,8 +190,7 @@ pub struct Reproduce {
 pub struct Simulate {
     /// The study file
     pub study: PathBuf,
-    /// Change a parameter: m1 c1 k1 m2 k2 c2 D C P imbalance base omega R T t0, in SI units; omega=1Hz and omega=60rpm too (repeatable)
-    #[arg(long = "set", value_name = "NAME=VALUE")]
+    #[arg(long = "set", value_name = "NAME=VALUE", help = settings())]
     pub settings: Vec<Setting>,
     /// Start from this state instead of rest: x1,v1,x2,v2 in m and m/s, or x1,v1 with the damper's spring at rest
     #[arg(long, value_name = "X1,V1,X2,V2", value_parser = retune_study::start, allow_hyphen_values = true)]
@@ -219,7 +219,7 @@ pub struct Simulate {
 /// `evaluate`.
 #[derive(Debug, Args)]
 pub struct Evaluate {
-    /// The study file; a design is one number for each parameter that it tunes, in the order k2 c2 D C m2
+    #[arg(help = format!("The study file; a design is one number for each parameter that it tunes, in the order {}", VARIED.join(" ")))]
     pub study: PathBuf,
     /// Answer with JSON objects, which include the violation of limits
     #[arg(long)]
@@ -227,6 +227,15 @@ pub struct Evaluate {
     /// Number of lines evaluated in parallel, and threads of the runs of each; the values are the same for any number [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// What `--set` is for.
+fn settings() -> String {
+    let names: Vec<&str> = Settable::all().map(Settable::symbol).collect();
+    format!(
+        "Change a number (repeatable): {}; in SI units, or with a unit: omega=1Hz, k1=30kN/m",
+        names.join(" ")
+    )
 }
 
 fn stiffness(text: &str) -> Result<Setting, SettingError> {

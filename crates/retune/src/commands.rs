@@ -5,7 +5,7 @@ use crate::screen::{self, Screen};
 use clap::CommandFactory;
 use retune_study as study;
 use retune_sweep::Asked;
-use retune_tradeoff::{pareto, track};
+use retune_tradeoff::{fronts, retention};
 use retune_workbench::design::Wishes;
 use retune_workbench::designs::Designs;
 use retune_workbench::evaluate::Streams;
@@ -64,13 +64,13 @@ pub fn run(command: Command) -> Result<(), Error> {
             let (request, screen) = running.request(&study);
             made(table2::table2(&request, &screen)?, Designs::check_limits)
         }
-        Command::Track { k1, study, running } => {
+        Command::Retention { k1, study, running } => {
             let (request, screen) = running.request(&study);
-            made(track::track(&request, &k1, &screen)?, |tracked| tracked.table.check_limits())
+            made(retention::retention(&request, &k1, &screen)?, |retained| retained.table.check_limits())
         }
         Command::Fronts { study, running } => {
             let (request, screen) = running.request(&study);
-            pareto::pareto(&request, &screen).map(drop)
+            fronts::fronts(&request, &screen).map(drop)
         }
         Command::Reproduce(arguments) => reproduce(&arguments, None),
         Command::Figure { number, paper } => reproduce(&paper, Some(&format!("figure{number}"))),

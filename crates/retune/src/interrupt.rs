@@ -81,7 +81,10 @@ mod tests {
             ),
             "'/opt/my tools/retune' optimize 'my study.json' --out 'it'\\''s' --resume"
         );
-        assert_eq!(said(None, &[b"retune", b"track", b"3e4", b"--resume"]), "retune track 3e4 --resume");
+        assert_eq!(
+            said(None, &[b"retune", b"retention", b"3e4", b"--resume"]),
+            "retune retention 3e4 --resume"
+        );
         assert_eq!(
             said(
                 Some("just"),

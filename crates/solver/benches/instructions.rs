@@ -1,5 +1,5 @@
 //! Instructions of a run of 100 s, counted by valgrind: the same on a busy machine as on a quiet one; and the least time of many.
-//! `just bench-instructions`.
+//! `just lab bench-instructions`.
 //!
 //! The program runs itself under callgrind, with many runs and with few; the difference is that of the runs alone.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]

@@ -12,7 +12,7 @@ use crate::response::Extreme;
 use crate::settings::{Method, Settings, Window};
 use crate::settle::{in_closed_form, settled};
 use crate::tangent::{Tangent, gradient_at};
-use retune_model::{Coupled, Parameter, Scene, Variable};
+use retune_model::{Coupled, Parameter, Scene};
 
 /// The derivatives of the largest value of [`Ask::measure`] that [`extremes`] finds in a window by parameters of the damper, in the unit of
 /// the measure per SI unit of each; zeros without a damper. [`Ask::cutoff`] is not used.
@@ -24,12 +24,14 @@ pub fn extremes_by(
     window: Window,
     settings: &Settings,
     ask: Ask,
-    variables: &[Variable],
+    parameters: &[Parameter],
 ) -> Result<Vec<f64>, SolverError> {
-    let Some((system, settings)) = exact(scene, settings, ask) else { return Ok(vec![0.0; variables.len()]) };
+    let Some((system, settings)) = exact(scene, settings, ask) else {
+        return Ok(vec![0.0; parameters.len()]);
+    };
     let ask = Ask { also: None, cutoff: f64::INFINITY, ..ask };
     let at = extremes(scene, window, &settings, ask)?.largest;
-    by(&system, window, &settings, ask, at, variables)
+    by(&system, window, &settings, ask, at, parameters)
 }
 
 /// The derivatives of the largest value that [`settled`] finds, as [`extremes_by`]. Those of a motion with contacts are of the run from
@@ -43,15 +45,17 @@ pub fn settled_by(
     settle: Settle,
     settings: &Settings,
     ask: Ask,
-    variables: &[Variable],
+    parameters: &[Parameter],
 ) -> Result<Vec<f64>, SolverError> {
-    let Some((system, settings)) = exact(scene, settings, ask) else { return Ok(vec![0.0; variables.len()]) };
+    let Some((system, settings)) = exact(scene, settings, ask) else {
+        return Ok(vec![0.0; parameters.len()]);
+    };
     if in_closed_form(&system, &settings).is_some() {
         let omega = scene.forcing.frequency.get();
-        return Ok(variables.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
+        return Ok(parameters.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
     }
     let at = settled(scene, window, settle, &settings, Ask { also: None, ..ask })?.largest;
-    by(&system, window, &settings, ask, at, variables)
+    by(&system, window, &settings, ask, at, parameters)
 }
 
 /// The system, and the settings by the exact method; none without a damper.
@@ -67,9 +71,8 @@ fn by(
     settings: &Settings,
     ask: Ask,
     at: Extreme,
-    variables: &[Variable],
+    parameters: &[Parameter],
 ) -> Result<Vec<f64>, SolverError> {
-    let parameters: Vec<Parameter> = variables.iter().map(|&variable| variable.into()).collect();
-    let mut tangent = Tangent::new(system, settings, window.to, &parameters);
-    Ok(gradient_at(system, &mut tangent, window.to, ask.measure, at, &parameters)?.by)
+    let mut tangent = Tangent::new(system, settings, window.to, parameters);
+    Ok(gradient_at(system, &mut tangent, window.to, ask.measure, at, parameters)?.by)
 }

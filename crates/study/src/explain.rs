@@ -73,7 +73,6 @@ fn plain(message: &str) -> String {
         ("expected f64", "expected a number"),
         ("expected u64", "expected a whole number not below 0"),
         ("expected usize", "expected a whole number not below 0"),
-        ("expected struct PerVariable", "expected an object with some of k2, c2, D, C"),
         ("expected a tuple of size 2", "expected [smallest, largest]"),
         ("invalid type: map", "invalid type: object"),
         ("invalid type: sequence", "invalid type: list"),

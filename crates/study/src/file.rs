@@ -161,7 +161,7 @@ mod tests {
         let error = expect(Kind::Study, r#"{ "rows": [] }"#, "t.json").expect_err("a table");
         assert_eq!(
             error.to_string(),
-            "t.json: its kind is `table2`, for `retune table2` and `retune track`; a file of kind `study` is needed here"
+            "t.json: its kind is `table2`, for `retune table2` and `retune retention`; a file of kind `study` is needed here"
         );
         assert!(expect(Kind::Table2, r#"{ "rows": [] }"#, "t.json").is_ok());
     }

@@ -2,8 +2,8 @@
 
 use super::global::GlobalSearch;
 use super::kind::Kind;
-use super::per_variable::PerVariable;
-use retune_model::{NonNegative, Positive, Scene, Variable};
+use super::vary;
+use retune_model::{NonNegative, Parameter, PerVariable, Positive, Scene};
 use retune_optim::{Limits, Objective, Options, Scale};
 use retune_solver::{Contacts, Method, Settings, Window};
 use schemars::JsonSchema;
@@ -106,8 +106,9 @@ pub struct Solver {
 #[serde(deny_unknown_fields)]
 pub struct Optimize {
     /// The parameters to tune; the others keep their values in `scene`.
-    #[schemars(length(min = 1))]
-    pub vary: Vec<Variable>,
+    #[serde(deserialize_with = "vary::read")]
+    #[schemars(schema_with = "vary::schema")]
+    pub vary: Vec<Parameter>,
     /// The objective to minimise. Default: E1max in `window` at the omega of the scene.
     #[serde(default, skip_serializing_if = "Objective::is_default")]
     pub objective: Objective,

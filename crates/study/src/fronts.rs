@@ -5,11 +5,10 @@ use super::file::{StudyError, expect, parse};
 use super::format::Study;
 use super::kind::Kind;
 use super::objective::check_energy;
-use super::per_variable::PerVariable;
 use super::read::named;
 use super::rule::Rule;
-use retune_model::{Design, Measure, Positive};
-use retune_optim::{Limit, Variable};
+use retune_model::{Design, Measure, PerVariable, Positive};
+use retune_optim::{Limit, Parameter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -191,10 +190,10 @@ pub fn bounded(
     match sweep.limit().zip(Positive::new(value).ok()) {
         Some((limit, most)) => optimize.limits = optimize.limits.with(limit, most),
         None => {
-            let lower = optimize.bounds.get(Variable::K2).map_or(0.0, |(lower, _)| lower);
-            *optimize.bounds.get_mut(Variable::K2) = Some((lower, Some(value)));
+            let lower = optimize.bounds.get(Parameter::K2).map_or(0.0, |(lower, _)| lower);
+            optimize.bounds.set(Parameter::K2, Some((lower, Some(value))));
             if let Some(global) = &mut optimize.global {
-                *global.sides.get_mut(Variable::K2) = None;
+                global.sides.set(Parameter::K2, None);
             }
         }
     }
@@ -204,13 +203,13 @@ pub fn bounded(
 }
 
 /// A design of the damper of a study, which lends what is left out; or a value that it cannot have.
-fn known(study: &Study, said: &PerVariable<f64>) -> Result<Design, (Variable, f64)> {
-    let own = |variable: Variable| study.scene.damper.map_or(f64::NAN, |damper| variable.get(&damper));
+fn known(study: &Study, said: &PerVariable<f64>) -> Result<Design, (Parameter, f64)> {
+    let own = |parameter: Parameter| parameter.of(&study.scene);
     let foreign =
-        |&variable: &Variable| Some((variable, said.get(variable).filter(|_| own(variable).is_nan())?));
-    match Variable::ALL.iter().find_map(foreign) {
+        |&parameter: &Parameter| Some((parameter, said.get(parameter).filter(|_| own(parameter).is_none())?));
+    match Parameter::VARIED.iter().find_map(foreign) {
         Some(refused) => Err(refused),
-        None => Design::new(|variable| said.get(variable).unwrap_or_else(|| own(variable)))
+        None => Design::new(|parameter| said.get(parameter).or_else(|| own(parameter)).unwrap_or(f64::NAN))
             .map_err(|(variable, _)| (variable, said.get(variable).unwrap_or(f64::NAN))),
     }
 }

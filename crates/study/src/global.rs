@@ -1,8 +1,8 @@
 //! The global search of a study: an even look at the whole box, then CMA-ES from the best places.
 
-use super::per_variable::PerVariable;
 use super::rule::Rule;
-use retune_optim::{Bounds, Global, Scale, Side, Space, Variable};
+use retune_model::PerVariable;
+use retune_optim::{Bounds, Global, Parameter, Scale, Side, Space};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -70,7 +70,7 @@ impl GlobalSearch {
     ///
     /// # Errors
     /// The first [`Rule`] that is broken.
-    pub(super) fn space(&self, variables: &[Variable], bounds: &[Bounds]) -> Result<Space, Rule> {
+    pub(super) fn space(&self, variables: &[Parameter], bounds: &[Bounds]) -> Result<Space, Rule> {
         let share = |name: &str, value: f64, good: bool| match good {
             true => Ok(()),
             false => Err(Rule::NotAllowed {
@@ -104,7 +104,7 @@ impl GlobalSearch {
         sides.collect::<Result<Vec<Side>, Rule>>().map(Space)
     }
 
-    fn side(&self, variable: Variable, bounds: &Bounds) -> Result<Side, Rule> {
+    fn side(&self, variable: Parameter, bounds: &Bounds) -> Result<Side, Rule> {
         let side = match (self.sides.get(variable), bounds.lower.zip(bounds.upper)) {
             (Some(BoxSide { from, to, scale }), _) => Side { from, to, scale },
             (None, Some((from, to))) => Side::natural(from, to),

@@ -34,7 +34,7 @@ impl Kind {
     pub const fn commands(self) -> &'static str {
         match self {
             Self::Study => "`retune optimize`, `certify`, `simulate`, `sweep` and `evaluate`",
-            Self::Table2 => "`retune table2` and `retune track`",
+            Self::Table2 => "`retune table2` and `retune retention`",
             Self::Fronts => "`retune fronts`",
             Self::Paper => "`retune reproduce`, `figure` and `table`",
         }

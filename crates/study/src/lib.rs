@@ -23,7 +23,6 @@
 //! ```
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
-mod angular_frequency;
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod built_in;
@@ -34,30 +33,30 @@ mod fronts;
 mod global;
 mod kind;
 mod objective;
-mod per_variable;
 pub mod read;
 mod rule;
 mod search;
 mod set;
 mod start;
 mod table2;
+mod vary;
 mod visible;
 mod window;
 mod words;
 
-pub use angular_frequency::{angular_frequency, hertz_and_rpm};
 pub use built_in::is_built_in;
 pub use file::{StudyError, kind_of};
 pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
 pub use kind::Kind;
-pub use per_variable::PerVariable;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
-pub use set::{PARAMETERS, Setting, SettingError};
+pub use set::{Settable, Setting, SettingError};
 pub use start::start;
 pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};
 pub use visible::visible;
-pub use words::{are, counted, design_cells, design_words, fields, frequency, joined, over, rounded, short};
+pub use words::{
+    are, counted, design_cells, design_words, fields, frequency, hertz_and_rpm, joined, over, rounded, short,
+};

@@ -4,7 +4,8 @@ use super::format::{Coarse, Study};
 use super::rule::Rule;
 use retune_model::{Forcing, Measure, Scene, Source};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
+    Ensemble, FrequencyBand, Goal, Limit, Limits, Objective, Part, Response, Statistic, StiffnessRange,
+    Stiffnesses,
 };
 use retune_solver::Settle;
 
@@ -140,10 +141,11 @@ pub(super) fn check_limits(
     end: f64,
 ) -> Result<(), Rule> {
     let steady = objective.terms().iter().any(|(_, term)| term.response == Response::Steady);
-    if let (Some(most), Source::Base(_), true) = (limits.ground_force, forcing.source, steady) {
+    let ground_force = Limit::Of(Measure::GroundForce);
+    if let (Some(most), Source::Base(_), true) = (limits.get(ground_force), forcing.source, steady) {
         return Err(Rule::NotAllowed {
-            field: "optimize.limits.ground_force".to_owned(),
-            value: most.get().to_string(),
+            field: format!("optimize.limits.{ground_force}"),
+            value: most.to_string(),
             allowed: "another response: on a moving base this quantity has no closed form here",
         });
     }

@@ -7,7 +7,7 @@ use super::kind::Kind;
 use super::rule::Rule;
 use super::search::name_from;
 use super::window;
-use retune_model::{Design, NonNegative, Positive};
+use retune_model::{Design, Parameter};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -97,28 +97,23 @@ fn first_below(place: &Path) -> Option<PathBuf> {
 /// The design of an `optimum.json`.
 fn design(text: &str, file: &str) -> Result<Design, StudyError> {
     let found: Value = parse(text, file)?;
-    let number = |name: &str| {
-        let value = found.get(name).and_then(Value::as_f64).map(NonNegative::new);
-        match value {
-            Some(Ok(value)) => Ok(value),
-            _ => Err(StudyError::Rule {
-                file: file.to_owned(),
-                rule: Rule::NotAllowed {
-                    field: name.to_owned(),
-                    value: found.get(name).map_or("nothing".to_owned(), ToString::to_string),
-                    allowed: "a number not below 0: the design that `retune optimize` found",
-                },
-            }),
-        }
-    };
-    let m2 = match found.get("m2") {
-        None => None,
-        Some(_) => Positive::new(number("m2")?.get()).ok(),
+    let value =
+        |parameter: Parameter| found.get(parameter.symbol()).and_then(Value::as_f64).unwrap_or(f64::NAN);
+    let refused = |parameter: Parameter| StudyError::Rule {
+        file: file.to_owned(),
+        rule: Rule::NotAllowed {
+            field: parameter.to_string(),
+            value: found.get(parameter.symbol()).map_or("nothing".to_owned(), ToString::to_string),
+            allowed: "a number not below 0: the design that `retune optimize` found",
+        },
     };
     // Both gaps are there, or, of a damper without walls, neither.
-    let walled = found.get("D").is_some() || found.get("C").is_some();
-    let gap = |name| if walled { number(name).map(Some) } else { Ok(None) };
-    Ok(Design { k2: number("k2")?, c2: number("c2")?, d: gap("D")?, c: gap("C")?, m2 })
+    let gaps = [Parameter::D, Parameter::C];
+    let walled = gaps.iter().any(|gap| found.get(gap.symbol()).is_some());
+    match gaps.into_iter().find(|gap| walled && value(*gap).is_nan()) {
+        Some(missing) => Err(refused(missing)),
+        None => Design::new(value).map_err(|(parameter, _)| refused(parameter)),
+    }
 }
 
 /// Checks the text of a study file as [`read`] does.

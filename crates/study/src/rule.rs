@@ -1,6 +1,6 @@
 //! The rules that hold between the fields of a study.
 
-use retune_optim::{AxisError, Bounds, GridError, Variable};
+use retune_optim::{AxisError, Bounds, GridError, Parameter};
 use thiserror::Error;
 
 /// A contradiction between the fields of a study.
@@ -44,13 +44,13 @@ pub enum Rule {
     #[error("optimize.surf: missing, but only the grid can be made in parts")]
     NoGrid,
     /// No parameter is tuned.
-    #[error("optimize.vary: empty: name at least one of k2, c2, D, C, m2")]
+    #[error("optimize.vary: empty: name at least one of {}", retune_model::VARIED.join(", "))]
     NothingVaried,
     /// A parameter is named twice.
     #[error("optimize.vary: `{variable}` is named twice")]
     VariedTwice {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
     },
     /// A band or a range without width.
     #[error("{field}: from = {from}{unit} is not below to = {to}{unit}: the band is empty")]
@@ -80,7 +80,7 @@ pub enum Rule {
         /// `bounds` or `surf`.
         field: &'static str,
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
     },
     /// Bounds that are empty, or allow values out of range.
     #[error(
@@ -88,7 +88,7 @@ pub enum Rule {
     )]
     Bounds {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
         /// Its bounds.
         bounds: Bounds,
     },
@@ -96,7 +96,7 @@ pub enum Rule {
     #[error("optimize.surf.{variable}: {source}")]
     Axis {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
         /// The error of its axis.
         source: AxisError,
     },
@@ -104,7 +104,7 @@ pub enum Rule {
     #[error("optimize.surf.{variable}: from {from} to {to} leaves the bounds {bounds}")]
     GridOutside {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
         /// First value.
         from: f64,
         /// Last value.
@@ -121,7 +121,7 @@ pub enum Rule {
     )]
     StartOutside {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
         /// Its value in the scene.
         value: f64,
         /// The bounds of the parameter.
@@ -171,6 +171,6 @@ pub enum Rule {
     )]
     NoEnd {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
     },
 }

@@ -3,10 +3,9 @@
 use super::format::{GridAxis, Margins, Optimize, Solver, Study};
 use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
-use super::per_variable::PerVariable;
 use super::rule::Rule;
-use retune_model::{Damper, Design};
-use retune_optim::{Axis, Bounds, Global, Grid, Options, Scaling, Space, Variable};
+use retune_model::{Damper, Design, PerVariable};
+use retune_optim::{Axis, Bounds, Global, Grid, Options, Parameter, Scaling, Space};
 
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
 pub const MOST_GRID_POINTS: usize = 10_000_000;
@@ -17,9 +16,9 @@ pub struct Search {
     /// The damper that the search starts from; parameters that are not tuned keep these values.
     pub damper: Damper,
     /// The tuned parameters, in the order of the paper's tables.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<Parameter>,
     /// The coarse grid and its parameters, if any.
-    pub surf: Option<(Vec<Variable>, Grid)>,
+    pub surf: Option<(Vec<Parameter>, Grid)>,
     /// Number of points of the grid from which refinements start.
     pub starts: usize,
     /// Least number of grid steps between any two starts.
@@ -76,6 +75,11 @@ impl Study {
         if self.optimize.is_some() { self.search().map(drop) } else { Ok(()) }
     }
 
+    /// The parameters that its search varies; none without one.
+    pub fn varied(&self) -> &[Parameter] {
+        self.optimize.as_ref().map_or(&[], |optimize| &optimize.vary)
+    }
+
     /// The name; empty if none was given and the study came from no file.
     pub fn name(&self) -> &str {
         self.name.as_deref().unwrap_or_default()
@@ -89,7 +93,7 @@ impl Study {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         self.begins_at_rest()?;
-        if let Some(gap) = optimize.vary.iter().find(|variable| variable.get(&damper).is_nan()) {
+        if let Some(gap) = optimize.vary.iter().find(|variable| variable.of_damper(&damper).is_none()) {
             return Err(Rule::NotAllowed {
                 field: "optimize.vary".to_owned(),
                 value: gap.to_string(),
@@ -99,23 +103,23 @@ impl Study {
         let variables = varied(&optimize.vary)?;
         check(&optimize.objective, "optimize.objective", &self.scene.forcing)?;
         check_limits(&optimize.limits, &optimize.objective, &self.scene.forcing, self.window.end.get())?;
-        let tuned = |field, variable: &Variable| match variables.contains(variable) {
+        let tuned = |field, variable: &Parameter| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),
         };
-        optimize.bounds.variables().iter().try_for_each(|variable| tuned("bounds", variable))?;
+        optimize.bounds.parameters().iter().try_for_each(|variable| tuned("bounds", variable))?;
         let bounds_of = |variable| bounds(&optimize.bounds, variable);
         let bounds = variables.iter().map(|&variable| bounds_of(variable)).collect::<Result<Vec<_>, _>>()?;
         let surf = match &optimize.surf {
             None => None,
             Some(axes) => {
-                let over = axes.variables();
+                let over = axes.parameters();
                 over.iter().try_for_each(|variable| tuned("surf", variable))?;
                 Some((over, grid(axes, bounds_of)?))
             }
         };
         let space = |global: &GlobalSearch| -> Result<_, Rule> {
-            global.sides.variables().iter().try_for_each(|variable| tuned("global.box", variable))?;
+            global.sides.parameters().iter().try_for_each(|variable| tuned("global.box", variable))?;
             Ok((global.global(), global.space(&variables, &bounds)?, global.basin))
         };
         let global = optimize.global.as_ref().map(space).transpose()?;
@@ -129,7 +133,7 @@ impl Study {
                 || surf.as_ref().is_some_and(|(over, _)| over.contains(variable))
         };
         for (variable, bounds) in variables.iter().zip(&bounds).filter(|(variable, _)| !on_grid(variable)) {
-            let value = variable.get(&damper);
+            let value = variable.of_damper(&damper).unwrap_or(f64::NAN);
             if !bounds.contain(value) {
                 return Err(Rule::StartOutside { variable: *variable, value, bounds: *bounds });
             }
@@ -150,7 +154,8 @@ impl Study {
         study.retune = Some(env!("CARGO_PKG_VERSION").to_owned());
         if let Some(optimize) = &mut study.optimize {
             for &variable in &optimize.vary {
-                optimize.bounds.get_mut(variable).get_or_insert((0.0, None));
+                let bounds = optimize.bounds.get(variable).unwrap_or((0.0, None));
+                optimize.bounds.set(variable, Some(bounds));
             }
             let limit = 200 * optimize.vary.len() as u64;
             optimize.refine.max_iter.get_or_insert(limit);
@@ -161,7 +166,7 @@ impl Study {
 }
 
 /// The tuned parameters in the order of the paper's tables.
-fn varied(vary: &[Variable]) -> Result<Vec<Variable>, Rule> {
+fn varied(vary: &[Parameter]) -> Result<Vec<Parameter>, Rule> {
     let mut variables = vary.to_vec();
     variables.sort_unstable();
     if variables.is_empty() {
@@ -177,15 +182,15 @@ fn varied(vary: &[Variable]) -> Result<Vec<Variable>, Rule> {
 fn given_start(
     i: usize,
     start: &PerVariable<f64>,
-    variables: &[Variable],
+    variables: &[Parameter],
     bounds: &[Bounds],
     damper: &Damper,
 ) -> Result<Vec<f64>, Rule> {
-    if let Some(other) = start.variables().into_iter().find(|variable| !variables.contains(variable)) {
+    if let Some(other) = start.parameters().into_iter().find(|variable| !variables.contains(variable)) {
         return Err(Rule::NotVaried { field: "starts", variable: other });
     }
-    let value = |(&variable, bounds): (&Variable, &Bounds)| {
-        let value = start.get(variable).unwrap_or_else(|| variable.get(damper));
+    let value = |(&variable, bounds): (&Parameter, &Bounds)| {
+        let value = start.get(variable).or_else(|| variable.of_damper(damper)).unwrap_or(f64::NAN);
         match bounds.contain(value) {
             true => Ok(value),
             false => Err(Rule::NotAllowed {
@@ -198,7 +203,7 @@ fn given_start(
     variables.iter().zip(bounds).map(value).collect()
 }
 
-fn bounds(given: &PerVariable<(f64, Option<f64>)>, variable: Variable) -> Result<Bounds, Rule> {
+fn bounds(given: &PerVariable<(f64, Option<f64>)>, variable: Parameter) -> Result<Bounds, Rule> {
     let (lower, upper) = given.get(variable).unwrap_or((0.0, None));
     let bounds = Bounds { lower: Some(lower), upper };
     let room =
@@ -208,9 +213,9 @@ fn bounds(given: &PerVariable<(f64, Option<f64>)>, variable: Variable) -> Result
 
 fn grid(
     axes: &PerVariable<GridAxis>,
-    bounds_of: impl Fn(Variable) -> Result<Bounds, Rule>,
+    bounds_of: impl Fn(Parameter) -> Result<Bounds, Rule>,
 ) -> Result<Grid, Rule> {
-    let axis = |variable: Variable| -> Option<Result<Axis, Rule>> {
+    let axis = |variable: Parameter| -> Option<Result<Axis, Rule>> {
         let GridAxis { from, to, points, scale } = axes.get(variable)?;
         Some(bounds_of(variable).and_then(|bounds| {
             let axis =
@@ -221,7 +226,7 @@ fn grid(
             }
         }))
     };
-    let axes = Variable::ALL.into_iter().filter_map(axis).collect::<Result<Vec<_>, _>>()?;
+    let axes = Parameter::VARIED.into_iter().filter_map(axis).collect::<Result<Vec<_>, _>>()?;
     Ok(Grid::new(axes, MOST_GRID_POINTS)?)
 }
 
@@ -249,7 +254,7 @@ pub fn clipped(at: &Design, optimize: &Optimize) -> PerVariable<f64> {
     for &variable in &optimize.vary {
         let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
         let value = at.get(variable);
-        *start.get_mut(variable) = Some(value.min(high.unwrap_or(value)).max(low));
+        start.set(variable, Some(value.min(high.unwrap_or(value)).max(low)));
     }
     start
 }

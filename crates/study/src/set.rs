@@ -1,35 +1,64 @@
 //! `--set NAME=VALUE`: one number of a study, changed on the command line.
 
-use super::angular_frequency::angular_frequency;
 use super::format::Study;
 use super::rule::Rule;
-use retune_model::{Damper, Design, NonNegative, OutOfRange, Positive, Scene, Source};
+use retune_model::{
+    Absent, Design, NonNegative, OutOfRange, Parameter, Positive, Scene, Unit, Unsettable, unit,
+};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// The numbers of a study that may be set, by their symbols, each with its SI unit: those of the scene, then the window's.
-pub const PARAMETERS: [(&str, &str); 15] = [
-    ("m1", "kg"),
-    ("c1", "N·s/m"),
-    ("k1", "N/m"),
-    ("m2", "kg"),
-    ("k2", "N/m"),
-    ("c2", "N·s/m"),
-    ("D", "m"),
-    ("C", "m"),
-    ("P", "N"),
-    ("imbalance", "kg·m"),
-    ("base", "m"),
-    ("omega", "rad/s"),
-    ("R", "m"),
-    ("T", "s"),
-    ("t0", "s"),
-];
+/// A number of a study that may be set: one of its scene or of its window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settable {
+    /// A parameter of the scene.
+    Scene(Parameter),
+    /// t0, from where maxima are taken, s.
+    From,
+    /// T, the end of a run, s.
+    To,
+}
+
+impl Settable {
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Parameter::ALL.into_iter().map(Self::Scene).chain([Self::From, Self::To])
+    }
+
+    /// Its symbol.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Scene(parameter) => parameter.symbol(),
+            Self::From => "t0",
+            Self::To => "T",
+        }
+    }
+
+    /// Units in which it may be given, the SI unit first.
+    pub const fn units(self) -> &'static [Unit] {
+        match self {
+            Self::Scene(parameter) => parameter.units(),
+            Self::From | Self::To => unit::TIME,
+        }
+    }
+}
+
+impl From<Parameter> for Settable {
+    fn from(parameter: Parameter) -> Self {
+        Self::Scene(parameter)
+    }
+}
+
+impl std::fmt::Display for Settable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.symbol())
+    }
+}
 
 /// A parsed `NAME=VALUE`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    name: &'static str,
+    what: Settable,
     value: f64,
 }
 
@@ -43,24 +72,16 @@ pub enum SettingError {
         text: String,
     },
     /// No such parameter.
-    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &PARAMETERS.map(|(name, _)| name)))]
+    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &symbols()))]
     Name {
         /// The name as given.
         name: String,
     },
-    /// Not a number.
-    #[error("{name}: \"{text}\" is not a number")]
+    /// Not a number in a unit of the parameter.
+    #[error("{name}: {problem}")]
     Number {
         /// The parameter.
-        name: &'static str,
-        /// The text as given.
-        text: String,
-    },
-    /// Not a frequency.
-    #[error("{name}: {problem}")]
-    Frequency {
-        /// The parameter.
-        name: &'static str,
+        name: Settable,
         /// What it is, and what to give.
         problem: String,
     },
@@ -68,17 +89,17 @@ pub enum SettingError {
     #[error("{name}: {source}")]
     OutOfRange {
         /// The parameter.
-        name: &'static str,
+        name: Settable,
         /// Its value and the allowed values.
         source: OutOfRange,
     },
-    /// A parameter that the forcing of the scene does not have.
-    #[error("{name}: the forcing of the scene is given by `{has}`")]
-    Forcing {
+    /// A parameter that the scene does not have.
+    #[error("{name}: {source}")]
+    Absent {
         /// The parameter.
-        name: &'static str,
-        /// What the forcing is given by.
-        has: &'static str,
+        name: Parameter,
+        /// Why it does not have it.
+        source: Absent,
     },
     /// What is typed is no state.
     #[error("--from: \"{text}\" is no state: give x1,v1,x2,v2 (m, m/s), or x1,v1 alone")]
@@ -86,32 +107,38 @@ pub enum SettingError {
         /// As given.
         text: String,
     },
-    /// A parameter of the damper in a scene without one.
-    #[error("{name}: the scene has no damper")]
-    NoDamper {
-        /// The parameter.
-        name: &'static str,
-    },
-    /// A gap or a contact of a damper without walls.
-    #[error("{name}: the damper has no walls")]
-    NoWalls {
-        /// The parameter.
-        name: &'static str,
-    },
     /// The changed study breaks a rule.
     #[error(transparent)]
     Rule(#[from] Rule),
 }
 
+fn symbols() -> Vec<&'static str> {
+    Settable::all().map(Settable::symbol).collect()
+}
+
 impl Setting {
-    /// Sets the parameter `name`, one of those of the command line.
-    pub fn new(name: &'static str, value: f64) -> Self {
-        Self { name, value }
+    /// Sets a number, in its SI unit.
+    pub fn new(what: impl Into<Settable>, value: f64) -> Self {
+        Self { what: what.into(), value }
+    }
+
+    /// What it sets.
+    pub fn what(&self) -> Settable {
+        self.what
     }
 
     /// The new value, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value
+    }
+}
+
+impl FromStr for Settable {
+    type Err = SettingError;
+
+    fn from_str(name: &str) -> Result<Self, SettingError> {
+        let unknown = || SettingError::Name { name: name.to_owned() };
+        Self::all().find(|known| known.symbol() == name).ok_or_else(unknown)
     }
 }
 
@@ -121,23 +148,11 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let (name, value) =
             text.split_once('=').ok_or_else(|| SettingError::Form { text: text.to_owned() })?;
-        let name = known(name.trim())?;
-        let value = number(name, value.trim())?;
-        Ok(Self { name, value })
+        let what: Settable = name.trim().parse()?;
+        let value = unit::read(value, what.units());
+        let value = value.map_err(|problem| SettingError::Number { name: what, problem })?;
+        Ok(Self { what, value })
     }
-}
-
-/// The value of a parameter as it was typed: in its SI unit; a frequency may have a unit of its own.
-fn number(name: &'static str, text: &str) -> Result<f64, SettingError> {
-    if name == "omega" {
-        return angular_frequency(text).map_err(|problem| SettingError::Frequency { name, problem });
-    }
-    text.parse().map_err(|_| SettingError::Number { name, text: text.to_owned() })
-}
-
-fn known(name: &str) -> Result<&'static str, SettingError> {
-    let unknown = || SettingError::Name { name: name.to_owned() };
-    PARAMETERS.into_iter().map(|(known, _)| known).find(|known| *known == name).ok_or_else(unknown)
 }
 
 impl Study {
@@ -167,79 +182,26 @@ impl Study {
         Some(Scene { damper: Some(design.on(self.scene.damper?)), ..self.scene })
     }
 
-    /// The number that a setting of this name would change; `None` for a damper's parameter in a scene without one.
-    pub fn value_of(&self, name: &str) -> Option<f64> {
-        let (primary, forcing) = (&self.scene.primary, &self.scene.forcing);
-        let damper = self.scene.damper.as_ref();
-        let value = match name {
-            "m1" => primary.mass.get(),
-            "c1" => primary.damping.get(),
-            "k1" => primary.stiffness.get(),
-            "P" | "imbalance" | "base" => forcing.amplitude().filter(|(own, _)| *own == name)?.1.get(),
-            "omega" => forcing.frequency.get(),
-            "t0" => self.window.t0.get(),
-            "T" => self.window.end.get(),
-            "m2" => damper?.mass.get(),
-            "k2" => damper?.stiffness.get(),
-            "c2" => damper?.damping.get(),
-            "D" => damper.filter(walled)?.rest_distance.get(),
-            "C" => damper.filter(walled)?.clearance.get(),
-            "R" => damper?.contact?.radius.get(),
-            _ => return None,
-        };
-        Some(value)
+    /// The number that a setting would change; `None` of a parameter that the scene does not have.
+    pub fn value_of(&self, what: impl Into<Settable>) -> Option<f64> {
+        match what.into() {
+            Settable::Scene(parameter) => parameter.of(&self.scene),
+            Settable::From => Some(self.window.t0.get()),
+            Settable::To => Some(self.window.end.get()),
+        }
     }
 
-    fn set(&mut self, &Setting { name, value }: &Setting) -> Result<(), SettingError> {
-        let out_of_range = |source| SettingError::OutOfRange { name, source };
-        let positive = || Positive::new(value).map_err(out_of_range);
-        let not_negative = || NonNegative::new(value).map_err(out_of_range);
-        let (primary, forcing) = (&mut self.scene.primary, &mut self.scene.forcing);
-        match name {
-            "m1" => primary.mass = positive()?,
-            "c1" => primary.damping = not_negative()?,
-            "k1" => primary.stiffness = not_negative()?,
-            "P" | "imbalance" | "base" => match forcing.amplitude() {
-                Some((own, _)) if own == name => *forcing = forcing.with_amplitude(not_negative()?),
-                own => return Err(SettingError::Forcing { name, has: own.map_or("start", |own| own.0) }),
+    fn set(&mut self, &Setting { what, value }: &Setting) -> Result<(), SettingError> {
+        let out_of_range = |source| SettingError::OutOfRange { name: what, source };
+        match what {
+            Settable::From => self.window.t0 = NonNegative::new(value).map_err(out_of_range)?,
+            Settable::To => self.window.end = Positive::new(value).map_err(out_of_range)?,
+            Settable::Scene(name) => match name.set(&mut self.scene, value) {
+                Err(Unsettable::Absent(source)) => return Err(SettingError::Absent { name, source }),
+                Err(Unsettable::OutOfRange(source)) => return Err(out_of_range(source)),
+                Ok(()) => {}
             },
-            "omega" if matches!(forcing.source, Source::Decay(_)) => {
-                return Err(SettingError::Forcing { name, has: "start" });
-            }
-            "omega" => forcing.frequency = not_negative()?,
-            "t0" => self.window.t0 = not_negative()?,
-            "T" => self.window.end = positive()?,
-            _ => {
-                let damper = self.scene.damper.as_mut().ok_or(SettingError::NoDamper { name })?;
-                set_damper(damper, name, positive, not_negative)?;
-            }
         }
         Ok(())
     }
-}
-
-fn walled(damper: &&Damper) -> bool {
-    damper.contact.is_some()
-}
-
-fn set_damper(
-    damper: &mut Damper,
-    name: &'static str,
-    positive: impl Fn() -> Result<Positive, SettingError>,
-    not_negative: impl Fn() -> Result<NonNegative, SettingError>,
-) -> Result<(), SettingError> {
-    match name {
-        "m2" => damper.mass = positive()?,
-        "k2" => damper.stiffness = not_negative()?,
-        "c2" => damper.damping = not_negative()?,
-        _ => {
-            let contact = damper.contact.as_mut().ok_or(SettingError::NoWalls { name })?;
-            match name {
-                "D" => damper.rest_distance = not_negative()?,
-                "C" => damper.clearance = not_negative()?,
-                _ => contact.radius = positive()?, // R, the last of `PARAMETERS` of a damper
-            }
-        }
-    }
-    Ok(())
 }

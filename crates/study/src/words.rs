@@ -1,8 +1,8 @@
 //! An objective in words, for figures, tables and the screen; numbers and counts in words.
 
-use crate::angular_frequency::hertz_and_rpm;
-use retune_model::Design;
+use retune_model::{Design, Parameter};
 use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
+use std::f64::consts::TAU;
 use std::fmt::Display;
 
 /// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
@@ -86,11 +86,18 @@ pub fn design_cells(design: &Design, digits: usize) -> [String; 4] {
 /// A design in words, to some significant digits: `k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m`, or `…, no walls`.
 pub fn design_words(design: &Design, digits: usize) -> String {
     let [k2, c2, d, c] = design_cells(design, digits);
-    let walls = match design.d {
-        Some(_) => format!("D = {d} m, C = {c} m"),
-        None => "no walls".to_owned(),
+    let walls = if design.get(Parameter::D).is_nan() {
+        "no walls".to_owned()
+    } else {
+        format!("D = {d} m, C = {c} m")
     };
     format!("k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}")
+}
+
+/// An angular frequency (rad/s) in Hz and in revolutions per minute.
+pub fn hertz_and_rpm(omega: f64) -> [f64; 2] {
+    let hertz = omega / TAU;
+    [hertz, 60.0 * hertz]
 }
 
 /// Numbers as fields of a table, to the last bit; empty where there is none.
@@ -107,16 +114,22 @@ pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use retune_model::NonNegative;
 
     #[test]
     fn contract_a_design_without_walls_says_so() {
-        let number = |value| NonNegative::new(value).expect("not negative");
-        let (k2, c2, gap) = (number(215.04), number(35.0), Some(number(0.06)));
-        let walled = Design { k2, c2, d: gap, c: gap, m2: None };
+        let design = |gap: f64| {
+            let value = |parameter| match parameter {
+                Parameter::K2 => 215.04,
+                Parameter::C2 => 35.0,
+                Parameter::D | Parameter::C => gap,
+                _ => f64::NAN,
+            };
+            Design::new(value).expect("a design")
+        };
+        let walled = design(0.06);
         assert_eq!(design_words(&walled, 4), "k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m");
         assert_eq!(design_cells(&walled, 4), ["215", "35", "0.06", "0.06"]);
-        let open = Design { d: None, c: None, ..walled };
+        let open = design(f64::NAN);
         assert_eq!(design_words(&open, 4), "k2 = 215 N/m, c2 = 35 N·s/m, no walls");
         assert_eq!(design_cells(&open, 4), ["215", "35", "none", "none"]);
     }

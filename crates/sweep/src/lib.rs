@@ -32,7 +32,6 @@
 
 pub mod draw;
 mod error;
-mod parameter;
 pub mod plan;
 mod quantity;
 pub mod sweep;
@@ -40,8 +39,8 @@ pub mod table;
 pub mod words;
 
 pub use error::Error;
-pub use parameter::Parameter;
 pub use plan::{Asked, Plan};
 pub use quantity::Quantity;
+pub use retune_model::Parameter;
 pub use sweep::Sweep;
 pub use table::Table;

@@ -1,9 +1,8 @@
 //! What is swept.
 
 use crate::error::Error;
-use crate::parameter::Parameter;
 use crate::quantity::Quantity;
-use retune_model::Measure;
+use retune_model::{Measure, Parameter};
 use retune_optim::{Axis, Scale};
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +65,10 @@ impl Plan {
     pub fn read(asked: &Asked) -> Result<Self, Error> {
         let Asked { over, points, objective, .. } = *asked;
         let end = |option, text: &str| {
-            over.read(text, asked.unit.as_deref()).map_err(|problem| Error::End { option, problem })
+            // A number that has no unit of its own has that of all.
+            let unit =
+                asked.unit.as_deref().filter(|_| text.trim().parse::<f64>().is_ok()).unwrap_or_default();
+            over.read(&format!("{text}{unit}")).map_err(|problem| Error::End { option, problem })
         };
         let (from, to) = (end("from", &asked.from)?, end("to", &asked.to)?);
         let mut quantities: Vec<Quantity> = Vec::new();

@@ -40,13 +40,6 @@ impl Quantity {
     }
 }
 
-/// The largest values that a structure has without a damper as well.
-pub(crate) const OF_STRUCTURE: [Measure; 5] =
-    [Measure::Energy, Measure::Displacement, Measure::Velocity, Measure::Acceleration, Measure::GroundForce];
-
-/// The largest values that only a damper has.
-pub(crate) const OF_DAMPER: [Measure; 2] = [Measure::Stroke, Measure::ContactForce];
-
 impl FromStr for Quantity {
     type Err = String;
 

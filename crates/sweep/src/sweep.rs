@@ -2,12 +2,11 @@
 
 use crate::error::Error;
 use crate::plan::Plan;
-use crate::quantity::{OF_DAMPER, OF_STRUCTURE};
 use crate::table::{Column, Table};
-use retune_model::{Measure, Scene};
+use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Axis, Goal, Limits, Objective};
 use retune_solver::simulate;
-use retune_study::{Rule, Study, hertz_and_rpm};
+use retune_study::{Rule, Setting, Study, hertz_and_rpm};
 
 /// What is swept, with the study that it is swept in.
 #[derive(Clone, Debug)]
@@ -18,9 +17,9 @@ pub struct Sweep {
 }
 
 /// Numbers of a run of the structure alone: its largest values. With a damper, those of the damper and its impacts follow.
-const BARE: usize = OF_STRUCTURE.len();
+const BARE: usize = Measure::OF_STRUCTURE.len();
 /// Numbers of a run with a damper.
-const DAMPED: usize = BARE + OF_DAMPER.len() + 2;
+const DAMPED: usize = BARE + Measure::OF_DAMPER.len() + 2;
 /// Numbers of an objective: its value, the frequency of its worst run, the violation of the limits, and its value without a damper.
 const OBJECTIVE: usize = 4;
 
@@ -33,16 +32,16 @@ impl Sweep {
         let axis = plan.axis()?;
         // What a parameter may be is a range: the ends tell of all values between.
         for end in [plan.from, plan.to] {
-            study.scene_with(&[plan.over.at(end)])?;
+            study.scene_with(&[Setting::new(plan.over, end)])?;
         }
         if plan.objective {
             if study.optimize.is_none() {
                 return Err(Rule::NoOptimize.into());
             }
             let objective = study.objective();
-            let own = |term: &Objective| match plan.over.symbol() {
-                "omega" => term.omega.is_some(),
-                "k1" => term.k1.is_some(),
+            let own = |term: &Objective| match plan.over {
+                Parameter::Omega => term.omega.is_some(),
+                Parameter::K1 => term.k1.is_some(),
                 _ => false,
             };
             if objective.terms().iter().all(|(_, term)| own(term)) {
@@ -88,7 +87,7 @@ impl Sweep {
 
     /// The numbers at a value of the parameter, infinite where there is none; and then why the first of them has no value.
     pub fn numbers(&self, value: f64) -> (Vec<f64>, Option<String>) {
-        let scene = match self.study.scene_with(&[self.plan.over.at(value)]) {
+        let scene = match self.study.scene_with(&[Setting::new(self.plan.over, value)]) {
             Ok(scene) => scene,
             Err(error) => return (vec![f64::INFINITY; self.width()], Some(error.to_string())),
         };
@@ -107,8 +106,7 @@ impl Sweep {
         if scene.damper.is_some() {
             match simulate(scene, window, &settings) {
                 Ok(run) => {
-                    numbers
-                        .extend(OF_STRUCTURE.iter().chain(&OF_DAMPER).map(|measure| run.largest(*measure)));
+                    numbers.extend(Measure::ALL.map(|measure| run.largest(measure)));
                     numbers.extend(run.impacts.map(|count| count as f64));
                 }
                 Err(error) => {
@@ -118,7 +116,7 @@ impl Sweep {
             }
         }
         match simulate(&Scene { damper: None, ..*scene }, window, &settings) {
-            Ok(run) => numbers.extend(OF_STRUCTURE.map(|measure| run.largest(measure))),
+            Ok(run) => numbers.extend(Measure::OF_STRUCTURE.map(|measure| run.largest(measure))),
             Err(error) => {
                 numbers.resize(self.width(), f64::INFINITY);
                 reason = reason.or_else(|| Some(error.to_string()));
@@ -160,12 +158,12 @@ impl Sweep {
             return columns;
         }
         let structure = || {
-            let all = OF_STRUCTURE.iter().map(|measure| (measure.name(), measure.unit()));
+            let all = Measure::OF_STRUCTURE.iter().map(|measure| (measure.name(), measure.unit()));
             all.chain([("transmissibility", "")])
         };
         columns.extend(structure().map(|(name, unit)| Column::new(name, unit)));
         if self.study.scene.damper.is_some() {
-            columns.extend(OF_DAMPER.map(|measure| Column::new(measure.name(), measure.unit())));
+            columns.extend(Measure::OF_DAMPER.map(|measure| Column::new(measure.name(), measure.unit())));
             columns.extend(
                 ["impacts", "impacts_structure", "impacts_obstacle"].map(|name| Column::new(name, "")),
             );
@@ -184,10 +182,12 @@ impl Sweep {
             row.extend(numbers);
             return row;
         }
-        let scene = self.study.scene_with(&[self.plan.over.at(value)]);
+        let scene = self.study.scene_with(&[Setting::new(self.plan.over, value)]);
         let structure = |row: &mut Vec<f64>, numbers: &[f64]| {
             row.extend(numbers);
-            let of = |measure| OF_STRUCTURE.iter().position(|other| *other == measure).map(|i| numbers[i]);
+            let of = |measure| {
+                Measure::OF_STRUCTURE.iter().position(|other| *other == measure).map(|i| numbers[i])
+            };
             let [displacement, ground] = [Measure::Displacement, Measure::GroundForce].map(of);
             let share = scene.as_ref().ok().zip(displacement.zip(ground));
             row.push(

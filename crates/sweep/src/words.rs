@@ -2,7 +2,7 @@
 
 use crate::sweep::Sweep;
 use crate::table::{Column, Table};
-use retune_model::Variable;
+use retune_model::Parameter;
 use retune_study::{counted, frequency, hertz_and_rpm, over, rounded};
 use textwrap::{Options, fill};
 
@@ -38,13 +38,13 @@ pub(crate) fn title(sweep: &Sweep) -> String {
 /// The damper of the scene, without the parameter that is swept.
 fn damper(sweep: &Sweep) -> String {
     let Some(damper) = sweep.study().scene.damper else { return "no damper".to_owned() };
-    let mass = [("m2", damper.mass.get(), "kg")].into_iter();
-    let all = mass
-        .chain(Variable::PAPER.map(|variable| (variable.symbol(), variable.get(&damper), variable.unit())));
+    let all = [Parameter::M2].into_iter().chain(Parameter::PAPER);
     // A damper without walls has no gaps.
-    let others = all.filter(|(symbol, value, _)| *symbol != sweep.plan().over.symbol() && !value.is_nan());
-    let words: Vec<String> =
-        others.map(|(symbol, value, unit)| format!("{symbol} {} {unit}", rounded(value, 4))).collect();
+    let words: Vec<String> = all
+        .filter(|parameter| *parameter != sweep.plan().over)
+        .filter_map(|parameter| Some((parameter, parameter.of_damper(&damper)?)))
+        .map(|(parameter, value)| format!("{parameter} {} {}", rounded(value, 4), parameter.unit()))
+        .collect();
     format!("damper: {}", words.join(", "))
 }
 

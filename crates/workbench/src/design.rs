@@ -13,7 +13,7 @@ use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
 use crate::searches::Searches;
 use crate::{Error, Observer, Request, resolved};
-use retune_model::Measure;
+use retune_model::{Measure, Parameter};
 use retune_study::{Rule, Setting, Study, clipped};
 use serde_json::json;
 
@@ -89,7 +89,7 @@ fn one(
     let tuned = Study { scene, ..study.clone() };
     let off = |share: f64| -> Result<f64, Error> {
         let k1 = study.scene.primary.stiffness.get() * (1.0 + share);
-        Ok(study.energy(&tuned.scene_with(&[Setting::new("k1", k1)])?).unwrap_or(f64::NAN))
+        Ok(study.energy(&tuned.scene_with(&[Setting::new(Parameter::K1, k1)])?).unwrap_or(f64::NAN))
     };
     let detuned = wishes.k1_error.map(|error| Ok::<_, Error>([off(-error)?, off(error)?])).transpose()?;
     let needs = found.needs.as_ref().map_or([f64::NAN; 2], |needs| {

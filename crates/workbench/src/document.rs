@@ -111,7 +111,7 @@ mod tests {
         let rows = vec![vec!["TMD".to_owned(), "660.4".to_owned()]];
         let document = Document {
             title: "T < U".to_owned(),
-            command: "retune track",
+            command: "retune retention",
             opening: vec![Block::Words("First.".to_owned())],
             sections: vec![(
                 "one",

@@ -6,7 +6,7 @@ use crate::tune::objective::objective;
 use crate::{Error, Request};
 use input::Line;
 use rayon::prelude::*;
-use retune_optim::{Evaluation, PeakEnergy, Unusable, Variable};
+use retune_optim::{Evaluation, Parameter, PeakEnergy, Unusable};
 use retune_study::Study;
 use serde_json::json;
 use std::io::{BufRead, ErrorKind, Write};
@@ -47,13 +47,13 @@ pub enum LineError {
         /// Their number.
         found: usize,
         /// The tuned parameters.
-        wanted: Vec<Variable>,
+        wanted: Vec<Parameter>,
     },
     /// Not a number.
     #[error("{variable}: \"{}\" is not a number", shown(.text))]
     Number {
         /// The parameter.
-        variable: Variable,
+        variable: Parameter,
         /// The text as given.
         text: String,
     },
@@ -65,7 +65,7 @@ pub enum LineError {
     Unusable(#[from] Unusable),
 }
 
-fn words(variables: &[Variable]) -> String {
+fn words(variables: &[Parameter]) -> String {
     variables.iter().map(|variable| variable.symbol()).collect::<Vec<_>>().join(" ")
 }
 
@@ -185,7 +185,7 @@ fn value(objective: &PeakEnergy, line: &Line) -> Result<Evaluation, LineError> {
     if texts.len() != variables.len() {
         return Err(LineError::Count { found: texts.len(), wanted: variables.to_vec() });
     }
-    let number = |(&variable, &text): (&Variable, &&str)| {
+    let number = |(&variable, &text): (&Parameter, &&str)| {
         text.parse().map_err(|_| LineError::Number { variable, text: text.to_owned() })
     };
     let design = variables.iter().zip(&texts).map(number).collect::<Result<Vec<f64>, _>>()?;

@@ -1,7 +1,7 @@
 //! A design on other samples of the band than those that its search looked at.
 
-use retune_model::{Design, Positive};
-use retune_optim::{Evaluation, Limits};
+use retune_model::{Design, Measure, Positive};
+use retune_optim::{Evaluation, Limit, Limits};
 use retune_study::Study;
 
 /// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
@@ -23,7 +23,9 @@ pub fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
 pub fn look(study: &Study) -> Option<Evaluation> {
     // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
     let mut goal = study.goal();
-    let least = Positive::new(f64::MIN_POSITIVE).ok();
-    goal.limits = Limits { stroke: least, contact_force: least, from: goal.limits.from, ..Limits::default() };
+    let least = Positive::new(f64::MIN_POSITIVE).ok()?;
+    let none = Limits::default().since(goal.limits.from);
+    goal.limits =
+        Measure::OF_DAMPER.into_iter().fold(none, |limits, measure| limits.with(Limit::Of(measure), least));
     goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }

@@ -2,7 +2,7 @@
 //! values over all that an answer covers. Whoever tells of a design tells this.
 
 use crate::amount::Amount;
-use retune_model::{Measure, Scene, Variable};
+use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Goal, Limit, Limits, Need, Response};
 use retune_study::{Search, Study, rounded, short};
 use serde::Serialize;
@@ -112,7 +112,7 @@ impl Largest {
 
     /// The values that are [`TOLD`], in a list.
     pub fn list(&self) -> String {
-        TOLD.map(|measure| format!("{} {}", short_name(measure), self.sized(measure))).join(", ")
+        TOLD.map(|measure| format!("{} {}", measure.short_name(), self.sized(measure))).join(", ")
     }
 
     /// The room and the strength that the damper needs.
@@ -139,7 +139,7 @@ impl Largest {
     /// What the objective looks at, where it is less.
     fn own_words(&self, study: &Study) -> Option<String> {
         let less = TOLD.into_iter().filter_map(|measure| {
-            Some(format!("{} {}", short_name(measure), sized(measure, self.own(measure)?)))
+            Some(format!("{} {}", measure.short_name(), sized(measure, self.own(measure)?)))
         });
         let less: Vec<String> = less.collect();
         let part = match study.objective().terms().first().map(|(_, term)| term.response) {
@@ -158,18 +158,6 @@ pub(crate) fn sized(measure: Measure, value: f64) -> String {
         _ if !value.is_finite() => "without bound".to_owned(),
         Measure::Displacement => format!("{} mm", rounded(1e3 * value, 4)),
         _ => format!("{} {}", rounded(value, 4), measure.unit()),
-    }
-}
-
-fn short_name(measure: Measure) -> &'static str {
-    match measure {
-        Measure::Energy => "E1",
-        Measure::Displacement => "x1",
-        Measure::Velocity => "v1",
-        Measure::Acceleration => "a1",
-        Measure::GroundForce => "ground",
-        Measure::Stroke => "stroke",
-        Measure::ContactForce => "walls",
     }
 }
 
@@ -255,7 +243,8 @@ impl Needs {
 
 /// The values of another damper in a few words.
 fn beside(largest: &Largest, damped: bool) -> String {
-    let of = |measure| format!("{} {}", short_name(measure), sized(measure, largest.value(measure)));
+    let of =
+        |measure: Measure| format!("{} {}", measure.short_name(), sized(measure, largest.value(measure)));
     let structure = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce].map(of).join(", ");
     if damped { format!("{structure}, {}", of(Measure::Stroke)) } else { structure }
 }
@@ -264,7 +253,7 @@ fn beside(largest: &Largest, damped: bool) -> String {
 fn excluded(study: &Study, search: &Search, design: &Scene, linear: &Scene, needs: &Largest) -> String {
     let mut why = Vec::new();
     let (Some(own), Some(other)) = (design.damper, linear.damper) else { return String::new() };
-    for variable in [Variable::K2, Variable::C2] {
+    for variable in [Parameter::K2, Parameter::C2] {
         let value = variable.get(&other);
         let place = search.variables.iter().position(|known| *known == variable);
         match place.and_then(|place| search.options.bounds.get(place)) {

@@ -6,7 +6,7 @@ mod whose;
 pub use tuned_damper::TunedDamper;
 pub use whose::{how_many, whose};
 
-use retune_model::{Scene, Source, energy_ratios};
+use retune_model::{Measure, Scene, Source, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
 use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, over, rounded};
@@ -193,9 +193,22 @@ impl Summary {
         share.is_finite().then_some(share)
     }
 
-    /// The largest displacement of the structure, m.
-    pub fn x1_max(&self) -> f64 {
-        self.structure.x1max
+    /// The largest value of a quantity in the window, in its SI unit.
+    pub fn largest(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Energy => self.e1_max,
+            Measure::Displacement => self.structure.x1max,
+            Measure::Velocity => self.structure.v1max,
+            Measure::Acceleration => self.structure.a1max,
+            Measure::GroundForce => self.structure.ground_force_max,
+            Measure::Stroke => self.spring_deflection_max,
+            Measure::ContactForce => self.force_max.primary.max(self.force_max.obstacle),
+        }
+    }
+
+    /// Impacts in the window, on the structure and on the obstacle.
+    pub fn impacts(&self) -> [u64; 2] {
+        [self.impacts.primary, self.impacts.obstacle]
     }
 
     /// The paper's name for the damper: a TMD never touches.

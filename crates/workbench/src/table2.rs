@@ -55,7 +55,10 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
             let certificate = judge(study)?;
             let paper = Row {
                 label: label.to_owned(),
-                found: study.scene.damper.as_ref().map_or(again.found, TunedDamper::of),
+                found: study
+                    .scene
+                    .damper
+                    .map_or(again.found, |damper| TunedDamper::of(&damper, study.varied())),
                 printed: printed.map(Positive::get),
                 e1_max: paper.energy,
                 verdict: certificate.short().verdict(),

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use retune_figures::colour::{BLACK, BLUE, VERMILION};
 use retune_figures::{Axis, Shape};
 use retune_model::OutOfRange;
-use retune_optim::{Minimum, Options, PeakEnergy, Variable, minimize};
+use retune_optim::{Minimum, Options, Parameter, PeakEnergy, minimize};
 use retune_solver::{Contacts, Method, Settings, Window, e1_max};
 use std::error::Error;
 use std::fmt::Write;
@@ -23,7 +23,7 @@ const DESIGN: [f64; 4] = [SSVI.k2, SSVI.c2, SSVI.d, SSVI.c];
 fn objective(settings: Settings) -> Result<PeakEnergy, Box<dyn Error>> {
     let scene = scene(SSVI)?;
     let damper = scene.damper.ok_or("no damper")?;
-    Ok(PeakEnergy::new(scene, damper, Variable::PAPER.to_vec(), WINDOW, settings))
+    Ok(PeakEnergy::new(scene, damper, Parameter::PAPER.to_vec(), WINDOW, settings))
 }
 
 fn located(method: Method, rtol: f64) -> Settings {
@@ -92,7 +92,7 @@ pub fn tables(chart: &Path) -> Result<[String; 2], Box<dyn Error>> {
         lines[line].push((settings.rtol, (whole - truth).abs().max(1e-12)));
     }
     let tight = located(Method::Hybrid, 1e-11);
-    for (i, variable) in Variable::PAPER.into_iter().enumerate() {
+    for (i, variable) in Parameter::PAPER.into_iter().enumerate() {
         for change in [-1e-3, 1e-3] {
             let mut factors = [1.0; 4];
             factors[i] += change;
@@ -120,7 +120,7 @@ fn optima() -> Result<String, Box<dyn Error>> {
     for rtol in [1e-3, 1e-4] {
         runs.push((format!("ode23s stepped {rtol:e}"), stepped(Method::Ode23s, rtol), DESIGN));
     }
-    for (i, variable) in Variable::PAPER.into_iter().enumerate() {
+    for (i, variable) in Parameter::PAPER.into_iter().enumerate() {
         for change in [-1e-3, 1e-3] {
             let mut start = DESIGN;
             start[i] *= 1.0 + change;

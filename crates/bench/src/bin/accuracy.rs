@@ -1,4 +1,4 @@
-//! `just accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just accuracy manifest` writes only its
+//! `just lab accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just lab accuracy manifest` writes only its
 //! manifest.
 #![allow(clippy::print_stderr)]
 

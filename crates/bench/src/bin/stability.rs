@@ -1,4 +1,4 @@
-//! `just stability`: every method on every difficulty, into `results/stability/`; `just stability manifest` writes only its manifest.
+//! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability manifest` writes only its manifest.
 
 use rayon::prelude::*;
 use retune_bench::atlas::draw::{Row, VERDICTS};
@@ -91,7 +91,7 @@ fn atlas_csv(rows: &[Row]) -> Result<String, std::fmt::Error> {
 fn heading(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let count = |j: usize, verdict| rows.iter().filter(|r| r.2[j].verdict == verdict).count();
     let mut text = format!(
-        "# Where methods fail\n\nWritten by `just stability`. Every method runs each difficulty as a careful user would, at rtol 1e-6 or steps of 1 ms; \
+        "# Where methods fail\n\nWritten by `just lab stability`. Every method runs each difficulty as a careful user would, at rtol 1e-6 or steps of 1 ms; \
          `ode23s defaults` is MATLAB's rtol 1e-3, as in the paper. The error is the larger of the relative errors of E1max and of the final state, against the hybrid at \
          rtol 1e-12, which DOP853 confirms (a test). *Works*: at most {:e}, every impact counted. *Miscounts*: the motion is as right, but shallow impacts are missed or counted twice. *Inaccurate*: at most {:e}, and at most one impact, or one in ten, miscounted. \
          *Says it fails*: an error is returned. *Fails silently*: anything else.\n\n![atlas](atlas.svg)\n\n\

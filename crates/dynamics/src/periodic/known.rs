@@ -7,7 +7,7 @@ use super::orbit::Orbit;
 use super::seen::quantity;
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
-use retune_model::{Measure, Scene, Variable};
+use retune_model::{Measure, Parameter, Scene};
 use retune_solver::Settings;
 
 /// Steps of the way to another damper, where fewer do not lead there.
@@ -72,9 +72,9 @@ fn moved(own: &Shooting, seed: &Seed, scene: &Scene) -> Option<Solution> {
 /// A scene with the damper at a share of the way from that of another.
 fn between(from: &Scene, to: &Scene, share: f64) -> Option<Scene> {
     let (own, mut damper) = (from.damper?, to.damper?);
-    for variable in Variable::ALL {
-        let [a, b] = [&own, &damper].map(|damper| variable.get(damper));
-        variable.set(&mut damper, if share < 1.0 { a + share * (b - a) } else { b }).ok()?;
+    for parameter in Parameter::VARIED {
+        let [Some(a), Some(b)] = [&own, &damper].map(|damper| parameter.of_damper(damper)) else { continue };
+        parameter.set_damper(&mut damper, if share < 1.0 { a + share * (b - a) } else { b }).ok()?;
     }
     Some(Scene { damper: Some(damper), ..*to })
 }

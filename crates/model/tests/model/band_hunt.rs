@@ -1,6 +1,6 @@
 //! The worst over a band against a search that shares nothing with it: the response in twice the precision, on grids that
 //! close in on every frequency where a peak may be, each local maximum sharpened by golden sections.
-//! `just test-bands` draws a million dampers; the tests draw some thousand.
+//! `just lab test-bands` draws a million dampers; the tests draw some thousand.
 
 mod twofold;
 

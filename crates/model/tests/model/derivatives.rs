@@ -1,6 +1,6 @@
 //! Every derivative that the model states, against finite differences of what it is the derivative of.
 
-use retune_model::{Coupled, Measure, NonNegative, Source, Variable};
+use retune_model::{Coupled, Measure, NonNegative, Parameter, Source};
 use retune_testkit::scenes::{Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
@@ -182,13 +182,13 @@ fn exact_steady_derivatives() {
             };
             let scene = numbers.forced_by(source);
             let damper = scene.damper.expect("a damper");
-            let at = |variable: Variable, value: f64| {
+            let at = |variable: Parameter, value: f64| {
                 let mut damper = damper;
-                variable.set(&mut damper, value).expect("in range");
+                variable.set_damper(&mut damper, value).expect("in range");
                 Coupled::new(&scene.primary, &scene.forcing, &damper)
             };
             for measure in Measure::ALL {
-                for variable in Variable::ALL {
+                for variable in Parameter::VARIED {
                     let value = variable.get(&damper);
                     let largest = |share: f64| {
                         let system = at(variable, value * (1.0 + share));

@@ -6,7 +6,7 @@ use crate::search::fminsearch::Bounds;
 use crate::search::global::Point;
 use crate::search::minimax::{Height, minimax};
 use crate::search::space::{Side, Space};
-use retune_model::Variable;
+use retune_model::Parameter;
 use std::cell::Cell;
 
 /// Share of the value below which a step is not worth its runs; of a steady response, which is in closed form, that below which it is rounding.
@@ -74,8 +74,8 @@ impl PeakEnergy {
     fn locked(&self, i: usize) -> f64 {
         let [k2, c2] = self.den_hartog();
         let locked = match self.variables()[i] {
-            Variable::K2 => LOCKED[0] * k2,
-            Variable::C2 => LOCKED[1] * c2,
+            Parameter::K2 => LOCKED[0] * k2,
+            Parameter::C2 => LOCKED[1] * c2,
             _ => f64::INFINITY,
         };
         if locked > 0.0 { locked } else { f64::INFINITY }
@@ -84,7 +84,7 @@ impl PeakEnergy {
     /// A side of the box: the whole range of a gap, which may be zero.
     fn side(&self, i: usize, Bounds { lower, upper }: Bounds, at: f64) -> Side {
         let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(self.locked(i).max(at)));
-        let is_gap = matches!(self.variables()[i], Variable::D | Variable::C);
+        let is_gap = self.variables()[i].is_gap();
         let wide = if at > low && !(is_gap && high.is_finite()) { WIDE * at } else { high };
         let most = if wide.is_finite() { wide.min(high) } else { 1.0_f64.max(2.0 * low) };
         Side::natural(low, most)

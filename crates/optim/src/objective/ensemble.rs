@@ -2,7 +2,7 @@
 //! irregular one run is a single realisation of a distribution; a statistic of the ensemble is a property of the design.
 
 use crate::chunks::{TOGETHER, in_groups};
-use retune_model::{NonNegative, OutOfRange, Scene};
+use retune_model::{OutOfRange, Parameter, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -53,6 +53,9 @@ fn errors() -> f64 {
     1e-3
 }
 
+/// The parameters that members have errors of, in the order of the sequence's dimensions behind the phase.
+const PERTURBED: [Parameter; 5] = [Parameter::K1, Parameter::K2, Parameter::C2, Parameter::D, Parameter::C];
+
 /// Most members: the length of the sequence.
 pub const MOST_MEMBERS: u32 = 1 << 16;
 
@@ -62,23 +65,25 @@ impl Ensemble {
     /// # Errors
     /// A parameter that overflows.
     pub fn member(&self, scene: &Scene, i: u32) -> Result<(Scene, f64), OutOfRange> {
-        let point = |dimension| f64::from(sobol_burley::sample(i, dimension, self.seed));
-        let phase = if self.phases { TAU * point(0) } else { 0.0 };
-        let mut scene = *scene;
-        let off = |value: &mut NonNegative, dimension| -> Result<(), OutOfRange> {
-            *value = NonNegative::new(value.get() * (1.0 + self.errors * (2.0 * point(dimension) - 1.0)))?;
-            Ok(())
-        };
-        if self.errors > 0.0 {
-            off(&mut scene.primary.stiffness, 1)?;
-            if let Some(damper) = &mut scene.damper {
-                off(&mut damper.stiffness, 2)?;
-                off(&mut damper.damping, 3)?;
-                off(&mut damper.rest_distance, 4)?;
-                off(&mut damper.clearance, 5)?;
+        let phase = if self.phases { TAU * self.point(i, 0) } else { 0.0 };
+        let mut off = *scene;
+        for parameter in PERTURBED {
+            if let Some(value) = parameter.of(scene).filter(|_| self.errors > 0.0) {
+                off = parameter.at(off, value * self.factor(parameter, i))?;
             }
         }
-        Ok((scene, phase))
+        Ok((off, phase))
+    }
+
+    /// A coordinate of the point of member `i`, 0 to 1.
+    fn point(&self, i: u32, dimension: u32) -> f64 {
+        f64::from(sobol_burley::sample(i, dimension, self.seed))
+    }
+
+    /// What a parameter of a design is multiplied with in member `i`.
+    pub(crate) fn factor(&self, parameter: Parameter, i: u32) -> f64 {
+        let dimension = PERTURBED.iter().position(|perturbed| *perturbed == parameter);
+        dimension.map_or(1.0, |number| 1.0 + self.errors * (2.0 * self.point(i, number as u32 + 1) - 1.0))
     }
 
     /// The statistic of `value(member, cutoff)` over all members. The values are not negative. A result above `cutoff` is only

@@ -15,7 +15,7 @@ use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use super::watch::{GoesOn, Numbered};
 use rayon::prelude::*;
-use retune_model::{Coupled, Measure, NonNegative, Scene, Variable};
+use retune_model::{Coupled, Measure, Parameter, Scene};
 use retune_solver::{Ask, Settings, Window, extremes_by, settled_by};
 
 /// The worst run of a member of an ensemble, or of the scene itself; and by how much each varied parameter of it changes with that of the
@@ -43,7 +43,7 @@ struct Slopes<'a> {
     goal: &'a Goal,
     scene: Scene,
     settings: &'a Settings,
-    variables: &'a [Variable],
+    variables: &'a [Parameter],
     goes_on: GoesOn<'a>,
 }
 
@@ -119,19 +119,8 @@ impl Slopes<'_> {
         };
         let member = |i: u32| {
             let (scene, phase) = ensemble.member(&self.scene, i).map_err(Unusable::Member)?;
-            // Errors are shares of the parameters: those of a damper whose parameters are 1.
-            let mut unit = self.scene;
-            if let Some(damper) = &mut unit.damper {
-                let one = NonNegative::new(1.0).map_err(Unusable::Member)?;
-                (damper.stiffness, damper.damping) = (one, one);
-                (damper.rest_distance, damper.clearance) = (one, one);
-            }
-            let (unit, _) = ensemble.member(&unit, i).map_err(Unusable::Member)?;
-            let share = |by: &Variable| match (by, &unit.damper) {
-                (Variable::M2, _) | (_, None) => 1.0,
-                (by, Some(damper)) => by.get(damper),
-            };
-            Ok((worst(&scene, phase)?, self.variables.iter().map(share).collect()))
+            let shares = self.variables.iter().map(|&by| ensemble.factor(by, i)).collect();
+            Ok((worst(&scene, phase)?, shares))
         };
         (0..ensemble.members.max(1)).into_par_iter().map(member).collect()
     }

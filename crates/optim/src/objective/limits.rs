@@ -5,10 +5,11 @@
 //! breaks them by less in total is better. They are written as one number, [`ranked`], so that every search follows them
 //! without knowing of them.
 
-use retune_model::{Measure, NonNegative, PerMeasure, Positive, Variable};
+mod file;
+
+use retune_model::{Measure, NonNegative, Parameter, PerMeasure, Positive};
 use retune_solver::Also;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 
 /// A quantity that a limit may be set on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,6 +45,14 @@ impl Limit {
         match self {
             Self::Of(measure) => measure.unit(),
             Self::Cavity => "m",
+        }
+    }
+
+    /// What it is.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Of(measure) => measure.words(),
+            Self::Cavity => "D + C, the length of the cavity",
         }
     }
 
@@ -93,38 +102,11 @@ impl PerLimit<f64> {
 
 /// Limits on a design. Any design that violates a limit ranks below every feasible one; of two infeasible designs the one with the
 /// smaller violation (the sum of reached / limit - 1) is better.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-#[schemars(rename = "LimitsGiven")]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// E1max, the largest energy of the structure in any run of the objective, J.
-    #[serde(rename = "E1max", skip_serializing_if = "Option::is_none")]
-    pub e1_max: Option<Positive>,
-    /// Largest displacement |x1| of the structure in any run of the objective, m.
-    #[serde(rename = "x1max", skip_serializing_if = "Option::is_none")]
-    pub x1_max: Option<Positive>,
-    /// Largest velocity |v1| of the structure in any run of the objective, m/s.
-    #[serde(rename = "v1max", skip_serializing_if = "Option::is_none")]
-    pub v1_max: Option<Positive>,
-    /// Largest acceleration |a1| of the structure in any run of the objective, m/s².
-    #[serde(rename = "a1max", skip_serializing_if = "Option::is_none")]
-    pub a1_max: Option<Positive>,
-    /// Largest force transmitted to the ground, |k1 x1 + c1 v1|, in any run of the objective, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ground_force: Option<Positive>,
-    /// The stroke: largest spring deflection |x2 - x1 - D| in any run of the objective, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stroke: Option<Positive>,
-    /// Largest contact force on either wall in any run of the objective, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub contact_force: Option<Positive>,
-    /// Largest D + C, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cavity: Option<Positive>,
-    /// Time from which the limits on stroke and force apply, s: 0, the default, for the whole run from rest; t0 of `window` for the
-    /// same motion as E1max. A settled motion is always included, in whole blocks. For the steady response the limits apply to the
-    /// steady-state motion alone.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    most: PerLimit<Option<Positive>>,
+    /// Time from which the limits of runs apply, s: 0 if left out, for the whole run from rest; t0 of `window` for the same motion as
+    /// the objective. A settled motion is always included, in whole blocks. Limits of a steady response are of that alone.
     pub from: Option<NonNegative>,
 }
 
@@ -137,27 +119,20 @@ pub const ACTIVE: f64 = 0.01;
 impl Limits {
     /// The largest value allowed of a quantity.
     pub fn get(&self, limit: Limit) -> Option<f64> {
-        { *self }.field(limit).map(Positive::get)
+        self.most.get(limit).map(Positive::get)
     }
 
     /// The same limits with another one.
     #[must_use]
     pub fn with(mut self, limit: Limit, most: Positive) -> Self {
-        *self.field(limit) = Some(most);
+        self.most.set(limit, Some(most));
         self
     }
 
-    fn field(&mut self, limit: Limit) -> &mut Option<Positive> {
-        match limit {
-            Limit::Of(Measure::Energy) => &mut self.e1_max,
-            Limit::Of(Measure::Displacement) => &mut self.x1_max,
-            Limit::Of(Measure::Velocity) => &mut self.v1_max,
-            Limit::Of(Measure::Acceleration) => &mut self.a1_max,
-            Limit::Of(Measure::GroundForce) => &mut self.ground_force,
-            Limit::Of(Measure::Stroke) => &mut self.stroke,
-            Limit::Of(Measure::ContactForce) => &mut self.contact_force,
-            Limit::Cavity => &mut self.cavity,
-        }
+    /// The same limits from another time on, s.
+    #[must_use]
+    pub const fn since(self, from: Option<NonNegative>) -> Self {
+        Self { from, ..self }
     }
 
     /// Whether none is given, nor from when on.
@@ -214,6 +189,6 @@ pub fn energy(value: f64) -> f64 {
 }
 
 /// The derivative of the cavity D + C by a parameter.
-pub(super) fn widens(by: Variable) -> f64 {
-    if matches!(by, Variable::D | Variable::C) { 1.0 } else { 0.0 }
+pub(super) fn widens(by: Parameter) -> f64 {
+    if by.is_gap() { 1.0 } else { 0.0 }
 }

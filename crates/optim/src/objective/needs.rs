@@ -8,7 +8,7 @@ use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use super::watch::{FREE, GoesOn, Hooks, Watch, Watched};
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
-use retune_model::{Damper, Measure, NonNegative, PerMeasure, Scene, Source, Variable, den_hartog};
+use retune_model::{Damper, Measure, NonNegative, Parameter, PerMeasure, Scene, Source, den_hartog};
 use retune_solver::{Also, Settings};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -105,7 +105,7 @@ impl Goal {
     pub fn best_linear(&self, scene: &Scene, settings: &Settings) -> Option<Scene> {
         let damper = scene.damper?;
         let quantity = self.objective.quantity();
-        let of_the_structure = !matches!(quantity, Measure::Stroke | Measure::ContactForce);
+        let of_the_structure = !quantity.is_of_damper();
         let (Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) = scene.forcing.source else {
             return None;
         };
@@ -121,7 +121,7 @@ impl Goal {
         let search = |start: [f64; 2], change: &dyn Fn(&mut Objective)| {
             let mut goal = Self { limits: Limits::default(), ..self.clone() };
             goal.objective.for_each_term(&mut |term| change(term));
-            let variables = vec![Variable::K2, Variable::C2];
+            let variables = vec![Parameter::K2, Parameter::C2];
             let objective = PeakEnergy::new(*scene, plain, variables, goal, *settings);
             let options = Options {
                 scaling: Scaling::Start,

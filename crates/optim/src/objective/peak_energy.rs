@@ -7,7 +7,7 @@ use super::spec::Goal;
 use super::unusable::Unusable;
 use super::watch::{FREE, GoesOn, Hooks};
 use crate::search::minimax::{Height, Piece};
-use retune_model::{Damper, Scene, Variable, den_hartog};
+use retune_model::{Damper, Parameter, Scene, den_hartog};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -50,7 +50,7 @@ impl Counts {
 pub struct PeakEnergy {
     scene: Scene,
     damper: Damper,
-    variables: Vec<Variable>,
+    variables: Vec<Parameter>,
     goal: Goal,
     settings: Settings,
     failures: Mutex<Failures>,
@@ -64,7 +64,7 @@ impl PeakEnergy {
     pub fn new(
         scene: Scene,
         damper: Damper,
-        variables: Vec<Variable>,
+        variables: Vec<Parameter>,
         goal: impl Into<Goal>,
         settings: Settings,
     ) -> Self {
@@ -84,7 +84,7 @@ impl PeakEnergy {
     }
 
     /// The varied parameters, in the order of a design.
-    pub fn variables(&self) -> &[Variable] {
+    pub fn variables(&self) -> &[Parameter] {
         &self.variables
     }
 
@@ -99,8 +99,9 @@ impl PeakEnergy {
     /// A value out of its parameter's range.
     pub fn damper(&self, design: &[f64]) -> Result<Damper, Unusable> {
         let mut damper = self.damper;
-        for (&variable, &value) in self.variables.iter().zip(design) {
-            variable.set(&mut damper, value).map_err(|source| Unusable::OutOfRange { variable, source })?;
+        for (&parameter, &value) in self.variables.iter().zip(design) {
+            let set = parameter.set_damper(&mut damper, value);
+            set.map_err(|source| Unusable::Value { parameter, source })?;
         }
         Ok(damper)
     }

@@ -10,7 +10,7 @@ use super::limits::{Limit, widens};
 use super::spec::{Goal, Objective, Response};
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
-use retune_model::{Coupled, Measure, Parameter, Scene, Variable, Worst};
+use retune_model::{Coupled, Measure, Parameter, Scene, Worst};
 use retune_solver::{Settings, Window, gradients};
 
 /// A peak below this share of the largest of its kind cannot soon be the largest.
@@ -35,9 +35,8 @@ impl Goal {
         scene: &Scene,
         settings: &Settings,
         runs: &[Run],
-        variables: &[Variable],
+        variables: &[Parameter],
     ) -> Vec<Piece> {
-        let by: Vec<Parameter> = variables.iter().map(|&variable| variable.into()).collect();
         let also = self.limits.also();
         let whole = Window { from: also.map_or(0.0, |also| also.from), to: self.window.to };
         let limited = also.into_iter().flat_map(|also| also.measures.chosen());
@@ -67,7 +66,7 @@ impl Goal {
                 let by = |at| variables.iter().map(|&by| system.steady_by(measure, by, at)).collect();
                 peaks.map(|Worst { value, frequency }| (value, by(frequency))).collect()
             } else {
-                let found = gradients(&system, window, settings, measure, &by).unwrap_or_default();
+                let found = gradients(&system, window, settings, measure, variables).unwrap_or_default();
                 found.into_iter().map(|found| (found.at.value, found.by)).collect()
             };
             let piece = |value: f64, by: Vec<f64>| match limit {

@@ -1,19 +1,19 @@
 //! Why a design has no value.
 
-use retune_model::{OutOfRange, Variable};
+use retune_model::{OutOfRange, Parameter, Unsettable};
 use retune_solver::SolverError;
 use thiserror::Error;
 
 /// Why a design has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Unusable {
-    /// A parameter of the damper is out of range.
-    #[error("{variable}: {source}")]
-    OutOfRange {
+    /// A parameter of the damper is out of range, or one that the damper does not have.
+    #[error("{parameter}: {source}")]
+    Value {
         /// The parameter.
-        variable: Variable,
+        parameter: Parameter,
         /// Its value and what is allowed.
-        source: OutOfRange,
+        source: Unsettable,
     },
     /// The stiffness k1 is out of range.
     #[error("k1: {0}")]

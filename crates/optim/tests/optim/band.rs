@@ -3,8 +3,8 @@
 use rayon::ThreadPoolBuilder;
 use retune_model::{Positive, Scene, Worst};
 use retune_optim::{
-    Band, Bounds, FrequencyBand, Goal, Objective, Options, PeakEnergy, Response, Scaling, Unusable, Variable,
-    minimize, worst_over,
+    Band, Bounds, FrequencyBand, Goal, Objective, Options, Parameter, PeakEnergy, Response, Scaling,
+    Unusable, minimize, worst_over,
 };
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::{Numbers, SSVI, TMD};
@@ -193,7 +193,7 @@ fn best(numbers: Numbers, band: Band, start: [f64; 2]) -> [f64; 3] {
     let objective = PeakEnergy::new(
         scene,
         damper,
-        vec![Variable::K2, Variable::C2],
+        vec![Parameter::K2, Parameter::C2],
         goal(None, Some(band)),
         Settings::default(),
     );

@@ -2,8 +2,8 @@
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limits, Objective, Part, PeakEnergy, Response, Statistic,
-    StiffnessRange, Stiffnesses, Unusable, Variable,
+    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Parameter, Part, PeakEnergy,
+    Response, Statistic, StiffnessRange, Stiffnesses, Unusable,
 };
 use retune_solver::{Settings, Settle, Window};
 use retune_testkit::scenes::{Numbers, SSVI, TMD};
@@ -21,7 +21,7 @@ fn band(samples: usize) -> Option<FrequencyBand> {
     Some(FrequencyBand { from: positive(5.0), to: positive(8.0), samples, relative: false })
 }
 
-fn problem(scene: Scene, variables: &[Variable], goal: Goal) -> PeakEnergy {
+fn problem(scene: Scene, variables: &[Parameter], goal: Goal) -> PeakEnergy {
     let settings = Settings { rtol: 1e-13, ..Settings::default() };
     PeakEnergy::new(scene, scene.damper.expect("a damper"), variables.to_vec(), goal, settings)
 }
@@ -64,8 +64,8 @@ fn agree(objective: &PeakEnergy, share: f64, tolerance: f64) {
     }
 }
 
-const ALL: [Variable; 5] = Variable::ALL;
-const LINEAR: [Variable; 3] = [Variable::K2, Variable::C2, Variable::M2];
+const ALL: [Parameter; 6] = Parameter::VARIED;
+const LINEAR: [Parameter; 3] = [Parameter::K2, Parameter::C2, Parameter::M2];
 
 #[test]
 fn reference_a_steady_damper_of_every_measure() {
@@ -136,14 +136,9 @@ fn reference_compositions() {
 /// A design that breaks limits has the derivatives of its violation, so that value and derivatives belong together everywhere.
 #[test]
 fn reference_broken_limits() {
-    let [stroke, force, cavity] = [0.2, 1e4, 0.3].map(|limit| Some(positive(limit)));
-    let limits = Limits {
-        stroke,
-        contact_force: force,
-        cavity,
-        from: NonNegative::new(1.0).ok(),
-        ..Limits::default()
-    };
+    let [stroke, force] = [Measure::Stroke, Measure::ContactForce].map(Limit::Of);
+    let limits = Limits::default().with(stroke, positive(0.2)).with(force, positive(1e4));
+    let limits = limits.with(Limit::Cavity, positive(0.3)).since(NonNegative::new(1.0).ok());
     // No contact at the end, which would cut the largest force off; and the largest values come before the window.
     let window = Window { from: 8.2, to: 8.3 };
     for omega in [None, band(31)] {
@@ -152,7 +147,7 @@ fn reference_broken_limits() {
         assert!(objective.value(&[], f64::INFINITY) > INFEASIBLE);
         agree(&objective, 1e-5, 1e-6);
     }
-    let kept = Limits { stroke: Some(positive(9.0)), ..Limits::default() };
+    let kept = Limits::default().with(stroke, positive(9.0));
     let free = goal(Objective::default());
     let by = |goal: Goal| both(&problem(SSVI.scene(), &ALL, goal), 1e-5)[0].clone();
     assert_eq!(by(Goal { limits: kept, ..free.clone() }), by(free), "limits that are kept change nothing");
@@ -162,7 +157,7 @@ fn reference_broken_limits() {
 #[test]
 fn invariant_a_kink_has_a_subgradient() {
     let objective = Objective { omega: band(2), response: Response::Steady, ..Objective::default() };
-    let objective = problem(Numbers { c2: 60.0, ..TUNED }.open_scene(), &[Variable::K2], goal(objective));
+    let objective = problem(Numbers { c2: 60.0, ..TUNED }.open_scene(), &[Parameter::K2], goal(objective));
     let at = |k2: f64| {
         let (found, by) = objective.gradient(&[k2], &|| true).expect("a value");
         (found.worst.scene.forcing.frequency.get(), by[0], found.value)

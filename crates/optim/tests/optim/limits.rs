@@ -2,8 +2,8 @@
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, PeakEnergy, Response,
-    Variable, energy, minimize, ranked,
+    Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, Parameter, PeakEnergy,
+    Response, energy, minimize, ranked,
 };
 use retune_solver::{Settings, Window, simulate};
 use retune_testkit::scenes::{Numbers, SSVI, TMD};
@@ -24,8 +24,12 @@ fn steady() -> Objective {
 }
 
 fn limits(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Limits {
-    let [stroke, contact_force, cavity] = [stroke, force, cavity].map(|limit| limit.map(positive));
-    Limits { stroke, contact_force, cavity, ..Limits::default() }
+    let all = [Limit::Of(Measure::Stroke), Limit::Of(Measure::ContactForce), Limit::Cavity];
+    let given = all.into_iter().zip([stroke, force, cavity]);
+    given.fold(Limits::default(), |limits, (limit, most)| match most {
+        Some(most) => limits.with(limit, positive(most)),
+        None => limits,
+    })
 }
 
 fn goal(stroke: Option<f64>, force: Option<f64>, cavity: Option<f64>) -> Goal {
@@ -84,7 +88,7 @@ fn exact_each_measure_is_limited_by_what_the_run_has_of_it() {
         let found = evaluate(&Goal { limits, ..WINDOW.into() }, &scene, f64::INFINITY);
         assert!((found.violation - 0.25).abs() < 1e-7, "{limit}: {}", found.violation);
         // Stroke and contact force are of one observer, and come together.
-        let of_the_damper = |measure| matches!(measure, Measure::Stroke | Measure::ContactForce);
+        let of_the_damper = |measure: Measure| measure.is_of_damper();
         let mut others = Measure::ALL
             .into_iter()
             .filter(|other| *other != measure && !(of_the_damper(measure) && of_the_damper(*other)));
@@ -144,7 +148,7 @@ fn exact_a_search_ends_on_an_active_limit() {
     let goal = Goal { objective: steady(), limits: limits(Some(limit), None, None), ..WINDOW.into() };
     let numbers = of(150.0);
     let objective =
-        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Variable::C2], goal, Settings::default());
+        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Parameter::C2], goal, Settings::default());
     for start in [130.0, 480.0] {
         let options =
             Options { tol_x: 1e-8, tol_fun: 1e-8, bounds: vec![Bounds::default()], ..Options::default() };
@@ -166,7 +170,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
     let run = |from| simulate(&scene, Window { from, ..window }, &Settings::default()).expect("a run");
     let reached = |from| {
         let from = NonNegative::new(from).ok();
-        let goal = Goal { limits: Limits { from, ..limits(Some(1.0), Some(1e9), None) }, ..window.into() };
+        let goal = Goal { limits: limits(Some(1.0), Some(1e9), None).since(from), ..window.into() };
         let found = evaluate(&goal, &scene, f64::INFINITY);
         assert_eq!(found.value, run(4.0).e1_max.value);
         [found.reached.get(Limit::Of(Measure::Stroke)), found.reached.get(Limit::Of(Measure::ContactForce))]
@@ -212,7 +216,7 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
     for (limit, numbers) in designs {
         let found = |samples, allowed: f64| {
             let objective = Objective { omega: band(samples), ..Objective::default() };
-            let limits = Limits { from: NonNegative::new(50.0).ok(), ..Limits::default() };
+            let limits = Limits::default().since(NonNegative::new(50.0).ok());
             let limits = limits.with(limit, positive(allowed));
             let goal = Goal { objective, limits, ..Window { from: 50.0, to: 100.0 }.into() };
             evaluate(&goal, &numbers.scene(), f64::INFINITY)

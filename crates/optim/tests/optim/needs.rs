@@ -1,5 +1,5 @@
 //! What a damper needs, beside a plain scan: for structures that are not the paper's, no run at any of many frequencies may reach more than is
-//! told. `just hunt-needs` draws more than the tests do.
+//! told. `just lab hunt-needs` draws more than the tests do.
 
 use rayon::prelude::*;
 use retune_model::{Measure, NonNegative, PerMeasure, Positive, Scene};

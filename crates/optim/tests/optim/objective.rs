@@ -1,25 +1,25 @@
 //! The objective over a run of the paper's scene.
 
-use retune_optim::{Failures, INFEASIBLE, PeakEnergy, Variable};
+use retune_optim::{Failures, INFEASIBLE, Parameter, PeakEnergy};
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::TMD;
 
-fn objective(variables: Vec<Variable>, to: f64, settings: Settings) -> PeakEnergy {
+fn objective(variables: Vec<Parameter>, to: f64, settings: Settings) -> PeakEnergy {
     PeakEnergy::new(TMD.scene(), TMD.damper(), variables, Window { from: 0.0, to }, settings)
 }
 
 #[test]
 fn contract_design_sets_the_named_parameters_and_no_other() {
-    let objective = objective(Variable::ALL.to_vec(), 1.0, Settings::default());
+    let objective = objective(Parameter::VARIED.to_vec(), 1.0, Settings::default());
     let damper = objective.damper(&[1.0, 2.0, 3.0, 4.0]).expect("a damper");
-    assert_eq!(Variable::PAPER.map(|variable| variable.get(&damper)), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(Parameter::PAPER.map(|variable| variable.get(&damper)), [1.0, 2.0, 3.0, 4.0]);
     let original = TMD.damper();
     assert_eq!((damper.mass, damper.contact), (original.mass, original.contact));
 }
 
 #[test]
 fn contract_value_is_that_of_a_run_of_the_scene() {
-    let objective = objective(vec![Variable::C2], 5.0, Settings::default());
+    let objective = objective(vec![Parameter::C2], 5.0, Settings::default());
     let window = Window { from: 0.0, to: 5.0 };
     let run =
         retune_solver::e1_max(&TMD.scene(), window, &Settings::default(), f64::INFINITY).expect("a run");
@@ -29,7 +29,7 @@ fn contract_value_is_that_of_a_run_of_the_scene() {
 
 #[test]
 fn contract_failures_are_infinite_counted_and_one_is_kept() {
-    let objective = objective(vec![Variable::C2, Variable::D], 5.0, Settings::default());
+    let objective = objective(vec![Parameter::C2, Parameter::D], 5.0, Settings::default());
     for design in [[1.0, -2.0], [-1.0, 0.0], [f64::NAN, 1.0]] {
         assert_eq!(objective.value(&design, f64::INFINITY), f64::INFINITY);
     }
@@ -43,7 +43,7 @@ fn contract_failures_are_infinite_counted_and_one_is_kept() {
 /// A feasible value is at most [`INFEASIBLE`]; a recalled value counts like a computed one.
 #[test]
 fn contract_recalled_values_are_counted_as_when_they_were_found() {
-    let objective = objective(vec![Variable::C2], 5.0, Settings::default());
+    let objective = objective(vec![Parameter::C2], 5.0, Settings::default());
     for value in [1.0, INFEASIBLE, 1.5 * INFEASIBLE, f64::INFINITY] {
         objective.recall(value);
     }

@@ -1,6 +1,6 @@
 //! `paper_`: the iteration of the paper's Table 1 that identifies its optimiser, and the order of its rows.
 
-use retune_optim::{Options, PeakEnergy, Procedure, Variable, minimize};
+use retune_optim::{Options, Parameter, PeakEnergy, Procedure, minimize};
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::{Numbers, ROW1, ROW2, ROW3, SSVI, Spread};
 use std::cell::RefCell;
@@ -46,7 +46,7 @@ fn paper_table1_row3() {
 fn paper_table1_refined_rows_are_better() {
     let window = Window { from: 50.0, to: 100.0 };
     let objective =
-        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Variable::ALL.to_vec(), window, Settings::default());
+        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, Settings::default());
     let median = |row: &Numbers| {
         let mut spread = Spread::new(1);
         let mut values: Vec<f64> = (0..51)

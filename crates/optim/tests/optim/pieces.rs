@@ -2,7 +2,8 @@
 
 use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
-    FrequencyBand, Goal, Limits, Objective, PeakEnergy, Response, Scale, Side, Space, Variable, minimax,
+    FrequencyBand, Goal, Limit, Limits, Objective, Parameter, PeakEnergy, Response, Scale, Side, Space,
+    minimax,
 };
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::TMD;
@@ -20,14 +21,14 @@ fn objective(limits: Limits) -> PeakEnergy {
     let objective = Objective { omega: Some(band), ..Objective::default() };
     let settings = Settings { rtol: 1e-12, atol: 1e-14, ..Settings::default() };
     let goal = Goal { objective, limits, ..WINDOW.into() };
-    PeakEnergy::new(TMD.scene(), TMD.damper(), Variable::PAPER.to_vec(), goal, settings)
+    PeakEnergy::new(TMD.scene(), TMD.damper(), Parameter::PAPER.to_vec(), goal, settings)
 }
 
 /// The derivatives of the largest peaks of energy and stroke against central differences of the whole objective.
 #[test]
 fn reference_slopes_are_differences_of_the_objective() {
-    let limits =
-        Limits { stroke: Some(positive(0.3)), from: NonNegative::new(50.0).ok(), ..Limits::default() };
+    let limits = Limits::default().with(Limit::Of(Measure::Stroke), positive(0.3));
+    let limits = limits.since(NonNegative::new(50.0).ok());
     let of = objective(limits);
     let look = |x: &[f64]| {
         let (height, runs) = of.look(x, f64::INFINITY);
@@ -69,11 +70,11 @@ fn regress_a_descent_ends_in_the_kink() {
 /// The slopes of the peaks of a steady response, at each of its two peaks and of the stroke, against differences.
 #[test]
 fn exact_steady_slopes_are_differences_of_the_closed_form() {
-    let limits = Limits { stroke: Some(positive(0.3)), ..Limits::default() };
+    let limits = Limits::default().with(Limit::Of(Measure::Stroke), positive(0.3));
     let goal = objective(limits).goal().clone();
     let steady = Objective { response: Response::Steady, ..goal.objective.clone() };
     let goal = Goal { objective: steady, ..goal };
-    let variables = vec![Variable::K2, Variable::C2];
+    let variables = vec![Parameter::K2, Parameter::C2];
     let of = PeakEnergy::new(TMD.scene(), TMD.damper(), variables, goal, Settings::default());
     let at = [2083.0, 100.0];
     let sorted = |x: &[f64]| {

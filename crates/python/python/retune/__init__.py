@@ -14,7 +14,7 @@ are in SI units (kg, N/m, N s/m, N, m, s, rad/s), all parameters have the symbol
 from retune._compare import Comparison, compare
 from retune._core import __version__
 from retune._errors import Error, SolverError, StudyError
-from retune._files import Design, certify_file, design, fronts, merge, reproduce, share, sweep, table2, track
+from retune._files import Design, certify_file, design, fronts, merge, reproduce, retention, share, sweep, table2
 from retune._jobs import Certificate, Result, branches, certify, optimize, verify
 from retune._problem import Evaluation, Problem
 from retune._run import Run
@@ -47,9 +47,9 @@ __all__ = [
     "merge",
     "optimize",
     "reproduce",
+    "retention",
     "share",
     "sweep",
     "table2",
-    "track",
     "verify",
 ]

@@ -85,12 +85,12 @@ def table2(study: Directory = "studies/table2.json", out: Directory | None = Non
     return Path(_job(study, "table2", out, options))
 
 
-def track(study: Directory, k1: Iterable[float], out: Directory | None = None, **options: Unpack[Options]) -> Path:
-    """How long tunings last: tunes the dampers of a study of kind `table2` anew at stiffnesses ``k1`` (N/m), as `retune track` does.
+def retention(study: Directory, k1: Iterable[float], out: Directory | None = None, **options: Unpack[Options]) -> Path:
+    """How long tunings last: tunes the dampers of a study of kind `table2` anew at stiffnesses ``k1`` (N/m), as `retune retention` does.
 
     Returns the directory of the results; ``README.md`` there is the answer.
     """
-    return Path(_job(study, {"track": [float(value) for value in k1]}, out, options))
+    return Path(_job(study, {"retention": [float(value) for value in k1]}, out, options))
 
 
 def fronts(study: Directory = "studies/fronts.json", out: Directory | None = None, **options: Unpack[Options]) -> Path:

@@ -12,26 +12,7 @@ from retune._arrays import plain, scalar
 from retune._errors import StudyError
 
 #: Symbols, their SI units and what they are.
-MEANING = {
-    "m1": ("kg", "mass of the structure"),
-    "c1": ("N s/m", "damping of the structure"),
-    "k1": ("N/m", "stiffness of the structure"),
-    "m2": ("kg", "mass of the damper"),
-    "k2": ("N/m", "stiffness of the damper's spring"),
-    "c2": ("N s/m", "damping between damper and structure"),
-    "D": ("m", "distance between the damper at rest and the structure"),
-    "C": ("m", "clearance between the damper at rest and the obstacle"),
-    "R": ("m", "radius of the damper's surfaces"),
-    "q": ("", "geometrical coefficient of Hertz's theory"),
-    "E1": ("Pa", "Young's modulus of the structure's surface"),
-    "nu1": ("", "Poisson's ratio of the structure's surface"),
-    "E2": ("Pa", "Young's modulus of the damper's surface that meets the structure"),
-    "nu2": ("", "Poisson's ratio of the damper's surface that meets the structure"),
-    "E3": ("Pa", "Young's modulus of the obstacle's surface"),
-    "nu3": ("", "Poisson's ratio of the obstacle's surface"),
-    "E4": ("Pa", "Young's modulus of the damper's surface that meets the obstacle"),
-    "nu4": ("", "Poisson's ratio of the damper's surface that meets the obstacle"),
-}
+MEANING = {symbol: (unit, words) for symbol, unit, words in _core.parameters()}
 
 
 class Part:

@@ -12,10 +12,9 @@ pub struct Branches {
     /// A study, the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
-    /// The parameter: omega P k1 c1 m2 k2 c2 D C R
-    #[arg(long, value_name = "NAME", default_value = "omega")]
+    #[arg(long, value_name = "NAME", default_value = "omega", help = format!("The parameter: {}", differentiable()))]
     pub over: Parameter,
-    /// Its least value, in its SI unit; a frequency may have one of its own: 0.8Hz [default: of the band of the study, or 0.8 of its own]
+    /// Its least value, in its SI unit or with a unit: 0.8Hz [default: of the band of the study, or 0.8 of its own]
     #[arg(long, value_name = "A")]
     pub from: Option<String>,
     /// Its largest value [default: of the band of the study, or 1.25 of its own]
@@ -45,4 +44,10 @@ pub struct Branches {
     /// How it is run; results go to results/branches-<study>-<parameter> (of results: <study>-tuned) unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
+}
+
+/// The parameters that branches can be followed over.
+fn differentiable() -> String {
+    let all = Parameter::ALL.into_iter().filter(|parameter| parameter.has_derivative());
+    all.map(Parameter::symbol).collect::<Vec<_>>().join(" ")
 }

@@ -12,10 +12,9 @@ pub struct Sweep {
     /// A study, the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
-    /// The parameter: omega k1 c1 m1 m2 k2 c2 D C R, or what the forcing is given by: P imbalance base
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = format!("The parameter: {}", Parameter::ALL.map(Parameter::symbol).join(" ")))]
     pub over: Parameter,
-    /// Its first value, in its SI unit; a frequency may have one of its own: 0.8Hz, 50rpm
+    /// Its first value, in its SI unit or with a unit: 0.8Hz, 30kN/m
     #[arg(long, value_name = "A")]
     pub from: String,
     /// Its last value
@@ -27,12 +26,10 @@ pub struct Sweep {
     /// Equal ratios between values instead of equal differences
     #[arg(long)]
     pub log: bool,
-    /// The unit of ends without one: rad/s, Hz or rpm for omega
+    /// The unit of ends without one, for instance Hz for omega
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<String>,
-    /// What is shown: E1max x1max v1max a1max ground_force stroke contact_force transmissibility impacts, with commas between
-    /// [default: E1max]; the tables hold all of them
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "objective")]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "objective", help = quantities())]
     pub quantity: Vec<Quantity>,
     /// Compute the objective of the study at each value, for instance the worst over its band, instead of one run
     #[arg(long)]
@@ -49,4 +46,14 @@ pub struct Sweep {
     /// How it is run; results go to results/sweep-<study>-<parameter> unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
+}
+
+/// What `--quantity` is for.
+fn quantities() -> String {
+    let names: Vec<&str> = Quantity::all().map(Quantity::name).collect();
+    format!(
+        "What is shown: {}, with commas between [default: {}]; the tables hold all of them",
+        names.join(" "),
+        names[0]
+    )
 }

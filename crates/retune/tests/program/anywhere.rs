@@ -12,7 +12,7 @@ fn contract_plans_are_found_in_an_empty_directory() {
     assert!(said.starts_with(note) && said.contains("results in results/paper: "), "{said}");
     for (arguments, out) in [
         (vec!["table2", "--quiet"], "results/table2/table2-ssvi"),
-        (vec!["track", "30000", "--quiet"], "results/retune/k1-39500/retune-ssvi"),
+        (vec!["retention", "30000", "--quiet"], "results/retune/k1-39500/retune-ssvi"),
         (vec!["fronts", "--quiet"], "results/fronts"),
     ] {
         let mut child = begun(&desk, &arguments, out, 2);
@@ -54,7 +54,7 @@ fn contract_a_sweep_is_one_object_on_standard_output() {
     assert!(json["rows"][0]["impacts"].is_u64() && json["units"]["x1max"] == "m", "{json}");
     let Answer { code, stderr, .. } =
         desk.run(&["sweep", "study.json", "--over", "omga", "--from", "1", "--to", "2"]);
-    assert!(code == Some(2) && stderr.contains("give one of m1, c1, k1, m2"), "{stderr}");
+    assert!(code == Some(2) && stderr.contains("give one of k2, c2, D"), "{stderr}");
 }
 
 /// `branches` answers with one object, too; its results are verified by the program, and a wrong parameter is refused.
@@ -69,7 +69,7 @@ fn contract_branches_are_one_object_on_standard_output_and_are_verified() {
     assert_eq!(json["branches"][0]["events"][1]["kind"], "period doubling", "{json}");
     assert!(desk.good(&["verify", "out"]).contains("holds: "));
     let Answer { code, stderr, .. } = desk.run(&["branches", "study.json", "--over", "zeta"]);
-    assert!(code == Some(2) && stderr.contains("give one of omega, P, k1"), "{stderr}");
+    assert!(code == Some(2) && stderr.contains("give one of k2, c2, D"), "{stderr}");
     let Answer { code, stderr, .. } = desk.run(&["branches", "study.json", "--from", "8", "--to", "5"]);
     assert!(code == Some(2) && stderr.contains("--to: 5 is not above --from 8"), "{stderr}");
 }

@@ -54,7 +54,7 @@ fn contract_tables_and_fronts_show_what_they_found_and_where_it_is() {
         screen.contains("\nre-optimised  NES ") && screen.contains("\nresults in results/mine: "),
         "{screen}"
     );
-    let screen = desk.good(&["track", "30000", "5e4", "--study", "mine.json", "--quiet", "--replace"]);
+    let screen = desk.good(&["retention", "30000", "5e4", "--study", "mine.json", "--quiet", "--replace"]);
     assert!(
         screen.contains("\nk1 = 50000    NES ") && screen.contains("\nresults in results/mine: "),
         "{screen}"
@@ -188,7 +188,7 @@ fn contract_every_command_explains_itself() {
         "simulate",
         "evaluate",
         "table2",
-        "track",
+        "retention",
         "fronts",
         "reproduce",
         "figure",

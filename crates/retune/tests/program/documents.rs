@@ -17,7 +17,7 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-const DOCUMENTS: [&str; 10] = [
+const DOCUMENTS: [&str; 13] = [
     "README.md",
     "ARCHITECTURE.md",
     "docs/decisions.md",
@@ -28,11 +28,14 @@ const DOCUMENTS: [&str; 10] = [
     "docs/tutorial.md",
     "docs/bounds.md",
     "docs/performance.md",
+    "docs/python.md",
+    "CHANGELOG.md",
+    "results/robustness/README.md",
 ];
 
 #[test]
 fn contract_every_path_of_the_documents_exists() {
-    for (document, least) in DOCUMENTS.into_iter().zip([3, 15, 1, 1, 2, 0, 0, 1, 0, 0]) {
+    for (document, least) in DOCUMENTS.into_iter().zip([3, 15, 1, 1, 2, 0, 0, 1, 0, 0, 0, 0, 0]) {
         let text = text(document);
         let places = ["crates/", "deploy/", "docs/", "results/", "studies/", "tests/"];
         let linked = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
@@ -50,23 +53,35 @@ fn contract_every_path_of_the_documents_exists() {
     }
 }
 
-#[test]
-fn contract_every_recipe_of_the_documents_exists() {
-    let justfile = text("justfile");
-    let aliases = justfile.lines().filter_map(|line| line.strip_prefix("alias ")?.split(" :=").next());
-    let recipes: Vec<&str> = justfile
-        .lines()
+/// The recipes of a justfile, with their aliases.
+fn recipes(justfile: &str) -> Vec<String> {
+    let text = text(justfile);
+    let aliases = text.lines().filter_map(|line| line.strip_prefix("alias ")?.split(" :=").next());
+    text.lines()
         .filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase()) && !line.contains(":="))
+        .filter(|line| line.contains(':'))
         .filter_map(|line| line.split([' ', ':']).next())
         .chain(aliases)
-        .collect();
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn contract_every_recipe_of_the_documents_exists() {
+    let (top, lab) = (recipes("justfile"), recipes("lab.just"));
+    assert!(text("justfile").contains("\nmod lab 'lab.just'\n"));
     let mut seen = 0;
     for document in DOCUMENTS {
         let text = text(document);
         let commands = quoted(&text).chain(text.lines().filter_map(|line| line.split("&& ").nth(1)));
         for command in commands.filter_map(|command| command.strip_prefix("just ")) {
+            let (among, command) = match command.strip_prefix("lab ") {
+                Some(rest) => (&lab, rest),
+                None => (&top, command),
+            };
             let recipe = command.split_whitespace().next().unwrap_or_default();
-            assert!(recipes.contains(&recipe), "{document} names `just {command}`, not among {recipes:?}");
+            let exists = recipe == "lab" || among.iter().any(|known| known == recipe);
+            assert!(exists, "{document} names `just {command}`, not among {among:?}");
             seen += 1;
         }
     }
@@ -83,7 +98,7 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
     let commands: Vec<&str> =
         justfile.lines().filter_map(|line| line.strip_prefix("    {{retune}} ")).collect();
     let of = |command: &str| commands.iter().filter(|line| line.starts_with(&format!("{command} "))).count();
-    assert!(of("optimize") >= 5, "{commands:?}");
+    assert!(of("optimize") >= 3, "{commands:?}");
     for line in commands.iter().filter(|line| !line.starts_with("schema ")) {
         assert!(line.ends_with(" \"$@\""), "{line}");
     }
@@ -93,7 +108,7 @@ fn contract_every_recipe_takes_options_and_a_stopped_run_has_a_recipe_to_go_on_w
         "merge",
         "certify",
         "table2",
-        "track",
+        "retention",
         "fronts",
         "branches",
         "reproduce",

@@ -1,7 +1,7 @@
 //! Runs that are killed (SIGKILL) at random moments, repeatedly, until one completes: its results have the bytes of
 //! an uninterrupted run, no line is lost or doubled, and no temporary file is left.
 //!
-//! `just test` makes a few kills; `just test-kills` makes hundreds and reports the stage of each (`RETUNE_KILLS` is their
+//! `just test` makes a few kills; `just lab test-kills` makes hundreds and reports the stage of each (`RETUNE_KILLS` is their
 //! number).
 
 use crate::common::{Desk, Program};

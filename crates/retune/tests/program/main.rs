@@ -1,6 +1,7 @@
 //! The program as a process: arguments, the screen, pipes, exit codes, signals. What its jobs find is tested in `workbench`.
 
 mod anywhere;
+mod catalogue;
 mod commands;
 mod common;
 mod documents;

@@ -51,7 +51,7 @@ fn contract_wrong_arguments_are_told_with_what_is_allowed() {
     flat["optimize"]["surf"] = json!(null);
     let desk = Desk::with(&flat);
     let share = "for '--shard <i/N>': give i/N with 1 <= i <= N, for instance 3/64";
-    let unknown = "unknown parameter `k3`; did you mean `k1`? allowed: m1, c1, k1, m2, k2, c2, D, C, P, imbalance, base, omega, R, T, t0";
+    let unknown = "unknown parameter `k3`; did you mean `k2`? allowed: k2, c2, D, C, m2, R, m1, c1, k1, P, imbalance, base, omega, q, ";
     for (line, words) in [
         ("figure 8", "invalid value '8' for '<NUMBER>': 8 is not in 2..=7"),
         ("figure 1", "invalid value '1' for '<NUMBER>': 1 is not in 2..=7"),
@@ -66,7 +66,10 @@ fn contract_wrong_arguments_are_told_with_what_is_allowed() {
         ("merge study.json", "study study: optimize.surf: missing, but only the grid can be made in parts"),
         ("simulate study.json --set k3=1", unknown),
         ("simulate study.json --set k1", "\"k1\" is not of the form NAME=VALUE, for instance k1=30000"),
-        ("simulate study.json --set k1=soft", "k1: \"soft\" is not a number"),
+        (
+            "simulate study.json --set k1=soft",
+            "k1: \"soft\" is not a number in N/m, nor one with its unit: N/m, kN/m",
+        ),
         (
             "simulate study.json --set m1=-1",
             "command line: m1: -1 is not allowed here: give a finite number above 0",
@@ -81,7 +84,7 @@ fn contract_wrong_arguments_are_told_with_what_is_allowed() {
     }
     assert_eq!(desk.names("."), ["study.json"], "nothing may be left behind");
     let table = studies().join("table2.json");
-    let said = desk.refused(&["track", "30000", "-1", "--study", table.to_str().expect("UTF-8")]);
+    let said = desk.refused(&["retention", "30000", "-1", "--study", table.to_str().expect("UTF-8")]);
     assert_eq!(said, "error: command line: k1: -1 is not allowed here: give a finite number not below 0\n");
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A motion repeats if its states at whole periods of the force return for a while, and all that they will still change by, extrapolated
 //! from how these changes fall, is below the tolerance of the run. So a run is not longer than its transient and a few periods, and what it
-//! finds differs from what the whole run finds by no more than that tolerance allows the run itself (`just hunt-repeats` measures it).
+//! finds differs from what the whole run finds by no more than that tolerance allows the run itself (`just lab hunt-repeats` measures it).
 //! One that converges to such a motion need not be followed to it (`ahead`).
 
 use super::ahead::{Converging, LookAhead};

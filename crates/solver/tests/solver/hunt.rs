@@ -1,7 +1,7 @@
 //! A hunt for a largest value that is missed, over the ranges that an engineer uses: the search with its bounds beside a look at
 //! everything in the same motion, and the hybrid beside DOP853.
 //!
-//! `just hunt` draws as many scenes as it is told to (`RETUNE_HUNT`); the test suite draws few.
+//! `just lab hunt` draws as many scenes as it is told to (`RETUNE_HUNT`); the test suite draws few.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a hunt says what it looked at")]
 
 use rayon::prelude::*;
@@ -243,7 +243,7 @@ fn drawn(number: u64, scene: fn(&mut Spread) -> Numbers) -> (Numbers, f64, f64) 
     (numbers, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
 }
 
-#[allow(clippy::print_stdout, reason = "`just hunt` reads it")]
+#[allow(clippy::print_stdout, reason = "`just lab hunt` reads it")]
 fn hunt(what: &str, scene: fn(&mut Spread) -> Numbers, count: u64) {
     let looked: Vec<_> = (0..count)
         .into_par_iter()

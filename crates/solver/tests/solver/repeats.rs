@@ -1,6 +1,6 @@
 //! Runs that end when their motion repeats, beside the same runs to the end.
 //!
-//! `just hunt-repeats` draws as many scenes as it is told to (`RETUNE_REPEATS`); the test suite draws few.
+//! `just lab hunt-repeats` draws as many scenes as it is told to (`RETUNE_REPEATS`); the test suite draws few.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a hunt says what it looked at")]
 
 use rayon::prelude::*;

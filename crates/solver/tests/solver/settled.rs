@@ -1,4 +1,4 @@
-//! Settled responses beside much longer runs: `just test-settled` looks at thousands of random scenes, the suite at some.
+//! Settled responses beside much longer runs: `just lab test-settled` looks at thousands of random scenes, the suite at some.
 
 use retune_model::Scene;
 use retune_solver::{Also, Ask, Extremes, Method, Settings, Settle, Window, extremes, settled};

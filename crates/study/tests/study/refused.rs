@@ -1,5 +1,6 @@
 //! Wrong studies: one clear message each, which names the field and what is allowed.
 
+use retune_model::{Absent, Parameter};
 use retune_study::read::from_text;
 use retune_study::{Rule, Setting, SettingError, StudyError};
 use retune_testkit::desk::{Desk, global, tiny};
@@ -379,14 +380,19 @@ fn contract_settings_are_checked_like_the_file() {
         ("k1", SettingError::Form { text: "k1".into() }),
         (
             "omega=1kHz",
-            SettingError::Frequency {
-                name: "omega",
-                problem:
-                    "\"1kHz\" is no frequency: give a number in rad/s, or one with its unit: 1.2Hz, 72rpm"
-                        .into(),
+            SettingError::Number {
+                name: Parameter::Omega.into(),
+                problem: "\"1kHz\" is not a number in rad/s, nor one with its unit: rad/s, Hz, rpm".into(),
             },
         ),
-        ("k1=soft", SettingError::Number { name: "k1", text: "soft".into() }),
+        (
+            "k1=soft",
+            SettingError::Number {
+                name: Parameter::K1.into(),
+                problem: "\"soft\" is not a number in N/m, nor one with its unit: N/m, kN/m, MN/m, N/mm"
+                    .into(),
+            },
+        ),
     ] {
         assert_eq!(text.parse::<Setting>(), Err(error));
     }
@@ -394,5 +400,8 @@ fn contract_settings_are_checked_like_the_file() {
     bare["scene"]["damper"] = Value::Null;
     bare["optimize"] = Value::Null;
     let bare = from_text(&bare.to_string(), "study.json").expect("a study");
-    assert_eq!(bare.with(&[Setting::new("k2", 1.0)]), Err(SettingError::NoDamper { name: "k2" }));
+    assert_eq!(
+        bare.with(&[Setting::new(Parameter::K2, 1.0)]),
+        Err(SettingError::Absent { name: Parameter::K2, source: Absent::NoDamper })
+    );
 }

@@ -1,7 +1,7 @@
 //! The jobs made of many searches, as another program calls them, on studies of a few runs.
 
-mod pareto;
-mod track;
+mod fronts;
+mod retention;
 mod verify;
 mod walk;
 

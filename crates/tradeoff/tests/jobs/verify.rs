@@ -1,24 +1,25 @@
 //! `verify` of the results of `track` and `fronts`.
 
 use crate::request;
+use retune_model::Parameter;
 use retune_study::Setting;
 use retune_testkit::observers::good;
 use retune_testkit::verified::{a_changed_digit_is_found, desk};
 use retune_tradeoff::OTHERS;
-use retune_tradeoff::pareto::pareto;
-use retune_tradeoff::track::track;
+use retune_tradeoff::fronts::fronts;
+use retune_tradeoff::retention::retention;
 use retune_workbench::Silent;
 
 #[test]
 fn contract_results_are_verified_and_a_changed_digit_is_found() {
     let desk = desk();
-    good(track(&request(&desk, "table2.json", "retune"), &[Setting::new("k1", 3e4)], &Silent));
+    good(retention(&request(&desk, "table2.json", "retune"), &[Setting::new(Parameter::K1, 3e4)], &Silent));
     a_changed_digit_is_found(
         &desk,
         "retune",
         OTHERS,
         &["retune.csv", "retention.csv", "range.csv", "force.csv"],
     );
-    good(pareto(&request(&desk, "fronts.json", "fronts"), &Silent));
+    good(fronts(&request(&desk, "fronts.json", "fronts"), &Silent));
     a_changed_digit_is_found(&desk, "fronts", OTHERS, &["k2.csv", "stroke.csv", "front.csv"]);
 }

@@ -2,9 +2,9 @@
 //! good on both.
 
 use rayon::prelude::*;
-use retune_model::Variable;
+use retune_model::{Parameter, PerVariable};
 use retune_optim::PeakEnergy;
-use retune_study::{PerVariable, Study, read};
+use retune_study::{Study, read};
 use retune_workbench::tune::objective::objective;
 use std::path::Path;
 
@@ -30,7 +30,7 @@ const FEW: usize = 41;
 /// where the descents of `retune fronts` end, on 601 frequencies; the frequencies between them then have more: it has fitted its design to
 /// the samples. From there a walk on 5000 finds designs that have less on both.
 #[test]
-#[ignore = "minutes: `just hunt-walk`"]
+#[ignore = "minutes: `just lab hunt-walk`"]
 fn invariant_a_walk_fits_its_design_to_its_samples_unless_they_are_fine() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/fronts-ssvi.json");
     let study = read(&path).expect("the study of fronts");
@@ -102,16 +102,10 @@ fn over(study: &Study, samples: usize) -> PeakEnergy {
     let optimize = study.optimize.as_mut().expect("a search");
     optimize.objective.omega.as_mut().expect("a band").samples = samples;
     optimize.global = None;
-    optimize.starts = vec![PerVariable {
-        k2: Some(300.0),
-        c2: Some(200.0),
-        d: Some(0.4),
-        c: Some(0.0),
-        ..PerVariable::default()
-    }];
+    optimize.starts = vec![PerVariable::of(&Parameter::PAPER, &[300.0, 200.0, 0.4, 0.0])];
     let mut search = study.search().expect("a search");
-    Variable::C.set(&mut search.damper, 0.0).expect("in range");
-    objective(&study, &search, &[Variable::K2, Variable::C2, Variable::D])
+    Parameter::C.set_damper(&mut search.damper, 0.0).expect("in range");
+    objective(&study, &search, &[Parameter::K2, Parameter::C2, Parameter::D])
 }
 
 /// A random step from a design within the bound.

@@ -137,7 +137,7 @@ impl Certificate {
         } = measured;
         Self {
             made_by: MadeBy::new(study),
-            design: TunedDamper::of(damper),
+            design: TunedDamper::of(damper, study.varied()),
             value,
             error_bar,
             predictable,
@@ -195,7 +195,7 @@ impl Certificate {
 
     /// What the samples of the study miss, in words, where it is more than 1 %.
     pub(crate) fn missed_peak(&self) -> Option<String> {
-        let finer = self.finer.filter(|finer| !(*finer <= (1.0 + MISSED_PEAK) * self.value.value))?;
+        let finer = self.finer.filter(|finer| *finer > (1.0 + MISSED_PEAK) * self.value.value)?;
         let quantity = self.value.quantity;
         let name = quantity.name();
         let finer = verdict::or_none(finer, quantity);

@@ -37,7 +37,8 @@ impl Place {
         margin: &mut Margin,
     ) -> Result<Vec<Seed>, Unusable> {
         let of = quantity(measure);
-        let own = Parameter::P.of(&self.scene).unwrap_or_default();
+        let Some((amplitude, own)) = self.scene.forcing.amplitude() else { return Ok(Vec::new()) };
+        let own = own.get();
         let errors = 0.01 * margin.needed_percent;
         // As a power of the force between the two that are known.
         let power = (found.from_rest / self.from_rest).ln() / found.times.ln();
@@ -65,14 +66,14 @@ impl Place {
             periods: Some(onset.orbit.periods),
             impacts: onset.orbit.seen.impacts.clone(),
         };
-        let begins = |seeds: &[Seed]| onset(seeds, Parameter::P, DOWN * own, &counts);
+        let begins = |seeds: &[Seed]| onset(seeds, amplitude, DOWN * own, &counts);
         let onsets: Vec<Option<Onset>> = seeds.par_iter().map(|seeds| begins(seeds)).collect();
         let mut there = Vec::new();
         for (seeds, onset) in seeds.iter().zip(onsets) {
             let Some(onset) = onset else { continue };
             margin.lower_to(onset.value / own, other(&onset));
             if onset.value <= own {
-                there.extend(seeds.iter().filter_map(|seed| seed.moved(Parameter::P, own)));
+                there.extend(seeds.iter().filter_map(|seed| seed.moved(amplitude, own)));
                 continue;
             }
             for parameter in PARAMETERS {

@@ -8,12 +8,12 @@ use crate::Error;
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
-use retune_model::{Damper, Scene, Source};
+use retune_model::{Damper, Parameter, Scene, Source};
 use retune_optim::{
     Ensemble, Evaluation, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Unusable,
 };
 use retune_solver::{Ask, Method, Settings, Settle, Window, extremes, settled};
-use retune_study::{Setting, Study};
+use retune_study::Study;
 
 /// Relative errors of a parameter that its sensitivity is read from.
 const ERRORS: [f64; 6] = [-0.01, -0.005, -0.0025, 0.0025, 0.005, 0.01];
@@ -40,6 +40,23 @@ pub(super) enum OtherStarts {
     /// Those whose verdict may depend on it.
     WhereTheyDecide,
 }
+
+/// The parameters that a built scene has with an error.
+const INEXACT: [Parameter; 13] = [
+    Parameter::M1,
+    Parameter::C1,
+    Parameter::K1,
+    Parameter::M2,
+    Parameter::K2,
+    Parameter::C2,
+    Parameter::D,
+    Parameter::C,
+    Parameter::R,
+    Parameter::P,
+    Parameter::Imbalance,
+    Parameter::Base,
+    Parameter::Omega,
+];
 
 /// Makes all measurements and the certificate.
 ///
@@ -151,19 +168,18 @@ fn sensitivities(
     look: impl Fn(&Scene) -> Look + Sync,
     near: &mut Vec<Near>,
 ) -> Vec<Sensitivity> {
-    let omega = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none()).then_some("omega");
-    let force = ["P", "imbalance", "base"];
-    let names = ["m1", "c1", "k1", "m2", "k2", "c2", "D", "C", "R"].into_iter().chain(force).chain(omega);
-    let known =
-        names.filter_map(|name| Some((name, study.value_of(name)?))).filter(|(_, value)| *value != 0.0);
-    let known: Vec<(&'static str, f64)> = known.collect();
-    let off: Vec<(&'static str, f64, f64)> = known
-        .iter()
-        .flat_map(|&(name, value)| ERRORS.map(|error| (name, error, value * (1.0 + error))))
+    let single = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none());
+    let tried = INEXACT.into_iter().filter(|parameter| single || *parameter != Parameter::Omega);
+    let known: Vec<(Parameter, f64)> = tried
+        .filter_map(|parameter| Some((parameter, parameter.of(&study.scene)?)))
+        .filter(|(_, value)| *value != 0.0)
         .collect();
-    let at = |&(name, _, value): &(&'static str, f64, f64)| {
-        let scene = study.scene_with(&[Setting::new(name, value)]);
-        scene.map_or(Look::NOTHING, |scene| look(&scene))
+    let off: Vec<(Parameter, f64, f64)> = known
+        .iter()
+        .flat_map(|&(parameter, value)| ERRORS.map(|error| (parameter, error, value * (1.0 + error))))
+        .collect();
+    let at = |&(parameter, _, value): &(Parameter, f64, f64)| {
+        parameter.at(study.scene, value).map_or(Look::NOTHING, |scene| look(&scene))
     };
     let found: Vec<Look> = off.par_iter().map(at).collect();
     near.extend(off.iter().zip(&found).map(|((name, error, _), found)| Near {
@@ -172,8 +188,8 @@ fn sensitivities(
         reached: found.reached,
     }));
     let energies: Vec<f64> = found.iter().map(|found| found.energy).collect();
-    let read = |(&(name, value), energies): (&(&'static str, f64), &[f64])| {
-        Sensitivity::new(name, value, &ERRORS, energies)
+    let read = |(&(parameter, value), energies): (&(Parameter, f64), &[f64])| {
+        Sensitivity::new(parameter.symbol(), value, &ERRORS, energies)
     };
     known.iter().zip(energies.chunks(ERRORS.len())).map(read).collect()
 }

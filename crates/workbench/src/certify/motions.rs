@@ -68,7 +68,7 @@ pub(super) fn coexisting(
         return Ok(None);
     }
     let measure = goal.objective.quantity();
-    let force = Parameter::P.of(scene).filter(|force| *force > 0.0);
+    let force = scene.forcing.amplitude().filter(|(_, force)| force.get() > 0.0);
     let look = |times: f64| {
         let all: Result<Vec<_>, Unusable> =
             places.par_iter().map(|place| place.at(times, settings)).collect();
@@ -209,6 +209,10 @@ impl Place {
 }
 
 pub(super) fn with_force(scene: &Scene, times: f64) -> Result<Scene, Unusable> {
-    let force = Parameter::P.of(scene).unwrap_or_default();
-    if times == 1.0 { Ok(*scene) } else { Ok(Parameter::P.at(*scene, times * force).map_err(Error::from)?) }
+    match scene.forcing.amplitude() {
+        Some((parameter, own)) if times != 1.0 => {
+            Ok(parameter.at(*scene, times * own.get()).map_err(Error::from)?)
+        }
+        _ => Ok(*scene),
+    }
 }

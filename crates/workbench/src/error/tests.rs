@@ -3,8 +3,8 @@
 
 use super::*;
 use crate::evaluate::LineError;
-use retune_model::{OutOfRange, Positive};
-use retune_optim::{AxisError, Bounds, GridError, Variable};
+use retune_model::{Absent, OutOfRange, Positive};
+use retune_optim::{AxisError, Bounds, GridError, Parameter};
 use retune_solver::Remedy;
 use retune_store::Error as StoreError;
 use retune_study::{Kind, StudyError};
@@ -29,7 +29,7 @@ fn out_of_range() -> OutOfRange {
 
 fn rules() -> Vec<Rule> {
     let bounds = Bounds { lower: Some(10.0), upper: None };
-    let (variable, value) = (Variable::K2, -1.0);
+    let (variable, value) = (Parameter::K2, -1.0);
     let name = "a/b".to_owned();
     vec![
         Rule::Name { name: name.clone() },
@@ -87,17 +87,16 @@ fn studies() -> Vec<StudyError> {
 }
 
 fn settings() -> Vec<SettingError> {
-    let name = "k2";
+    let name = Parameter::K2;
     vec![
         SettingError::Form { text: "k1".into() },
         SettingError::Name { name: "k3".into() },
-        SettingError::Number { name, text: "soft".into() },
-        SettingError::Frequency { name: "omega", problem: "\"1kHz\" is no frequency".into() },
-        SettingError::OutOfRange { name, source: out_of_range() },
-        SettingError::Forcing { name: "P", has: "base" },
+        SettingError::Number { name: name.into(), problem: "\"soft\" is not a number in N/m".into() },
+        SettingError::OutOfRange { name: name.into(), source: out_of_range() },
+        SettingError::Absent { name: Parameter::P, source: Absent::Forcing("base") },
         SettingError::Start { text: "1,2,3".into() },
-        SettingError::NoDamper { name },
-        SettingError::NoWalls { name: "D" },
+        SettingError::Absent { name, source: Absent::NoDamper },
+        SettingError::Absent { name: Parameter::D, source: Absent::NoWalls },
         SettingError::Rule(Rule::EmptyWindow { t0: 9.0, end: 4.0 }),
     ]
 }
@@ -126,16 +125,16 @@ fn solvers() -> Vec<SolverError> {
 }
 
 fn failures() -> Failures {
-    let source = out_of_range();
+    let source = out_of_range().into();
     Failures {
         count: 24,
-        example: Some(Box::new((vec![100.0], Unusable::OutOfRange { variable: Variable::K2, source }))),
+        example: Some(Box::new((vec![100.0], Unusable::Value { parameter: Parameter::K2, source }))),
     }
 }
 
 fn unusable() -> Vec<Unusable> {
     vec![
-        Unusable::OutOfRange { variable: Variable::K2, source: out_of_range() },
+        Unusable::Value { parameter: Parameter::K2, source: out_of_range().into() },
         Unusable::Frequency(out_of_range()),
         Unusable::Stiffness(out_of_range()),
         Unusable::Member(out_of_range()),
@@ -149,8 +148,8 @@ fn unusable() -> Vec<Unusable> {
 
 fn lines() -> Vec<LineError> {
     vec![
-        LineError::Count { found: 1, wanted: vec![Variable::K2, Variable::C2] },
-        LineError::Number { variable: Variable::K2, text: "soft".into() },
+        LineError::Count { found: 1, wanted: vec![Parameter::K2, Parameter::C2] },
+        LineError::Number { variable: Parameter::K2, text: "soft".into() },
         LineError::Long,
         LineError::Unusable(Unusable::Run(SolverError::NonFinite { t: 1.5 })),
     ]
@@ -191,7 +190,7 @@ fn errors() -> Vec<Error> {
     vec![
         Error::Store(StoreError::Input { path: path.clone(), source: ErrorKind::NotFound.into() }),
         Error::Study(StudyError::List { file: "study.json".into(), field: "window".into() }),
-        Error::Setting(SettingError::NoDamper { name: "k2" }),
+        Error::Setting(SettingError::Absent { name: Parameter::K2, source: Absent::NoDamper }),
         Error::Rule { name: "ssvi".into(), rule: Rule::NoOptimize },
         Error::Sweep(retune_sweep::Error::OwnValues { parameter: "omega" }),
         Error::Asked { option: "--to", problem: "5 is not above --from 8".into() },
@@ -233,11 +232,11 @@ fn regress_the_words_of_every_error() {
         each!(errors(), Error: Store Study Setting Rule Sweep Asked Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
-        each!(settings(), SettingError: Form Name Number Frequency OutOfRange Forcing Start NoDamper NoWalls Rule),
+        each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),
-        each!(unusable(), Unusable: OutOfRange Frequency Stiffness Member Run Stopped Motions NoDerivatives Touches),
+        each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
             NonFinite),
         each!(lines(), LineError: Count Number Long Unusable),

@@ -1,6 +1,6 @@
 //! A damper as in the paper's Table 2.
 
-use retune_model::{Damper, Design, Positive, Variable};
+use retune_model::{Damper, Design, Parameter, Positive};
 use retune_study::rounded;
 use serde::Serialize;
 
@@ -10,29 +10,30 @@ pub struct TunedDamper {
     /// m2, mass, kg.
     #[serde(rename = "m2")]
     pub mass: Positive,
-    /// k2, c2, D, C.
+    /// k2, c2, D, C, and what else is varied of it.
     #[serde(flatten)]
     pub design: Design,
 }
 
 impl TunedDamper {
-    /// From a damper of a scene.
-    pub const fn of(damper: &Damper) -> Self {
-        Self { mass: damper.mass, design: Design::of(damper) }
+    /// From a damper of a scene, with what is varied of it.
+    pub fn of(damper: &Damper, varied: &[Parameter]) -> Self {
+        let others: Vec<Parameter> =
+            varied.iter().copied().filter(|parameter| *parameter != Parameter::M2).collect();
+        Self { mass: damper.mass, design: Design::of_varied(damper, &others) }
     }
 
     /// The numbers in words, each to its digits: `m2 = 60 kg, k2 = 215 N/m, …`.
-    pub fn words(&self, digits: impl Fn(Variable) -> usize) -> String {
-        let [m2, k2, c2, d, c] = self.values();
-        let values =
-            [(Variable::M2, m2), (Variable::K2, k2), (Variable::C2, c2), (Variable::D, d), (Variable::C, c)];
-        let known = values.into_iter().filter(|(_, value)| !value.is_nan());
+    pub fn words(&self, digits: impl Fn(Parameter) -> usize) -> String {
+        let mass = [(Parameter::M2, self.mass.get())];
+        let design = Parameter::VARIED.map(|parameter| (parameter, self.design.get(parameter)));
+        let known = mass.into_iter().chain(design).filter(|(_, value)| !value.is_nan());
         let said: Vec<String> = known
-            .map(|(variable, value)| {
-                format!("{variable} = {} {}", rounded(value, digits(variable)), variable.unit())
+            .map(|(parameter, value)| {
+                format!("{parameter} = {} {}", rounded(value, digits(parameter)), parameter.unit())
             })
             .collect();
-        said.join(", ") + if d.is_nan() { ", no walls" } else { "" }
+        said.join(", ") + if self.design.get(Parameter::D).is_nan() { ", no walls" } else { "" }
     }
 
     /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.

@@ -6,9 +6,9 @@ use crate::Error;
 use crate::amount::Amount;
 use crate::certify::{Certificate, Verdict, certify, judge};
 use crate::look::look;
-use retune_model::Measure;
+use retune_model::{Measure, PerVariable};
 use retune_optim::Limit;
-use retune_study::{PerVariable, Study};
+use retune_study::Study;
 use serde::Serialize;
 
 /// Designs whose values differ by less than this share are as good.

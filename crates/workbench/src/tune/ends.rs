@@ -4,10 +4,10 @@ use super::descent::finish;
 use super::global::{Basins, Explored, global};
 use super::refine::each;
 use crate::{Error, Observer};
-use retune_model::Design;
+use retune_model::{Design, PerVariable};
 use retune_optim::energy;
 use retune_store::Journal;
-use retune_study::{PerVariable, Search, Study};
+use retune_study::{Search, Study};
 
 /// What a search comes to.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer)
     let whole = |tuned: &PerVariable<f64>, of: &Design| {
         Design::new(|variable| tuned.get(variable).unwrap_or_else(|| of.get(variable))).ok()
     };
-    let best = Design::of(&refined.objective.damper(&refined.best().minimum.x)?);
+    let best = Design::of_varied(&refined.objective.damper(&refined.best().minimum.x)?, &search.variables);
     let places: Vec<PerVariable<f64>> = match &explored {
         Some(explored) => {
             let basins = Basins::new(explored, study.quantity(), &search, &refined, (journal, place), 0);

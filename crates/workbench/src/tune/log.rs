@@ -1,25 +1,25 @@
 //! The formats of a refinement's log.
 
 use crate::amount::measured;
-use retune_model::{Measure, Variable};
+use retune_model::{Measure, Parameter};
 use retune_optim::{Row, energy};
 use retune_study::{fields, joined};
 
 /// Columns of `fminsearch.csv`.
-pub fn csv_header(varied: &[Variable], quantity: Measure) -> String {
-    format!("iteration,func_count,procedure,{},{}", joined(&Variable::columns(varied), ","), quantity.name())
+pub fn csv_header(varied: &[Parameter], quantity: Measure) -> String {
+    format!("iteration,func_count,procedure,{},{}", joined(&Parameter::columns(varied), ","), quantity.name())
 }
 
 /// Columns of `fminsearch.txt`: those of the paper's Table 1.
-pub fn table1_header(varied: &[Variable], quantity: Measure) -> String {
-    let columns = Variable::columns(varied);
+pub fn table1_header(varied: &[Parameter], quantity: Measure) -> String {
+    let columns = Parameter::columns(varied);
     let columns = columns.iter().map(|column| format!("{:<16}", format!("{column} opt {}", column.unit())));
     format!("{}{} {}", columns.collect::<String>(), quantity.name(), quantity.unit())
 }
 
 /// Columns of the log on screen.
-pub fn screen_header(varied: &[Variable], quantity: Measure) -> String {
-    let width = 16 * Variable::columns(varied).len() + 15;
+pub fn screen_header(varied: &[Parameter], quantity: Measure) -> String {
+    let width = 16 * Parameter::columns(varied).len() + 15;
     format!(" iter evals  {:<width$} procedure", table1_header(varied, quantity))
 }
 

@@ -15,9 +15,9 @@ use crate::certify::Short;
 use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
-use retune_model::{Scene, Variable};
+use retune_model::{Parameter, PerVariable, Scene};
 use retune_optim::{Evaluation, Failures, Scaling, Stop, energy};
-use retune_study::{PerVariable, Search, Study, design_cells, short};
+use retune_study::{Search, Study, design_cells, short};
 use run::RunNote;
 use serde::Serialize;
 
@@ -43,7 +43,7 @@ pub struct Optimum {
     study: Amount,
     pub(crate) on_bound: Vec<Met>,
     /// The parameters in which the best point of the grid lies at its edge, where the grid could be wider.
-    pub(crate) on_edge: Vec<Variable>,
+    pub(crate) on_edge: Vec<Parameter>,
     /// The state of the study's limits, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limits: Option<LimitNote>,
@@ -147,7 +147,7 @@ impl Optimum {
         let refine = study.optimize.as_ref().map(|optimize| optimize.refine).unwrap_or_default();
         Ok(Self {
             damper_type: summary.damper_type(),
-            damper: TunedDamper::of(&damper),
+            damper: TunedDamper::of(&damper, &search.variables),
             value: Amount::new(quantity, evaluation.energy),
             none: Amount::of(quantity, "_none", study.energy_without_damper()),
             whose: whose(&study.scene),

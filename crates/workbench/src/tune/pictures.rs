@@ -8,7 +8,7 @@ use crate::amount;
 use crate::summary::MadeBy;
 use retune_figures::colour::BLUE;
 use retune_figures::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, Width, scale_for, svg};
-use retune_optim::{Variable, energy};
+use retune_optim::{Parameter, energy};
 use retune_store::Directory;
 use retune_study::{Search, Study};
 
@@ -143,6 +143,6 @@ fn convergence(search: &Search, refined: &Refined, study: &Study) -> String {
 }
 
 /// A parameter's symbol and unit, for an axis.
-pub fn label(variable: Variable) -> String {
+pub fn label(variable: Parameter) -> String {
     format!("{variable}, {}", variable.unit())
 }

@@ -5,7 +5,7 @@ use super::objective::{kept, searched};
 use crate::Error;
 use crate::Observer;
 use crate::summary::MadeBy;
-use retune_model::Variable;
+use retune_model::Parameter;
 use retune_optim::{Minimum, PeakEnergy, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
 use retune_study::{Search, Study};
@@ -117,7 +117,7 @@ pub(super) fn each(
 /// A whole design, in the order of the columns of its tables.
 pub(super) fn columns(objective: &PeakEnergy, design: &[f64]) -> Result<Vec<f64>, Error> {
     let damper = objective.damper(design)?;
-    Ok(Variable::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
+    Ok(Parameter::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
 }
 
 /// One run. `tell` receives each row with its whole design; its error ends the run. Where the objective looks at all motions, those at the start are

@@ -6,7 +6,7 @@ use super::refine::columns;
 use crate::Error;
 use crate::Observer;
 use retune_model::Measure;
-use retune_optim::{Counts, Failures, Grid, PeakEnergy, Variable, best_separated_above};
+use retune_optim::{Counts, Failures, Grid, Parameter, PeakEnergy, best_separated_above};
 use retune_store::Directory;
 use retune_study::{Coarse, Search, Study};
 use retune_study::{counted, fields, joined, short};
@@ -18,7 +18,7 @@ const _: () = assert!(retune_study::MOST_GRID_POINTS <= retune_store::MOST_POINT
 /// The objective at every point of the grid.
 pub struct Surf {
     /// The grid's parameters, in the order of its axes.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<Parameter>,
     /// The grid.
     pub grid: Grid,
     /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; [`Coarse::up_to`] where it is above that,
@@ -109,7 +109,7 @@ fn write(
     results: &Directory,
 ) -> Result<(), Error> {
     let mut file = results.file("surf.csv")?;
-    file.push(&format!("{},{}\n", joined(&Variable::columns(objective.variables()), ","), quantity.name()))?;
+    file.push(&format!("{},{}\n", joined(&Parameter::columns(objective.variables()), ","), quantity.name()))?;
     let mut point = vec![0.0; grid.dim()];
     for (i, value) in values.iter().enumerate() {
         grid.point(i, &mut point);
@@ -130,7 +130,7 @@ impl Surf {
         let start = |&i: &usize| {
             let point = self.point(i);
             let on_grid = |variable| self.variables.iter().position(|other| *other == variable);
-            let value = |&variable: &Variable| match on_grid(variable) {
+            let value = |&variable: &Parameter| match on_grid(variable) {
                 Some(axis) => point[axis],
                 None => variable.get(&search.damper),
             };

@@ -1,6 +1,6 @@
 //! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
 
-use retune_model::{Damper, Measure, NonNegative, Positive, Variable, den_hartog};
+use retune_model::{Damper, Measure, NonNegative, Parameter, Positive, den_hartog};
 use retune_optim::{Goal, Limit, PeakEnergy, Response};
 use retune_study::{Search, Study};
 
@@ -21,14 +21,14 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     let gaps = gaps(search, goal.limits.get(Limit::Cavity));
     let room = FREE * gaps[0].min(gaps[1]);
     let springs: Vec<usize> = (0..search.variables.len())
-        .filter(|&i| matches!(search.variables[i], Variable::K2 | Variable::C2))
+        .filter(|&i| matches!(search.variables[i], Parameter::K2 | Parameter::C2))
         .collect();
     let of = steady(study, search, &springs, room)?;
     let bounds: Vec<_> = springs.iter().map(|&i| search.options.bounds[i]).collect();
     let scales = den_hartog(&study.scene.primary, search.damper.mass.get());
     let at = |number: usize| -> Vec<f64> {
         let value = |axis: usize| {
-            let which = usize::from(of.variables()[axis] == Variable::C2);
+            let which = usize::from(of.variables()[axis] == Parameter::C2);
             let [from, to] = RANGE[which];
             let step = number / POINTS.pow(axis as u32) % POINTS;
             let share = step as f64 / (POINTS - 1) as f64;
@@ -46,7 +46,7 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     for (&i, &value) in springs.iter().zip(&best) {
         tmd[i] = value;
     }
-    for (variable, gap) in [Variable::D, Variable::C].into_iter().zip(gaps) {
+    for (variable, gap) in [Parameter::D, Parameter::C].into_iter().zip(gaps) {
         if let Some(i) = search.variables.iter().position(|other| *other == variable) {
             tmd[i] = if gap.is_finite() { gap } else { tmd[i].max(OPEN * stroke) };
         }
@@ -74,7 +74,7 @@ fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Optio
 /// D and C of the cavity in which the smaller is largest: at their bounds, or as near to half of the cavity's limit as these allow. Infinite
 /// where there is no bound.
 fn gaps(search: &Search, cavity: Option<f64>) -> [f64; 2] {
-    let range = |variable: Variable| {
+    let range = |variable: Parameter| {
         let own = variable.get(&search.damper);
         let bounds = search.variables.iter().position(|other| *other == variable);
         bounds.map_or([own, own], |i| {
@@ -82,7 +82,7 @@ fn gaps(search: &Search, cavity: Option<f64>) -> [f64; 2] {
             [bounds.lower.unwrap_or(0.0), bounds.upper.unwrap_or(f64::INFINITY)]
         })
     };
-    let ([d_low, d], [c_low, c]) = (range(Variable::D), range(Variable::C));
+    let ([d_low, d], [c_low, c]) = (range(Parameter::D), range(Parameter::C));
     let Some(cavity) = cavity.filter(|cavity| d + c > *cavity) else { return [d, c] };
     let d = d.min((cavity / 2.0).max(cavity - c)).max(d_low);
     [d, c.min(cavity - d).max(c_low)]

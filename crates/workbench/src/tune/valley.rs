@@ -2,7 +2,7 @@
 
 use super::objective::{kept, searched};
 use rayon::prelude::*;
-use retune_model::Variable;
+use retune_model::Parameter;
 use retune_optim::Bounds;
 use retune_store::Journal;
 use retune_study::{Search, Study, rounded};
@@ -20,7 +20,7 @@ const FLAT: f64 = 0.1;
 /// The range of a parameter in which the value of a design is at most 0.1 % larger, as far as was looked; at each step outwards it was.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Valley {
-    pub variable: Variable,
+    pub variable: Parameter,
     /// Smallest and largest value that was found to do.
     pub from: f64,
     pub to: f64,
@@ -72,7 +72,7 @@ pub(super) fn measure(study: &Study, search: &Search, design: &[f64], journal: &
     };
     let sides: Vec<(usize, f64)> = (0..design.len()).flat_map(|i| [(i, -1.0), (i, 1.0)]).collect();
     let found: Vec<(f64, bool)> = sides.into_par_iter().map(reach).collect();
-    let valley = |(i, variable): (usize, &Variable)| {
+    let valley = |(i, variable): (usize, &Parameter)| {
         let [(from, _), (to, open)] = [found[2 * i], found[2 * i + 1]];
         Valley { variable: *variable, from, to, open, own: design[i] }
     };

@@ -12,7 +12,7 @@ use crate::summary::Summary;
 use crate::tune::objective::{coarse, objective, searched};
 use crate::tune::{self, OPTIMUM, band};
 use retune_model::{Design, NonNegative, Scene};
-use retune_optim::{Evaluation, PeakEnergy, Variable};
+use retune_optim::{Evaluation, Parameter, PeakEnergy};
 use retune_study::{self as study, Search, Study};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -128,9 +128,9 @@ impl One {
         files.any(|file| self.place.join(file.name).exists())
     }
 
-    fn objective(&self, of: fn(&Study, &Search, &[Variable]) -> PeakEnergy) -> Result<PeakEnergy, Error> {
+    fn objective(&self, of: fn(&Study, &Search, &[Parameter]) -> PeakEnergy) -> Result<PeakEnergy, Error> {
         let refuse = |rule| Error::Rule { name: self.study.name().to_owned(), rule };
-        Ok(of(&self.study, &self.study.search().map_err(refuse)?, &Variable::ALL))
+        Ok(of(&self.study, &self.study.search().map_err(refuse)?, &Parameter::VARIED))
     }
 }
 

@@ -6,6 +6,7 @@ use super::table::{Row, Sample};
 use crate::Error;
 use crate::look;
 use crate::resolved::Resolved;
+use retune_model::Parameter;
 use retune_study::{Setting, Study};
 use std::path::{Path, PathBuf};
 
@@ -51,7 +52,8 @@ fn design<'a>(studies: &[(String, Study)], samples: Option<usize>, row: Row) -> 
     }
     let Some(at) = at.filter(|_| !said.is_nan()) else { return Some(Check::never()) };
     let k1 = row.number("k1");
-    let study = if k1.is_nan() { study.clone() } else { study.with(&[Setting::new("k1", k1)]).ok()? };
+    let study =
+        if k1.is_nan() { study.clone() } else { study.with(&[Setting::new(Parameter::K1, k1)]).ok()? };
     let again = move || match samples {
         Some(samples) => look::energy(&study, samples, &at).unwrap_or(f64::INFINITY),
         None => energy(&study, &at),

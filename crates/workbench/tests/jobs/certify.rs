@@ -1,7 +1,7 @@
 //! Limits and certificates: whether a design keeps its limits, and whether its E1max can be relied on.
 
 use crate::{found, request, resume, search};
-use retune_model::{Coupled, Scene};
+use retune_model::{Coupled, Parameter, Scene};
 use retune_store::Error as StoreError;
 use retune_study::{Rule, Setting, StudyError};
 use retune_testkit::desk::{Desk, committed, flat, global, number, studies, tiny};
@@ -110,7 +110,7 @@ fn paper_table_2_is_certified() {
     };
     assert_eq!(slope("C"), 0.0);
     let at = |k2: f64| {
-        let study = study.with(&[Setting::new("k2", k2)]).expect("a study");
+        let study = study.with(&[Setting::new(Parameter::K2, k2)]).expect("a study");
         number(&json!(good(simulate(&study, None))), "/E1max")
     };
     let expected = (at(600.0 * 1.0025) - at(600.0 * 0.9975)) / 0.5;

@@ -1,6 +1,6 @@
 //! `design`: from a structure to two dampers, on structures of very different size.
 
-use retune_model::Coupled;
+use retune_model::{Coupled, Design, Parameter};
 use retune_optim::{Options, Scaling, minimize};
 use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
@@ -96,11 +96,9 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         let number = |name: &str| found[name].as_f64().expect("a number");
         assert!(number("E1max") < number("E1max_none"), "{found}");
         // Twenty periods, so that not even a chaotic motion makes more of a rounding error than the tolerance below.
-        let [k2, c2, d, c] = ["k2", "c2", "D", "C"]
-            .map(|name| retune_model::NonNegative::new(number(name)).expect("a number"));
-        let found_scene = study
-            .scene_at(&retune_model::Design { k2, c2, d: Some(d), c: Some(c), m2: None })
-            .expect("a damper");
+        let value = |parameter: Parameter| found[parameter.symbol()].as_f64().unwrap_or(f64::NAN);
+        let design = Design::new(value).expect("a design");
+        let found_scene = study.scene_at(&design).expect("a damper");
         // The damper that was found, and the one where the search starts, which strikes its walls.
         let worst = found["objective"]["worst_omega"].as_f64().expect("a number");
         let omegas = [wishes.band[0], worst, wishes.natural_frequency()];

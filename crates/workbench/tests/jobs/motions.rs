@@ -1,7 +1,8 @@
 //! Motions beside those from rest: what certificates and searches make of them.
 
 use crate::{found, request};
-use retune_study::{Margins, Setting, Study};
+use retune_model::Parameter;
+use retune_study::{Margins, Settable, Setting, Study};
 use retune_testkit::desk::{Desk, committed, number, studies, tiny};
 use retune_testkit::observers::good;
 use retune_workbench::Silent;
@@ -11,7 +12,7 @@ use retune_workbench::tune::tune;
 use serde_json::{Value, json};
 
 /// The best damper by runs from rest that `fronts` once found: an isola from 5.8155 to 6.0684 rad/s reaches 735.639 J
-/// (`just branches-all`, results/branches/isola).
+/// (`just lab branches-all`, results/branches/isola).
 fn isola() -> Study {
     retune_study::read(&studies().join("ssvi-isola.json")).expect("a study")
 }
@@ -33,8 +34,8 @@ fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
 
     // Its state is where it can be run again from.
     let state: Vec<String> = (0..4).map(|i| largest["state"][i].to_string()).collect();
-    let omega = Setting::new("omega", number(largest, "/omega"));
-    let mut again = isola().with(&[omega, Setting::new("t0", 0.0)]).expect("a study");
+    let omega = Setting::new(Parameter::Omega, number(largest, "/omega"));
+    let mut again = isola().with(&[omega, Setting::new(Settable::From, 0.0)]).expect("a study");
     assert!(said.contains(" --from "), "{said}");
     again.scene.forcing.begin(retune_study::start(&state.join(",")).expect("a state"));
     let run = json!(good(retune_workbench::simulate::simulate(&again, None)));
@@ -46,10 +47,10 @@ fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
 #[test]
 fn regress_a_design_beside_the_birth_of_an_isola_is_on_an_edge() {
     let at = [
-        ("k2", 584.6096238462073),
-        ("c2", 95.01688820226694),
-        ("D", 0.6511167192459107),
-        ("C", 0.029018702541945184),
+        (Parameter::K2, 584.6096238462073),
+        (Parameter::C2, 95.01688820226694),
+        (Parameter::D, 0.6511167192459107),
+        (Parameter::C, 0.029018702541945184),
     ];
     let design = isola().with(&at.map(|(name, value)| Setting::new(name, value))).expect("a study");
     let seen = json!(good(certify(&design)));

@@ -1,10 +1,10 @@
 //! Verdicts "robust" beside a look from many more starts: perturbed designs of `results`, gaps drawn anew, other structures with scaled designs.
-//! `just hunt-robust` runs it.
+//! `just lab hunt-robust` runs it.
 
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::motions;
-use retune_model::Parameter;
-use retune_study::{PerVariable, Setting, Study};
+use retune_model::{Parameter, PerVariable};
+use retune_study::{Setting, Study};
 use retune_workbench::certify::judge;
 use std::path::Path;
 use std::time::Instant;
@@ -18,50 +18,56 @@ const DESIGNS: [[f64; 4]; 6] = [
     [450.0, 127.16801305531861, 1.0403638044998134, 0.0],
     [597.2737982898645, 95.72415913882642, 0.647212882590036, 0.03740508433492577],
 ];
-const NAMES: [&str; 4] = ["k2", "c2", "D", "C"];
 /// Frequencies from rest and other starts for each, of the harder look: it has all starts of the certificate's, and eight times as many.
 const HARD: [usize; 2] = [61, 66];
 
 /// A design of a family, by a draw.
-type Draw = fn(&mut dyn FnMut() -> f64) -> Vec<(&'static str, f64)>;
+type Draw = fn(&mut dyn FnMut() -> f64) -> Vec<Setting>;
 
 fn pick(u: &mut dyn FnMut() -> f64) -> [f64; 4] {
     DESIGNS[(u() * DESIGNS.len() as f64) as usize % DESIGNS.len()]
 }
 
 /// Within a tenth.
-fn perturbed(u: &mut dyn FnMut() -> f64) -> Vec<(&'static str, f64)> {
+fn perturbed(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     let design = pick(u);
-    NAMES.into_iter().zip(design).map(|(name, value)| (name, value * (0.9 + 0.2 * u()))).collect()
+    Parameter::PAPER
+        .into_iter()
+        .zip(design)
+        .map(|(name, value)| Setting::new(name, value * (0.9 + 0.2 * u())))
+        .collect()
 }
 
 /// The wider gap anywhere from 0.4 to 1.2 m.
-fn far_gap(u: &mut dyn FnMut() -> f64) -> Vec<(&'static str, f64)> {
+fn far_gap(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     let mut design = pick(u);
     design[if design[2] > design[3] { 2 } else { 3 }] = 0.4 + 0.8 * u();
-    NAMES.into_iter().zip(design).collect()
+    Parameter::PAPER.into_iter().zip(design).map(|(name, value)| Setting::new(name, value)).collect()
 }
 
 /// A structure of other damping and a damper of other mass, lengths and forces scaled alike.
-fn structure(u: &mut dyn FnMut() -> f64) -> Vec<(&'static str, f64)> {
+fn structure(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     let [k2, c2, d, c] = pick(u);
     let (mass, size) = (0.7 + 0.6 * u(), 0.5 + u());
     let c1 = 452.0 * (0.7 + 0.6 * u());
     vec![
-        ("c1", c1),
-        ("P", 800.0 * size),
-        ("m2", 60.0 * mass),
-        ("k2", k2 * mass),
-        ("c2", c2 * mass),
-        ("D", d * size),
-        ("C", c * size),
+        Setting::new(Parameter::C1, c1),
+        Setting::new(Parameter::P, 800.0 * size),
+        Setting::new(Parameter::M2, 60.0 * mass),
+        Setting::new(Parameter::K2, k2 * mass),
+        Setting::new(Parameter::C2, c2 * mass),
+        Setting::new(Parameter::D, d * size),
+        Setting::new(Parameter::C, c * size),
     ]
 }
 
 #[test]
-#[ignore = "minutes: `just hunt-robust`"]
+#[ignore = "minutes: `just lab hunt-robust`"]
 fn reference_robust_beside_a_harder_look() {
-    let draws: u32 = std::env::var("RETUNE_ROBUST").map_or(2, |count| count.parse().expect("a number"));
+    // So many draws, or those from a first to before a last one: "100..200".
+    let draws = std::env::var("RETUNE_ROBUST").unwrap_or("2".to_owned());
+    let (first, last) = draws.split_once("..").unwrap_or(("0", &draws));
+    let [first, last]: [u32; 2] = [first, last].map(|number| number.parse().expect("a number"));
     let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/ssvi-isola.json");
     let mut study = retune_study::read(&studies).expect("a study");
     // Draws lie beyond the bounds of the search.
@@ -76,15 +82,13 @@ fn reference_robust_beside_a_harder_look() {
     for (family, (name, draw)) in families.into_iter().enumerate() {
         let mut times = Vec::new();
         let mut counts = [0; 5];
-        for number in 0..draws {
+        for number in first..last {
             let mut dimension = 0;
             let mut u = || {
                 dimension += 1;
                 f64::from(sobol_burley::sample(number, dimension, 100 + family as u32))
             };
-            let settings: Vec<Setting> =
-                draw(&mut u).into_iter().map(|(name, value)| Setting::new(name, value)).collect();
-            let Ok(study) = study.with(&settings) else { continue };
+            let Ok(study) = study.with(&draw(&mut u)) else { continue };
             let begun = Instant::now();
             let Ok(certificate) = judge(&study) else { continue };
             times.push(begun.elapsed().as_secs_f64());

@@ -1,6 +1,7 @@
 //! `simulate`: one run, its summary and its motion.
 
 use crate::{read, request, search};
+use retune_model::Parameter;
 use retune_solver::{Remedy, SolverError};
 use retune_store::Error as StoreError;
 use retune_study::{Setting, Study};
@@ -124,7 +125,10 @@ fn contract_values_that_nobody_means_are_told_with_what_helps() {
     ];
     for (name, value, expected, cause, remedy) in cases {
         let begin = std::time::Instant::now();
-        let error = refused(simulate(&study.with(&[Setting::new(name, value)]).expect("a study"), None));
+        let error = refused(simulate(
+            &study.with(&[format!("{name}={value}").parse().expect("a setting")]).expect("a study"),
+            None,
+        ));
         assert!(begin.elapsed().as_secs() < 10, "{name}: {:?}", begin.elapsed()); // a fraction of a second on an idle machine
         let words = error.to_string();
         let Error::Run(error) = error else { panic!("{name}: {words}") };
@@ -184,7 +188,7 @@ fn exact_transmissibility_and_frequency_are_those_of_a_linear_oscillator() {
 #[test]
 fn contract_without_a_force_there_is_no_transmissibility() {
     let study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
-    let study = study.with(&[Setting::new("P", 0.0)]).expect("a study");
+    let study = study.with(&[Setting::new(Parameter::P, 0.0)]).expect("a study");
     let run = good(simulate(&study, None));
     assert_eq!((run.summary.transmissibility(), &json!(run)["transmissibility"]), (None, &json!(null)));
     assert!(!run.to_string().contains("transmiss"));

@@ -1,6 +1,7 @@
 //! `sweep`: its files, in parallel, in parts, cut off, and checked. What its numbers are is in the tests of `retune-sweep`.
 
 use crate::{request, resume, search};
+use retune_model::Parameter;
 use retune_sweep::Asked;
 use retune_testkit::desk::{Desk, count_lines, tiny};
 use retune_testkit::observers::{Record, cut_off, good, refused};
@@ -113,8 +114,8 @@ fn contract_a_sweep_that_is_cut_off_resumes_and_ends_in_the_same_bytes() {
 fn contract_results_stand_for_the_design_that_was_found() {
     let desk = desk();
     let found = search(&desk, "study.json", "tuned").found();
-    let over = "k2".parse().expect("a parameter");
-    let k2 = found.damper.design.k2.get();
+    let over = Parameter::K2;
+    let k2 = found.damper.design.get(over);
     let asked = Asked { from: k2.to_string(), to: (2.0 * k2).to_string(), points: 2, ..Asked::over(over) };
     good(sweep(&request(&desk, "tuned", "out"), &asked, &Points::All, &Silent));
     assert_eq!(desk.rows("out/sweep.csv")[1][1].parse(), Ok(found.e1_max));

@@ -1,6 +1,7 @@
 //! `tune`: from a study to its results.
 
 use crate::{found, read, request, search};
+use retune_model::Parameter;
 use retune_study::Setting;
 use retune_testkit::desk::{Desk, RESULTS, flat, global, number, tiny};
 use retune_testkit::observers::{Record, good};
@@ -194,7 +195,7 @@ fn contract_a_grid_and_a_search_have_tolerances_of_their_own() {
     let optimum = desk.read_json("out/optimum.json");
     assert_eq!(number(&optimum, "/simulation/solver/search_rtol"), 1e-3);
     let value = |row: &[String], rtol: f64| {
-        let settings = ["k2", "c2", "D", "C"].into_iter().zip(row);
+        let settings = Parameter::PAPER.into_iter().zip(row);
         let settings: Vec<Setting> =
             settings.map(|(name, value)| Setting::new(name, value.parse().expect("a number"))).collect();
         let mut study = read(&desk, "study.json").with(&settings).expect("a study");

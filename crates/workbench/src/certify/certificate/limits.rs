@@ -98,8 +98,9 @@ mod tests {
 
     #[test]
     fn contract_the_worst_broken_limit_is_reported_with_its_place() {
-        let limit = |value| retune_model::Positive::new(value).ok();
-        let limits = Limits { stroke: limit(0.2), cavity: limit(0.5), ..Limits::default() };
+        let most = |value| retune_model::Positive::new(value).expect("a limit");
+        let stroke = Limit::Of(retune_model::Measure::Stroke);
+        let limits = Limits::default().with(stroke, most(0.2)).with(Limit::Cavity, most(0.5));
         let reached =
             |[stroke, force, cavity]: [f64; 3]| PerLimit([0.0, 0.0, 0.0, 0.0, 0.0, stroke, force, cavity]);
         let near = |at: &str, neighbour, seen| Near { at: at.to_owned(), neighbour, reached: reached(seen) };

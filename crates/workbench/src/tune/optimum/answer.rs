@@ -6,7 +6,7 @@ use super::{FailureNote, Optimum, Valley, stop_words};
 use crate::amount::Amount;
 use crate::needs::Needs;
 use crate::summary::how_many;
-use retune_model::Variable;
+use retune_model::Parameter;
 use retune_study::{counted, frequency, rounded, short};
 use std::path::Path;
 
@@ -89,7 +89,7 @@ impl Optimum {
     }
 
     /// The digits of a parameter that tell; four of one that was not varied.
-    fn digits(&self, variable: Variable) -> usize {
+    fn digits(&self, variable: Parameter) -> usize {
         self.valleys.iter().find(|valley| valley.variable == variable).map_or(4, Valley::digits)
     }
 
@@ -129,7 +129,8 @@ impl Optimum {
         lines.extend(self.passed_over.iter().map(|passed| passed.words()));
         lines.extend(notes::on_bound_words(&self.on_bound));
         if !self.on_edge.is_empty() {
-            let names: Vec<&str> = self.on_edge.iter().map(|variable: &Variable| variable.symbol()).collect();
+            let names: Vec<&str> =
+                self.on_edge.iter().map(|variable: &Parameter| variable.symbol()).collect();
             lines.push(format!(
                 "note: the best point of the grid lies at its edge in {}: a wider grid may lead elsewhere",
                 names.join(", ")

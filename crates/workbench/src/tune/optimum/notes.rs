@@ -4,7 +4,7 @@ use super::super::global::Explored;
 use super::super::refine::{Refined, Run};
 use super::super::surf::Surf;
 use retune_model::Scene;
-use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, Response, Variable};
+use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, Parameter, Response};
 use retune_study::{Search, Study, joined};
 use serde::{Serialize, Serializer};
 
@@ -54,7 +54,7 @@ fn by_name<S: Serializer>(reached: &[(Limit, f64)], serializer: S) -> Result<S::
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Met {
-    pub(crate) variable: Variable,
+    pub(crate) variable: Parameter,
     #[serde(skip)]
     pub(crate) bound: f64,
 }
@@ -107,11 +107,11 @@ impl LimitNote {
 
 /// The least D + C within the bounds of a search, m.
 fn least_cavity(search: &Search) -> f64 {
-    let least = |gap: Variable| match search.variables.iter().position(|variable| *variable == gap) {
+    let least = |gap: Parameter| match search.variables.iter().position(|variable| *variable == gap) {
         Some(place) => search.options.bounds[place].lower.unwrap_or(0.0),
         None => gap.get(&search.damper),
     };
-    least(Variable::D) + least(Variable::C)
+    least(Parameter::D) + least(Parameter::C)
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
@@ -120,7 +120,7 @@ fn is_false(value: &bool) -> bool {
 }
 
 /// The parameters in which the best point of the grid lies at its edge, and not on a bound.
-pub(super) fn on_edge(search: &Search, surf: &Surf) -> Vec<Variable> {
+pub(super) fn on_edge(search: &Search, surf: &Surf) -> Vec<Parameter> {
     let best = surf.point(surf.best);
     let mut steps = vec![0; surf.grid.dim()];
     surf.grid.steps(surf.best, &mut steps);
@@ -186,9 +186,9 @@ mod tests {
         assert_eq!(met(10.0 + 1e-8, 10.0, closed), Some(10.0));
         assert_eq!([met(590.0, 300.0, closed), met(1e-4, 2e-4, open)], [None, None]);
         let on = |variable, bound| Met { variable, bound };
-        let said = on_bound_words(&[on(Variable::D, 0.0), on(Variable::K2, 600.0)]);
+        let said = on_bound_words(&[on(Parameter::D, 0.0), on(Parameter::K2, 600.0)]);
         assert_eq!(said[0], "note: D ended on 0, the least that is possible");
         assert_eq!(said[1], "note: k2 ended on a bound of the study; a wider one may give less");
-        assert_eq!(serde_json::to_string(&on(Variable::D, 0.0)).ok().as_deref(), Some("\"D\""));
+        assert_eq!(serde_json::to_string(&on(Parameter::D, 0.0)).ok().as_deref(), Some("\"D\""));
     }
 }

@@ -3,8 +3,8 @@
 use super::super::refine::{Descended, Run};
 use crate::amount::Amount;
 use retune_model::Measure;
+use retune_model::PerVariable;
 use retune_optim::{Minimum, Stop, energy};
-use retune_study::PerVariable;
 use serde::Serialize;
 
 #[derive(Clone, Debug, Serialize)]

@@ -7,7 +7,7 @@ use crate::html::{Section, Table};
 use crate::needs::{Needs, sized};
 use crate::summary::whose;
 use maud::{Markup, html};
-use retune_model::{Damper, Measure, Variable};
+use retune_model::{Damper, Measure, Parameter};
 use retune_optim::{Evaluation, Response, Unusable};
 use retune_study::over;
 
@@ -131,23 +131,23 @@ fn own(needs: &Needs, measure: Measure, window: &str) -> String {
 fn others(needs: &Needs, measure: Measure) -> String {
     let linear =
         needs.linear.as_ref().map(|linear| format!("; {} with the best TMD", linear.needs.sized(measure)));
-    let damper = matches!(measure, Measure::Stroke | Measure::ContactForce);
+    let damper = measure.is_of_damper();
     let none = needs.none.as_ref().filter(|_| !damper);
     let none = none.map(|none| format!("; {} without a damper", none.sized(measure)));
     none.unwrap_or_default() + &linear.unwrap_or_default()
 }
 
 /// A parameter of the damper as a study file names it, with its name and its value.
-fn named(damper: &Damper) -> [(&'static str, &'static str, &'static str, f64, Option<Variable>); 5] {
-    let of = |variable: Variable, name| {
+fn named(damper: &Damper) -> [(&'static str, &'static str, &'static str, f64, Option<Parameter>); 5] {
+    let of = |variable: Parameter, name| {
         (variable.symbol(), name, variable.unit(), variable.get(damper), Some(variable))
     };
     [
         ("m2", "mass", "kg", damper.mass.get(), None),
-        of(Variable::K2, "stiffness of the spring"),
-        of(Variable::C2, "damping"),
-        of(Variable::D, "distance to the structure at rest"),
-        of(Variable::C, "clearance to the obstacle at rest"),
+        of(Parameter::K2, "stiffness of the spring"),
+        of(Parameter::C2, "damping"),
+        of(Parameter::D, "distance to the structure at rest"),
+        of(Parameter::C, "clearance to the obstacle at rest"),
     ]
 }
 

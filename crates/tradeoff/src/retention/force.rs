@@ -3,7 +3,7 @@
 
 use super::tuned::{Tuned, Tuning, bare, energy};
 use rayon::prelude::*;
-use retune_model::{Design, Variable};
+use retune_model::{Design, Parameter};
 use retune_study::{Setting, Study};
 use retune_workbench::designs::quoted;
 
@@ -43,7 +43,7 @@ impl Forced {
 pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
     let mut all = Vec::new();
     for (number, damper) in dampers.iter().enumerate() {
-        let (Some(at), Some(own)) = (damper.of(Tuning::Nominal), damper.study.value_of("P")) else {
+        let (Some(at), Some(own)) = (damper.of(Tuning::Nominal), damper.study.value_of(Parameter::P)) else {
             continue;
         };
         let series = |gaps: &str| {
@@ -64,13 +64,13 @@ pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
 
 /// E1max of a design under a force (N), and that without a damper, J.
 pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, force: f64) -> Option<[f64; 2]> {
-    let ratio = force / study.value_of("P")?;
-    let share = |variable: Variable| match variable {
-        Variable::D | Variable::C if gaps == GAPS[1] => ratio,
+    let ratio = force / study.value_of(Parameter::P)?;
+    let share = |variable: Parameter| match variable {
+        Parameter::D | Parameter::C if gaps == GAPS[1] => ratio,
         _ => 1.0,
     };
     let at = Design::new(|variable| share(variable) * at.get(variable)).ok()?;
-    let study = study.with(&[Setting::new("P", force)]).ok()?;
+    let study = study.with(&[Setting::new(Parameter::P, force)]).ok()?;
     let own = study.scene.primary.stiffness.get();
     Some([energy(&study, samples, &at, own)?, bare(&study, own)?])
 }

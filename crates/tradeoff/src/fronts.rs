@@ -3,15 +3,15 @@
 mod again;
 mod candidate;
 mod descents;
+mod designs;
 mod draw;
-mod fronts;
 mod page;
 mod refinement;
 mod search;
 
 pub use again::again;
 pub use candidate::{Candidate, SAME};
-pub use fronts::{Certified, Fronts, Row};
+pub use designs::{Certified, Fronts, Row};
 
 use retune_study as study;
 use retune_workbench::artefact::{Content, Kind, artefact};
@@ -45,7 +45,7 @@ pub static KIND: Kind = Kind {
 ///
 /// # Errors
 /// A study is wrong, nothing can be computed, or the results cannot be written.
-pub fn pareto(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, Error> {
+pub fn fronts(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, Error> {
     let plan = study::read_fronts(&request.study)?;
     let dampers = plan.dampers.iter().map(|(name, study)| (name.as_str(), study));
     let job = Job::of_studies(&KIND, request, json!(plan.said), dampers)?;

@@ -4,7 +4,7 @@ use crate::request;
 use retune_study::{Rule, StudyError};
 use retune_testkit::desk::{Desk, committed};
 use retune_testkit::observers::{good, refused};
-use retune_tradeoff::pareto::pareto;
+use retune_tradeoff::fronts::fronts;
 use retune_workbench::describe;
 use retune_workbench::{Error, Request, Silent};
 use serde_json::json;
@@ -51,7 +51,7 @@ fn rows(desk: &Desk, name: &str) -> Vec<(f64, String, f64, f64, f64)> {
 fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
     let desk = desk();
     // With one thread here, with two below.
-    good(pareto(&Request { threads: Some(1), ..request(&desk, "fronts.json", "out") }, &Silent));
+    good(fronts(&Request { threads: Some(1), ..request(&desk, "fronts.json", "out") }, &Silent));
     let names = desk.names("out");
     for name in [
         "README.md",
@@ -95,7 +95,7 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
         assert!(number(10) >= 0.9 * (2.0 * number(2) / 6.4e4).sqrt(), "{row:?}");
     }
 
-    good(pareto(&Request { threads: Some(2), ..request(&desk, "fronts.json", "two") }, &Silent));
+    good(fronts(&Request { threads: Some(2), ..request(&desk, "fronts.json", "two") }, &Silent));
     desk.assert_same("out", "two");
 }
 
@@ -103,13 +103,13 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
 #[test]
 fn contract_a_design_that_is_known_stands_beside_those_that_are_found() {
     let desk = desk();
-    let mut fronts = desk.read_json("fronts.json");
-    fronts["dampers"][1]["designs"] = json!([{ "k2": 12.5, "C": 0.5 }]);
+    let mut plan = desk.read_json("fronts.json");
+    plan["dampers"][1]["designs"] = json!([{ "k2": 12.5, "C": 0.5 }]);
     for (field, value) in [("k2", json!([100])), ("stroke", json!([])), ("contact_force", json!([]))] {
-        fronts[field] = value;
+        plan[field] = value;
     }
-    desk.write_json("fronts.json", &fronts);
-    good(pareto(&request(&desk, "fronts.json", "out"), &Silent));
+    desk.write_json("fronts.json", &plan);
+    good(fronts(&request(&desk, "fronts.json", "out"), &Silent));
     let front = desk.rows("out/front.csv");
     // What it leaves out is as in the scene: c2 and D.
     let own = ["12.5", "232", "0.06", "0.5"];
@@ -122,9 +122,9 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     let plan = retune_study::read_fronts(&desk.path("fronts.json")).expect("a plan");
     assert!(describe::fronts(&plan).contains("each for k2 at most 100, 400 N/m"));
     let good = desk.read_json("fronts.json");
-    let rule = |fronts: &serde_json::Value| {
-        desk.write_json("wrong.json", fronts);
-        let error = refused(pareto(&request(&desk, "wrong.json", "wrong"), &Silent));
+    let rule = |plan: &serde_json::Value| {
+        desk.write_json("wrong.json", plan);
+        let error = refused(fronts(&request(&desk, "wrong.json", "wrong"), &Silent));
         assert!(!desk.path("wrong").exists(), "nothing may be left behind");
         error
     };
@@ -134,38 +134,38 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
         ("samples", json!(1), "samples: 1 is not allowed here: give a whole number from 2 to 10000"),
         ("rounds", json!(25), "rounds: 25 is not allowed here: give a whole number from 0 to 24"),
     ] {
-        let mut fronts = good.clone();
-        fronts[field] = bad.clone();
-        match rule(&fronts) {
+        let mut plan = good.clone();
+        plan[field] = bad.clone();
+        match rule(&plan) {
             Error::Study(StudyError::Rule { rule, .. }) => {
                 assert!(rule.to_string().starts_with(words), "{field} = {bad}: {rule}");
             }
             other => panic!("{field} = {bad}: {other}"),
         }
     }
-    let mut fronts = good.clone();
+    let mut plan = good.clone();
     for sweep in ["k2", "stroke", "contact_force"] {
-        fronts[sweep] = json!([]);
+        plan[sweep] = json!([]);
     }
     let words =
         "k2: an empty list is not allowed here: give at least one bound on k2, stroke or contact_force";
-    assert!(rule(&fronts).to_string().ends_with(words));
-    let mut fronts = good.clone();
-    fronts["stroke"] = json!([-1]);
-    match rule(&fronts) {
+    assert!(rule(&plan).to_string().ends_with(words));
+    let mut plan = good.clone();
+    plan["stroke"] = json!([-1]);
+    match rule(&plan) {
         Error::Study(StudyError::Field { problem, .. }) => {
             assert!(problem.starts_with("stroke[0]: "), "{problem}");
         }
         other => panic!("{other}"),
     }
-    let mut fronts = good.clone();
-    fronts["dampers"][1]["designs"] = json!([{ "k2": 100 }, { "C": -1 }]);
+    let mut plan = good.clone();
+    plan["dampers"][1]["designs"] = json!([{ "k2": 100 }, { "C": -1 }]);
     let words =
         "dampers[1].designs[1].C: -1 is not allowed here: give what the damper of the study has and may be";
-    assert!(rule(&fronts).to_string().ends_with(words));
-    let mut fronts = good;
-    fronts["dampers"][1]["study"] = json!("tmd.json");
-    match rule(&fronts) {
+    assert!(rule(&plan).to_string().ends_with(words));
+    let mut plan = good;
+    plan["dampers"][1]["study"] = json!("tmd.json");
+    match rule(&plan) {
         Error::Study(StudyError::Rule { rule: Rule::NotAllowed { field, allowed, .. }, .. }) => {
             assert_eq!((field.as_str(), allowed), ("dampers", "each name and each study once"));
         }

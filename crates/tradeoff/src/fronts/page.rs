@@ -1,8 +1,9 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
 use super::candidate::SAME;
+use super::designs::{Certified, Fronts, NEEDS, Row};
 use super::draw;
-use super::fronts::{Certified, Fronts, NEEDS, Row};
+use retune_model::Parameter;
 use retune_store::Directory;
 use retune_study::{Sweep, design_cells, design_words, rounded, short};
 use retune_workbench::Error;
@@ -179,7 +180,7 @@ pub(super) fn answer(fronts: &Fronts) -> Vec<String> {
         words.push(format!(
             "The {} of the study (k2 = {} N/m) has {} J, with a stroke of {} m.",
             fronts.name(given.damper),
-            short(given.at.k2.get()),
+            short(given.at.get(Parameter::K2)),
             joule(given.e1_max),
             metre(given.stroke)
         ));

@@ -1,4 +1,4 @@
-//! `track`, computed again: the designs, E1max along k1, the retention ranges.
+//! `retention`, computed again: the designs, E1max along k1, the retention ranges.
 
 use super::anew::label;
 use super::curves::{ANEW, BANDS};

@@ -1,4 +1,4 @@
-//! The results of `track`.
+//! The results of `retention`.
 
 use super::curves::Curve;
 use super::force::Forced;
@@ -10,7 +10,7 @@ use retune_workbench::designs::Designs;
 
 /// Dampers tuned for several stiffnesses of the structure, and how long each tuning lasts.
 #[derive(Debug)]
-pub struct Tracked {
+pub struct Retained {
     /// Each damper with its designs.
     pub dampers: Vec<Tuned>,
     /// What became of the bounds on k2 where a damper was tuned anew.
@@ -29,7 +29,7 @@ pub struct Tracked {
     pub table: Designs,
 }
 
-impl Tracked {
+impl Retained {
     /// Whether the design of a tuning is not that of an earlier damper: the paper's may stand in several studies.
     pub(super) fn is_new(&self, damper: usize, tuning: Tuning) -> bool {
         let at = self.dampers[damper].of(tuning);

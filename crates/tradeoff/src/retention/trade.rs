@@ -6,7 +6,7 @@
 
 use super::range::{Care, Range, Still, Threshold, range};
 use super::tuned::{Tuned, Tuning};
-use retune_model::Design;
+use retune_model::{Design, Parameter};
 use retune_optim::{Global, PeakEnergy, explore, minimize};
 use retune_study::{Setting, Study};
 use retune_workbench::searches::Searches;
@@ -188,7 +188,7 @@ impl Seen<'_> {
         let Ok(scene) = self.of.scene(x) else { return 0.0 };
         let study = Study { scene, ..self.study.clone() };
         let energy = |k1: f64, cutoff: f64| {
-            let scene = study.scene_with(&[Setting::new("k1", k1)]).ok();
+            let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
             let found = scene.and_then(|scene| self.of_ranges.evaluate(&scene, cutoff).ok());
             found.map_or(f64::INFINITY, |found| found.energy)
         };

@@ -1,9 +1,9 @@
-//! The searches of `track`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
+//! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
 use super::tuned::{Kept, Tuned, Tuning, energy, over};
-use crate::pareto::SAME;
-use retune_model::{Design, Variable};
-use retune_study::{self as study, PaperStudy, PerVariable, Setting, SpringBounds, Study, Table2, short};
+use crate::fronts::SAME;
+use retune_model::{Design, Parameter};
+use retune_study::{self as study, PaperStudy, Setting, SpringBounds, Study, Table2, short};
 use retune_workbench::designs::Row;
 use retune_workbench::searches::Searches;
 use retune_workbench::tune::{Found, Optimum};
@@ -55,7 +55,12 @@ pub(super) fn tune(
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
     let mut kept = Vec::new();
-    kept.extend(study.scene.damper.map(|damper| Kept { tuning: Tuning::Paper, at: Design::of(&damper) }));
+    kept.extend(
+        study
+            .scene
+            .damper
+            .map(|damper| Kept { tuning: Tuning::Paper, at: Design::of_varied(&damper, study.varied()) }),
+    );
     kept.push(Kept { tuning: Tuning::Nominal, at: first });
     if designs.len() > 1 {
         let study = robust(study, &designs)?;
@@ -91,7 +96,7 @@ fn searched(
     }
     if let Some(optimize) = &mut study.optimize {
         (optimize.global, optimize.surf) = (None, None);
-        optimize.starts = vec![PerVariable::of_design(&damper.design, &optimize.vary)];
+        optimize.starts = vec![damper.design.only(&optimize.vary)];
         if let Some(band) = &mut optimize.objective.omega {
             band.samples = samples.unwrap_or(band.samples);
         }
@@ -110,29 +115,31 @@ fn anew(study: &Study, k1: f64, from: Option<(f64, Design)>, bounds: SpringBound
     };
     let mut scaled = study.clone();
     if let Some(optimize) = &mut scaled.optimize {
-        if let Some((low, high)) = optimize.bounds.get_mut(Variable::K2) {
+        if let Some((low, high)) = optimize.bounds.get_mut(Parameter::K2) {
             (*low, *high) = (ratio * *low, high.map(|high| ratio * high));
         }
-        let side = optimize.global.as_mut().and_then(|global| global.sides.get_mut(Variable::K2).as_mut());
+        let side = optimize.global.as_mut().and_then(|global| global.sides.get_mut(Parameter::K2));
         if let Some(side) = side {
             (side.from, side.to) = (ratio * side.from, ratio * side.to);
         }
-        if let Some(axis) = optimize.surf.as_mut().and_then(|axes| axes.get_mut(Variable::K2).as_mut()) {
+        if let Some(axis) = optimize.surf.as_mut().and_then(|axes| axes.get_mut(Parameter::K2)) {
             (axis.from, axis.to) = (ratio * axis.from, ratio * axis.to);
         }
         for start in &mut optimize.starts {
-            start.k2 = start.k2.map(|k2| ratio * k2);
+            start.get_mut(Parameter::K2).into_iter().for_each(|k2| *k2 *= ratio);
         }
         if let Some((own, design)) = from {
             // A spring in proportion to k1 is in tune as before, as far as the bounds allow it.
-            let bounds = optimize.bounds.get(Variable::K2).unwrap_or((0.0, None));
-            let k2 = design.k2.get() * k1 / own;
-            let mut start = PerVariable::of_design(&design, &optimize.vary);
-            start.k2 = start.k2.map(|_| k2.min(bounds.1.unwrap_or(k2)).max(bounds.0));
+            let bounds = optimize.bounds.get(Parameter::K2).unwrap_or((0.0, None));
+            let k2 = design.get(Parameter::K2) * k1 / own;
+            let mut start = design.only(&optimize.vary);
+            if let Some(start) = start.get_mut(Parameter::K2) {
+                *start = k2.min(bounds.1.unwrap_or(k2)).max(bounds.0);
+            }
             optimize.starts.push(start);
         }
     }
-    Ok(scaled.with(&[Setting::new("k1", k1)])?)
+    Ok(scaled.with(&[Setting::new(Parameter::K1, k1)])?)
 }
 
 /// The study for the worst over all stiffnesses. One more search starts at the design of its own.
@@ -142,7 +149,7 @@ fn robust(study: &Study, designs: &[(f64, Design)]) -> Result<Study, Error> {
     let mut study = over(study, &all);
     if let Some(optimize) = &mut study.optimize {
         let own = designs.iter().find(|(k1, _)| *k1 == nominal);
-        optimize.starts.extend(own.map(|(_, design)| PerVariable::of_design(design, &optimize.vary)));
+        optimize.starts.extend(own.map(|(_, design)| design.only(&optimize.vary)));
     }
     let refuse = Error::rule(&study);
     study.check().map_err(refuse)?;

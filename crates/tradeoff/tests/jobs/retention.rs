@@ -1,16 +1,17 @@
 //! `track`: dampers tuned anew for other stiffnesses of the structure.
 
 use crate::{request, restart, resume};
+use retune_model::Parameter;
 use retune_store::Error as StoreError;
 use retune_study::Setting;
 use retune_testkit::desk::{Desk, committed, global};
 use retune_testkit::observers::{Record, cut_off, good, refused};
-use retune_tradeoff::track::{Point, track};
+use retune_tradeoff::retention::{Point, retention};
 use retune_workbench::{Done, Error, Silent};
 use serde_json::json;
 
 fn stiffnesses(k1: &[f64]) -> Vec<Setting> {
-    k1.iter().map(|k1| Setting::new("k1", *k1)).collect()
+    k1.iter().map(|k1| Setting::new(Parameter::K1, *k1)).collect()
 }
 
 /// The studies of Table 2 with short runs and coarse grids.
@@ -27,13 +28,14 @@ fn table2_desk(table: &str) -> Desk {
 #[test]
 fn contract_retune_tunes_both_dampers_for_each_stiffness() {
     let desk = table2_desk("table2.json");
-    good(track(&request(&desk, "table2.json", "out"), &stiffnesses(&[3e4, 5e4]), &Silent));
+    good(retention(&request(&desk, "table2.json", "out"), &stiffnesses(&[3e4, 5e4]), &Silent));
     let rows: Vec<String> = desk.rows("out/retune.csv")[1..].iter().map(|row| row[..3].join(",")).collect();
     let tunings = ["paper", "k1 = 30000", "k1 = 39500", "k1 = 50000", "k1-robust"];
     let expected = ["SSVI NES", "TMD"].map(|damper| tunings.map(|tuning| format!("{tuning},{damper},60")));
     assert_eq!(rows, expected.concat());
     assert_eq!(desk.read_json("out/k1-50000/tmd/study.json")["scene"]["primary"]["k1"], 5e4);
-    let error = refused(track(&request(&desk, "table2.json", "bad"), &stiffnesses(&[3e4, -1.0]), &Silent));
+    let error =
+        refused(retention(&request(&desk, "table2.json", "bad"), &stiffnesses(&[3e4, -1.0]), &Silent));
     assert!(matches!(error, Error::Setting(_)), "{error}");
     assert!(!desk.path("bad").exists(), "nothing may be left behind");
 }
@@ -55,7 +57,7 @@ fn moving() -> Desk {
 fn contract_retention_begins_at_the_tuned_design() {
     let desk = moving();
     let record = Record::default();
-    good(track(&request(&desk, "retune.json", "out"), &stiffnesses(&[3e4, 5e4]), &record));
+    good(retention(&request(&desk, "retune.json", "out"), &stiffnesses(&[3e4, 5e4]), &record));
     let words = "worst over omega = 1.2 to 1.3 times √(k1/m1), and from the design of the k1 beside it";
     assert!(record.all().contains(words), "{}", record.all());
     let rows = desk.rows("out/retention.csv");
@@ -112,7 +114,7 @@ fn contract_bounds_on_k2_follow_k1_unless_they_are_fixed() {
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 20 });
     desk.write_json("one.json", &study);
     let bounds = |out: &str| {
-        good(track(&request(&desk, "retune.json", out), &stiffnesses(&[7.9e4]), &Silent));
+        good(retention(&request(&desk, "retune.json", out), &stiffnesses(&[7.9e4]), &Silent));
         let study = |place: &str| desk.read_json(&format!("{out}/{place}/one/study.json"));
         ["k1-79000", "k1-39500", "k1-robust"].map(|place| study(place)["optimize"]["bounds"]["k2"].clone())
     };
@@ -125,7 +127,7 @@ fn contract_bounds_on_k2_follow_k1_unless_they_are_fixed() {
     assert_eq!(robust["optimize"]["objective"]["k1"]["set"], json!([39500.0, 79000.0]));
     table["samples"] = json!(1);
     desk.write_json("retune.json", &table);
-    let error = refused(track(&request(&desk, "retune.json", "bad"), &stiffnesses(&[3e4]), &Silent));
+    let error = refused(retention(&request(&desk, "retune.json", "bad"), &stiffnesses(&[3e4]), &Silent));
     assert!(error.to_string().contains("samples: 1 is not allowed here: give a whole number"), "{error}");
 }
 
@@ -141,11 +143,11 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
         "tmds.json",
         &json!({ "rows": [{ "damper": "TMD", "study": "tmd.json", "paper": paper }] }),
     );
-    let done = good(track(&request(&desk, "tmds.json", "out"), &stiffnesses(&[3e4]), &Silent));
-    let Done::Made(tracked) = done else { panic!("it was finished before") };
-    let (damper, threshold) = (&tracked.dampers[0], &tracked.thresholds[0]);
+    let done = good(retention(&request(&desk, "tmds.json", "out"), &stiffnesses(&[3e4]), &Silent));
+    let Done::Made(retained) = done else { panic!("it was finished before") };
+    let (damper, threshold) = (&retained.dampers[0], &retained.thresholds[0]);
     let mut count = 0;
-    for point in tracked.kept.iter().map(|(_, point)| point).chain(&tracked.points) {
+    for point in retained.kept.iter().map(|(_, point)| point).chain(&retained.points) {
         let range = point.range.expect("a range");
         assert!(range.from < damper.nominal() && damper.nominal() < range.to, "{range:?}");
         let share = |k1: f64| damper.energy(&point.at, k1) / threshold.at(k1);
@@ -156,13 +158,13 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
     }
     assert!(count > 10, "{count}");
     // A linear damper leaves the same share under any force; at home the widest range stands first.
-    assert!(tracked.forced.len() == 1 && tracked.forced[0].is_constant(), "{:?}", tracked.forced);
+    assert!(retained.forced.len() == 1 && retained.forced[0].is_constant(), "{:?}", retained.forced);
     let page = desk.read("out/README.md");
     assert!(page.starts_with("# How long a tuning lasts\n\n- At equal performance at home"), "{page}");
-    let front: Vec<&Point> = tracked
+    let front: Vec<&Point> = retained
         .points
         .iter()
-        .filter(|point| !tracked.points.iter().any(|other| other.dominates(point)))
+        .filter(|point| !retained.points.iter().any(|other| other.dominates(point)))
         .collect();
     let [least, widest] = [front.first(), front.last()].map(|point| point.expect("a front"));
     assert!(least.e1_max < widest.e1_max && least.factor() < widest.factor(), "{least:?} {widest:?}");
@@ -171,7 +173,7 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
 #[test]
 fn contract_results_of_a_run_are_exactly_its_own() {
     let desk = table2_desk("mine.json");
-    good(track(&request(&desk, "mine.json", "out"), &stiffnesses(&[3e4, 5e4]), &Silent));
+    good(retention(&request(&desk, "mine.json", "out"), &stiffnesses(&[3e4, 5e4]), &Silent));
     let parts = || {
         let mut names = desk.names("out");
         names.retain(|name| name.starts_with("k1-"));
@@ -180,7 +182,7 @@ fn contract_results_of_a_run_are_exactly_its_own() {
     assert_eq!(parts(), ["k1-30000", "k1-39500", "k1-50000", "k1-robust"]);
     desk.write("out/k1-30000/tmd/notes.txt", "mine");
     desk.write("out/k1-77/notes.txt", "mine");
-    good(track(&request(&desk, "mine.json", "out"), &stiffnesses(&[2e4]), &Silent));
+    good(retention(&request(&desk, "mine.json", "out"), &stiffnesses(&[2e4]), &Silent));
     assert_eq!(parts(), ["k1-20000", "k1-30000", "k1-39500", "k1-77", "k1-robust"]);
     assert_eq!(desk.names("out/k1-30000"), ["tmd"]);
     assert_eq!(desk.names("out/k1-30000/tmd"), ["notes.txt"]);
@@ -192,11 +194,11 @@ fn contract_results_of_a_run_are_exactly_its_own() {
 #[test]
 fn contract_unfinished_searches_below_are_found() {
     let desk = table2_desk("mine.json");
-    cut_off(40, |watch| track(&request(&desk, "mine.json", "out"), &stiffnesses(&[3e4]), watch));
+    cut_off(40, |watch| retention(&request(&desk, "mine.json", "out"), &stiffnesses(&[3e4]), watch));
     assert!(desk.path("out/k1-30000/ssvi/unfinished/journal").exists(), "{:?}", desk.names("out"));
     let other = stiffnesses(&[2e4]);
     for request in [request(&desk, "mine.json", "out"), resume(&desk, "mine.json", "out")] {
-        let error = refused(track(&request, &other, &Silent));
+        let error = refused(retention(&request, &other, &Silent));
         let Error::Store(StoreError::Unfinished { lines, damaged: 0, difference: Some(difference), path }) =
             error
         else {
@@ -205,8 +207,8 @@ fn contract_unfinished_searches_below_are_found() {
         assert!(lines > 0 && difference.starts_with("of another study (SHA-256 "), "{difference}");
         assert_eq!(path, desk.path("out"));
     }
-    good(track(&restart(&desk, "mine.json", "out"), &other, &Silent));
+    good(retention(&restart(&desk, "mine.json", "out"), &other, &Silent));
     assert!(!desk.path("out/k1-30000").exists());
-    good(track(&request(&desk, "mine.json", "whole"), &other, &Silent));
+    good(retention(&request(&desk, "mine.json", "whole"), &other, &Silent));
     desk.assert_same("out", "whole");
 }

@@ -7,11 +7,11 @@
 //! at; and all this as long as it brings anything anywhere. The tasks of a round are independent of each other, so that every thread has work.
 
 use super::candidate::{CONTINUED, Candidate, by_excess};
-use super::fronts::Fronts;
+use super::designs::Fronts;
 use super::refinement::{Under, about, descend, on_sides, scattered, screen, set_samples, starts};
 use rayon::prelude::*;
-use retune_model::{Design, Variable};
-use retune_study::{PerVariable, Sweep, counted};
+use retune_model::{Design, Parameter, PerVariable};
+use retune_study::{Sweep, counted};
 use retune_workbench::searches::Searches;
 use retune_workbench::{Error, Observer};
 
@@ -171,8 +171,8 @@ impl Fronts {
             return (reached > under.bound).then_some(start.at);
         }
         let share = if under.sweep == Sweep::K2 { under.bound / from } else { 1.0 };
-        let scaled = |variable: Variable| match variable {
-            Variable::K2 => start.at.get(variable) * share,
+        let scaled = |variable: Parameter| match variable {
+            Parameter::K2 => start.at.get(variable) * share,
             _ => start.at.get(variable),
         };
         (reached > TOUCHES * from).then(|| Design::new(scaled).ok()).flatten()

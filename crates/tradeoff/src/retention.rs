@@ -1,4 +1,4 @@
-//! `track`: how long a tuning lasts. Dampers tuned for one stiffness k1 of the structure, for the worst over several, and anew for each; E1max
+//! `retention`: how long a tuning lasts. Dampers tuned for one stiffness k1 of the structure, for the worst over several, and anew for each; E1max
 //! of each along k1; the range of k1 in which it still does its work, and what a wider range costs.
 //!
 //! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
@@ -14,7 +14,7 @@ mod forces;
 mod opening;
 mod page;
 mod range;
-mod tracked;
+mod retained;
 mod trade;
 mod tuned;
 
@@ -23,7 +23,7 @@ pub use anew::label;
 pub use curves::Curve;
 pub use force::Forced;
 pub use range::{Range, Threshold, best_tmd};
-pub use tracked::Tracked;
+pub use retained::Retained;
 pub use trade::Point;
 pub use tuned::{Kept, Tuned, Tuning};
 
@@ -42,7 +42,7 @@ use tuned::{CURVES, DESIGNS, FORCES};
 
 /// The files of the retention of tuning.
 pub static KIND: Kind = Kind {
-    command: "track",
+    command: "retention",
     answer: DESIGNS,
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
@@ -65,11 +65,11 @@ pub static KIND: Kind = Kind {
 ///
 /// # Errors
 /// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
-pub fn track(
+pub fn retention(
     request: &Request,
     stiffnesses: &[Setting],
     watch: &dyn Observer,
-) -> Result<Done<Tracked>, Error> {
+) -> Result<Done<Retained>, Error> {
     let (said, rows) = study::read_rows(&request.study)?;
     for setting in stiffnesses {
         rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
@@ -113,10 +113,10 @@ pub fn track(
         directory.write("range.csv", &trade::csv(&dampers, &kept, &points))?;
         table.write("retune", directory)?;
         let bounds = said.k2_bounds;
-        let tracked = Tracked { dampers, bounds, curves, thresholds, forced, kept, points, table };
-        page::write(&tracked, directory)?;
-        let report = format!("\n{}\n\n{}", opening::answer(&tracked).join("\n"), tracked.table.text());
-        Ok(Made { report, answer: tracked, parts: searches.results })
+        let retained = Retained { dampers, bounds, curves, thresholds, forced, kept, points, table };
+        page::write(&retained, directory)?;
+        let report = format!("\n{}\n\n{}", opening::answer(&retained).join("\n"), retained.table.text());
+        Ok(Made { report, answer: retained, parts: searches.results })
     })
 }
 
@@ -135,7 +135,7 @@ fn paper(tuned: &Tuned) -> Option<Row> {
     Some(Row {
         label: Tuning::Paper.name().to_owned(),
         damper: tuned.name.clone(),
-        found: TunedDamper::of(&at.on(damper)),
+        found: TunedDamper::of(&at.on(damper), tuned.study.varied()),
         printed: None,
         e1_max: tuned.energy(&at, tuned.nominal()),
         none: tuned.study.energy_without_damper(),

@@ -1,26 +1,26 @@
-//! The answer of `track` in words, with which the page and the screen begin: who keeps its work, at equal performance at home, under the same
+//! The answer of `retention` in words, with which the page and the screen begin: who keeps its work, at equal performance at home, under the same
 //! bound on k2, and under a smaller force. Every number is one of the tables beside the page.
 
 use super::curves::Curve;
 use super::force::{Forced, HALF};
-use super::tracked::Tracked;
+use super::retained::Retained;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
-use crate::pareto::SAME;
-use retune_model::Variable;
+use crate::fronts::SAME;
+use retune_model::Parameter;
 use retune_study::{design_words, rounded, short};
 
 /// The answer: what the title asks first, then a line for each damper.
-pub(super) fn answer(tracked: &Tracked) -> Vec<String> {
-    let shown = shown(tracked);
-    let first = [home(tracked, &shown), robust(tracked, &shown), smaller_force(tracked, &shown)];
+pub(super) fn answer(retained: &Retained) -> Vec<String> {
+    let shown = shown(retained);
+    let first = [home(retained, &shown), robust(retained, &shown), smaller_force(retained, &shown)];
     let mut words: Vec<String> = first.into_iter().flatten().collect();
-    words.extend(shown.iter().map(|&damper| one(tracked, damper)));
-    words.extend(same(tracked).into_iter().map(|(damper, other)| {
+    words.extend(shown.iter().map(|&damper| one(retained, damper)));
+    words.extend(same(retained).into_iter().map(|(damper, other)| {
         format!(
             "{}: every tuning ends at E1max of the {} within {} %, so that one stands for both on this page.",
-            tracked.dampers[damper].name,
-            tracked.dampers[other].name,
+            retained.dampers[damper].name,
+            retained.dampers[other].name,
             100.0 * EQUAL
         )
     }));
@@ -31,45 +31,45 @@ pub(super) fn answer(tracked: &Tracked) -> Vec<String> {
 const EQUAL: f64 = 1e-3;
 
 /// The dampers whose tunings all end where those of a later one do, with it.
-fn same(tracked: &Tracked) -> Vec<(usize, usize)> {
+fn same(retained: &Retained) -> Vec<(usize, usize)> {
     let energies = |damper: usize| -> Vec<f64> {
-        let rows = tracked.table.rows.iter().filter(|row| row.damper == tracked.dampers[damper].name);
+        let rows = retained.table.rows.iter().filter(|row| row.damper == retained.dampers[damper].name);
         rows.filter(|row| row.label != Tuning::Paper.name()).map(|row| row.e1_max).collect()
     };
     let equal = |one: usize, other: usize| {
         let (one, other) = (energies(one), energies(other));
         one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a / b - 1.0).abs() <= EQUAL)
     };
-    let count = tracked.dampers.len();
+    let count = retained.dampers.len();
     let later = |damper: usize| (damper + 1..count).find(|other| equal(damper, *other));
     (0..count).filter_map(|damper| Some((damper, later(damper)?))).collect()
 }
 
 /// The dampers of the page: all but those that are another one.
-pub(super) fn shown(tracked: &Tracked) -> Vec<usize> {
-    let same = same(tracked);
-    (0..tracked.dampers.len()).filter(|damper| same.iter().all(|(one, _)| one != damper)).collect()
+pub(super) fn shown(retained: &Retained) -> Vec<usize> {
+    let same = same(retained);
+    (0..retained.dampers.len()).filter(|damper| same.iter().all(|(one, _)| one != damper)).collect()
 }
 
 /// The retention ranges at equal performance at home: that of the nominal design which has the most E1max there among those that do their
 /// work.
-fn home(tracked: &Tracked, shown: &[usize]) -> Option<String> {
+fn home(retained: &Retained, shown: &[usize]) -> Option<String> {
     let nominal = |damper: &usize| {
         let is_it = |(name, point): &&(_, Point)| point.damper == *damper && *name == Tuning::Nominal.name();
-        tracked.kept.iter().find(is_it).map(|(_, point)| point).filter(|point| point.range.is_some())
+        retained.kept.iter().find(is_it).map(|(_, point)| point).filter(|point| point.range.is_some())
     };
     let home = shown.iter().filter_map(nominal).map(|point| point.e1_max).reduce(f64::max)?;
     let widest = |damper: &usize| {
         let as_good = |point: &&Point| point.e1_max <= (1.0 + SAME) * home;
-        front(&tracked.points, *damper).into_iter().rfind(as_good)
+        front(&retained.points, *damper).into_iter().rfind(as_good)
     };
     let mut all: Vec<&Point> = shown.iter().filter_map(widest).collect();
     all.sort_by(|a, b| b.factor().total_cmp(&a.factor()));
-    let words: Vec<String> = all.iter().map(|point| keeps(tracked, point)).collect();
+    let words: Vec<String> = all.iter().map(|point| keeps(retained, point)).collect();
     let none: Vec<&str> = shown
         .iter()
         .filter(|damper| all.iter().all(|point| point.damper != **damper))
-        .map(|damper| tracked.dampers[*damper].name.as_str())
+        .map(|damper| retained.dampers[*damper].name.as_str())
         .collect();
     let none = if none.is_empty() {
         String::new()
@@ -84,7 +84,7 @@ fn home(tracked: &Tracked, shown: &[usize]) -> Option<String> {
 }
 
 /// The range of a design in words.
-fn keeps(tracked: &Tracked, point: &Point) -> String {
+fn keeps(retained: &Retained, point: &Point) -> String {
     let still = point.still.map_or(String::new(), |range| {
         format!(
             "; {} where the band of frequencies stays as it is at the nominal k1",
@@ -94,7 +94,7 @@ fn keeps(tracked: &Tracked, point: &Point) -> String {
     format!(
         "{}: {} ({} J, {}{still})",
         rounded(point.factor(), 3),
-        tracked.dampers[point.damper].name,
+        retained.dampers[point.damper].name,
         rounded(point.e1_max, 4),
         design_words(&point.at, 4)
     )
@@ -102,14 +102,14 @@ fn keeps(tracked: &Tracked, point: &Point) -> String {
 
 /// The largest stiffness of a spring that the study of a damper allows, N/m.
 fn stiffest(damper: &Tuned) -> Option<f64> {
-    damper.study.optimize.as_ref()?.bounds.get(Variable::K2)?.1
+    damper.study.optimize.as_ref()?.bounds.get(Parameter::K2)?.1
 }
 
 /// The k1-robust designs, those under one bound on k2 side by side.
-fn robust(tracked: &Tracked, shown: &[usize]) -> Option<String> {
+fn robust(retained: &Retained, shown: &[usize]) -> Option<String> {
     let worst = |damper: usize| {
-        let (of, name) = (&tracked.dampers[damper], Tuning::Robust.name());
-        let row = tracked.table.rows.iter().find(|row| row.damper == of.name && row.label == name)?;
+        let (of, name) = (&retained.dampers[damper], Tuning::Robust.name());
+        let row = retained.table.rows.iter().find(|row| row.damper == of.name && row.label == name)?;
         Some((stiffest(of), row.e1_max, of.name.as_str()))
     };
     let mut all: Vec<(Option<f64>, f64, &str)> = shown.iter().filter_map(|damper| worst(*damper)).collect();
@@ -124,16 +124,16 @@ fn robust(tracked: &Tracked, shown: &[usize]) -> Option<String> {
         format!("{bound} {}", list.join(" against "))
     });
     let parts: Vec<String> = parts.collect();
-    let k1 = tracked.dampers.first()?.anew.len();
+    let k1 = retained.dampers.first()?.anew.len();
     (!parts.is_empty()).then(|| {
         format!("Tuned for the worst over all {k1} k1 (k1-robust), E1max is at worst: {}.", parts.join("; "))
     })
 }
 
 /// What halving the force does to the nominal designs.
-fn smaller_force(tracked: &Tracked, shown: &[usize]) -> Option<String> {
-    let name = |of: &Forced| tracked.dampers[of.damper].name.as_str();
-    let words = tracked.forced.iter().filter(|of| shown.contains(&of.damper)).map(|of| {
+fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
+    let name = |of: &Forced| retained.dampers[of.damper].name.as_str();
+    let words = retained.forced.iter().filter(|of| shown.contains(&of.damper)).map(|of| {
         if of.is_constant() {
             return format!("{} {} under any force", name(of), rounded(of.share(0), 3));
         }
@@ -160,12 +160,12 @@ fn rounded_to(force: f64) -> f64 {
 }
 
 /// A damper along k1.
-fn one(tracked: &Tracked, number: usize) -> String {
-    let damper = &tracked.dampers[number];
+fn one(retained: &Retained, number: usize) -> String {
+    let damper = &retained.dampers[number];
     let nominal = damper.nominal();
     let worst = |tuning: Option<Tuning>| {
         let own = |curve: &&Curve| curve.damper == Some(number) && curve.tuning == tuning && !curve.still;
-        tracked.curves.iter().find(own).and_then(Curve::worst)
+        retained.curves.iter().find(own).and_then(Curve::worst)
     };
     let mut words = format!("{}: ", damper.name);
     if let (Some((k1, kept)), Some(at)) = (worst(Some(Tuning::Nominal)), damper.of(Tuning::Nominal)) {

@@ -2,13 +2,13 @@
 
 use super::draw::looks;
 use super::force::Forced;
-use super::tracked::Tracked;
+use super::retained::Retained;
 use crate::caption::{made_by, words};
 use retune_figures::{Axis, Chart, Dash, Drawing, Key, Layer, Sheet, Stroke, Width, drawing};
 
 /// E1max of the nominal designs as a share of that without a damper, against the force.
-pub(super) fn draw(tracked: &Tracked, shown: &[usize]) -> Drawing {
-    let all: Vec<&Forced> = tracked.forced.iter().filter(|of| shown.contains(&of.damper)).collect();
+pub(super) fn draw(retained: &Retained, shown: &[usize]) -> Drawing {
+    let all: Vec<&Forced> = retained.forced.iter().filter(|of| shown.contains(&of.damper)).collect();
     let points = |of: &Forced| -> Vec<(f64, f64)> {
         (0..of.points.len()).map(|step| (of.points[step].0, of.share(step))).collect()
     };
@@ -23,7 +23,7 @@ pub(super) fn draw(tracked: &Tracked, shown: &[usize]) -> Drawing {
         .iter()
         .map(|of| {
             let gaps = if of.proportional { ", D and C in proportion to P" } else { "" };
-            (Key::Line(stroke(of)), format!("{}{gaps}", tracked.dampers[of.damper].name))
+            (Key::Line(stroke(of)), format!("{}{gaps}", retained.dampers[of.damper].name))
         })
         .collect();
     let chart = Chart {
@@ -44,6 +44,6 @@ pub(super) fn draw(tracked: &Tracked, shown: &[usize]) -> Drawing {
         columns: 1,
         stacked: false,
         legend,
-        caption: vec![made_by(tracked.dampers.first().map(|damper| &damper.study))],
+        caption: vec![made_by(retained.dampers.first().map(|damper| &damper.study))],
     })
 }

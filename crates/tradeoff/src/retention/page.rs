@@ -1,11 +1,11 @@
-//! The page of `track`, which begins with its answer. Every number on it is one of the tables beside it.
+//! The page of `retention`, which begins with its answer. Every number on it is one of the tables beside it.
 
 use super::draw;
 use super::force::{Forced, GAPS, HALF};
 use super::forces;
 use super::opening::{answer, joule, shown};
 use super::range::Range;
-use super::tracked::Tracked;
+use super::retained::Retained;
 use super::trade::{Point, front};
 use super::tuned::{CURVES, DESIGNS, FORCES, Tuned, Tuning};
 use retune_store::Directory;
@@ -18,13 +18,13 @@ use retune_workbench::document::{Block, Document};
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Error> {
-    let shown = shown(tracked);
-    let retention = draw::retention(tracked, &shown, false);
+pub(super) fn write(retained: &Retained, directory: &Directory) -> Result<(), Error> {
+    let shown = shown(retained);
+    let retention = draw::retention(retained, &shown, false);
     let still =
-        tracked.curves.iter().any(|curve| curve.still).then(|| draw::retention(tracked, &shown, true));
-    let (path, range) = (draw::path(tracked, &shown), draw::range(tracked, &shown));
-    let force = forces::draw(tracked, &shown);
+        retained.curves.iter().any(|curve| curve.still).then(|| draw::retention(retained, &shown, true));
+    let (path, range) = (draw::path(retained, &shown), draw::range(retained, &shown));
+    let force = forces::draw(retained, &shown);
     let all =
         [("range.svg", &range), ("retention.svg", &retention), ("path.svg", &path), ("force.svg", &force)];
     for (name, drawing) in all.into_iter().chain(still.iter().map(|still| ("still.svg", still))) {
@@ -36,7 +36,7 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
         retention,
         "E1max, worst over each structure's own band, against its stiffness",
     )];
-    energy.extend([worst(tracked, &shown), cliffs(tracked, &shown)]);
+    energy.extend([worst(retained, &shown), cliffs(retained, &shown)]);
     let words = "The same with the band of frequencies where it is at the nominal k1";
     energy.extend(still.map(|still| figure("still.svg", still, words)));
     let sections = vec![
@@ -46,8 +46,8 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
             vec![
                 figure("range.svg", range, "The least E1max at the nominal k1 against the retention range"),
                 Block::Words(RULE.to_owned()),
-                ranges(tracked, &shown),
-                Block::List(shown.iter().map(|&i| traded(tracked, i, &tracked.dampers[i])).collect()),
+                ranges(retained, &shown),
+                Block::List(shown.iter().map(|&i| traded(retained, i, &retained.dampers[i])).collect()),
             ],
         ),
         (
@@ -59,14 +59,14 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
                     force,
                     "E1max of the nominal designs as a share of that without a damper",
                 ),
-                forces(tracked, &shown),
+                forces(retained, &shown),
             ],
         ),
         ("energy", "E1max along k1", energy),
         (
             "designs",
             "Designs",
-            vec![designs(tracked, &shown), figure("path.svg", path, "The re-tuned designs against k1")],
+            vec![designs(retained, &shown), figure("path.svg", path, "The re-tuned designs against k1")],
         ),
         (
             "data",
@@ -80,8 +80,8 @@ pub(super) fn write(tracked: &Tracked, directory: &Directory) -> Result<(), Erro
     ];
     let document = Document {
         title: "How long a tuning lasts".to_owned(),
-        command: "retune track",
-        opening: vec![Block::List(answer(tracked)), Block::Words(asked(tracked))],
+        command: "retune retention",
+        opening: vec![Block::List(answer(retained)), Block::Words(asked(retained))],
         sections,
     };
     directory.write("README.md", &document.markdown())?;
@@ -94,7 +94,7 @@ const RULE: &str = "A damper does its work at a stiffness k1 if its reduction, 1
     counted by the factor by which k1 may rise and fall, the smaller of its two sides.";
 
 /// What was compared.
-fn asked(Tracked { dampers, bounds, .. }: &Tracked) -> String {
+fn asked(Retained { dampers, bounds, .. }: &Retained) -> String {
     let Some(first) = dampers.first() else { return String::new() };
     let samples = first.samples.map(|samples| format!(" on {samples} frequencies")).unwrap_or_default();
     format!(
@@ -111,11 +111,11 @@ fn asked(Tracked { dampers, bounds, .. }: &Tracked) -> String {
 }
 
 /// The values at the stiffnesses that were tuned for.
-fn worst(tracked: &Tracked, shown: &[usize]) -> Block {
-    let (dampers, mut rows) = (&tracked.dampers, Vec::new());
+fn worst(retained: &Retained, shown: &[usize]) -> Block {
+    let (dampers, mut rows) = (&retained.dampers, Vec::new());
     for &number in shown {
         let damper = &dampers[number];
-        for kept in damper.kept.iter().filter(|kept| tracked.is_new(number, kept.tuning)) {
+        for kept in damper.kept.iter().filter(|kept| retained.is_new(number, kept.tuning)) {
             let mut row = vec![damper.name.clone(), kept.tuning.name().to_owned()];
             row.extend(damper.anew.iter().map(|(k1, _)| joule(damper.energy(&kept.at, *k1))));
             rows.push(row);
@@ -132,7 +132,7 @@ fn worst(tracked: &Tracked, shown: &[usize]) -> Block {
 }
 
 /// The cliffs of the curves.
-fn cliffs(Tracked { dampers, curves, .. }: &Tracked, shown: &[usize]) -> Block {
+fn cliffs(Retained { dampers, curves, .. }: &Retained, shown: &[usize]) -> Block {
     let mut lines = Vec::new();
     for curve in curves.iter().filter(|curve| curve.damper.is_some_and(|damper| shown.contains(&damper))) {
         let (Some(number), Some(tuning)) = (curve.damper, curve.tuning) else { continue };
@@ -162,8 +162,8 @@ fn cliffs(Tracked { dampers, curves, .. }: &Tracked, shown: &[usize]) -> Block {
 }
 
 /// The ranges of each design that is kept.
-fn ranges(tracked: &Tracked, shown: &[usize]) -> Block {
-    let Tracked { dampers, kept, .. } = tracked;
+fn ranges(retained: &Retained, shown: &[usize]) -> Block {
+    let Retained { dampers, kept, .. } = retained;
     let cells = |range: Option<Range>| match range {
         None => ["none", "", ""].map(str::to_owned),
         Some(range) => {
@@ -182,7 +182,7 @@ fn ranges(tracked: &Tracked, shown: &[usize]) -> Block {
     };
     let own = |(tuning, point): &&(&'static str, Point)| {
         let is_paper = *tuning == Tuning::Paper.name();
-        shown.contains(&point.damper) && (!is_paper || tracked.is_new(point.damper, Tuning::Paper))
+        shown.contains(&point.damper) && (!is_paper || retained.is_new(point.damper, Tuning::Paper))
     };
     let mut head = vec!["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "factor"];
     if still {
@@ -197,7 +197,7 @@ fn ranges(tracked: &Tracked, shown: &[usize]) -> Block {
 }
 
 /// The shares of the nominal designs under forces that halve.
-fn forces(Tracked { dampers, forced, .. }: &Tracked, shown: &[usize]) -> Block {
+fn forces(Retained { dampers, forced, .. }: &Retained, shown: &[usize]) -> Block {
     let row = |of: &Forced| {
         let steps = (0..of.points.len()).step_by(HALF).map(|step| rounded(of.share(step), 3));
         [dampers[of.damper].name.clone(), GAPS[usize::from(of.proportional)].to_owned()]
@@ -218,7 +218,7 @@ fn forces(Tracked { dampers, forced, .. }: &Tracked, shown: &[usize]) -> Block {
 }
 
 /// The trade of one damper in words.
-fn traded(Tracked { points, .. }: &Tracked, number: usize, damper: &Tuned) -> String {
+fn traded(Retained { points, .. }: &Retained, number: usize, damper: &Tuned) -> String {
     let front = front(points, number);
     let (Some(least), Some(widest)) = (front.first(), front.last()) else {
         return format!(
@@ -241,13 +241,13 @@ fn traded(Tracked { points, .. }: &Tracked, number: usize, damper: &Tuned) -> St
 }
 
 /// All designs.
-fn designs(tracked: &Tracked, shown: &[usize]) -> Block {
+fn designs(retained: &Retained, shown: &[usize]) -> Block {
     let own = |row: &&Row| {
-        let is_it = |damper: &&usize| tracked.dampers[**damper].name == row.damper;
+        let is_it = |damper: &&usize| retained.dampers[**damper].name == row.damper;
         let is_paper = row.label == Tuning::Paper.name();
-        shown.iter().find(is_it).is_some_and(|damper| !is_paper || tracked.is_new(*damper, Tuning::Paper))
+        shown.iter().find(is_it).is_some_and(|damper| !is_paper || retained.is_new(*damper, Tuning::Paper))
     };
-    let rows = tracked.table.rows.iter().filter(own).map(|row| {
+    let rows = retained.table.rows.iter().filter(own).map(|row| {
         let [k2, c2, d, c] = design_cells(&row.found.design, 4);
         vec![row.damper.clone(), row.label.clone(), k2, c2, d, c, joule(row.e1_max), row.verdict.to_owned()]
     });

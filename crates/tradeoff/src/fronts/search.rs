@@ -4,12 +4,12 @@
 
 use super::candidate::{CONTINUED, Candidate};
 use super::descents::Task;
-use super::fronts::{Fronts, GIVEN};
+use super::designs::{Fronts, GIVEN};
 use super::refinement::Under;
 use rayon::prelude::*;
-use retune_model::{Design, Measure, Scene};
+use retune_model::{Design, Measure, PerVariable, Scene};
 use retune_optim::Limit;
-use retune_study::{self as study, FrontsPlan, PerVariable, Study, Sweep, clipped};
+use retune_study::{self as study, FrontsPlan, Study, Sweep, clipped};
 use retune_workbench::certify::judge;
 use retune_workbench::look::{finer, look};
 use retune_workbench::needs::Largest;
@@ -28,8 +28,9 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
     let mut fronts = Fronts::new(plan);
     let mut tasks = Vec::new();
     for damper in 0..fronts.plan.dampers.len() {
-        if let Some(place) = fronts.plan.dampers[damper].1.scene.damper {
-            let at = Design::of(&place);
+        let (_, study) = &fronts.plan.dampers[damper];
+        if let Some(place) = study.scene.damper {
+            let at = Design::of_varied(&place, study.varied());
             fronts.given.extend(fronts.look(damper, at, GIVEN));
         }
     }

@@ -1,10 +1,11 @@
 //! The figures of `fronts`.
 
 use super::candidate::Candidate;
-use super::fronts::{Fronts, Row};
+use super::designs::{Fronts, Row};
 use crate::caption::{made_by, words};
 use retune_figures::colour::{BLACK, BLUE, Colour, ORANGE, PURPLE, VERMILION};
 use retune_figures::{Axis, Chart, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing};
+use retune_model::Parameter;
 use retune_study::Sweep;
 
 /// A colour for each damper, of what was found and of the damper in its study.
@@ -91,7 +92,7 @@ pub(super) fn front(fronts: &Fronts) -> Drawing {
     let all = || fronts.designs.iter().chain(&fronts.given);
     let top = 1.06 * all().map(|design| design.e1_max).fold(0.0, f64::max);
     let chart = |which: usize| {
-        let value = |design: &Candidate| [design.stroke, design.force, design.at.k2.get()][which];
+        let value = |design: &Candidate| [design.stroke, design.force, design.at.get(Parameter::K2)][which];
         let point = |design: &Candidate| (value(design), design.e1_max);
         let most = all().map(value).fold(0.0, f64::max);
         let mut layers = Vec::new();

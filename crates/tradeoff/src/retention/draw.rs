@@ -1,6 +1,6 @@
-//! The figures of `track`: E1max along k1, the re-tuned designs, and the least E1max against the retention range.
+//! The figures of `retention`: E1max along k1, the re-tuned designs, and the least E1max against the retention range.
 
-use super::tracked::Tracked;
+use super::retained::Retained;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
 use crate::caption::{made_by, words};
@@ -32,9 +32,9 @@ const fn line(tuning: Tuning) -> Stroke {
 }
 
 /// E1max against k1: a chart for each damper; with the band of each structure, or with that of the nominal k1.
-pub(super) fn retention(tracked: &Tracked, shown: &[usize], still: bool) -> Drawing {
-    let Tracked { dampers, thresholds, .. } = tracked;
-    let curves = || tracked.curves.iter().filter(move |curve| curve.still == still);
+pub(super) fn retention(retained: &Retained, shown: &[usize], still: bool) -> Drawing {
+    let Retained { dampers, thresholds, .. } = retained;
+    let curves = || retained.curves.iter().filter(move |curve| curve.still == still);
     let values = curves().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
     let energies = Axis::around("worst E1max, J", Scale::Log, values);
     let none: Vec<(f64, f64)> =
@@ -117,9 +117,9 @@ fn above_nominal(damper: &Tuned) -> Vec<(f64, f64)> {
 }
 
 /// k2, c2, D and C of the re-tuned designs against k1.
-pub(super) fn path(tracked: &Tracked, shown: &[usize]) -> Drawing {
+pub(super) fn path(retained: &Retained, shown: &[usize]) -> Drawing {
     let dampers: Vec<(usize, &Tuned)> =
-        shown.iter().map(|&number| (number, &tracked.dampers[number])).collect();
+        shown.iter().map(|&number| (number, &retained.dampers[number])).collect();
     const LABELS: [&str; 4] = ["k2, N/m", "c2, N·s/m", "D, m", "C, m"];
     let chart = |which: usize| {
         let value = |damper: &Tuned| -> Vec<(f64, f64)> {
@@ -156,24 +156,24 @@ pub(super) fn path(tracked: &Tracked, shown: &[usize]) -> Drawing {
         columns: 2,
         stacked: false,
         legend: dampers.iter().map(key).collect(),
-        caption: vec![made_by(tracked.dampers.first().map(|damper| &damper.study))],
+        caption: vec![made_by(retained.dampers.first().map(|damper| &damper.study))],
     })
 }
 
 /// The least E1max at the nominal stiffness against the width of the retention range: the front of each damper as a line.
-pub(super) fn range(tracked: &Tracked, shown: &[usize]) -> Drawing {
-    let dampers = &tracked.dampers;
-    let points: Vec<&Point> = tracked.points.iter().filter(|point| shown.contains(&point.damper)).collect();
+pub(super) fn range(retained: &Retained, shown: &[usize]) -> Drawing {
+    let dampers = &retained.dampers;
+    let points: Vec<&Point> = retained.points.iter().filter(|point| shown.contains(&point.damper)).collect();
     let own = |(tuning, point): &&(&'static str, Point)| {
         let is_paper = *tuning == Tuning::Paper.name();
-        shown.contains(&point.damper) && (!is_paper || tracked.is_new(point.damper, Tuning::Paper))
+        shown.contains(&point.damper) && (!is_paper || retained.is_new(point.damper, Tuning::Paper))
     };
-    let kept: Vec<&(&'static str, Point)> = tracked.kept.iter().filter(own).collect();
+    let kept: Vec<&(&'static str, Point)> = retained.kept.iter().filter(own).collect();
     const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
     let at = |point: &Point| (point.factor(), point.e1_max);
     let mut layers = Vec::new();
     let mut legend = Vec::new();
-    let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(&tracked.points, damper)).collect();
+    let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(&retained.points, damper)).collect();
     let dominated =
         points.iter().filter(|point| !fronts[point.damper].iter().any(|other| other.at == point.at));
     let dominated: Vec<(f64, f64)> = dominated.map(|point| at(point)).collect();

@@ -1,8 +1,8 @@
 //! The descent of one design under a bound.
 
-use retune_model::{Design, Variable};
+use retune_model::{Design, Parameter, PerVariable};
 use retune_store::Journal;
-use retune_study::{Optimize, PerVariable, Search, Study, Sweep, clipped};
+use retune_study::{Optimize, Search, Study, Sweep, clipped};
 use retune_workbench::Error;
 use retune_workbench::tune::objective::searched;
 
@@ -34,7 +34,7 @@ pub(super) fn descend(
     let Under { damper, sweep, bound } = under;
     let stage = format!("{damper} {} {bound} {samples}", sweep.name());
     let foot = retune_workbench::tune::descent::descend(&of, &search, at, journal, &stage);
-    Ok(of.damper(&foot.end.x).ok().map(|damper| Design::of(&damper)))
+    Ok(of.damper(&foot.end.x).ok().map(|damper| Design::of_varied(&damper, &search.variables)))
 }
 
 /// The design at `start` if it has no more than `most` and keeps the limits; none if not. The journal keeps its value.
@@ -58,7 +58,11 @@ pub(super) fn screen(
     let Under { damper, sweep, bound } = under;
     let value =
         journal.value(&format!("{damper} {} {bound} {samples}", sweep.name()), at, most, look, |_| ());
-    Ok(of.damper(at).ok().filter(|_| value <= most).map(|damper| Design::of(&damper)))
+    Ok(of
+        .damper(at)
+        .ok()
+        .filter(|_| value <= most)
+        .map(|damper| Design::of_varied(&damper, &search.variables)))
 }
 
 /// A study that begins at `start`, its search, and the samples of its band.
@@ -78,19 +82,19 @@ fn from(study: &Study, start: &PerVariable<f64>) -> Result<(Study, Search, usize
 pub(super) fn starts(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
     const NEAR: f64 = 0.05;
     let own = clipped(at, optimize);
-    let at_bound = |variable: Variable| {
+    let at_bound = |variable: Parameter| {
         let value = own.get(variable)?;
         let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
         let is_near = value > low && value - low < NEAR * (high.unwrap_or(f64::INFINITY) - low).min(1.0);
         let mut start = own;
-        *start.get_mut(variable) = Some(low);
+        start.set(variable, Some(low));
         is_near.then_some(start)
     };
-    [own].into_iter().chain([Variable::D, Variable::C].into_iter().filter_map(at_bound)).collect()
+    [own].into_iter().chain([Parameter::D, Parameter::C].into_iter().filter_map(at_bound)).collect()
 }
 
 /// A parameter moved by a share of its side of the box, where it has two ends, or of its value.
-fn moved(at: &Design, optimize: &Optimize, variable: Variable, share: f64) -> f64 {
+fn moved(at: &Design, optimize: &Optimize, variable: Parameter, share: f64) -> f64 {
     let value = at.get(variable);
     let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
     let side = high.map_or(value, |high| (high - low).min(value.max(1.0)));
@@ -100,7 +104,7 @@ fn moved(at: &Design, optimize: &Optimize, variable: Variable, share: f64) -> f6
 /// Places about a design: along each parameter by a twentieth of its side.
 pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
     const FAR: f64 = 0.05;
-    let moved = |variable: Variable, sign: f64| {
+    let moved = |variable: Parameter, sign: f64| {
         let value = moved(at, optimize, variable, sign * FAR);
         Design::new(|other| if other == variable { value } else { at.get(other) }).ok()
     };
@@ -116,9 +120,9 @@ pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
 pub(super) fn scattered(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
     const FAR: f64 = 0.1;
     const PLACES: u32 = 128;
-    let value = |i: u32, variable: Variable| {
+    let value = |i: u32, variable: Parameter| {
         let (low, _) = optimize.bounds.get(variable).unwrap_or((0.0, None));
-        let is_gap = matches!(variable, Variable::D | Variable::C);
+        let is_gap = matches!(variable, Parameter::D | Parameter::C);
         if !optimize.vary.contains(&variable) || is_gap && at.get(variable) <= low {
             return at.get(variable);
         }
@@ -134,19 +138,21 @@ pub(super) fn on_sides(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>
     const PLACES: u32 = 320;
     /// Share of its upper bound at which a dashpot begins.
     const SMALL: f64 = 0.02;
-    let box_of = |variable: Variable| match optimize.bounds.get(variable) {
+    let box_of = |variable: Parameter| match optimize.bounds.get(variable) {
         Some((low, Some(high))) if optimize.vary.contains(&variable) => Some((low, high)),
         _ => None,
     };
-    let [Some((_, k2)), Some((_, c2))] = [Variable::K2, Variable::C2].map(box_of) else { return Vec::new() };
-    let gaps = [(Variable::D, Variable::C), (Variable::C, Variable::D)];
+    let [Some((_, k2)), Some((_, c2))] = [Parameter::K2, Parameter::C2].map(box_of) else {
+        return Vec::new();
+    };
+    let gaps = [(Parameter::D, Parameter::C), (Parameter::C, Parameter::D)];
     let sides =
         gaps.into_iter().filter_map(|(closed, open)| Some((closed, box_of(closed)?.0, open, box_of(open)?)));
     let places = sides.flat_map(|(closed, rest, open, (low, high))| {
         (0..PLACES).filter_map(move |i| {
             let value = |variable| match variable {
-                Variable::K2 => k2,
-                Variable::C2 => c2 * SMALL.powf(sobol(i, 0)),
+                Parameter::K2 => k2,
+                Parameter::C2 => c2 * SMALL.powf(sobol(i, 0)),
                 _ if variable == closed => rest,
                 _ if variable == open => low + (high - low) * sobol(i, 1),
                 _ => at.get(variable),

@@ -1,6 +1,6 @@
 //! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
-use retune_model::Design;
+use retune_model::{Design, Parameter};
 use retune_study::{Sweep, fields};
 use retune_workbench::certify::Verdict;
 use retune_workbench::needs::Largest;
@@ -44,7 +44,7 @@ impl Candidate {
     /// The value of a bounded quantity, in its unit.
     pub fn reached(&self, sweep: Sweep) -> f64 {
         match sweep {
-            Sweep::K2 => self.at.k2.get(),
+            Sweep::K2 => self.at.get(Parameter::K2),
             Sweep::Stroke => self.stroke,
             Sweep::ContactForce => self.force,
         }
@@ -85,7 +85,7 @@ impl Candidate {
 
     /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.
     pub fn dominates(&self, other: &Self) -> bool {
-        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.k2.get()];
+        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.get(Parameter::K2)];
         let pairs = || all(self).into_iter().zip(all(other));
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
     }
@@ -110,12 +110,15 @@ pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Orde
 #[cfg(test)]
 mod tests {
     use super::*;
-    use retune_model::NonNegative;
 
     #[test]
     fn regress_gaps_of_a_damper_without_walls_are_empty_fields() {
-        let number = |value| NonNegative::new(value).expect("not negative");
-        let at = Design { k2: number(215.0), c2: number(35.0), d: None, c: None, m2: None };
+        let value = |parameter| match parameter {
+            Parameter::K2 => 215.0,
+            Parameter::C2 => 35.0,
+            _ => f64::NAN,
+        };
+        let at = Design::new(value).expect("a design");
         let design = Candidate {
             damper: 0,
             at,

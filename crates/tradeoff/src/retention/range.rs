@@ -6,7 +6,7 @@
 
 use super::tuned::{on_samples, still};
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Design, Scene, Variable, den_hartog};
+use retune_model::{Bare, Coupled, Damper, Design, Parameter, Scene, den_hartog};
 use retune_optim::{Bounds, Failures, Options, Scaling, minimize};
 use retune_study::{Rule, Setting, Study};
 use retune_workbench::Error;
@@ -142,7 +142,7 @@ pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Thr
     let study = on_samples(study, samples, at)?;
     let (goal, settings) = (study.goal(), study.solver.settings());
     threshold.range(Care::RESULT, |k1, cutoff| {
-        let scene = study.scene_with(&[Setting::new("k1", k1)]);
+        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]);
         let found = scene.ok().and_then(|scene| goal.evaluate(&scene, &settings, cutoff).ok());
         found.map_or(f64::INFINITY, |found| found.energy)
     })
@@ -150,7 +150,7 @@ pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Thr
 
 /// The largest E1max that counts as half of the work at a stiffness, J.
 fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
-    let scene = study.scene_with(&[Setting::new("k1", k1)])?;
+    let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)])?;
     let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
     let damper = scene.damper.ok_or_else(no_damper)?;
     let omega = scene.forcing.frequency.get();
@@ -167,7 +167,8 @@ fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
 pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
     let tuned = |x: &[f64]| {
         let mut tmd = damper;
-        Variable::K2.set(&mut tmd, x[0]).and_then(|()| Variable::C2.set(&mut tmd, x[1])).map(|()| tmd)
+        let set = Parameter::K2.set_damper(&mut tmd, x[0]);
+        set.and_then(|()| Parameter::C2.set_damper(&mut tmd, x[1])).map(|()| tmd)
     };
     let steady = |x: &[f64], _cutoff: f64| {
         let worst = |tmd| Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;

@@ -1,0 +1,190 @@
+//! Where each parameter stands in a scene: its value, read and set.
+
+use super::Parameter;
+use crate::{Damper, Forcing, NonNegative, OutOfRange, PoissonRatio, Positive, Scene, Source};
+use schemars::{Schema, json_schema};
+
+/// Why a scene has no such parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Absent {
+    /// There is no damper.
+    #[error("the scene has no damper")]
+    NoDamper,
+    /// The damper has no walls: no gaps, no surfaces.
+    #[error("the damper has no walls")]
+    NoWalls,
+    /// Another number gives the forcing.
+    #[error("the forcing of the scene is given by `{0}`")]
+    Forcing(&'static str),
+}
+
+/// Why a parameter cannot be set.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Unsettable {
+    /// The scene does not have it.
+    #[error(transparent)]
+    Absent(#[from] Absent),
+    /// The value is not allowed.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+}
+
+/// Where a parameter stands in a scene, with its range.
+enum Place<'a> {
+    Positive(&'a mut Positive),
+    NonNegative(&'a mut NonNegative),
+    Poisson(&'a mut PoissonRatio),
+}
+
+impl Place<'_> {
+    fn get(&self) -> f64 {
+        match self {
+            Self::Positive(at) => at.get(),
+            Self::NonNegative(at) => at.get(),
+            Self::Poisson(at) => at.get(),
+        }
+    }
+
+    fn set(self, value: f64) -> Result<(), OutOfRange> {
+        match self {
+            Self::Positive(at) => *at = Positive::new(value)?,
+            Self::NonNegative(at) => *at = NonNegative::new(value)?,
+            Self::Poisson(at) => *at = PoissonRatio::new(value)?,
+        }
+        Ok(())
+    }
+}
+
+impl Parameter {
+    /// Where it stands in a scene.
+    fn place(self, scene: &mut Scene) -> Result<Place<'_>, Absent> {
+        let has = scene.forcing.amplitude().map_or("start", |(own, _)| own.symbol());
+        let Scene { primary, forcing, damper } = scene;
+        let place = match (self, &mut forcing.source) {
+            (Self::M1, _) => Place::Positive(&mut primary.mass),
+            (Self::C1, _) => Place::NonNegative(&mut primary.damping),
+            (Self::K1, _) => Place::NonNegative(&mut primary.stiffness),
+            (Self::P, Source::Force(at))
+            | (Self::Imbalance, Source::Imbalance(at))
+            | (Self::Base, Source::Base(at)) => Place::NonNegative(at),
+            (Self::Omega, Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) => {
+                Place::NonNegative(&mut forcing.frequency)
+            }
+            (Self::P | Self::Imbalance | Self::Base | Self::Omega, _) => return Err(Absent::Forcing(has)),
+            _ => return self.place_in(damper.as_mut().ok_or(Absent::NoDamper)?),
+        };
+        Ok(place)
+    }
+
+    /// Where it stands in a damper.
+    fn place_in(self, damper: &mut Damper) -> Result<Place<'_>, Absent> {
+        let Damper { mass, stiffness, damping, rest_distance, clearance, contact } = damper;
+        match self {
+            Self::M2 => return Ok(Place::Positive(mass)),
+            Self::K2 => return Ok(Place::NonNegative(stiffness)),
+            Self::C2 => return Ok(Place::NonNegative(damping)),
+            _ => {}
+        }
+        let contact = contact.as_mut().ok_or(Absent::NoWalls)?;
+        let place = match self {
+            Self::D => Place::NonNegative(rest_distance),
+            Self::C => Place::NonNegative(clearance),
+            Self::Q => Place::Positive(&mut contact.coefficient),
+            Self::E1 => Place::Positive(&mut contact.young_1),
+            Self::Nu1 => Place::Poisson(&mut contact.poisson_1),
+            Self::E2 => Place::Positive(&mut contact.young_2),
+            Self::Nu2 => Place::Poisson(&mut contact.poisson_2),
+            Self::E3 => Place::Positive(&mut contact.young_3),
+            Self::Nu3 => Place::Poisson(&mut contact.poisson_3),
+            Self::E4 => Place::Positive(&mut contact.young_4),
+            Self::Nu4 => Place::Poisson(&mut contact.poisson_4),
+            _ => Place::Positive(&mut contact.radius),
+        };
+        Ok(place)
+    }
+
+    /// Its value in a scene, in its SI unit; none where the scene has no such parameter.
+    pub fn of(self, scene: &Scene) -> Option<f64> {
+        self.place(&mut scene.clone()).ok().map(|place| place.get())
+    }
+
+    /// Gives it a value in a scene, in its SI unit.
+    ///
+    /// # Errors
+    /// The scene does not have it, or the value is out of its range; the scene is then unchanged.
+    pub fn set(self, scene: &mut Scene, value: f64) -> Result<(), Unsettable> {
+        Ok(self.place(scene)?.set(value)?)
+    }
+
+    /// Its value in a damper; none where it is not one of a damper, or the damper has no walls.
+    pub fn of_damper(self, damper: &Damper) -> Option<f64> {
+        let mut damper = *damper;
+        let place = self.is_of_damper().then(|| self.place_in(&mut damper).ok()).flatten();
+        place.map(|place| place.get())
+    }
+
+    /// Its value in a damper; NaN where it has none.
+    pub fn get(self, damper: &Damper) -> f64 {
+        self.of_damper(damper).unwrap_or(f64::NAN)
+    }
+
+    /// Gives it a value in a damper.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn set_damper(self, damper: &mut Damper, value: f64) -> Result<(), Unsettable> {
+        if !self.is_of_damper() {
+            return Err(Absent::NoDamper.into());
+        }
+        Ok(self.place_in(damper)?.set(value)?)
+    }
+
+    /// Whether its value must be above zero, of those that a search may vary.
+    const fn is_positive(self) -> bool {
+        matches!(self, Self::M2 | Self::R)
+    }
+
+    /// Checks a value of one of [`Self::VARIED`], without a damper.
+    ///
+    /// # Errors
+    /// It is out of its range.
+    pub fn check(self, value: f64) -> Result<(), OutOfRange> {
+        if self.is_positive() {
+            Positive::new(value).map(|_| ())
+        } else {
+            NonNegative::new(value).map(|_| ())
+        }
+    }
+
+    /// The range of one of [`Self::VARIED`] as a JSON Schema.
+    pub(crate) fn range_schema(self) -> Schema {
+        if self.is_positive() {
+            json_schema!({ "type": "number", "exclusiveMinimum": 0.0 })
+        } else {
+            json_schema!({ "type": "number", "minimum": 0.0 })
+        }
+    }
+
+    /// The scene with this parameter at `value`, in its SI unit; as it is where it has no such parameter.
+    ///
+    /// # Errors
+    /// The value is out of the parameter's range.
+    pub fn at(self, mut scene: Scene, value: f64) -> Result<Scene, OutOfRange> {
+        match self.set(&mut scene, value) {
+            Err(Unsettable::OutOfRange(refused)) => Err(refused),
+            Ok(()) | Err(Unsettable::Absent(_)) => Ok(scene),
+        }
+    }
+}
+
+impl Forcing {
+    /// The number that sets the size of the motion, one of [`Parameter::AMPLITUDES`]. A free decay has none.
+    pub fn amplitude(&self) -> Option<(Parameter, NonNegative)> {
+        match self.source {
+            Source::Force(amplitude) => Some((Parameter::P, amplitude)),
+            Source::Imbalance(amplitude) => Some((Parameter::Imbalance, amplitude)),
+            Source::Base(amplitude) => Some((Parameter::Base, amplitude)),
+            Source::Decay(_) => None,
+        }
+    }
+}

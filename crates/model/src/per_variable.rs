@@ -1,0 +1,136 @@
+//! Something for some of the parameters that a search may vary; in a file, an object with their symbols.
+
+use crate::Parameter;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+const COUNT: usize = Parameter::VARIED.len();
+
+/// The symbols of [`Parameter::VARIED`], in its order.
+pub const VARIED: [&str; COUNT] = {
+    let mut symbols = [""; COUNT];
+    let mut i = 0;
+    while i < COUNT {
+        symbols[i] = Parameter::VARIED[i].symbol();
+        i += 1;
+    }
+    symbols
+};
+
+/// Something for each of [`Parameter::VARIED`], or nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerVariable<T>([Option<T>; COUNT]);
+
+impl<T> Default for PerVariable<T> {
+    fn default() -> Self {
+        Self([const { None }; COUNT])
+    }
+}
+
+/// The place of a parameter among those that may be varied.
+const fn number(parameter: Parameter) -> Option<usize> {
+    let number = parameter as usize;
+    if number < COUNT { Some(number) } else { None }
+}
+
+impl<T: Copy> PerVariable<T> {
+    /// What is given for a parameter.
+    pub fn get(&self, parameter: Parameter) -> Option<T> {
+        number(parameter).and_then(|i| self.0[i])
+    }
+
+    /// Gives something, or nothing, for a parameter; of one that no search may vary it is not kept.
+    pub fn set(&mut self, parameter: Parameter, value: Option<T>) {
+        if let Some(i) = number(parameter) {
+            self.0[i] = value;
+        }
+    }
+
+    /// What is given for a parameter, to be changed.
+    pub fn get_mut(&mut self, parameter: Parameter) -> Option<&mut T> {
+        number(parameter).and_then(|i| self.0[i].as_mut())
+    }
+
+    /// The parameters for which something is given, in the order of the paper's tables.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        Parameter::VARIED.into_iter().filter(|&parameter| self.get(parameter).is_some()).collect()
+    }
+}
+
+impl PerVariable<f64> {
+    /// The values of some parameters.
+    pub fn of(parameters: &[Parameter], values: &[f64]) -> Self {
+        let mut all = Self::default();
+        for (&parameter, &value) in parameters.iter().zip(values) {
+            all.set(parameter, Some(value));
+        }
+        all
+    }
+}
+
+impl<T: Copy + Serialize> Serialize for PerVariable<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let given = Parameter::VARIED.into_iter().filter_map(|one| Some((one.symbol(), self.get(one)?)));
+        serializer.collect_map(given)
+    }
+}
+
+impl<'de, T: Copy + Deserialize<'de>> Deserialize<'de> for PerVariable<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Object<T>(PhantomData<T>);
+        impl<'de, T: Copy + Deserialize<'de>> Visitor<'de> for Object<T> {
+            type Value = PerVariable<T>;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "an object with some of {}", VARIED.join(", "))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut all = PerVariable::default();
+                while let Some(name) = map.next_key::<Cow<'de, str>>()? {
+                    let parameter = varied(&name).ok_or_else(|| A::Error::unknown_field(&name, &VARIED))?;
+                    if all.get(parameter).is_some() {
+                        return Err(A::Error::duplicate_field(parameter.symbol()));
+                    }
+                    all.set(parameter, map.next_value()?);
+                }
+                Ok(all)
+            }
+        }
+        deserializer.deserialize_map(Object(PhantomData))
+    }
+}
+
+/// The parameter with this symbol, of those that a search may vary.
+pub fn varied(symbol: &str) -> Option<Parameter> {
+    Parameter::VARIED.into_iter().find(|parameter| parameter.symbol() == symbol)
+}
+
+impl<T: JsonSchema> JsonSchema for PerVariable<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("PerVariable_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let schema = generator.subschema_for::<Option<T>>();
+        json_schema!({
+            "description": "Something for each parameter that may be tuned.",
+            "type": "object",
+            "properties": properties(|_| schema.clone()),
+            "additionalProperties": false
+        })
+    }
+}
+
+/// The fields of a schema: one for each parameter that a search may vary, described.
+pub(crate) fn properties(schema: impl Fn(Parameter) -> Schema) -> serde_json::Map<String, serde_json::Value> {
+    let field = |parameter: Parameter| {
+        let mut schema = schema(parameter);
+        schema.insert("description".to_owned(), parameter.sentence().into());
+        (parameter.symbol().to_owned(), schema.to_value())
+    };
+    Parameter::VARIED.map(field).into_iter().collect()
+}
