@@ -27,7 +27,7 @@ fn desk() -> Desk {
     desk.write_json("fronts.json", &fronts);
     for (name, base) in [("tmd.json", "fronts-tmd.json"), ("ssvi.json", "fronts-ssvi.json")] {
         let mut study = committed(base);
-        study["window"] = json!({ "t0": 10, "T": 15 });
+        study["window"] = json!({ "t0": 6, "T": 10 });
         // Beside the resonance, where motions are regular and certificates quick.
         let band = &mut study["optimize"]["objective"]["omega"];
         (band["from"], band["to"], band["samples"]) = (json!(7.2), json!(7.8), json!(3));

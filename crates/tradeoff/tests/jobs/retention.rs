@@ -104,10 +104,15 @@ fn contract_retention_begins_at_the_tuned_design() {
     }
 }
 
-/// A structure of other stiffness may have a spring of the same ratio, unless the table says otherwise.
+/// A structure of other stiffness may have a spring of the same ratio, unless the table says otherwise. The damper is a linear one, whose
+/// searches are quick.
 #[test]
 fn contract_bounds_on_k2_follow_k1_unless_they_are_fixed() {
     let desk = moving();
+    let mut study = committed("retune-tmd-free.json");
+    study["optimize"]["bounds"]["k2"] = json!([10, 1000]);
+    study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 20 });
+    desk.write_json("one.json", &study);
     let bounds = |out: &str| {
         good(retention(&request(&desk, "retune.json", out), &stiffnesses(&[7.9e4]), &Silent));
         let study = |place: &str| desk.read_json(&format!("{out}/{place}/one/study.json"));
