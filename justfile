@@ -80,8 +80,10 @@ check STUDY *OPTIONS:
 
 # Retention of tuning along the stiffness k1, N/m, into results/retune, e.g. `just retune 20000 30000 50000 60000`
 [group('compare')]
-retune +K1:
+retention +K1:
     {{retune}} retention "$@"
+
+alias retune := retention
 
 # Pareto fronts of both dampers under bounds on k2 and stroke, into results/fronts; also `just fronts studies/fronts-soft.json`
 [group('compare')]

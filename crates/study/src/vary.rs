@@ -6,10 +6,19 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 
+/// One of the list.
+struct Varied(Parameter);
+
+impl<'de> Deserialize<'de> for Varied {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = Cow::<'de, str>::deserialize(deserializer)?;
+        varied(&name).map(Self).ok_or_else(|| D::Error::unknown_variant(&name, &VARIED))
+    }
+}
+
 /// Reads it; a parameter that no search may vary is refused.
 pub fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Parameter>, D::Error> {
-    let known = |name: &Cow<'de, str>| varied(name).ok_or_else(|| D::Error::unknown_variant(name, &VARIED));
-    Vec::<Cow<'de, str>>::deserialize(deserializer)?.iter().map(known).collect()
+    Ok(Vec::<Varied>::deserialize(deserializer)?.into_iter().map(|Varied(parameter)| parameter).collect())
 }
 
 /// Its schema: symbols, each with its description.

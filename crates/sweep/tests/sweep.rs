@@ -109,8 +109,12 @@ fn contract_a_table_fits_the_screen_and_the_answer_comes_first() {
 #[test]
 fn contract_what_cannot_be_swept_is_refused_with_what_to_do() {
     let cases: [(Options, &str, &str); 8] = [
-        (options("omega", "1kHz", "8", 3), "", "--from: \"1kHz\" is no frequency: give a number in rad/s"),
-        (options("k1", "soft", "8", 3), "", "--from: \"soft\" is not a number: give one in N/m"),
+        (
+            options("omega", "1kHz", "8", 3),
+            "",
+            "--from: \"1kHz\" is not a number in rad/s, nor one with its unit",
+        ),
+        (options("k1", "soft", "8", 3), "", "--from: \"soft\" is not a number in N/m, nor one with its unit"),
         (options("k1", "8", "3", 3), "", "--from, --to, --points: the range is empty"),
         (
             options("k1", "3", "8", 1),

@@ -57,7 +57,7 @@ fn contract_unknown_fields_are_named_with_a_suggestion() {
     refused(
         "/optimize/vary",
         json!(["c3"]),
-        "optimize.vary[0]: \"c3\" is not allowed here; did you mean `c2`? allowed: k2, c2, D, C, m2",
+        "optimize.vary[0]: \"c3\" is not allowed here; did you mean `c2`? allowed: k2, c2, D, C, m2, R",
     );
 }
 
@@ -180,7 +180,7 @@ fn contract_contradictions_in_a_search_are_named() {
         json!([400, 100]),
         "optimize.bounds.k2: [400, 100] is not allowed here: give [smallest, largest] with 0 <= smallest < largest",
     );
-    refused("/optimize/vary", json!([]), "optimize.vary: empty: name at least one of k2, c2, D, C, m2");
+    refused("/optimize/vary", json!([]), "optimize.vary: empty: name at least one of k2, c2, D, C, m2, R");
     refused("/optimize/vary", json!(["k2", "C", "k2"]), "optimize.vary: `k2` is named twice");
     refused(
         "/optimize/vary",
