@@ -5,7 +5,7 @@ use crate::protocol::{Answer, Place};
 use crate::refused::Refused;
 use crate::start::Start;
 use retune_model::Parameter;
-use retune_optim::{Objective, PeakEnergy, Response, Scale, Stiffnesses, Stop, energy, minimize};
+use retune_optim::{DesignObjective, Objective, Response, Scale, Stiffnesses, Stop, energy, minimize};
 use retune_study::{Search, Study, rounded};
 use retune_workbench::tune::{log, objective::searched};
 use std::ops::ControlFlow;
@@ -79,7 +79,7 @@ pub fn tune(
 }
 
 fn refine(
-    objective: &PeakEnergy,
+    objective: &DesignObjective,
     search: &Search,
     first: &[f64],
     send: &(dyn Fn(Answer) + Sync),
@@ -107,7 +107,12 @@ fn refine(
 }
 
 /// The value of a design, as searches see it; none better than any if it has none or is stopped.
-fn value(objective: &PeakEnergy, design: &[f64], cutoff: f64, goes_on: &(dyn Fn() -> bool + Sync)) -> f64 {
+fn value(
+    objective: &DesignObjective,
+    design: &[f64],
+    cutoff: f64,
+    goes_on: &(dyn Fn() -> bool + Sync),
+) -> f64 {
     let found = objective.scene(design).and_then(|scene| objective.evaluate_while(&scene, cutoff, goes_on));
     found.map_or(f64::INFINITY, |found| found.value)
 }
@@ -179,7 +184,7 @@ impl Map {
     /// Rows from the middle outwards would be prettier; from below they are easier to follow.
     fn draw(
         &self,
-        objective: &PeakEnergy,
+        objective: &DesignObjective,
         first: &[f64],
         send: &(dyn Fn(Answer) + Sync),
         is_stale: &(dyn Fn() -> bool + Sync),

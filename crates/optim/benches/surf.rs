@@ -3,7 +3,7 @@
 //! `just lab bench-surf`.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
-use retune_optim::{Axis, Grid, Parameter, PeakEnergy, Scale, surf};
+use retune_optim::{Axis, DesignObjective, Grid, Parameter, Scale, surf};
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::SSVI;
 use std::time::Instant;
@@ -58,7 +58,7 @@ fn timed(points: usize, threads: usize, (rtol, most): (f64, f64)) -> (f64, u64) 
     let window = Window { from: 50.0, to: 100.0 };
     let settings = Settings { rtol, ..Settings::default() };
     let objective =
-        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, settings);
+        DesignObjective::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, settings);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let begun = Instant::now();
     pool.install(|| surf(&grid, |design| objective.value_up_to(design, most), |_| ()));

@@ -1,7 +1,7 @@
 //! Searches for the parameters that minimise an objective.
 //!
 //! The methods receive a closure and do not depend on what it computes: no model, no files, no clocks. The only part
-//! of this crate that knows the model is the objective, [`PeakEnergy`]: E1max as a function of a design, at one frequency or
+//! of this crate that knows the model is the objective, [`DesignObjective`]: E1max as a function of a design, at one frequency or
 //! the worst over a band. Progress is reported to the caller's observers; nothing is printed.
 //!
 //! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
@@ -15,12 +15,12 @@ pub mod search;
 
 pub use objective::band::{Band, worst_over};
 pub use objective::descent::Foot;
+pub use objective::design_objective::{Counts, DesignObjective, Failures};
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
 pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
 pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
-pub use objective::peak_energy::{Counts, Failures, PeakEnergy};
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;
 pub use objective::watch::GoesOn;

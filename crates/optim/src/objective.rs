@@ -1,12 +1,13 @@
 //! The objective of a damper's design.
 //!
 //! Read `spec` (the specification in a study), `evaluate` (its value for a scene: an `evaluation`), then its parts: `band` (the worst
-//! over frequencies), `ensemble` (a statistic over small errors), `limits`; `peak_energy`, the function that searches call; and its
+//! over frequencies), `ensemble` (a statistic over small errors), `limits`; `design_objective`, the function that searches call; and its
 //! derivatives, `gradient` (of the value) and `pieces` (of each of the peaks that it is the largest of), by which a `descent` goes down.
 //! `needs` has the largest value of every measure.
 
 pub mod band;
 pub mod descent;
+pub mod design_objective;
 pub mod ensemble;
 pub mod evaluate;
 pub mod evaluation;
@@ -14,7 +15,6 @@ pub mod gradient;
 pub mod limits;
 pub mod motions;
 pub mod needs;
-pub mod peak_energy;
 pub mod pieces;
 pub mod spec;
 pub mod unusable;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use retune_dynamics::parameter::evenly;
 use retune_figures::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
 use retune_model::Measure;
-use retune_optim::{Goal, Objective, Parameter, PeakEnergy, Response};
+use retune_optim::{DesignObjective, Goal, Objective, Parameter, Response};
 use retune_study::Study;
 use retune_study::short;
 use retune_workbench::Error;
@@ -176,7 +176,8 @@ fn surface(
     let damper = study.scene.damper.ok_or_else(|| refuse("the study has no damper".into()))?;
     let &Plotted { name, words, points, stiffest, .. } = plotted;
     let goal = Goal { objective: plotted.objective.clone(), ..plan.window().into() };
-    let objective = PeakEnergy::new(study.scene, damper, surface.variables.to_vec(), goal, plan.settings());
+    let objective =
+        DesignObjective::new(study.scene, damper, surface.variables.to_vec(), goal, plan.settings());
     let [xs, ys] = surface.ranges.map(|(from, to)| evenly(from, to, points));
     let designs: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
     let value = |design: &[f64; 2]| {

@@ -8,7 +8,7 @@ use super::stiff::stiffness;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Measure, Scene};
-use retune_optim::{Failures, Minimum, Objective, Options, Parameter, PeakEnergy, Row, Stop, minimize};
+use retune_optim::{DesignObjective, Failures, Minimum, Objective, Options, Parameter, Row, Stop, minimize};
 use retune_solver::{Settings, Window};
 use retune_study::Setting;
 use retune_workbench::Error;
@@ -36,7 +36,7 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
     );
     let damper = plan.ssvi.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))?;
     let objective = |window: Window, settings: Settings| {
-        PeakEnergy::new(plan.ssvi.scene, damper, Parameter::PAPER.to_vec(), window, settings)
+        DesignObjective::new(plan.ssvi.scene, damper, Parameter::PAPER.to_vec(), window, settings)
     };
     let own = objective(plan.window(), plan.settings());
     worth(plan, &objective, &mut item)?;
@@ -53,7 +53,7 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
 
 fn worth(
     plan: &Plan,
-    objective: &(impl Fn(Window, Settings) -> PeakEnergy + Sync),
+    objective: &(impl Fn(Window, Settings) -> DesignObjective + Sync),
     item: &mut Item,
 ) -> Result<(), Error> {
     let head = [
@@ -160,7 +160,7 @@ fn left_out(plan: &Plan) -> Result<Grid, Error> {
     Ok(grid)
 }
 
-fn search(objective: &PeakEnergy, start: [f64; 4]) -> Result<(Vec<Row>, Minimum), Error> {
+fn search(objective: &DesignObjective, start: [f64; 4]) -> Result<(Vec<Row>, Minimum), Error> {
     let mut rows = Vec::new();
     let watch = |row: &Row| {
         rows.push(row.clone());

@@ -3,7 +3,7 @@
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
 use rayon::prelude::*;
-use retune_optim::PeakEnergy;
+use retune_optim::DesignObjective;
 use std::error::Error;
 use std::time::Instant;
 
@@ -15,7 +15,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let study = retune_study::read(study.as_ref())?;
     let search = study.search()?;
     let settings = study.solver.settings();
-    let objective = PeakEnergy::new(study.scene, search.damper, search.variables, study.goal(), settings);
+    let objective =
+        DesignObjective::new(study.scene, search.damper, search.variables, study.goal(), settings);
     let lines = std::io::stdin().lines().collect::<Result<Vec<_>, _>>()?;
     let design = |line: &String| line.split(' ').map(str::parse).collect::<Result<Vec<f64>, _>>();
     let designs = lines.iter().map(design).collect::<Result<Vec<_>, _>>()?;

@@ -9,7 +9,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use retune_model::Measure;
-use retune_optim::{Evaluation, GoesOn, Limit, Objective, Parameter, PeakEnergy, Response};
+use retune_optim::{DesignObjective, Evaluation, GoesOn, Limit, Objective, Parameter, Response};
 use retune_study::{Rule, Setting, Study, read::from_text};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub struct Core {
     pub(crate) study: Study,
     /// What its results are said to be made of: the file that it was read from, if any.
     pub(crate) file: Option<String>,
-    objective: Option<Arc<PeakEnergy>>,
+    objective: Option<Arc<DesignObjective>>,
     /// Whether one evaluation may take long: it makes many runs, or a long one.
     takes_long: bool,
     /// Whether stroke and force are known: a limit asks for them, or the stroke is that of a steady motion.
@@ -210,7 +210,13 @@ impl Core {
                 let search = study.search().map_err(|rule| Fault::of_rule(&rule))?;
                 let settings = study.solver.settings();
                 let goal = study.goal();
-                Some(Arc::new(PeakEnergy::new(study.scene, search.damper, search.variables, goal, settings)))
+                Some(Arc::new(DesignObjective::new(
+                    study.scene,
+                    search.damper,
+                    search.variables,
+                    goal,
+                    settings,
+                )))
             }
         };
         let is_one = |term: &Objective| {
@@ -230,7 +236,7 @@ impl Core {
         self.objective.as_ref().map_or(&[], |objective| objective.variables())
     }
 
-    fn objective(&self) -> Result<&Arc<PeakEnergy>, Fault> {
+    fn objective(&self) -> Result<&Arc<DesignObjective>, Fault> {
         self.objective.as_ref().ok_or_else(|| Fault::of_rule(&Rule::NoOptimize))
     }
 
@@ -259,7 +265,12 @@ impl Core {
     }
 
     /// Evaluates a design: here, or on the pool if that may take long, so that Ctrl-C ends it.
-    fn found(&self, py: Python<'_>, objective: &Arc<PeakEnergy>, design: &[f64]) -> PyResult<Evaluation> {
+    fn found(
+        &self,
+        py: Python<'_>,
+        objective: &Arc<DesignObjective>,
+        design: &[f64],
+    ) -> PyResult<Evaluation> {
         if !self.takes_long {
             let here = || Ok(objective.evaluate(&objective.scene(design)?, f64::INFINITY)?);
             return Ok(py.detach(|| caught(here))?);

@@ -6,7 +6,7 @@ use crate::tune::objective::objective;
 use crate::{Error, Request};
 use input::Line;
 use rayon::prelude::*;
-use retune_optim::{Evaluation, Parameter, PeakEnergy, Unusable};
+use retune_optim::{DesignObjective, Evaluation, Parameter, Unusable};
 use retune_study::Study;
 use serde_json::json;
 use std::io::{BufRead, ErrorKind, Write};
@@ -103,7 +103,7 @@ pub fn evaluate<I: BufRead + Send + 'static>(
 }
 
 fn answer<I: BufRead + Send + 'static>(
-    objective: &PeakEnergy,
+    objective: &DesignObjective,
     json: bool,
     Streams { input, answers, complaints }: Streams<'_, I>,
 ) -> Result<(), Error> {
@@ -159,7 +159,7 @@ fn plain(found: &Result<Evaluation, LineError>) -> String {
     }
 }
 
-fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> String {
+fn object(objective: &DesignObjective, found: &Result<Evaluation, LineError>) -> String {
     let found = match found {
         Ok(found) => found,
         Err(reason) => return json!({ "error": reason.to_string() }).to_string(),
@@ -177,7 +177,7 @@ fn object(objective: &PeakEnergy, found: &Result<Evaluation, LineError>) -> Stri
 }
 
 /// Evaluates a design given as numbers separated by blanks or commas.
-fn value(objective: &PeakEnergy, line: &Line) -> Result<Evaluation, LineError> {
+fn value(objective: &DesignObjective, line: &Line) -> Result<Evaluation, LineError> {
     let Line::Text(line) = line else { return Err(LineError::Long) };
     let texts: Vec<&str> =
         line.split(|c: char| c.is_whitespace() || c == ',').filter(|text| !text.is_empty()).collect();

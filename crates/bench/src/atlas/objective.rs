@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use retune_figures::colour::{BLACK, BLUE, VERMILION};
 use retune_figures::{Axis, Shape};
 use retune_model::OutOfRange;
-use retune_optim::{Minimum, Options, Parameter, PeakEnergy, minimize};
+use retune_optim::{DesignObjective, Minimum, Options, Parameter, minimize};
 use retune_solver::{Contacts, Method, Settings, Window, e1_max};
 use std::error::Error;
 use std::fmt::Write;
@@ -20,10 +20,10 @@ const WINDOW: Window = Window { from: 50.0, to: 100.0 };
 /// Table 2's design: k2, c2, D, C.
 const DESIGN: [f64; 4] = [SSVI.k2, SSVI.c2, SSVI.d, SSVI.c];
 
-fn objective(settings: Settings) -> Result<PeakEnergy, Box<dyn Error>> {
+fn objective(settings: Settings) -> Result<DesignObjective, Box<dyn Error>> {
     let scene = scene(SSVI)?;
     let damper = scene.damper.ok_or("no damper")?;
-    Ok(PeakEnergy::new(scene, damper, Parameter::PAPER.to_vec(), WINDOW, settings))
+    Ok(DesignObjective::new(scene, damper, Parameter::PAPER.to_vec(), WINDOW, settings))
 }
 
 fn located(method: Method, rtol: f64) -> Settings {

@@ -1,7 +1,7 @@
 //! The descent of a design by the derivatives of its peaks, within the bounds and limits of a search.
 
+use super::design_objective::{Counts, DesignObjective};
 use super::limits::ranked;
-use super::peak_energy::{Counts, PeakEnergy};
 use crate::search::fminsearch::Bounds;
 use crate::search::global::Point;
 use crate::search::minimax::{Height, minimax};
@@ -23,7 +23,7 @@ const LOCKED: [f64; 2] = [1e3, 3e2];
 /// The foot of a slope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foot {
-    /// The value at the start, as of [`PeakEnergy::value`].
+    /// The value at the start, as of [`DesignObjective::value`].
     pub from: f64,
     /// The design, and its value.
     pub end: Point,
@@ -31,7 +31,7 @@ pub struct Foot {
     pub counts: Counts,
 }
 
-impl PeakEnergy {
+impl DesignObjective {
     /// Goes down from `start`: of the designs on the way the best, `start` among them. `start` alone where a value has no pieces.
     pub fn descend(&self, bounds: &[Bounds], start: &[f64]) -> Foot {
         let counts = [const { Cell::new(0) }; 2];

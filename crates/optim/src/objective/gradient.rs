@@ -8,9 +8,9 @@
 //!
 //! The value of a design that breaks a limit is its violation ([`ranked`](super::limits::ranked)), and so are its derivatives.
 
+use super::design_objective::DesignObjective;
 use super::evaluation::{Evaluation, Place};
 use super::limits::{INFEASIBLE, Limit, widens};
-use super::peak_energy::PeakEnergy;
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use super::watch::{GoesOn, Numbered};
@@ -22,7 +22,7 @@ use retune_solver::{Ask, Settings, Window, extremes_by, settled_by};
 /// scene.
 type Member = (Place, Vec<f64>);
 
-impl PeakEnergy {
+impl DesignObjective {
     /// What [`Self::evaluate`] finds for a design, and the derivatives of its value by the design, per SI unit of each parameter; as long
     /// as `goes_on` says so. The derivatives of an irregular motion are those of its one run: right, large, and of no use to a search.
     ///

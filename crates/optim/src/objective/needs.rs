@@ -1,9 +1,9 @@
 //! What a damper needs: the largest value of every measure over all that a goal covers, and where; and the best linear damper beside it.
 
 use super::band::Band;
+use super::design_objective::DesignObjective;
 use super::evaluation::Run;
 use super::limits::Limits;
-use super::peak_energy::PeakEnergy;
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use super::watch::{FREE, GoesOn, Hooks, Watch, Watched};
@@ -122,7 +122,7 @@ impl Goal {
             let mut goal = Self { limits: Limits::default(), ..self.clone() };
             goal.objective.for_each_term(&mut |term| change(term));
             let variables = vec![Parameter::K2, Parameter::C2];
-            let objective = PeakEnergy::new(*scene, plain, variables, goal, *settings);
+            let objective = DesignObjective::new(*scene, plain, variables, goal, *settings);
             let options = Options {
                 scaling: Scaling::Start,
                 tol_x: 1e-6,

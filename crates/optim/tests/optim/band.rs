@@ -3,7 +3,7 @@
 use rayon::ThreadPoolBuilder;
 use retune_model::{Positive, Scene, Worst};
 use retune_optim::{
-    Band, Bounds, FrequencyBand, Goal, Objective, Options, Parameter, PeakEnergy, Response, Scaling,
+    Band, Bounds, DesignObjective, FrequencyBand, Goal, Objective, Options, Parameter, Response, Scaling,
     Unusable, minimize, worst_over,
 };
 use retune_solver::{Settings, Window};
@@ -190,7 +190,7 @@ fn contract_a_steady_motion_that_reaches_a_wall_has_no_value() {
 /// The best k2 and c2, N/m and N·s/m, of the worst steady E1max over a band, J.
 fn best(numbers: Numbers, band: Band, start: [f64; 2]) -> [f64; 3] {
     let (scene, damper) = (numbers.scene(), numbers.damper());
-    let objective = PeakEnergy::new(
+    let objective = DesignObjective::new(
         scene,
         damper,
         vec![Parameter::K2, Parameter::C2],

@@ -2,7 +2,7 @@
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Parameter, Part, PeakEnergy,
+    DesignObjective, Ensemble, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Parameter, Part,
     Response, Statistic, StiffnessRange, Stiffnesses, Unusable,
 };
 use retune_solver::{Settings, Settle, Window};
@@ -21,9 +21,9 @@ fn band(samples: usize) -> Option<FrequencyBand> {
     Some(FrequencyBand { from: positive(5.0), to: positive(8.0), samples, relative: false })
 }
 
-fn problem(scene: Scene, variables: &[Parameter], goal: Goal) -> PeakEnergy {
+fn problem(scene: Scene, variables: &[Parameter], goal: Goal) -> DesignObjective {
     let settings = Settings { rtol: 1e-13, ..Settings::default() };
-    PeakEnergy::new(scene, scene.damper.expect("a damper"), variables.to_vec(), goal, settings)
+    DesignObjective::new(scene, scene.damper.expect("a damper"), variables.to_vec(), goal, settings)
 }
 
 fn goal(objective: Objective) -> Goal {
@@ -32,7 +32,7 @@ fn goal(objective: Objective) -> Goal {
 
 /// The derivatives by the logarithm of each parameter, and the same by Richardson's extrapolation of central differences with steps of
 /// `share`, `share / 2` and `share / 4`; relative to the value.
-fn both(objective: &PeakEnergy, share: f64) -> [Vec<f64>; 2] {
+fn both(objective: &DesignObjective, share: f64) -> [Vec<f64>; 2] {
     let damper = objective.damper(&[]).expect("the own one");
     let design: Vec<f64> = objective.variables().iter().map(|variable| variable.get(&damper)).collect();
     let (found, by) = objective.gradient(&design, &|| true).expect("a value");
@@ -55,7 +55,7 @@ fn both(objective: &PeakEnergy, share: f64) -> [Vec<f64>; 2] {
     [by.iter().zip(&design).map(|(by, x)| by * x / found.value).collect(), expected]
 }
 
-fn agree(objective: &PeakEnergy, share: f64, tolerance: f64) {
+fn agree(objective: &DesignObjective, share: f64, tolerance: f64) {
     let [found, expected] = both(objective, share);
     assert!(expected.iter().any(|by| by.abs() > 1e-3), "there is something to compare: {expected:?}");
     assert_eq!(found.len(), expected.len());

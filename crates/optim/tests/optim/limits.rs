@@ -2,7 +2,7 @@
 
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
-    Bounds, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, Parameter, PeakEnergy,
+    Bounds, DesignObjective, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, Parameter,
     Response, energy, minimize, ranked,
 };
 use retune_solver::{Settings, Window, simulate};
@@ -147,8 +147,13 @@ fn exact_a_search_ends_on_an_active_limit() {
     }
     let goal = Goal { objective: steady(), limits: limits(Some(limit), None, None), ..WINDOW.into() };
     let numbers = of(150.0);
-    let objective =
-        PeakEnergy::new(numbers.scene(), numbers.damper(), vec![Parameter::C2], goal, Settings::default());
+    let objective = DesignObjective::new(
+        numbers.scene(),
+        numbers.damper(),
+        vec![Parameter::C2],
+        goal,
+        Settings::default(),
+    );
     for start in [130.0, 480.0] {
         let options =
             Options { tol_x: 1e-8, tol_fun: 1e-8, bounds: vec![Bounds::default()], ..Options::default() };

@@ -1,11 +1,11 @@
 //! The objective over a run of the paper's scene.
 
-use retune_optim::{Failures, INFEASIBLE, Parameter, PeakEnergy};
+use retune_optim::{DesignObjective, Failures, INFEASIBLE, Parameter};
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::TMD;
 
-fn objective(variables: Vec<Parameter>, to: f64, settings: Settings) -> PeakEnergy {
-    PeakEnergy::new(TMD.scene(), TMD.damper(), variables, Window { from: 0.0, to }, settings)
+fn objective(variables: Vec<Parameter>, to: f64, settings: Settings) -> DesignObjective {
+    DesignObjective::new(TMD.scene(), TMD.damper(), variables, Window { from: 0.0, to }, settings)
 }
 
 #[test]

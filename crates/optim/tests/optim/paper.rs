@@ -1,6 +1,6 @@
 //! `paper_`: the iteration of the paper's Table 1 that identifies its optimiser, and the order of its rows.
 
-use retune_optim::{Options, Parameter, PeakEnergy, Procedure, minimize};
+use retune_optim::{DesignObjective, Options, Parameter, Procedure, minimize};
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::{Numbers, ROW1, ROW2, ROW3, SSVI, Spread};
 use std::cell::RefCell;
@@ -45,8 +45,13 @@ fn paper_table1_row3() {
 #[test]
 fn paper_table1_refined_rows_are_better() {
     let window = Window { from: 50.0, to: 100.0 };
-    let objective =
-        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), window, Settings::default());
+    let objective = DesignObjective::new(
+        SSVI.scene(),
+        SSVI.damper(),
+        Parameter::VARIED.to_vec(),
+        window,
+        Settings::default(),
+    );
     let median = |row: &Numbers| {
         let mut spread = Spread::new(1);
         let mut values: Vec<f64> = (0..51)

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use retune_model::{Measure, NonNegative, Scene};
-use retune_optim::{Band, Parameter, PeakEnergy, worst_over};
+use retune_optim::{Band, DesignObjective, Parameter, worst_over};
 use retune_solver::{Ask, Settings, Window, extremes};
 use retune_testkit::scenes::SSVI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -55,8 +55,13 @@ fn reference_peaks_beside_fine_samples() {
         |u| [ratio(50.0, 600.0, u[0]), ratio(20.0, 400.0, u[1]), 0.24 * u[2], 0.06 + 0.72 * u[3]];
     let near_the_result: Design =
         |u| [ratio(400.0, 600.0, u[0]), ratio(70.0, 130.0, u[1]), 0.06 * u[2], 0.5 + u[3]];
-    let objective =
-        PeakEnergy::new(SSVI.scene(), SSVI.damper(), Parameter::VARIED.to_vec(), WINDOW, Settings::default());
+    let objective = DesignObjective::new(
+        SSVI.scene(),
+        SSVI.damper(),
+        Parameter::VARIED.to_vec(),
+        WINDOW,
+        Settings::default(),
+    );
     let kinds = [("the grid of the main job", of_the_grid), ("about its result", near_the_result)];
     println!("| dampers of | dampers | peaks | runs a peak | below by 1e-6 | 1e-4 | 1e-3 | 1e-2 | 1e-1 |");
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");

@@ -2,7 +2,7 @@
 
 use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
-    FrequencyBand, Goal, Limit, Limits, Objective, Parameter, PeakEnergy, Response, Scale, Side, Space,
+    DesignObjective, FrequencyBand, Goal, Limit, Limits, Objective, Parameter, Response, Scale, Side, Space,
     minimax,
 };
 use retune_solver::{Settings, Window};
@@ -16,12 +16,12 @@ fn positive(value: f64) -> Positive {
     Positive::new(value).expect("above 0")
 }
 
-fn objective(limits: Limits) -> PeakEnergy {
+fn objective(limits: Limits) -> DesignObjective {
     let band = FrequencyBand { from: positive(5.0), to: positive(8.0), samples: 31, relative: false };
     let objective = Objective { omega: Some(band), ..Objective::default() };
     let settings = Settings { rtol: 1e-12, atol: 1e-14, ..Settings::default() };
     let goal = Goal { objective, limits, ..WINDOW.into() };
-    PeakEnergy::new(TMD.scene(), TMD.damper(), Parameter::PAPER.to_vec(), goal, settings)
+    DesignObjective::new(TMD.scene(), TMD.damper(), Parameter::PAPER.to_vec(), goal, settings)
 }
 
 /// The derivatives of the largest peaks of energy and stroke against central differences of the whole objective.
@@ -75,7 +75,7 @@ fn exact_steady_slopes_are_differences_of_the_closed_form() {
     let steady = Objective { response: Response::Steady, ..goal.objective.clone() };
     let goal = Goal { objective: steady, ..goal };
     let variables = vec![Parameter::K2, Parameter::C2];
-    let of = PeakEnergy::new(TMD.scene(), TMD.damper(), variables, goal, Settings::default());
+    let of = DesignObjective::new(TMD.scene(), TMD.damper(), variables, goal, Settings::default());
     let at = [2083.0, 100.0];
     let sorted = |x: &[f64]| {
         let (_, runs) = of.look(x, f64::INFINITY);

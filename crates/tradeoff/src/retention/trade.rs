@@ -7,7 +7,7 @@
 use super::range::{Care, Range, Still, Threshold, range};
 use super::tuned::{Tuned, Tuning};
 use retune_model::{Design, Parameter};
-use retune_optim::{Global, PeakEnergy, explore, minimize};
+use retune_optim::{DesignObjective, Global, explore, minimize};
 use retune_study::{Setting, Study};
 use retune_workbench::searches::Searches;
 use retune_workbench::tune::objective::{kept, loose};
@@ -160,8 +160,8 @@ pub fn trade(
 /// What was seen of a damper's designs: E1max at the nominal stiffness, J, and the factor of its range less 1.
 struct Seen<'a> {
     study: &'a Study,
-    of: &'a PeakEnergy,
-    of_ranges: &'a PeakEnergy,
+    of: &'a DesignObjective,
+    of_ranges: &'a DesignObjective,
     threshold: &'a Threshold,
     searches: &'a Searches<'a>,
     stages: [String; 2],

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use retune_model::{Parameter, PerVariable};
-use retune_optim::PeakEnergy;
+use retune_optim::DesignObjective;
 use retune_study::{Study, read};
 use retune_workbench::tune::objective::objective;
 use std::path::Path;
@@ -38,9 +38,9 @@ fn invariant_a_walk_fits_its_design_to_its_samples_unless_they_are_fine() {
     // Where descents end, without walks: k2, N/m; c2, N s/m; D, m.
     let descended = [300.0, 216.26883973710628, 0.43798840045928955];
     // The largest over some samples, each with the room that it has to have, J; none where that is not below `most`, or a screen is not.
-    type On<'a> = &'a [(&'a PeakEnergy, f64)];
+    type On<'a> = &'a [(&'a DesignObjective, f64)];
     let height = |at: &[f64; 3], [screens, goals]: [On; 2], most: f64| {
-        let value = |&(of, room): &(&PeakEnergy, f64)| worst(of, at, most - room) + room;
+        let value = |&(of, room): &(&DesignObjective, f64)| worst(of, at, most - room) + room;
         let passes = screens.iter().all(|on| value(on) < most);
         let largest = goals.iter().filter(|_| passes).try_fold(f64::NEG_INFINITY, |largest, on| {
             Some(value(on)).filter(|value| *value < most).map(|value| largest.max(value))
@@ -92,12 +92,12 @@ fn printed(at: &[f64; 3]) -> [f64; 3] {
 }
 
 /// E1max of a design, J; any number above `most` once it is known to have more.
-fn worst(of: &PeakEnergy, at: &[f64; 3], most: f64) -> f64 {
+fn worst(of: &DesignObjective, at: &[f64; 3], most: f64) -> f64 {
     of.look(at, most).0.worst
 }
 
 /// The objective of the study on so many frequencies, over k2, c2 and D, one wall touching the damper at rest.
-fn over(study: &Study, samples: usize) -> PeakEnergy {
+fn over(study: &Study, samples: usize) -> DesignObjective {
     let mut study = study.clone();
     let optimize = study.optimize.as_mut().expect("a search");
     optimize.objective.omega.as_mut().expect("a band").samples = samples;

@@ -5,7 +5,7 @@ use super::refine::{Descended, Refined, Run};
 use super::tmd::tmd;
 use crate::{Error, Observer};
 use rayon::prelude::*;
-use retune_optim::{Counts, Foot, INFEASIBLE, Minimum, PeakEnergy, Point, Procedure, Row, Stop};
+use retune_optim::{Counts, DesignObjective, Foot, INFEASIBLE, Minimum, Point, Procedure, Row, Stop};
 use retune_store::Journal;
 use retune_study::{Search, Study, counted};
 use std::cell::OnceCell;
@@ -71,9 +71,9 @@ pub(super) fn finish(
     Ok(())
 }
 
-/// [`PeakEnergy::descend`] within the bounds of a search; the journal keeps what it comes to under the name of a stage.
+/// [`DesignObjective::descend`] within the bounds of a search; the journal keeps what it comes to under the name of a stage.
 pub fn descend(
-    objective: &PeakEnergy,
+    objective: &DesignObjective,
     search: &Search,
     start: &[f64],
     journal: &Journal,

@@ -8,7 +8,9 @@ use crate::Observer;
 use crate::amount::{Amount, measured};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, PerVariable};
-use retune_optim::{Basin, Counts, Descent, Failures, PeakEnergy, Point, Space, basins, energy, explore};
+use retune_optim::{
+    Basin, Counts, Descent, DesignObjective, Failures, Point, Space, basins, energy, explore,
+};
 use retune_store::{Directory, Journal};
 use retune_study::{Search, Study};
 use retune_study::{counted, fields, joined, short};
@@ -170,7 +172,7 @@ impl Basins {
     }
 
     /// Writes `basins.csv`.
-    pub(super) fn write(&self, objective: &PeakEnergy, results: &Directory) -> Result<(), Error> {
+    pub(super) fn write(&self, objective: &DesignObjective, results: &Directory) -> Result<(), Error> {
         let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);
         let names = joined(&Parameter::columns(objective.variables()), ",");
         let mut csv = format!("basin,searches,refinements,{names},{}\n", quantity.name());

@@ -6,7 +6,7 @@ use crate::Error;
 use crate::Observer;
 use crate::summary::MadeBy;
 use retune_model::Parameter;
-use retune_optim::{Minimum, PeakEnergy, Row, minimize};
+use retune_optim::{DesignObjective, Minimum, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
@@ -19,7 +19,7 @@ const SAME: f64 = 1e-6;
 /// All refinements of a study.
 pub struct Refined {
     /// The objective that was minimised; it keeps the failed evaluations.
-    pub objective: PeakEnergy,
+    pub objective: DesignObjective,
     /// A run for each start, in the order of the starts.
     pub runs: Vec<Run>,
     /// The number of the best run.
@@ -115,7 +115,7 @@ pub(super) fn each(
 }
 
 /// A whole design, in the order of the columns of its tables.
-pub(super) fn columns(objective: &PeakEnergy, design: &[f64]) -> Result<Vec<f64>, Error> {
+pub(super) fn columns(objective: &DesignObjective, design: &[f64]) -> Result<Vec<f64>, Error> {
     let damper = objective.damper(design)?;
     Ok(Parameter::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
 }
@@ -123,7 +123,7 @@ pub(super) fn columns(objective: &PeakEnergy, design: &[f64]) -> Result<Vec<f64>
 /// One run. `tell` receives each row with its whole design; its error ends the run. Where the objective looks at all motions, those at the start are
 /// followed; if others have more at the end, the run goes on from there with these.
 fn run(
-    objective: &mut PeakEnergy,
+    objective: &mut DesignObjective,
     search: &Search,
     start: &[f64],
     (journal, stage): (&Journal, &str),
@@ -160,7 +160,7 @@ fn run(
 
 /// One simplex.
 fn simplex(
-    objective: &PeakEnergy,
+    objective: &DesignObjective,
     search: &Search,
     start: &[f64],
     (journal, stage): (&Journal, &str),

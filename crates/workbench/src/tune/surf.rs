@@ -6,7 +6,7 @@ use super::refine::columns;
 use crate::Error;
 use crate::Observer;
 use retune_model::Measure;
-use retune_optim::{Counts, Failures, Grid, Parameter, PeakEnergy, best_separated_above};
+use retune_optim::{Counts, DesignObjective, Failures, Grid, Parameter, best_separated_above};
 use retune_store::Directory;
 use retune_study::{Coarse, Search, Study};
 use retune_study::{counted, fields, joined, short};
@@ -102,7 +102,7 @@ fn point(grid: &Grid, i: usize) -> Vec<f64> {
 
 /// A row for each point, its whole design and the value.
 fn write(
-    objective: &PeakEnergy,
+    objective: &DesignObjective,
     grid: &Grid,
     values: &[f64],
     quantity: Measure,

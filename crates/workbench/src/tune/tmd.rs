@@ -1,7 +1,7 @@
 //! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
 
 use retune_model::{Damper, Measure, NonNegative, Parameter, Positive, den_hartog};
-use retune_optim::{Goal, Limit, PeakEnergy, Response};
+use retune_optim::{DesignObjective, Goal, Limit, Response};
 use retune_study::{Search, Study};
 
 /// Points along k2 and along c2 from which the best is taken, from and to these multiples of Den Hartog's.
@@ -55,7 +55,7 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
 }
 
 /// The steady objective over the spring and the dashpot of the damper without its walls, its stroke at most `room`.
-fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Option<PeakEnergy> {
+fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Option<DesignObjective> {
     let goal = study.goal();
     let mut objective = goal.objective;
     objective.for_each_term(&mut |term| {
@@ -68,7 +68,7 @@ fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Optio
     let damper = Damper { contact: None, rest_distance: none, clearance: none, ..search.damper };
     let variables = springs.iter().map(|&i| search.variables[i]).collect();
     let goal = Goal { objective, limits, ..goal };
-    Some(PeakEnergy::new(study.scene, damper, variables, goal, study.solver.searching()))
+    Some(DesignObjective::new(study.scene, damper, variables, goal, study.solver.searching()))
 }
 
 /// D and C of the cavity in which the smaller is largest: at their bounds, or as near to half of the cavity's limit as these allow. Infinite

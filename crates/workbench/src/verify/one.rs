@@ -12,7 +12,7 @@ use crate::summary::Summary;
 use crate::tune::objective::{coarse, objective, searched};
 use crate::tune::{self, OPTIMUM, band};
 use retune_model::{Design, NonNegative, Scene};
-use retune_optim::{Evaluation, Parameter, PeakEnergy};
+use retune_optim::{DesignObjective, Evaluation, Parameter};
 use retune_study::{self as study, Search, Study};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ impl One {
 
     fn designs(
         &self,
-        objective: PeakEnergy,
+        objective: DesignObjective,
         up_to: f64,
         name: &str,
         most: usize,
@@ -128,7 +128,10 @@ impl One {
         files.any(|file| self.place.join(file.name).exists())
     }
 
-    fn objective(&self, of: fn(&Study, &Search, &[Parameter]) -> PeakEnergy) -> Result<PeakEnergy, Error> {
+    fn objective(
+        &self,
+        of: fn(&Study, &Search, &[Parameter]) -> DesignObjective,
+    ) -> Result<DesignObjective, Error> {
         let refuse = |rule| Error::Rule { name: self.study.name().to_owned(), rule };
         Ok(of(&self.study, &self.study.search().map_err(refuse)?, &Parameter::VARIED))
     }
@@ -137,7 +140,7 @@ impl One {
 /// The contents of `optimum.json` about its design, made again.
 fn again(
     study: &Study,
-    objective: &PeakEnergy,
+    objective: &DesignObjective,
     tuned: Scene,
     found: &Evaluation,
     optimum: &Value,
@@ -184,7 +187,7 @@ pub fn energy(study: &Study, design: &Design) -> f64 {
 
 /// The check of a row of a search: the minimised value, `up_to` if it is above that, or the value of a basin, which is empty where the design
 /// breaks a limit.
-fn value<'a>(objective: &'a PeakEnergy, study: &'a Study, up_to: f64, row: Row) -> Check<'a> {
+fn value<'a>(objective: &'a DesignObjective, study: &'a Study, up_to: f64, row: Row) -> Check<'a> {
     let name = objective.goal().objective.quantity().name();
     let text = row.text(name);
     let basin = !row.text("basin").is_empty();

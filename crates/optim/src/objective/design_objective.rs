@@ -47,7 +47,7 @@ impl Counts {
 ///
 /// A design that cannot be evaluated has the value +∞ and is recorded in [`Self::failures`].
 #[derive(Debug)]
-pub struct PeakEnergy {
+pub struct DesignObjective {
     scene: Scene,
     damper: Damper,
     variables: Vec<Parameter>,
@@ -59,7 +59,7 @@ pub struct PeakEnergy {
     known: Option<Known>,
 }
 
-impl PeakEnergy {
+impl DesignObjective {
     /// The objective over `variables` of `damper`, which replaces the damper of `scene`, if any.
     pub fn new(
         scene: Scene,
