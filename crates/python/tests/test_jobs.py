@@ -196,7 +196,7 @@ def test_contract_branches_have_the_answer_of_the_command_line(program: Path, tm
     assert files(tmp_path / "line") == files(tmp_path / "package")
     assert any(event["kind"] == "period doubling" for branch in found["branches"] for event in branch["events"])
     assert any("holds" in line for line in rt.verify(tmp_path / "package"))
-    with pytest.raises(rt.Error, match="give one of omega, P"):
+    with pytest.raises(rt.Error, match="give one of k2, c2"):
         rt.branches(study, tmp_path / "other", over="zeta")
 
 

@@ -48,7 +48,7 @@ STRUCTURE = rt.Structure(m1=1000, c1=452, k1=3.95e4)
         (lambda p: p.simulate(interval=0), "interval", 0, "above 0"),
         (lambda p: p.simulate(k3=1), "k3", None, "did you mean"),
         (lambda p: p.simulate(k1=-3), "k1", -3, "not below 0"),
-        (lambda p: p.sweep(mass=[1]), "mass", None, "cannot be swept"),
+        (lambda p: p.sweep(mass=[1]), "mass", None, "there is no parameter"),
         (lambda p: p.sweep(k1=[1, np.inf]), "k1", np.inf, "finite"),
         (lambda p: p.sweep(k1=[]), "k1", None, "one value or more"),
     ],

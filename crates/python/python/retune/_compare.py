@@ -13,7 +13,10 @@ from retune._arrays import plain
 from retune._errors import StudyError
 from retune._jobs import Directory, Result, optimize
 from retune._problem import Problem
-from retune._scene import SSVI, TMD
+from retune._scene import MEANING, SSVI, TMD
+
+#: The parameters of a damper that a table shows.
+DESIGN = ("m2", "k2", "c2", "D", "C")
 
 
 class Comparison:
@@ -31,13 +34,14 @@ class Comparison:
 
     def _head(self) -> list[str]:
         quantity, unit = self.best.problem.quantity
-        return ["damper", "m2, kg", "k2, N/m", "c2, N s/m", "D, m", "C, m", f"{quantity}, {unit}", "none /", "verdict"]
+        design = [f"{name}, {MEANING[name][0]}" for name in DESIGN]
+        return ["damper", *design, f"{quantity}, {unit}", "none /", "verdict"]
 
     def _rows(self) -> list[list[object]]:
         rows: list[list[object]] = []
         for result in self.results:
             quantity = result.problem.quantity[0]
-            design = [result.data.get(name, "none") for name in ("m2", "k2", "c2", "D", "C")]
+            design = [result.data.get(name, "none") for name in DESIGN]
             none = result.data.get(f"{quantity}_none")
             ratio = "" if none is None else none / result.fun
             rows.append([result.data["damper_type"], *design, result.fun, ratio, result.data["certificate"]["verdict"]])
