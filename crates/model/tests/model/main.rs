@@ -3,6 +3,7 @@
 mod band;
 mod band_hunt;
 mod bounds;
+mod catalogue;
 mod derivatives;
 mod energies;
 mod regularised;
