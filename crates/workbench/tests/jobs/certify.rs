@@ -47,6 +47,49 @@ fn contract_limits_are_kept_and_reported() {
     assert!(said.contains(words), "{said}");
 }
 
+/// Between its 15 samples this damper, a structure of the hunt of limits, has 18 % more; another motion has 300 times as much. The answer begins
+/// with the former, the verdict names both beside what it calls sensitive.
+#[test]
+fn contract_a_verdict_names_all_it_found_and_an_answer_the_peak_that_samples_miss() {
+    let contact = &tiny()["scene"]["damper"]["contact"];
+    let study = json!({
+        "name": "missed",
+        "scene": {
+            "primary": { "m1": 10_741.659_083_234_55, "c1": 329.158_420_826_044_33, "k1": 1_898_702.376_550_688_2 },
+            "forcing": { "P": 3_037.079_013_817_777, "omega": 13.295_135_400_672_84 },
+            "damper": {
+                "m2": 112.940_689_224_228_65, "k2": 19_477.464_265_435_494, "c2": 173.134_023_652_855_2,
+                "D": 0.237_829_598_706_407_2, "C": 0.287_943_874_778_143_8, "contact": contact
+            }
+        },
+        "window": { "t0": 4.725_928_031_437_428, "T": 9.451_856_062_874_857 },
+        "solver": { "rtol": 1e-8 },
+        "optimize": {
+            "vary": ["k2", "c2"],
+            "objective": { "omega": { "from": 9.304_950_326_988_111, "to": 17.486_734_091_649_154, "samples": 15 } },
+            "bounds": { "k2": [19_477.4, 19_477.5], "c2": [173.1, 173.2] },
+            "refine": { "starts": 1, "scaled": true, "MaxFunEvals": 2 }
+        }
+    });
+    let desk = Desk::with(&study);
+    let optimum = search(&desk, "study.json", "out");
+    let said = flat(&optimum.report());
+    let certificate = desk.read_json("out/certificate.json");
+    let [value, finer] = ["/E1max", "/finer"].map(|path| number(&certificate, path));
+    assert!(value < 420.0 && finer > 480.0, "{value} {finer}");
+    let words = certificate["words"].as_str().expect("words");
+    assert!(words.starts_with("sensitive: designs within 0.1 % of it have "), "{words}");
+    for other in ["; k2 off by -1 % gives ", "; 4 times as many samples have 48", "; a motion has 1"] {
+        assert!(words.contains(other), "{other}: {words}");
+    }
+    let note = "note: E1max of this design is more between the samples of the study: 4 times as many have 48";
+    let [note, instead] =
+        [note, "instead "].map(|words| said.find(words).unwrap_or_else(|| panic!("{words}: {said}")));
+    assert!(note < instead, "{said}");
+    let page = std::fs::read_to_string(desk.path("out/report.html")).expect("a page");
+    assert!(page.contains("data-flag=\"missed-peak\""));
+}
+
 /// One that cannot be kept is reported as broken: by the search, by one that is finished already, and by its certificate.
 #[test]
 fn contract_limits_that_no_design_keeps_leave_no_verdict() {
