@@ -65,9 +65,8 @@ impl Options {
             return Err(Error::Argument { option: "--margin", problem });
         }
         if !over.has_derivative() {
-            let known = Parameter::ALL.into_iter().filter(|one| one.has_derivative()).map(Parameter::symbol);
-            let known: Vec<&str> = known.collect();
-            let problem = format!("{over}: branches are followed over one of {}", known.join(", "));
+            let known = Parameter::differentiable(", ");
+            let problem = format!("{over}: branches are followed over one of {known}");
             return Err(Error::Argument { option: "--over", problem });
         }
         let [low, high] = default_range(over, study)?;

@@ -33,11 +33,7 @@ impl TryFrom<PerVariable<f64>> for Design {
         if let Some(missing) = missing {
             return Err(NoDesign::Missing(missing));
         }
-        for parameter in given.parameters() {
-            let checked = given.get(parameter).map_or(Ok(()), |value| parameter.check(value));
-            checked.map_err(|refused| NoDesign::OutOfRange(parameter, refused))?;
-        }
-        Ok(Self(given))
+        Self::checked(given).map_err(|(parameter, refused)| NoDesign::OutOfRange(parameter, refused))
     }
 }
 
@@ -71,9 +67,17 @@ impl Design {
         for parameter in Parameter::VARIED {
             let value = value(parameter);
             if NEEDED.contains(&parameter) || !value.is_nan() {
-                parameter.check(value).map_err(|refused| (parameter, refused))?;
                 values.set(parameter, Some(value));
             }
+        }
+        Self::checked(values)
+    }
+
+    /// A design of values in the ranges of their parameters; else the first value that is not.
+    fn checked(values: PerVariable<f64>) -> Result<Self, (Parameter, OutOfRange)> {
+        for parameter in values.parameters() {
+            let checked = values.get(parameter).map_or(Ok(()), |value| parameter.check(value));
+            checked.map_err(|refused| (parameter, refused))?;
         }
         Ok(Self(values))
     }

@@ -80,18 +80,6 @@ impl Forcing {
             Source::Decay(_) => f64::NAN,
         }
     }
-
-    /// The same with another number for [`Self::amplitude`].
-    #[must_use]
-    pub fn with_amplitude(self, amplitude: NonNegative) -> Self {
-        let source = match self.source {
-            Source::Force(_) => Source::Force(amplitude),
-            Source::Imbalance(_) => Source::Imbalance(amplitude),
-            Source::Base(_) => Source::Base(amplitude),
-            Source::Decay(start) => Source::Decay(start),
-        };
-        Self { source, ..self }
-    }
 }
 
 /// What makes the primary structure move: one of `P`, `imbalance` and `base` with its `omega`, from rest or from `start`; or `start` alone.

@@ -71,7 +71,7 @@ pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_sl
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
-pub use per_variable::{PerVariable, VARIED, varied};
+pub use per_variable::PerVariable;
 pub use regularised::bounds::{Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene};

@@ -64,6 +64,16 @@ impl Parameter {
     ];
     /// Those that a search may vary, the first of [`Self::ALL`].
     pub const VARIED: [Self; 6] = [Self::K2, Self::C2, Self::D, Self::C, Self::M2, Self::R];
+    /// The symbols of [`Self::VARIED`], in its order.
+    pub const VARIED_SYMBOLS: [&str; Self::VARIED.len()] = {
+        let mut symbols = [""; Self::VARIED.len()];
+        let mut i = 0;
+        while i < symbols.len() {
+            symbols[i] = Self::VARIED[i].symbol();
+            i += 1;
+        }
+        symbols
+    };
     /// Those that the paper varies, in the order of its tables.
     pub const PAPER: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
     /// Those that set the size of the forcing, of which a scene has one.
@@ -147,6 +157,17 @@ impl Parameter {
     /// Whether it belongs to the damper, its gaps and its surfaces included.
     pub const fn is_of_damper(self) -> bool {
         matches!(self, Self::K2 | Self::C2 | Self::M2) || self.is_gap() || self.is_of_contact()
+    }
+
+    /// The parameter with this symbol, of those that a search may vary.
+    pub fn varied(symbol: &str) -> Option<Self> {
+        Self::VARIED.into_iter().find(|parameter| parameter.symbol() == symbol)
+    }
+
+    /// The symbols of those by which motions have derivatives, with `separator` between them.
+    pub fn differentiable(separator: &str) -> String {
+        let all = Self::ALL.into_iter().filter(|parameter| parameter.has_derivative());
+        all.map(Self::symbol).collect::<Vec<_>>().join(separator)
     }
 
     /// Whether motions have derivatives by it.

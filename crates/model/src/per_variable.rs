@@ -8,17 +8,7 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 
 const COUNT: usize = Parameter::VARIED.len();
-
-/// The symbols of [`Parameter::VARIED`], in its order.
-pub const VARIED: [&str; COUNT] = {
-    let mut symbols = [""; COUNT];
-    let mut i = 0;
-    while i < COUNT {
-        symbols[i] = Parameter::VARIED[i].symbol();
-        i += 1;
-    }
-    symbols
-};
+const SYMBOLS: [&str; COUNT] = Parameter::VARIED_SYMBOLS;
 
 /// Something for each of [`Parameter::VARIED`], or nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,13 +75,14 @@ impl<'de, T: Copy + Deserialize<'de>> Deserialize<'de> for PerVariable<T> {
             type Value = PerVariable<T>;
 
             fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                write!(f, "an object with some of {}", VARIED.join(", "))
+                write!(f, "an object with some of {}", SYMBOLS.join(", "))
             }
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
                 let mut all = PerVariable::default();
                 while let Some(name) = map.next_key::<Cow<'de, str>>()? {
-                    let parameter = varied(&name).ok_or_else(|| A::Error::unknown_field(&name, &VARIED))?;
+                    let parameter =
+                        Parameter::varied(&name).ok_or_else(|| A::Error::unknown_field(&name, &SYMBOLS))?;
                     if all.get(parameter).is_some() {
                         return Err(A::Error::duplicate_field(parameter.symbol()));
                     }
@@ -102,11 +93,6 @@ impl<'de, T: Copy + Deserialize<'de>> Deserialize<'de> for PerVariable<T> {
         }
         deserializer.deserialize_map(Object(PhantomData))
     }
-}
-
-/// The parameter with this symbol, of those that a search may vary.
-pub fn varied(symbol: &str) -> Option<Parameter> {
-    Parameter::VARIED.into_iter().find(|parameter| parameter.symbol() == symbol)
 }
 
 impl<T: JsonSchema> JsonSchema for PerVariable<T> {

@@ -12,8 +12,7 @@ pub use sweep::Sweep;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use retune_model::Start;
-use retune_model::VARIED;
+use retune_model::{Parameter, Start};
 use retune_solver::{Contacts, Method};
 use retune_study::{Settable, Setting, SettingError};
 use retune_workbench::parts::Shard;
@@ -219,7 +218,7 @@ pub struct Simulate {
 /// `evaluate`.
 #[derive(Debug, Args)]
 pub struct Evaluate {
-    #[arg(help = format!("The study file; a design is one number for each parameter that it tunes, in the order {}", VARIED.join(" ")))]
+    #[arg(help = format!("The study file; a design is one number for each parameter that it tunes, in the order {}", Parameter::VARIED_SYMBOLS.join(" ")))]
     pub study: PathBuf,
     /// Answer with JSON objects, which include the violation of limits
     #[arg(long)]

@@ -119,7 +119,7 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
 ///
 /// # Errors
 /// [`Rule::NotAllowed`].
-pub(super) fn check_energy(study: &Study) -> Result<(), Rule> {
+pub(super) fn check_columns(study: &Study) -> Result<(), Rule> {
     let refuse = |field: &str, value: &str, allowed| {
         Err(Rule::NotAllowed { field: field.to_owned(), value: value.to_owned(), allowed })
     };

@@ -44,7 +44,7 @@ pub enum Rule {
     #[error("optimize.surf: missing, but only the grid can be made in parts")]
     NoGrid,
     /// No parameter is tuned.
-    #[error("optimize.vary: empty: name at least one of {}", retune_model::VARIED.join(", "))]
+    #[error("optimize.vary: empty: name at least one of {}", Parameter::VARIED_SYMBOLS.join(", "))]
     NothingVaried,
     /// A parameter is named twice.
     #[error("optimize.vary: `{variable}` is named twice")]

@@ -122,11 +122,6 @@ impl Setting {
         Self { what: what.into(), value }
     }
 
-    /// What it sets.
-    pub fn what(&self) -> Settable {
-        self.what
-    }
-
     /// The new value, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value

@@ -1,6 +1,6 @@
 //! The list of parameters that a search varies, in a file.
 
-use retune_model::{Parameter, VARIED, varied};
+use retune_model::Parameter;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
@@ -12,7 +12,8 @@ struct Varied(Parameter);
 impl<'de> Deserialize<'de> for Varied {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = Cow::<'de, str>::deserialize(deserializer)?;
-        varied(&name).map(Self).ok_or_else(|| D::Error::unknown_variant(&name, &VARIED))
+        let unknown = || D::Error::unknown_variant(&name, &Parameter::VARIED_SYMBOLS);
+        Parameter::varied(&name).map(Self).ok_or_else(unknown)
     }
 }
 

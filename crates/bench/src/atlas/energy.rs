@@ -4,7 +4,7 @@ use crate::own;
 use crate::panel::{Drawn, Line, look, panel, sheet};
 use crate::scenes::{SSVI, scene, system};
 use retune_figures::Axis;
-use retune_model::{Coupled, NonNegative, Side};
+use retune_model::{Coupled, NonNegative, Parameter, Side};
 use retune_solver::observe::{Observer, Segment};
 use retune_solver::{Contacts, Method, Settings};
 use std::error::Error;
@@ -46,7 +46,7 @@ pub struct Drift {
 fn lossless() -> Result<Coupled, Box<dyn Error>> {
     let mut scene = scene(SSVI)?;
     scene.primary.damping = NonNegative::new(0.0)?;
-    scene.forcing = scene.forcing.with_amplitude(NonNegative::new(0.0)?);
+    Parameter::P.set(&mut scene, 0.0)?;
     if let Some(damper) = &mut scene.damper {
         damper.damping = NonNegative::new(0.0)?;
     }

@@ -2,7 +2,6 @@
 
 use retune_model::{
     Absent, Damper, Design, Finite, NonNegative, Parameter, PerVariable, Scene, Source, Start, Unsettable,
-    VARIED, varied,
 };
 use retune_testkit::scenes::SSVI;
 
@@ -115,10 +114,11 @@ fn contract_a_scene_says_what_it_does_not_have() {
 fn contract_symbols_are_names_and_those_that_vary_come_first() {
     for (i, parameter) in Parameter::ALL.into_iter().enumerate() {
         assert_eq!(parameter.symbol().parse(), Ok(parameter));
-        assert_eq!(varied(parameter.symbol()), (i < VARIED.len()).then_some(parameter));
+        let is_varied = i < Parameter::VARIED.len();
+        assert_eq!(Parameter::varied(parameter.symbol()), is_varied.then_some(parameter));
         assert_eq!(parameter.units()[0].1, 1.0, "{parameter}: the SI unit comes first");
     }
-    assert_eq!(Parameter::ALL[..VARIED.len()], Parameter::VARIED);
+    assert_eq!(Parameter::ALL[..Parameter::VARIED.len()], Parameter::VARIED);
     assert!("k3".parse::<Parameter>().is_err_and(|words| words.contains("give one of k2, c2")));
 }
 

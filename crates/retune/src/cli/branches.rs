@@ -12,7 +12,7 @@ pub struct Branches {
     /// A study, the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
-    #[arg(long, value_name = "NAME", default_value = "omega", help = format!("The parameter: {}", differentiable()))]
+    #[arg(long, value_name = "NAME", default_value = "omega", help = format!("The parameter: {}", Parameter::differentiable(" ")))]
     pub over: Parameter,
     /// Its least value, in its SI unit or with a unit: 0.8Hz [default: of the band of the study, or 0.8 of its own]
     #[arg(long, value_name = "A")]
@@ -44,10 +44,4 @@ pub struct Branches {
     /// How it is run; results go to results/branches-<study>-<parameter> (of results: <study>-tuned) unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
-}
-
-/// The parameters that branches can be followed over.
-fn differentiable() -> String {
-    let all = Parameter::ALL.into_iter().filter(|parameter| parameter.has_derivative());
-    all.map(Parameter::symbol).collect::<Vec<_>>().join(" ")
 }

@@ -1,7 +1,7 @@
 //! The tables of the catalogue in docs/nomenclature.md: `RETUNE_CATALOGUE=write` writes them anew.
 
-use retune_model::{Measure, Parameter, VARIED};
-use std::path::Path;
+use retune_model::{Measure, Parameter};
+use std::path::{Path, PathBuf};
 
 const BEGIN: &str = "<!-- the catalogue -->\n";
 const END: &str = "<!-- the end of the catalogue -->\n";
@@ -14,7 +14,7 @@ fn tables() -> String {
     for parameter in Parameter::ALL {
         let units: Vec<&str> = parameter.units().iter().skip(1).map(|(name, _)| *name).collect();
         let unit = if parameter.unit().is_empty() { "1" } else { parameter.unit() };
-        let varied = if VARIED.contains(&parameter.symbol()) { "yes" } else { "" };
+        let varied = if Parameter::VARIED.contains(&parameter) { "yes" } else { "" };
         text += &format!(
             "| `{parameter}` | {} | {unit} | {} | {varied} |\n",
             parameter.words(),
@@ -61,58 +61,37 @@ fn contract_the_schema_describes_parameters_as_the_catalogue_does() {
     assert_eq!(count, Parameter::ALL.len());
 }
 
+/// The sources below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let below = |path: PathBuf| {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        match ending {
+            _ if path.is_dir() => sources(&path),
+            Some("rs" | "py" | "js") => vec![path],
+            _ => Vec::new(),
+        }
+    };
+    entries.flat_map(below).collect()
+}
+
 /// The words of the catalogue stand nowhere else in what makes screens, pages and files: a second list would drift.
 #[test]
 fn contract_no_second_list_of_words() {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let words: Vec<&str> =
         Parameter::ALL.map(Parameter::words).into_iter().chain(Measure::ALL.map(Measure::words)).collect();
-    let mut sources = 0;
-    for name in [
-        "bench",
-        "branches",
-        "dynamics",
-        "explore",
-        "figures",
-        "optim",
-        "paper",
-        "python",
-        "retune",
-        "solver",
-        "study",
-        "sweep",
-        "tradeoff",
-        "workbench",
-    ] {
-        let mut folders = vec![
-            crates.join(name).join("src"),
-            crates.join(name).join("page"),
-            crates.join(name).join("python"),
-        ];
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-                let path = entry.path();
-                let ending = path.extension().and_then(|ending| ending.to_str());
-                if path.is_dir() {
-                    folders.push(path);
-                } else if matches!(ending, Some("rs" | "py" | "js")) {
-                    sources += 1;
-                    let text = std::fs::read_to_string(&path).expect("a source");
-                    let said = text
-                        .lines()
-                        .filter(|line| !line.trim_start().starts_with("//") && line.contains('"'));
-                    let quoted =
-                        |word: &&&str| said.clone().any(|line| line.contains(&format!("\"{word}\"")));
-                    let again = words.iter().find(quoted);
-                    assert!(
-                        again.is_none(),
-                        "{}: \"{}\" is said again",
-                        path.display(),
-                        again.unwrap_or(&"")
-                    );
-                }
-            }
+    let crates = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("..")).expect("the crates");
+    let others = crates.flatten().map(|entry| entry.path()).filter(|path| !path.ends_with("model"));
+    let all: Vec<PathBuf> = others
+        .flat_map(|one| ["src", "page", "python"].map(|folder| sources(&one.join(folder))))
+        .flatten()
+        .collect();
+    for path in &all {
+        let text = std::fs::read_to_string(path).expect("a source");
+        for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
+            let again = words.iter().find(|words| line.contains(&format!("\"{words}\"")));
+            assert!(again.is_none(), "{}: {line}", path.display());
         }
     }
-    assert!(sources > 250, "{sources} files looked at");
+    assert!(all.len() > 250, "{} files looked at", all.len());
 }
