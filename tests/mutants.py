@@ -21,7 +21,7 @@ CRATES = {
         "--lib --test allocation --test solver -- --skip any_scene:: --skip edge:: --skip hunt::",
         "--test solver -- any_scene:: edge:: hunt::"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
-    "retune-store": (["crates/store/src/*"], ["--tests", "@retune-workbench --tests", "@retune --tests"]),
+    "retune-store": (["crates/store/src/*"], ["--tests", "@retune-jobs --tests", "@retune --tests"]),
 }
 # How much is drawn at random in the slowest tests.
 SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}

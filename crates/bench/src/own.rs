@@ -2,13 +2,13 @@
 
 use crate::record::Found;
 use crate::scenes::Case;
+use retune_jobs::verify::methods;
 use retune_model::Coupled;
 use retune_solver::methods::{Dop853, Euler, Ode23, Ode23s, Ode45, Rk4, Run};
 use retune_solver::observe::Observer;
 use retune_solver::{
     Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError, Window, e1_max, simulate, touch_downs,
 };
-use retune_workbench::verify::methods;
 use std::time::{Duration, Instant};
 
 /// The shortest of several runs, s: after a warm-up 100 runs if one takes less than a millisecond, else fewer.

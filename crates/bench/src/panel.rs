@@ -1,7 +1,7 @@
-//! Panels of lines, each with its name beside the frame, as charts of `retune_figures`.
+//! Panels of lines, each with its name beside the frame, as charts of `retune_report`.
 
-use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, VERMILION};
-use retune_figures::{Axis, Chart, Dash, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
+use retune_report::colour::{BLACK, BLUE, Colour, GREEN, VERMILION};
+use retune_report::{Axis, Chart, Dash, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
 use retune_solver::Method;
 use std::error::Error;
 use std::fs;

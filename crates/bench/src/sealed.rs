@@ -1,13 +1,13 @@
 //! The manifest of results, with their scenes beside it, from which `retune verify` runs their rows again.
 
 use crate::scenes::Case;
+use retune_jobs::artefact::Kind;
+use retune_jobs::resolved::{Resolved, SEVERAL};
 use retune_model::{NonNegative, Positive};
 use retune_store::identity::Identity;
 use retune_store::json_text;
 use retune_store::manifest::{MadeBy, Manifest, NAME, file_sha256};
 use retune_study::{Solver, Span, Study};
-use retune_workbench::artefact::Kind;
-use retune_workbench::resolved::{Resolved, SEVERAL};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;

@@ -5,8 +5,8 @@
 use retune_explore::protocol::{DamperKind, Place};
 use retune_explore::start::Start;
 use retune_explore::{kind, motion, response};
+use retune_jobs::simulate::simulate;
 use retune_solver::{Rows, Window, trajectory};
-use retune_workbench::simulate::simulate;
 use std::time::Instant;
 
 /// Median of the times of some calls, ms.

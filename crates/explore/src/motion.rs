@@ -5,10 +5,10 @@ use crate::limits::rows;
 use crate::protocol::Answer;
 use crate::refused::Refused;
 use crate::thin::{Thin, Thinning};
+use retune_jobs::simulate::{Simulation, simulate};
 use retune_model::{Coupled, Measure};
 use retune_solver::{Moment, Sample, Window, trajectory};
 use retune_study::{Study, rounded};
-use retune_workbench::simulate::{Simulation, simulate};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 

@@ -41,7 +41,7 @@ pub const FILES: &[File] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use retune_figures::colour::{BLACK, BLUE, DARK, GREEN, ORANGE, PAPER, PURPLE, VERMILION, VIRIDIS};
+    use retune_report::colour::{BLACK, BLUE, DARK, GREEN, ORANGE, PAPER, PURPLE, VERMILION, VIRIDIS};
 
     fn text(name: &str) -> &'static str {
         let file = FILES.iter().find(|file| file.name == name).expect("a file of the page");

@@ -5,7 +5,7 @@ use crate::limits::{MOST_BYTES, MOST_PAGES};
 use crate::protocol::Answer;
 use crate::session;
 use crate::start::Start;
-use retune_workbench::{Error, Observer};
+use retune_jobs::{Error, Observer};
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::path::PathBuf;

@@ -2,12 +2,12 @@
 
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, Stale, bare};
-use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
-use retune_figures::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
+use retune_jobs::amount;
+use retune_jobs::summary::MadeBy;
+use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
+use retune_report::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
 use retune_solver::Window;
 use retune_study::{Study, design_words, hertz_and_rpm};
-use retune_workbench::amount;
-use retune_workbench::summary::MadeBy;
 
 /// Columns that the curves of the motion are thinned to.
 const COLUMNS: usize = 900;

@@ -5,8 +5,8 @@ use crate::refused::Refused;
 use crate::response::Stale;
 use crate::sheets;
 use crate::start::Start;
+use retune_jobs::simulate::write_rows;
 use retune_study::{Settable, Study};
-use retune_workbench::simulate::write_rows;
 
 /// Time between two rows of a motion, s, as `retune simulate --trajectory` has it.
 const INTERVAL: f64 = 0.005;

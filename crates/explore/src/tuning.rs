@@ -4,10 +4,10 @@ use crate::limits::{MOST_EVALUATIONS, MOST_RUNS};
 use crate::protocol::{Answer, Place};
 use crate::refused::Refused;
 use crate::start::Start;
+use retune_jobs::tune::{log, objective::searched};
 use retune_model::Parameter;
 use retune_optim::{DesignObjective, Objective, Response, Scale, Stiffnesses, Stop, energy, minimize};
 use retune_study::{Search, Study, rounded};
-use retune_workbench::tune::{log, objective::searched};
 use std::ops::ControlFlow;
 
 /// Cells of the map along each of its sides.

@@ -117,16 +117,15 @@ impl From<retune_study::SettingError> for Fault {
     }
 }
 
-impl From<retune_workbench::Error> for Fault {
-    fn from(error: retune_workbench::Error) -> Self {
-        use retune_workbench::Error;
+impl From<retune_jobs::Error> for Fault {
+    fn from(error: retune_jobs::Error) -> Self {
+        use retune_jobs::Error;
         match error {
             Error::Run(error) | Error::Motion(retune_dynamics::Error::Run(error)) => Self::Solver(error),
             Error::Unusable(error) => error.into(),
             Error::Setting(error) => error.into(),
             Error::Rule { rule, .. } => Self::of_rule(&rule),
             Error::Study(error) => Self::of_study(&error, "", true),
-            Error::Sweep(error) => Self::study(error.to_string(), Given::Nothing),
             error => Self::Other(error.to_string()),
         }
     }

@@ -5,13 +5,13 @@ use crate::jobs;
 use crate::problem::json;
 use crate::watch::{Watch, watched};
 use pyo3::prelude::*;
+use retune_jobs::design::Requirements;
+use retune_jobs::sweep::Options;
+use retune_jobs::sweep::Points;
+use retune_jobs::{Error, Request, certify, design, sweep, table2, tune};
+use retune_jobs::{fronts, retention};
 use retune_model::Parameter;
 use retune_study::Setting;
-use retune_sweep::Options;
-use retune_tradeoff::{fronts, retention};
-use retune_workbench::design::Requirements;
-use retune_workbench::sweep::Points;
-use retune_workbench::{Error, Request, certify, design, sweep, table2, tune};
 use serde::Deserialize;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -72,7 +72,7 @@ fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
             tune::merge::merge(request, &parts, watch)?;
             out = out_of_one(request)?;
         }
-        Job::Reproduce { only } => drop(retune_paper::reproduce(request, only.as_deref(), watch)?),
+        Job::Reproduce { only } => drop(retune_jobs::paper::reproduce(request, only.as_deref(), watch)?),
         Job::Share(shard) => {
             tune::tune_share(request, read("shard", &shard)?, watch)?;
             out = out_of_one(request)?;

@@ -5,11 +5,11 @@ use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use crate::watch::{caught, on_pool, watched};
 use pyo3::prelude::*;
+use retune_jobs::design::Requirements;
+use retune_jobs::job::Done;
+use retune_jobs::{Request, tune, verify as verification};
 use retune_model::{Contact, Parameter, Positive};
 use retune_store::Begin;
-use retune_workbench::design::Requirements;
-use retune_workbench::job::Done;
-use retune_workbench::{Request, tune, verify as verification};
 use std::path::PathBuf;
 
 /// What a job is asked beside its study: the directory of its results, whether to go on or to begin anew, whether to replace other results,
@@ -91,7 +91,7 @@ pub fn certify(
     let threads = threads.map(check).transpose()?;
     let study = core.at(x)?;
     let request = Request { threads, ..Request::default() };
-    let certificate = move || request.on_threads(|| retune_workbench::certify::certify(&study));
+    let certificate = move || request.on_threads(|| retune_jobs::certify::certify(&study));
     on_pool(py, &*pool(Some(1))?, move |_| json(&certificate()?))
 }
 
@@ -107,15 +107,7 @@ pub fn verify(
     within: f64,
     tell: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    watched(py, tell.as_ref(), |watch| {
-        Ok(verification::verify(
-            &path,
-            sample,
-            within,
-            &[retune_tradeoff::OTHERS, retune_branches::OTHERS, retune_paper::OTHERS],
-            watch,
-        )?)
-    })
+    watched(py, tell.as_ref(), |watch| Ok(verification::verify(&path, sample, within, watch)?))
 }
 
 /// The study with which `design` tunes a damper of a kind, "TMD" or "SSVI NES", for a structure and what is wished: from JSON to JSON.
@@ -162,7 +154,7 @@ pub fn branches(
     let request = asked.request(study)?;
     let Along { over, from, to, samples, starts, apart, fine } = along;
     let over = over.parse().map_err(Fault::Other)?;
-    let asked = retune_branches::Options {
+    let asked = retune_jobs::branches::Options {
         over,
         from,
         to,
@@ -170,10 +162,10 @@ pub fn branches(
         starts,
         apart,
         fine,
-        ..retune_branches::Options::default()
+        ..retune_jobs::branches::Options::default()
     };
-    watched(py, tell.as_ref(), |watch| match retune_branches::branches(&request, &asked, watch)? {
-        Done::Made(found) => json(&retune_branches::summary(&found)),
+    watched(py, tell.as_ref(), |watch| match retune_jobs::branches::branches(&request, &asked, watch)? {
+        Done::Made(found) => json(&retune_jobs::branches::summary(&found)),
         Done::FinishedBefore => {
             Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
         }

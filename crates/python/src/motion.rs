@@ -8,10 +8,11 @@ use crate::watch::on_pool;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use retune_jobs::sweep::{Plan, Sweep};
+use retune_model::Parameter;
 use retune_optim::Scale;
 use retune_solver::{Moment, Rows, Sample, trajectory};
 use retune_study::Study;
-use retune_sweep::{Parameter, Plan, Sweep};
 
 /// Most rows of a motion that is kept in memory.
 const MOST_ROWS: f64 = 1e7;
@@ -91,7 +92,7 @@ fn moved(study: &Study, interval: f64) -> Result<(String, Vec<Sample>), Fault> {
         let allowed = "a number above 0 that makes at most ten million rows, s";
         return Err(Fault::argument("interval", interval, allowed));
     }
-    let summary = json(&retune_workbench::simulate::simulate(study, None)?)?;
+    let summary = json(&retune_jobs::simulate::simulate(study, None)?)?;
     let mut samples = Vec::new();
     let mut keep = |sample: &Sample| samples.push(*sample);
     trajectory(&study.scene, window, &study.solver.settings(), Rows { interval, events: true }, &mut keep)?;
@@ -126,8 +127,5 @@ fn swept(study: Study, over: &str, values: &[f64], objective: bool) -> Result<Sw
         quantities: Vec::new(),
         objective,
     };
-    Sweep::new(plan, study).map_err(|error| match error {
-        retune_sweep::Error::Value(error) => error.into(),
-        error => refuse(error.to_string()),
-    })
+    Ok(Sweep::new(plan, study)?)
 }

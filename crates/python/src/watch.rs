@@ -7,7 +7,7 @@ use crate::errors::{Fault, of_panic};
 use crate::pool::give_up;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
-use retune_workbench::{Error, Observer, Progress};
+use retune_jobs::{Error, Observer, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};

@@ -12,10 +12,10 @@ pub use sweep::Sweep;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use retune_jobs::parts::Shard;
 use retune_model::{Parameter, Start};
 use retune_solver::{Contacts, Method};
 use retune_study::{Settable, Setting, SettingError};
-use retune_workbench::parts::Shard;
 use std::path::PathBuf;
 
 /// Tunes vibration dampers: from a study file to the best design, its log and its figures.
@@ -95,7 +95,7 @@ pub enum Command {
     #[command(allow_negative_numbers = true)]
     Branches(Branches),
     /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line
-    #[command(after_help = retune_workbench::evaluate::PROTOCOL)]
+    #[command(after_help = retune_jobs::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
     /// Re-optimise the paper's Table 2 from its own designs, beside the paper's rows
     Table2 {

@@ -3,17 +3,17 @@
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
+use retune_jobs::design::Requirements;
+use retune_jobs::designs::Designs;
+use retune_jobs::evaluate::Streams;
+use retune_jobs::observer::Quiet;
+use retune_jobs::simulate::Trajectory;
+use retune_jobs::sweep::Options;
+use retune_jobs::sweep::Points;
+use retune_jobs::tune::Optimum;
+use retune_jobs::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
+use retune_jobs::{fronts, retention};
 use retune_study as study;
-use retune_sweep::Options;
-use retune_tradeoff::{fronts, retention};
-use retune_workbench::design::Requirements;
-use retune_workbench::designs::Designs;
-use retune_workbench::evaluate::Streams;
-use retune_workbench::observer::Quiet;
-use retune_workbench::simulate::Trajectory;
-use retune_workbench::sweep::Points;
-use retune_workbench::tune::Optimum;
-use retune_workbench::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
 use std::io::BufReader;
 use std::path::Path;
 
@@ -36,13 +36,9 @@ pub fn run(command: Command) -> Result<(), Error> {
             let (request, screen) = running.request(&study);
             found(tune::merge::merge(&request, &parts, &screen)?)
         }
-        Command::Verify { results, sample, within } => verify::verify(
-            &results,
-            sample as usize,
-            within,
-            &[retune_tradeoff::OTHERS, retune_branches::OTHERS, retune_paper::OTHERS],
-            &all,
-        ),
+        Command::Verify { results, sample, within } => {
+            verify::verify(&results, sample as usize, within, &all)
+        }
         Command::Certify { design, json: as_json, running } => {
             let (request, screen) = running.request(&design);
             let quiet = Quiet(&screen);
@@ -80,7 +76,7 @@ pub fn run(command: Command) -> Result<(), Error> {
             Kind::Study => schemars::schema_for!(study::Study),
             Kind::Table2 => schemars::schema_for!(study::Table2),
             Kind::Fronts => schemars::schema_for!(study::Fronts),
-            Kind::Paper => schemars::schema_for!(retune_paper::PaperPlan),
+            Kind::Paper => schemars::schema_for!(retune_jobs::paper::PaperPlan),
         })?),
         Command::Completions { shell } => {
             let mut script = Vec::new();
@@ -97,7 +93,7 @@ fn design(arguments: &cli::Design) -> Result<(), Error> {
     request.out = Some(out);
     let band = [band.first(), band.last()].map(|end| end.copied().unwrap_or(f64::NAN));
     let requirements = Requirements { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error };
-    retune_workbench::design::design(&requirements, &request, &screen).map(drop)
+    retune_jobs::design::design(&requirements, &request, &screen).map(drop)
 }
 
 /// A design that breaks the limits of its study has an exit code of its own.
@@ -115,7 +111,7 @@ fn made<T>(done: Done<T>, check: impl FnOnce(T) -> Result<(), Error>) -> Result<
 
 fn reproduce(cli::Reproduce { study, running }: &cli::Reproduce, only: Option<&str>) -> Result<(), Error> {
     let (request, screen) = running.request(study);
-    retune_paper::reproduce(&request, only, &screen).map(drop)
+    retune_jobs::paper::reproduce(&request, only, &screen).map(drop)
 }
 
 fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
@@ -131,7 +127,7 @@ fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
     let trajectory = arguments.trajectory.as_deref();
     let trajectory =
         trajectory.map(|file| Trajectory { file, interval: arguments.interval, inputs: &inputs });
-    let summary = retune_workbench::simulate::simulate(&study, trajectory)?;
+    let summary = retune_jobs::simulate::simulate(&study, trajectory)?;
     screen.line(if arguments.json { json(&summary)? } else { summary.to_string() })
 }
 
@@ -142,7 +138,7 @@ fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
     let points = Points::of(arguments.shard, arguments.merge);
     let quiet = Quiet(&screen);
     let watch: &dyn Observer = if arguments.json { &quiet } else { &screen };
-    let table = retune_workbench::sweep::sweep(&request, &options, &points, watch)?;
+    let table = retune_jobs::sweep::sweep(&request, &options, &points, watch)?;
     table.filter(|_| arguments.json).map_or(Ok(()), |table| screen.line(table.trim_end()))
 }
 
@@ -150,12 +146,13 @@ fn branches(arguments: cli::Branches) -> Result<(), Error> {
     let (request, screen) = arguments.running.request(&arguments.study);
     let cli::Branches { over, from, to, samples, starts, apart, fine, margin, basins, json: as_json, .. } =
         arguments;
-    let options = retune_branches::Options { over, from, to, samples, starts, apart, fine, margin, basins };
+    let options =
+        retune_jobs::branches::Options { over, from, to, samples, starts, apart, fine, margin, basins };
     if !as_json {
-        return retune_branches::branches(&request, &options, &screen).map(drop);
+        return retune_jobs::branches::branches(&request, &options, &screen).map(drop);
     }
-    let found = retune_branches::branches(&request, &options, &Quiet(&screen))?;
-    made(found, |found| screen.line(json(&retune_branches::summary(&found))?))
+    let found = retune_jobs::branches::branches(&request, &options, &Quiet(&screen))?;
+    made(found, |found| screen.line(json(&retune_jobs::branches::summary(&found))?))
 }
 
 fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<(), Error> {
@@ -172,7 +169,7 @@ fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<()
 
 /// Checks a study file and prints a description of it.
 fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
-    let (words, jobs) = retune_paper::describe(path)?;
+    let (words, jobs) = retune_jobs::paper::describe(path)?;
     screen.line(words)?;
     jobs.iter().try_for_each(|job| screen.line(job.files()))?;
     screen.result(&format!("{}: good", path.display()))

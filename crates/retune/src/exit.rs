@@ -1,6 +1,6 @@
 //! The exit codes of the program. One list: for the code, `--help` and the README.
 
-use retune_workbench::Error;
+use retune_jobs::Error;
 
 /// The computation failed; results do not hold (`verify`); a line had no value (`evaluate`).
 pub const FAILED: u8 = 1;
@@ -21,7 +21,6 @@ pub fn code_of(error: &Error) -> u8 {
         | Error::Study(_)
         | Error::Setting(_)
         | Error::Rule { .. }
-        | Error::Sweep(_)
         | Error::Argument { .. }
         | Error::Interval { .. }
         | Error::Part { .. }

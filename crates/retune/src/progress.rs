@@ -41,7 +41,7 @@ impl Stage {
     }
 }
 
-impl retune_workbench::Progress for Stage {
+impl retune_jobs::Progress for Stage {
     fn known(&self) {
         self.count.known.fetch_add(1, Relaxed);
     }
@@ -110,7 +110,7 @@ fn words(per_second: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use retune_workbench::Progress as _;
+    use retune_jobs::Progress as _;
 
     #[test]
     fn contract_rates_have_few_digits() {

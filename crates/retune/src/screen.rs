@@ -1,8 +1,8 @@
 //! Output: results and the log on standard output, errors and progress on standard error.
 
 use crate::{interrupt, progress};
+use retune_jobs::{Error, Observer, Progress};
 use retune_study::visible;
-use retune_workbench::{Error, Observer, Progress};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! Observers that tests need, and calls of jobs that must succeed or be refused.
 
-use retune_workbench::{Error, Observer, Progress, Silent};
+use retune_jobs::{Error, Observer, Progress, Silent};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};

@@ -2,8 +2,8 @@
 
 use crate::desk::{Desk, altered, tiny};
 use crate::observers::Record;
-use retune_workbench::Error;
-use retune_workbench::verify::{Others, verify};
+use retune_jobs::Error;
+use retune_jobs::verify::verify;
 use serde_json::json;
 
 /// How a verification ended.
@@ -19,9 +19,9 @@ pub enum End {
 
 /// Verifies the results in a directory of the desk; returns what was said and the end.
 #[track_caller]
-pub fn look(desk: &Desk, out: &str, sample: usize, within: f64, others: &Others) -> (String, End) {
+pub fn look(desk: &Desk, out: &str, sample: usize, within: f64) -> (String, End) {
     let record = Record::default();
-    let end = match verify(&desk.path(out), sample, within, &[others], &record) {
+    let end = match verify(&desk.path(out), sample, within, &record) {
         Ok(()) => End::Holds,
         Err(Error::NotHeld { path, problem }) if path == desk.path(out) => End::Not(problem),
         Err(Error::NotChecked { path, problem }) if path == desk.path(out) => End::Unchecked(problem),
@@ -34,8 +34,8 @@ pub fn look(desk: &Desk, out: &str, sample: usize, within: f64, others: &Others)
 
 /// Verifies results that hold; returns what was said.
 #[track_caller]
-pub fn holds(desk: &Desk, out: &str, sample: usize, others: &Others) -> String {
-    let (said, end) = look(desk, out, sample, 0.0, others);
+pub fn holds(desk: &Desk, out: &str, sample: usize) -> String {
+    let (said, end) = look(desk, out, sample, 0.0);
     assert_eq!(end, End::Holds, "{said}");
     said
 }
@@ -59,8 +59,8 @@ pub fn desk() -> Desk {
 
 /// Verifies results that hold, then again with one digit of each of some of their files changed.
 #[track_caller]
-pub fn a_changed_digit_is_found(desk: &Desk, out: &str, others: &Others, files: &[&str]) {
-    let said = holds(desk, out, 20, others);
+pub fn a_changed_digit_is_found(desk: &Desk, out: &str, files: &[&str]) {
+    let said = holds(desk, out, 20);
     assert!(said.contains("files as they were made\n"), "{said}");
     for name in files {
         let line = said.lines().find(|line| line.starts_with(&format!("  {name} "))).expect(name);
@@ -69,7 +69,7 @@ pub fn a_changed_digit_is_found(desk: &Desk, out: &str, others: &Others, files: 
         let file = format!("{out}/{name}");
         let whole = desk.read(&file);
         desk.write(&file, altered(&whole));
-        let End::Not(problem) = look(desk, out, 1000, 0.0, others).1 else { panic!("{name}: it holds") };
+        let End::Not(problem) = look(desk, out, 1000, 0.0).1 else { panic!("{name}: it holds") };
         assert!(problem.contains(&format!("{name} is not as it was made; ")), "{problem}");
         assert!(problem.contains(&format!("{name}, 1 differs, by at most ")), "{problem}");
         desk.write(&file, whole);

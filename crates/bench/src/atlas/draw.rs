@@ -2,8 +2,8 @@
 
 use super::{Cell, Verdict, WAYS};
 use crate::panel::Drawn;
-use retune_figures::colour::{Colour, GREEN, ORANGE, SKY, VERMILION, YELLOW};
-use retune_figures::{Axis, Chart, Key, Layer, Sheet, Stand, Width, svg, ten_to};
+use retune_report::colour::{Colour, GREEN, ORANGE, SKY, VERMILION, YELLOW};
+use retune_report::{Axis, Chart, Key, Layer, Sheet, Stand, Width, svg, ten_to};
 use std::fs;
 use std::path::Path;
 

@@ -3,8 +3,8 @@
 use crate::own;
 use crate::panel::{Drawn, Line, look, panel, sheet};
 use crate::scenes::{SSVI, scene, system};
-use retune_figures::Axis;
 use retune_model::{Coupled, NonNegative, Parameter, Side};
+use retune_report::Axis;
 use retune_solver::observe::{Observer, Segment};
 use retune_solver::{Contacts, Method, Settings};
 use std::error::Error;

@@ -4,8 +4,8 @@
 use crate::own;
 use crate::panel::{Drawn, Line, look, panel, sheet};
 use crate::scenes::{Case, Numbers, TMD, cases, scene, system};
-use retune_figures::Axis;
 use retune_model::{Coupled, Side};
+use retune_report::Axis;
 use retune_solver::observe::{Observer, Segment};
 use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings};
 use std::error::Error;

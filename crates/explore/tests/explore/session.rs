@@ -7,7 +7,7 @@ use retune_explore::protocol::{Answer, DamperKind, Message, Place, What, read};
 use retune_explore::session::serve;
 use retune_explore::start::Start;
 use retune_explore::{motion, response, texts};
-use retune_workbench::simulate::simulate;
+use retune_jobs::simulate::simulate;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Mutex;

@@ -2,7 +2,7 @@
 
 use super::running::Running;
 use clap::Args;
-use retune_branches::Options;
+use retune_jobs::branches::Options;
 use retune_model::Parameter;
 use std::path::PathBuf;
 

@@ -2,8 +2,8 @@
 
 use crate::screen::Screen;
 use clap::Args;
+use retune_jobs::Request;
 use retune_store::Begin;
-use retune_workbench::Request;
 use std::path::{Path, PathBuf};
 
 /// The options of a run.

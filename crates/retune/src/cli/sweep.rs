@@ -2,8 +2,9 @@
 
 use super::running::Running;
 use clap::Args;
-use retune_sweep::{Parameter, Quantity};
-use retune_workbench::parts::Shard;
+use retune_jobs::parts::Shard;
+use retune_jobs::sweep::Quantity;
+use retune_model::Parameter;
 use std::path::PathBuf;
 
 /// `sweep`.

@@ -1,5 +1,5 @@
 //! Processes that are stopped, killed, locked out or out of disk space: nothing is lost, and the final results have the bytes of
-//! an uninterrupted run. (Where a run may be cut off is tried in the tests of `workbench` and in `kills.rs`.)
+//! an uninterrupted run. (Where a run may be cut off is tried in the tests of `jobs` and in `kills.rs`.)
 
 use crate::common::{Answer, Desk, Program, begun, started};
 use retune_testkit::desk::{count_lines, longer};

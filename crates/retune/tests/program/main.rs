@@ -1,4 +1,4 @@
-//! The program as a process: arguments, the screen, pipes, exit codes, signals. What its jobs find is tested in `workbench`.
+//! The program as a process: arguments, the screen, pipes, exit codes, signals. What its jobs find is tested in `jobs`.
 
 mod anywhere;
 mod catalogue;

@@ -1,5 +1,5 @@
 //! Refusals as a user sees them: one clear message each, an exit code that says whose fault it is, and no file left. The messages
-//! about studies are tested in `study`, those of results in `workbench`.
+//! about studies are tested in `study`, those of results in `jobs`.
 
 use crate::common::{Answer, Desk, Program};
 use retune_testkit::desk::{edited, flat, global, studies, tiny};

@@ -1,0 +1,98 @@
+//! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
+//! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
+//!
+//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `tables` (what is written), `draw`, `page`, `basins`, and
+//! `again`, which computes rows of the tables again.
+
+mod again;
+mod basins;
+mod draw;
+mod found;
+mod margin;
+mod options;
+mod page;
+mod remedy;
+mod tables;
+mod words;
+
+pub(crate) use again::again;
+pub use found::{Found, Margin};
+pub use options::Options;
+pub use tables::summary;
+
+use crate::artefact::{Content, Kind, artefact};
+use crate::job::{Done, Job, Made};
+use crate::{Error, Observer, Request, resolved};
+use options::plan_json;
+use retune_dynamics::periodic::Plane;
+use retune_dynamics::periodic::basins::SIDE;
+use retune_dynamics::periodic::branches::{Watch, branches as motions};
+use retune_study::{found_in, read};
+use std::path::Path;
+
+/// The files of `branches`.
+pub static KIND: Kind = Kind {
+    command: "branches",
+    answer: tables::BRANCHES,
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact(tables::BRANCHES, Content::Own),
+        artefact(tables::BIFURCATIONS, Content::Own),
+        artefact(tables::ATTRACTORS, Content::Own),
+        artefact(tables::STATES, Content::Derived),
+        artefact(basins::STARTS, Content::Own),
+        artefact("branches.json", Content::Derived),
+        artefact("branches.svg", Content::Derived),
+        artefact("basins.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
+    ],
+};
+
+/// Follows the branches of the scene of a study, or of the design that a search found, along a parameter.
+///
+/// # Errors
+/// The study or what is asked for is wrong, a scene in the range cannot be run, or the results cannot be written.
+pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> Result<Done<Found>, Error> {
+    let study = read(&request.study)?;
+    let (plan, basins_at) = options.plan(&study)?;
+    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
+    let out = request.out.clone().unwrap_or_else(|| {
+        Path::new("results").join(format!("branches-{}{tuned}-{}", study.name(), plan.parameter.symbol()))
+    });
+    let request = Request { out: Some(out), ..request.clone() };
+    let studies = [(study.name(), &study)];
+    let mut said = plan_json(&plan);
+    if options.margin {
+        said["margin"] = true.into();
+    }
+    if let Some(value) = basins_at {
+        said["basins"] = value.into();
+    }
+    let job = Job::of_studies(&KIND, &request, said, studies.into_iter())?;
+    job.run(&request, watch, |directory| {
+        let bar = watch.progress("runs from many starts", plan.samples as u64);
+        let branches = motions(
+            &study.scene,
+            plan,
+            &study.solver.settings(),
+            Watch { done: &|| bar.inc(1), ..Watch::default() },
+        )?;
+        bar.finish();
+        let mut found = Found::new(study.clone(), branches);
+        if options.margin {
+            found.margin = margin::margin(&found)?;
+        }
+        if let Some(value) = basins_at {
+            let bar = watch.progress("rows of starts in a plane", SIDE as u64);
+            let known = Some(&found.branches);
+            let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, known)?;
+            found.basins = Some(plane.basins(|| bar.inc(1))?);
+            bar.finish();
+        }
+        tables::write(&found, directory)?;
+        page::write(&found, directory)?;
+        let report = format!("\n{}", page::answer(&found).join("\n"));
+        Ok(Made { report, answer: found, parts: Vec::new() })
+    })
+}

@@ -1,0 +1,128 @@
+//! The figure of `branches`: E1max of all motions along the parameter, stable and unstable, with the bifurcations; below it the stroke.
+
+use crate::branches::found::Found;
+use retune_dynamics::periodic::{Branch, EventKind, Orbit};
+use retune_model::Parameter;
+use retune_report::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION};
+use retune_report::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing, scale_for,
+};
+use retune_study::hertz_and_rpm;
+
+const STABLE: Stroke = Stroke::new(BLUE, 1.4, Dash::Solid);
+const UNSTABLE: Stroke = Stroke::new(ORANGE, 0.9, Dash::Short);
+/// Runs from rest, and those from other starts.
+const REST: Mark = Mark::new(Shape::Disc, BLACK, 2.6);
+const OTHERS: Mark = Mark::new(Shape::Ring, GREY, 3.6);
+const IRREGULAR: f64 = 0.18;
+/// Most events of one kind that are marked on a branch: a cascade has any number of them.
+const MOST: usize = 40;
+
+fn mark(kind: EventKind) -> Mark {
+    match kind {
+        EventKind::Fold => Mark { rim: true, ..Mark::new(Shape::Triangle, VERMILION, 5.5) },
+        EventKind::BranchPoint => Mark { rim: true, ..Mark::new(Shape::Disc, ORANGE, 5.0) },
+        EventKind::PeriodDoubling => Mark { rim: true, ..Mark::new(Shape::Square, PURPLE, 4.5) },
+        EventKind::NeimarkSacker => Mark { rim: true, ..Mark::new(Shape::Disc, GREEN, 5.0) },
+        EventKind::Grazing => Mark::new(Shape::Cross, BLACK, 4.0),
+    }
+}
+
+/// A quantity that is drawn: its label and its value.
+type Drawn = (&'static str, fn(&Orbit) -> f64);
+const DRAWN: [Drawn; 2] = [("E1max, J", |orbit| orbit.seen.e1_max), ("stroke, m", |orbit| orbit.seen.stroke)];
+
+/// The figure.
+pub fn draw(found: &Found) -> Drawing {
+    let mut legend = vec![
+        (Key::Line(STABLE), "stable motions".to_owned()),
+        (Key::Line(UNSTABLE), "unstable motions".to_owned()),
+        (Key::Mark(REST), "runs from rest".to_owned()),
+        (Key::Mark(OTHERS), "runs from other starts".to_owned()),
+    ];
+    for kind in EventKind::ALL {
+        if found.branches.branches.iter().any(|branch| branch.events.iter().any(|event| event.kind == kind)) {
+            legend.push((Key::Mark(mark(kind)), kind.name().to_owned()));
+        }
+    }
+    let [_, irregular] = found.branches.stable_and_irregular();
+    if !irregular.is_empty() {
+        legend.push((Key::Area(GREY, IRREGULAR), "no stable periodic motion known".to_owned()));
+    }
+    let over = found.branches.plan.parameter;
+    let words = legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ");
+    drawing(&Sheet {
+        title: "Periodic motions".to_owned(),
+        description: format!(
+            "E1max and stroke of all periodic motions that were found, against {}: {words}.",
+            over.symbol()
+        ),
+        width: Width::Page,
+        charts: DRAWN.iter().enumerate().map(|(i, drawn)| chart(found, drawn, i == 0)).collect(),
+        columns: 1,
+        stacked: true,
+        legend,
+        caption: vec![format!("{}; Retune {}", found.study.name(), env!("CARGO_PKG_VERSION"))],
+    })
+}
+
+fn chart(found: &Found, (label, value): &Drawn, is_first: bool) -> Chart {
+    let plan = &found.branches.plan;
+    let [_, irregular] = found.branches.stable_and_irregular();
+    let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut layers: Vec<Layer> = irregular
+        .iter()
+        .map(|[from, to]| Layer::Band { x: (*from, *to), y: everywhere, colour: GREY, opacity: IRREGULAR })
+        .collect();
+    let branches = &found.branches.branches;
+    let mut values: Vec<f64> = branches.iter().flat_map(|branch| branch.points.iter().map(value)).collect();
+    let samples = &found.branches.samples;
+    let attractors = |from_rest: bool| {
+        let all = samples.iter().flat_map(|sample| &sample.attractors);
+        all.filter(move |one| one.from_rest == from_rest).map(|one| (one.orbit.value, value(&one.orbit)))
+    };
+    let (mut rest, mut others): (Vec<_>, Vec<_>) = (attractors(true).collect(), attractors(false).collect());
+    if is_first {
+        for sample in samples {
+            for (i, seen) in sample.irregular.iter().enumerate() {
+                let point = (sample.value, seen.e1_max);
+                if i == 0 && sample.rest_is_irregular { rest.push(point) } else { others.push(point) }
+            }
+        }
+    }
+    values.extend(others.iter().chain(&rest).map(|(_, value)| *value));
+    layers.extend(branches.iter().map(|branch| line(branch, *value, false)));
+    layers.extend(branches.iter().map(|branch| line(branch, *value, true)));
+    layers.push(Layer::Marks { points: others, mark: OTHERS });
+    layers.push(Layer::Marks { points: rest, mark: REST });
+    for branch in branches {
+        for kind in EventKind::ALL.into_iter().rev() {
+            let own = branch.events.iter().filter(|event| event.kind == kind).take(MOST);
+            let points = own.map(|event| (event.orbit.value, value(&event.orbit))).collect();
+            layers.push(Layer::Marks { points, mark: mark(kind) });
+        }
+    }
+    let high = values.iter().copied().fold(0.0, f64::max);
+    let y = match scale_for(&values) {
+        Scale::Log => Axis::around(*label, Scale::Log, values),
+        Scale::Linear => Axis::linear(*label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 })),
+    };
+    let is_omega = plan.parameter == Parameter::Omega;
+    let symbol = if is_omega { "ω" } else { plan.parameter.symbol() };
+    let x = Axis::linear(format!("{symbol}, {}", plan.parameter.unit()), (plan.range[0], plan.range[1]));
+    let x = if is_omega && is_first { x.with_second("frequency, Hz", hertz_and_rpm(1.0)[0]) } else { x };
+    Chart { title: String::new(), x, y, layers, height: if is_first { 240.0 } else { 150.0 } }
+}
+
+/// The stable or the unstable motions of a branch.
+fn line(branch: &Branch, value: fn(&Orbit) -> f64, stable: bool) -> Layer {
+    let mut points = Vec::new();
+    for (i, pair) in branch.points.windows(2).enumerate() {
+        if branch.is_stable_after(i) == stable {
+            points.extend(pair.iter().map(|orbit| (orbit.value, value(orbit))));
+        } else {
+            points.push((f64::NAN, f64::NAN));
+        }
+    }
+    Layer::Line { points, stroke: if stable { STABLE } else { UNSTABLE } }
+}

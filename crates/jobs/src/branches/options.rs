@@ -1,0 +1,137 @@
+//! What is asked for: the parameter, its range, how many runs are started.
+
+use crate::Error;
+use retune_dynamics::periodic::branches::{Plan, SPACINGS};
+use retune_model::Parameter;
+use retune_study::Study;
+use serde_json::{Value, json};
+
+/// Most samples, and most starts at each.
+const MOST: usize = 10_000;
+
+/// What is asked for, as it is typed.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The parameter.
+    pub over: Parameter,
+    /// Its least value; by default that of the band of the study, or 0.8 of its own.
+    pub from: Option<String>,
+    /// Its largest value; by default that of the band of the study, or 1.25 of its own.
+    pub to: Option<String>,
+    /// Number of values at which runs are started from rest.
+    pub samples: usize,
+    /// Number of other starts for each, over the whole range and the states that the force can reach.
+    pub starts: usize,
+    /// Runs at each from whose states Newton's iteration is led to motions other than those known.
+    pub apart: usize,
+    /// Number of values at which a run from rest alone is followed as well.
+    pub fine: usize,
+    /// Whether to look for the force at which an isola begins.
+    pub margin: bool,
+    /// The value of the parameter at which starts in a plane are followed; none unless asked for.
+    pub basins: Option<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            over: Parameter::Omega,
+            from: None,
+            to: None,
+            samples: 31,
+            starts: 16,
+            apart: 0,
+            fine: 3001,
+            margin: false,
+            basins: None,
+        }
+    }
+}
+
+impl Options {
+    /// The plan for a study, and the value at which basins are asked for.
+    ///
+    /// # Errors
+    /// An end is no number or out of range, or there are too many runs.
+    pub(crate) fn plan(&self, study: &Study) -> Result<(Plan, Option<f64>), Error> {
+        let Self { over, samples, starts, apart, fine, .. } = *self;
+        study.begins_at_rest().map_err(Error::rule(study))?;
+        if study.scene.damper.is_none() {
+            let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
+            return Err(Error::Argument { option: "STUDY", problem });
+        }
+        if self.margin && over != Parameter::Omega {
+            let problem = format!("an isola is looked for over omega, not over {}", over.symbol());
+            return Err(Error::Argument { option: "--margin", problem });
+        }
+        if !over.has_derivative() {
+            let known = Parameter::differentiable(", ");
+            let problem = format!("{over}: branches are followed over one of {known}");
+            return Err(Error::Argument { option: "--over", problem });
+        }
+        let [low, high] = default_range(over, study)?;
+        let end = |option, text: &Option<String>, otherwise: f64| {
+            let value = text.as_ref().map_or(Ok(otherwise), |text| over.read(text));
+            let value = value.map_err(|problem| Error::Argument { option, problem })?;
+            match over.at(study.scene, value) {
+                Ok(_) if value.is_finite() && value > 0.0 => Ok(value),
+                _ => Err(Error::Argument {
+                    option,
+                    problem: format!("{value} {}: give a value above 0", over.unit()),
+                }),
+            }
+        };
+        let range = [end("--from", &self.from, low)?, end("--to", &self.to, high)?];
+        if range[0] >= range[1] {
+            let problem = format!("{} is not above --from {}", range[1], range[0]);
+            return Err(Error::Argument { option: "--to", problem });
+        }
+        if !(2..=MOST).contains(&samples)
+            || starts.max(apart) > MOST
+            || !(fine == 0 || (2..=MOST).contains(&fine))
+        {
+            let problem = format!(
+                "give 2 to {MOST} samples, at most {MOST} starts of each kind at each, and 0 or 2 to {MOST} fine runs"
+            );
+            return Err(Error::Argument { option: "--samples, --starts, --apart, --fine", problem });
+        }
+        let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
+        let plan = Plan { samples, starts, apart, fine, looks: SPACINGS.len(), ..Plan::over(over, range) };
+        Ok((plan, basins))
+    }
+}
+
+/// The band of the study for ω, else from 0.8 to 1.25 of the scene's own value.
+fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
+    let band = study.objective().omega.map(|band| band.of(&study.scene.primary));
+    if let (Parameter::Omega, Some(band)) = (over, band) {
+        return Ok([band.from, band.to]);
+    }
+    match over.of(&study.scene) {
+        Some(own) => Ok([0.8 * own, 1.25 * own]),
+        None => Err(Error::Argument {
+            option: "--over",
+            problem: format!("the scene of study {} has no {}", study.name(), over.symbol()),
+        }),
+    }
+}
+
+/// The plan as it stands in the resolved study.
+pub(crate) fn plan_json(plan: &Plan) -> Value {
+    let Plan { parameter, range: [from, to], samples, starts, apart, fine, .. } = plan;
+    json!({ "over": parameter.symbol(), "from": from, "to": to, "samples": samples, "starts": starts, "apart": apart, "fine": fine })
+}
+
+/// The plan in a resolved study; none if it is not one.
+pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
+    let count = |name: &str| json[name].as_u64().map(|count| count as usize);
+    let range = [json["from"].as_f64()?, json["to"].as_f64()?];
+    Some(Plan {
+        samples: count("samples")?,
+        starts: count("starts")?,
+        apart: count("apart")?,
+        fine: count("fine")?,
+        looks: SPACINGS.len(),
+        ..Plan::over(json["over"].as_str()?.parse().ok()?, range)
+    })
+}

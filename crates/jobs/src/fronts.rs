@@ -1,0 +1,69 @@
+//! `fronts`: the least E1max of a damper under ever looser bounds on the spring and on the stroke, and the trade between them.
+
+mod again;
+mod candidate;
+mod descents;
+mod designs;
+mod draw;
+mod page;
+mod refinement;
+mod search;
+
+pub use again::again;
+pub use candidate::{Candidate, SAME};
+pub use designs::{Certified, Fronts, Row};
+
+use crate::artefact::{Content, Kind, artefact};
+use crate::job::{Done, Job, Made};
+use crate::resolved;
+use crate::searches::Searches;
+use crate::{Error, Observer, Request};
+use retune_study as study;
+use serde_json::json;
+
+/// The files of Pareto fronts.
+pub static KIND: Kind = Kind {
+    command: "fronts",
+    answer: "front.csv",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("k2.csv", Content::Designs),
+        artefact("stroke.csv", Content::Designs),
+        artefact("contact_force.csv", Content::Designs),
+        artefact("front.csv", Content::Designs),
+        artefact("certificate-*.json", Content::Own),
+        artefact("k2.svg", Content::Derived),
+        artefact("stroke.svg", Content::Derived),
+        artefact("contact_force.svg", Content::Derived),
+        artefact("front.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
+    ],
+};
+
+/// Tunes each damper under each bound, and shows what it is good for.
+///
+/// # Errors
+/// A study is wrong, nothing can be computed, or the results cannot be written.
+pub fn fronts(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, Error> {
+    let plan = study::read_fronts(&request.study)?;
+    let dampers = plan.dampers.iter().map(|(name, study)| (name.as_str(), study));
+    let job = Job::of_studies(&KIND, request, json!(plan.said), dampers)?;
+    job.run(request, watch, |directory| {
+        let searches = Searches::new(directory, &job.order, watch);
+        let fronts = search::search(plan, &searches, watch)?;
+        for sweep in fronts.plan.sweeps() {
+            directory.write(&format!("{}.csv", sweep.name()), &fronts.csv(sweep))?;
+        }
+        directory.write("front.csv", &fronts.front_csv())?;
+        for Certified { file, certificate, .. } in &fronts.certified {
+            directory.write_json(file, certificate)?;
+        }
+        page::write(&fronts, directory)?;
+        Ok(Made {
+            report: format!("\n{}", page::answer(&fronts).join("\n")),
+            answer: fronts,
+            parts: searches.results,
+        })
+    })
+}

@@ -1,0 +1,135 @@
+//! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
+
+use crate::certify::Verdict;
+use crate::needs::Largest;
+use retune_model::{Design, Parameter};
+use retune_study::{Sweep, fields};
+use std::cmp::Ordering;
+
+/// E1max that differs by less than this share is the same.
+pub const SAME: f64 = 0.01;
+
+/// The verdict of a design that a descent found, until it is judged.
+pub(super) const CONTINUED: &str = "not certified";
+
+/// A design, evaluated on the samples of the study of fronts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The number of its damper.
+    pub damper: usize,
+    /// Its design.
+    pub at: Design,
+    /// The worst E1max over the band, J.
+    pub e1_max: f64,
+    /// The same on the samples of the second evaluation, J, if there was one.
+    pub checked: Option<f64>,
+    /// The largest stroke (spring deflection |x2 - x1 - D|) in any run, m.
+    pub stroke: f64,
+    /// The largest contact force in any run, N.
+    pub force: f64,
+    /// The verdict of its certificate.
+    pub verdict: &'static str,
+    /// The reason for it, if it has a certificate.
+    pub reason: String,
+    /// What it needs and what the structure does, if it has a certificate.
+    pub needs: Option<Largest>,
+}
+
+impl Candidate {
+    /// By how much it is beyond a bound, as a share of it.
+    pub fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
+        (self.reached(sweep) / bound - 1.0).max(0.0)
+    }
+
+    /// The value of a bounded quantity, in its unit.
+    pub fn reached(&self, sweep: Sweep) -> f64 {
+        match sweep {
+            Sweep::K2 => self.at.get(Parameter::K2),
+            Sweep::Stroke => self.stroke,
+            Sweep::ContactForce => self.force,
+        }
+    }
+
+    /// The worst E1max over the band on the finest samples that it was looked at on, J.
+    pub fn known(&self) -> f64 {
+        self.checked.unwrap_or(self.e1_max)
+    }
+
+    /// Whether E1max rises on more samples by more than what is the same.
+    pub fn rises(&self) -> bool {
+        self.checked.is_some_and(|checked| checked > (1.0 + SAME) * self.e1_max)
+    }
+
+    /// Whether it is of the same damper and has nearly the same E1max.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.damper == other.damper && (self.e1_max / other.e1_max - 1.0).abs() < SAME
+    }
+
+    /// Whether its certificate says that other starts than rest lead to much more.
+    pub fn is_unsafe(&self) -> bool {
+        self.verdict == Verdict::FromRest.name()
+    }
+
+    /// Whether its certificate calls it robust.
+    pub fn is_robust(&self) -> bool {
+        self.verdict == Verdict::Robust.name()
+    }
+
+    /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
+    pub fn is_nearly(&self, other: &Self) -> bool {
+        let near = |(a, b): (f64, f64)| {
+            a.is_nan() && b.is_nan() || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
+        };
+        self.damper == other.damper && self.at.values().into_iter().zip(other.at.values()).all(near)
+    }
+
+    /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.
+    pub fn dominates(&self, other: &Self) -> bool {
+        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.get(Parameter::K2)];
+        let pairs = || all(self).into_iter().zip(all(other));
+        pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
+    }
+
+    /// Its fields in a table, under [`Self::COLUMNS`]; those of gaps are empty without walls.
+    pub fn fields(&self) -> String {
+        let Self { at, e1_max, checked, stroke, force, .. } = self;
+        let checked = checked.map(|value| value.to_string()).unwrap_or_default();
+        format!("{e1_max},{checked},{},{stroke},{force}", fields(&at.values()))
+    }
+
+    /// The names of [`Self::fields`].
+    pub const COLUMNS: &str = "E1max,E1max_check,k2,c2,D,C,stroke,contact_force";
+}
+
+/// The design that keeps a bound first, then that which is beyond it by less.
+pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Ordering {
+    let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
+    own.total_cmp(&other).then(a.known().total_cmp(&b.known()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regress_gaps_of_a_damper_without_walls_are_empty_fields() {
+        let value = |parameter| match parameter {
+            Parameter::K2 => 215.0,
+            Parameter::C2 => 35.0,
+            _ => f64::NAN,
+        };
+        let at = Design::new(value).expect("a design");
+        let design = Candidate {
+            damper: 0,
+            at,
+            e1_max: 600.0,
+            checked: None,
+            stroke: 0.5,
+            force: 0.0,
+            verdict: "steady",
+            reason: String::new(),
+            needs: None,
+        };
+        assert_eq!(design.fields(), "600,,215,35,,,0.5,0");
+    }
+}

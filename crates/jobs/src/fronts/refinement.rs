@@ -1,0 +1,176 @@
+//! The descent of one design under a bound.
+
+use crate::Error;
+use crate::tune::objective::searched;
+use retune_model::{Design, Parameter, PerVariable};
+use retune_store::Journal;
+use retune_study::{Optimize, Search, Study, Sweep, clipped};
+
+/// What is done under one bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Under {
+    /// The number of the damper.
+    pub damper: usize,
+    /// The bounded quantity.
+    pub sweep: Sweep,
+    /// The bound, in the unit of the sweep.
+    pub bound: f64,
+}
+
+/// The design at the foot of the slope from `start` by the objective and within the bounds of a study; none where there is no way down. The
+/// journal keeps it.
+///
+/// # Errors
+/// The study breaks a rule.
+pub(super) fn descend(
+    study: &Study,
+    start: &PerVariable<f64>,
+    under: Under,
+    journal: &Journal,
+) -> Result<Option<Design>, Error> {
+    let (study, search, samples) = from(study, start)?;
+    let Some(at) = search.given.first() else { return Ok(None) };
+    let of = searched(&study, &search, &search.variables);
+    let Under { damper, sweep, bound } = under;
+    let stage = format!("{damper} {} {bound} {samples}", sweep.name());
+    let foot = crate::tune::descent::descend(&of, &search, at, journal, &stage);
+    Ok(of.damper(&foot.end.x).ok().map(|damper| Design::of_varied(&damper, &search.variables)))
+}
+
+/// The design at `start` if it has no more than `most` and keeps the limits; none if not. The journal keeps its value.
+///
+/// # Errors
+/// The study breaks a rule.
+pub(super) fn screen(
+    study: &Study,
+    start: &PerVariable<f64>,
+    most: f64,
+    under: Under,
+    journal: &Journal,
+) -> Result<Option<Design>, Error> {
+    let (study, search, samples) = from(study, start)?;
+    let Some(at) = search.given.first() else { return Ok(None) };
+    let of = searched(&study, &search, &search.variables);
+    let look = || {
+        let (height, _) = of.look(at, most);
+        if height.broken > 0.0 { f64::MAX } else { height.worst }
+    };
+    let Under { damper, sweep, bound } = under;
+    let value =
+        journal.value(&format!("{damper} {} {bound} {samples}", sweep.name()), at, most, look, |_| ());
+    Ok(of
+        .damper(at)
+        .ok()
+        .filter(|_| value <= most)
+        .map(|damper| Design::of_varied(&damper, &search.variables)))
+}
+
+/// A study that begins at `start`, its search, and the samples of its band.
+fn from(study: &Study, start: &PerVariable<f64>) -> Result<(Study, Search, usize), Error> {
+    let mut study = study.clone();
+    let mut samples = 0;
+    if let Some(optimize) = &mut study.optimize {
+        (optimize.global, optimize.surf) = (None, None);
+        optimize.starts = vec![*start];
+        samples = optimize.objective.omega.map_or(0, |band| band.samples);
+    }
+    let search = study.search().map_err(Error::rule(&study))?;
+    Ok((study, search, samples))
+}
+
+/// The starts about a design: itself, and each copy with a gap at its lower bound that is this near to it, as a share of the side.
+pub(super) fn starts(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
+    const NEAR: f64 = 0.05;
+    let own = clipped(at, optimize);
+    let at_bound = |variable: Parameter| {
+        let value = own.get(variable)?;
+        let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
+        let is_near = value > low && value - low < NEAR * (high.unwrap_or(f64::INFINITY) - low).min(1.0);
+        let mut start = own;
+        start.set(variable, Some(low));
+        is_near.then_some(start)
+    };
+    [own].into_iter().chain([Parameter::D, Parameter::C].into_iter().filter_map(at_bound)).collect()
+}
+
+/// A parameter moved by a share of its side of the box, where it has two ends, or of its value.
+fn moved(at: &Design, optimize: &Optimize, variable: Parameter, share: f64) -> f64 {
+    let value = at.get(variable);
+    let (low, high) = optimize.bounds.get(variable).unwrap_or((0.0, None));
+    let side = high.map_or(value, |high| (high - low).min(value.max(1.0)));
+    (value + share * side).max(low)
+}
+
+/// Places about a design: along each parameter by a twentieth of its side.
+pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
+    const FAR: f64 = 0.05;
+    let moved = |variable: Parameter, sign: f64| {
+        let value = moved(at, optimize, variable, sign * FAR);
+        Design::new(|other| if other == variable { value } else { at.get(other) }).ok()
+    };
+    optimize
+        .vary
+        .iter()
+        .flat_map(|&variable| [-1.0, 1.0].into_iter().filter_map(move |sign| moved(variable, sign)))
+        .collect()
+}
+
+/// Places scattered about a design, by up to a tenth of each side; a gap at its lower bound stays there. Where motions are irregular E1max jumps
+/// from one design to the next, and no slope leads to the better ones.
+pub(super) fn scattered(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
+    const FAR: f64 = 0.1;
+    const PLACES: u32 = 128;
+    let value = |i: u32, variable: Parameter| {
+        let (low, _) = optimize.bounds.get(variable).unwrap_or((0.0, None));
+        let is_gap = matches!(variable, Parameter::D | Parameter::C);
+        if !optimize.vary.contains(&variable) || is_gap && at.get(variable) <= low {
+            return at.get(variable);
+        }
+        moved(at, optimize, variable, FAR * (2.0 * sobol(i, variable as u32) - 1.0))
+    };
+    let places = (0..PLACES).filter_map(|i| Design::new(|variable| value(i, variable)).ok());
+    places.map(|at| clipped(&at, optimize)).collect()
+}
+
+/// Places on the sides of the box where one wall touches the damper at rest and the spring is as stiff as a bound allows: good designs lie there,
+/// and a search of the whole box does not find them.
+pub(super) fn on_sides(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
+    const PLACES: u32 = 320;
+    /// Share of its upper bound at which a dashpot begins.
+    const SMALL: f64 = 0.02;
+    let box_of = |variable: Parameter| match optimize.bounds.get(variable) {
+        Some((low, Some(high))) if optimize.vary.contains(&variable) => Some((low, high)),
+        _ => None,
+    };
+    let [Some((_, k2)), Some((_, c2))] = [Parameter::K2, Parameter::C2].map(box_of) else {
+        return Vec::new();
+    };
+    let gaps = [(Parameter::D, Parameter::C), (Parameter::C, Parameter::D)];
+    let sides =
+        gaps.into_iter().filter_map(|(closed, open)| Some((closed, box_of(closed)?.0, open, box_of(open)?)));
+    let places = sides.flat_map(|(closed, rest, open, (low, high))| {
+        (0..PLACES).filter_map(move |i| {
+            let value = |variable| match variable {
+                Parameter::K2 => k2,
+                Parameter::C2 => c2 * SMALL.powf(sobol(i, 0)),
+                _ if variable == closed => rest,
+                _ if variable == open => low + (high - low) * sobol(i, 1),
+                _ => at.get(variable),
+            };
+            Design::new(value).ok()
+        })
+    });
+    places.map(|at| clipped(&at, optimize)).collect()
+}
+
+/// A coordinate of a point of a Sobol sequence, from 0 to 1.
+fn sobol(point: u32, dimension: u32) -> f64 {
+    f64::from(sobol_burley::sample(point, dimension, 0))
+}
+
+/// Sets the samples of the band of a study.
+pub(super) fn set_samples(study: &mut Study, samples: usize) {
+    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
+        band.samples = samples;
+    }
+}

@@ -1,0 +1,170 @@
+//! The searches of `fronts`: under each bound that of the study, then descents from what was found there and under the neighbouring bounds.
+//!
+//! The best are looked at once more on the finest samples, and it is by these that designs are compared.
+
+use super::candidate::{CONTINUED, Candidate};
+use super::descents::Task;
+use super::designs::{Fronts, GIVEN};
+use super::refinement::Under;
+use crate::certify::judge;
+use crate::look::{finer, look};
+use crate::needs::Largest;
+use crate::searches::Searches;
+use crate::tune::ends::Ends;
+use crate::{Error, Observer};
+use rayon::prelude::*;
+use retune_model::{Design, Measure, PerVariable, Scene};
+use retune_optim::Limit;
+use retune_study::{self as study, FrontsPlan, Study, Sweep, clipped};
+
+/// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
+const ROOM: f64 = 0.99;
+
+/// Makes all searches.
+///
+/// # Errors
+/// A study cannot be searched under a bound, or results cannot be written.
+pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer) -> Result<Fronts, Error> {
+    let mut fronts = Fronts::new(plan);
+    let mut tasks = Vec::new();
+    for damper in 0..fronts.plan.dampers.len() {
+        let (_, study) = &fronts.plan.dampers[damper];
+        if let Some(place) = study.scene.damper {
+            let at = Design::of_varied(&place, study.varied());
+            fronts.given.extend(fronts.look(damper, at, GIVEN));
+        }
+    }
+    for (damper, at) in fronts.plan.designs.clone() {
+        fronts.designs.extend(fronts.look(damper, at, CONTINUED));
+    }
+    for damper in 0..fronts.plan.dampers.len() {
+        tasks.extend(fronts.tune(damper, searches, watch)?);
+    }
+    fronts.go_down(tasks, searches, watch)?;
+    fronts.judge()?;
+    fronts.none = fronts
+        .plan
+        .dampers
+        .last()
+        .and_then(|(_, study)| Largest::of(study, &Scene { damper: None, ..study.scene }));
+    fronts.certified = fronts.certify()?;
+    Ok(fronts)
+}
+
+impl Fronts {
+    /// The searches of a damper under all bounds, side by side; the descents that begin where they came to. A steady response is exact over
+    /// the whole band: its searches need none.
+    fn tune(&mut self, damper: usize, searches: &Searches, watch: &dyn Observer) -> Result<Vec<Task>, Error> {
+        let bounds: Vec<Under> = self.all().into_iter().filter(|under| under.damper == damper).collect();
+        let study = |under: &Under| -> Result<(Study, String), Error> {
+            let Under { damper, sweep, bound } = *under;
+            Ok((self.under(*under, self.starts(*under))?, format!("{damper} {} {bound}", sweep.name())))
+        };
+        let all = searches.ends_of_all(&bounds.iter().map(study).collect::<Result<Vec<_>, _>>()?)?;
+        let mut tasks = Vec::new();
+        for (under, Ends { best, value, places }) in bounds.into_iter().zip(all) {
+            let Under { sweep, bound, .. } = under;
+            let found =
+                if value.is_nan() { "nothing that keeps it".to_owned() } else { format!("{value:.2} J") };
+            let (name, unit) = (self.name(damper), sweep.unit());
+            watch.log(&format!("{name}, {} at most {bound} {unit}: {found}", sweep.name()))?;
+            self.designs.extend(self.look(damper, best, CONTINUED));
+            if self.is_steady(damper) {
+                continue;
+            }
+            tasks.extend([best].iter().chain(&places).flat_map(|at| self.descents(at, under)));
+        }
+        Ok(tasks)
+    }
+
+    /// [`Self::bounded`], with some room below a limit.
+    pub(super) fn under(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
+        let room = if under.sweep == Sweep::K2 { 1.0 } else { ROOM };
+        self.bounded(Under { bound: room * under.bound, ..under }, starts)
+    }
+
+    /// The study of a damper under a bound.
+    fn bounded(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
+        let Under { damper, sweep, bound } = under;
+        let (_, study) = &self.plan.dampers[damper];
+        let refuse = Error::rule(study);
+        study::bounded(study, sweep, bound, starts).map_err(refuse)
+    }
+
+    /// The designs at which a search starts: the best of the dampers before it under the bound.
+    fn starts(&self, under: Under) -> Vec<PerVariable<f64>> {
+        let Ok(study) = self.under(under, Vec::new()) else { return Vec::new() };
+        let Some(optimize) = &study.optimize else { return Vec::new() };
+        let best = (0..under.damper).filter_map(|other| self.best(Under { damper: other, ..under }));
+        best.map(|design| clipped(&design.at, optimize)).collect()
+    }
+
+    /// A design on the samples of the study of fronts; none where it cannot be run.
+    pub(super) fn look(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
+        let (_, study) = self.plan.dampers.get(damper)?;
+        let found = look(&finer(study, self.plan.said.samples, &at)?)?;
+        let [stroke, force] =
+            [Measure::Stroke, Measure::ContactForce].map(|of| found.reached.get(Limit::Of(of)));
+        Some(Candidate {
+            damper,
+            at,
+            e1_max: found.energy,
+            checked: None,
+            stroke,
+            force,
+            verdict,
+            reason: String::new(),
+            needs: None,
+        })
+    }
+
+    /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
+    /// best by both are known.
+    fn judge(&mut self) -> Result<(), Error> {
+        loop {
+            let rows = self
+                .all()
+                .into_iter()
+                .filter_map(|under| Some((self.row_index(under.damper, under.sweep, under.bound)?, under)));
+            let open = |design: &Candidate| design.checked.is_none() || design.verdict == CONTINUED;
+            let mut open: Vec<(usize, Under)> = rows.filter(|&(at, _)| open(&self.designs[at])).collect();
+            open.sort_by_key(|(at, _)| *at);
+            open.dedup_by_key(|(at, _)| *at);
+            if open.is_empty() {
+                return Ok(());
+            }
+            let judged = open.par_iter().map(|&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)));
+            for (at, design) in judged.collect::<Result<Vec<_>, Error>>()? {
+                self.designs[at] = design;
+            }
+        }
+    }
+
+    /// A design looked at on the finest samples; or, where that is done, with the verdict of its certificate.
+    fn judged(&self, design: &Candidate, under: Under) -> Result<Candidate, Error> {
+        let Candidate { damper, at, e1_max, checked, .. } = design;
+        if checked.is_none() {
+            let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
+            let seen =
+                study.and_then(|study| look(&study)).map_or(f64::INFINITY, |found| found.energy.max(*e1_max));
+            return Ok(Candidate { checked: Some(seen), ..design.clone() });
+        }
+        let study = self.bounded(under, Vec::new())?;
+        let scene = study.scene_at(at).unwrap_or(study.scene);
+        let needs = Largest::of(&study, &scene);
+        let certificate = judge(&Study { scene, ..study })?;
+        let (verdict, reason) = (certificate.short().verdict(), certificate.reason().to_owned());
+        Ok(Candidate { verdict, reason, needs, ..design.clone() })
+    }
+
+    /// Every bound for every damper.
+    pub(super) fn all(&self) -> Vec<Under> {
+        let mut all = Vec::new();
+        for damper in 0..self.plan.dampers.len() {
+            for sweep in self.plan.sweeps() {
+                all.extend(self.plan.values(sweep).into_iter().map(|bound| Under { damper, sweep, bound }));
+            }
+        }
+        all
+    }
+}

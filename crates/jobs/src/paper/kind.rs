@@ -1,0 +1,21 @@
+//! The files of the reproduction.
+
+use crate::artefact::{Content, Kind, artefact};
+use crate::resolved;
+
+/// The files of the reproduction.
+pub static KIND: Kind = Kind {
+    command: "reproduce",
+    answer: "index.html",
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact("study.json", Content::Derived),
+        artefact("table1-statements.json", Content::Own),
+        artefact("table2-statements.json", Content::Own),
+        artefact("figure*-statements.json", Content::Own),
+        artefact("table1-*", Content::Derived),
+        artefact("table2-*", Content::Derived),
+        artefact("figure*", Content::Derived),
+        artefact("index.html", Content::Derived),
+    ],
+};

@@ -1,0 +1,168 @@
+//! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
+
+use crate::Error;
+use crate::Observer;
+use retune_model::{Design, Scene};
+use retune_solver::{Settings, Window};
+use retune_study::{Kind, PaperStudy, Study, StudyError, read_paper, read_table2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The study of the whole paper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PaperPlan {
+    /// The JSON Schema that an editor completes and checks this file with. Retune ignores it.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// "paper". A file without it is recognised by its other fields.
+    #[serde(default = "kind")]
+    #[schemars(extend("const" = "paper"))]
+    pub kind: Kind,
+    /// The table of the two dampers, the SSVI NES first, then the TMD; a path as seen from this file.
+    pub table2: PathBuf,
+    /// Stiffnesses k1 of the primary structure, N/m.
+    pub k1: Vec<f64>,
+    /// Frequencies of Figures 3 to 5, rad/s.
+    pub omega: Range,
+    /// Stiffnesses of Figure 5a, N/m.
+    pub k1_range: Range,
+    /// Numbers of frequencies on which every worst over a band is looked at again, ascending; designs near are looked at on the middle one.
+    #[serde(default = "ladder")]
+    #[schemars(length(min = 1))]
+    pub ladder: Vec<usize>,
+    /// Frequencies on either side of the natural frequency over which motions are named, as ratios to it, and how many.
+    pub motions: Range,
+}
+
+fn kind() -> Kind {
+    Kind::Paper
+}
+
+fn ladder() -> Vec<usize> {
+    vec![61, 121, 601, 3001, 5001]
+}
+
+/// Evenly spaced values.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+    /// How many.
+    #[schemars(range(min = 2, max = 100_000))]
+    pub points: usize,
+}
+
+/// The design that the search of a study comes to.
+pub type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
+
+/// The plan with all that it names.
+pub struct Plan<'a> {
+    /// As read.
+    pub file: PaperPlan,
+    /// The SSVI NES.
+    pub ssvi: Study,
+    /// The TMD.
+    pub tmd: Study,
+    /// Who follows.
+    pub watch: &'a dyn Observer,
+    /// Whether only verdicts are wanted, on fewer points.
+    pub is_brief: bool,
+}
+
+/// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
+const MOST_STEPS: u64 = 1_000_000;
+
+impl Range {
+    /// The values.
+    pub fn values(self) -> Vec<f64> {
+        retune_dynamics::parameter::evenly(self.from, self.to, self.points)
+    }
+
+    fn is_sound(self) -> bool {
+        self.from.is_finite()
+            && self.to.is_finite()
+            && 0.0 < self.from
+            && self.from < self.to
+            && (2..=100_000).contains(&self.points)
+    }
+}
+
+impl<'a> Plan<'a> {
+    /// Reads the plan at `path`.
+    ///
+    /// # Errors
+    /// It, or a file that it names, is wrong.
+    pub fn read(path: &Path, watch: &'a dyn Observer) -> Result<Self, Error> {
+        let file: PaperPlan = read_paper(path)?;
+        let refuse = |problem: &str| {
+            Error::from(StudyError::Paper { file: path.display().to_string(), problem: problem.to_owned() })
+        };
+        if file.k1.is_empty() || !file.k1.iter().all(|k1| k1.is_finite() && *k1 > 0.0) {
+            return Err(refuse("k1: give at least one number above 0"));
+        }
+        for (name, range) in [("omega", file.omega), ("k1_range", file.k1_range), ("motions", file.motions)] {
+            if !range.is_sound() {
+                return Err(refuse(&format!("{name}: give 0 < from < to and 2 to 100000 points")));
+            }
+        }
+        let ladder = &file.ladder;
+        if ladder.is_empty() || !ladder.is_sorted() || !ladder.iter().all(|n| (2..=100_000).contains(n)) {
+            return Err(refuse("ladder: give at least one number from 2 to 100000, ascending"));
+        }
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let rows = read_table2(&directory.join(&file.table2))?;
+        let studies: Result<[PaperStudy; 2], _> = rows.try_into();
+        let [ssvi, tmd] =
+            studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
+        // The page has objectives of its own; of the studies it takes the scenes, the window and the solver.
+        let [ssvi, tmd] = [ssvi, tmd].map(|row| Study { optimize: None, ..row.study });
+        Ok(Self { file, ssvi, tmd, watch, is_brief: false })
+    }
+
+    /// The scenes without damper, with SSVI NES and with TMD at a stiffness.
+    ///
+    /// # Errors
+    /// A stiffness that cannot be.
+    pub fn scenes(&self, k1: f64) -> Result<[Scene; 3], Error> {
+        let at = |study: &Study| -> Result<Scene, Error> {
+            Ok(retune_dynamics::Parameter::K1.at(study.scene, k1)?)
+        };
+        let (ssvi, tmd) = (at(&self.ssvi)?, at(&self.tmd)?);
+        Ok([Scene { damper: None, ..ssvi }, ssvi, tmd])
+    }
+
+    /// The stiffness at which the dampers are tuned, N/m.
+    pub fn tuned(&self) -> f64 {
+        self.ssvi.scene.primary.stiffness.get()
+    }
+
+    /// The window of the maxima.
+    pub fn window(&self) -> Window {
+        self.ssvi.window.window()
+    }
+
+    /// How runs are integrated.
+    pub fn settings(&self) -> Settings {
+        let settings = self.ssvi.solver.settings();
+        Settings { max_steps: settings.max_steps.min(MOST_STEPS), ..settings }
+    }
+
+    /// What made an item, in words.
+    pub fn made_by(&self, more: &str) -> String {
+        let contact = self.ssvi.scene.damper.and_then(|damper| damper.contact);
+        let radius = contact.map_or(String::new(), |contact| {
+            format!("R = {} m, q = {}; ", contact.radius.get(), contact.coefficient.get())
+        });
+        format!("{radius}{}. {more}", crate::summary::MadeBy::new(&self.ssvi))
+    }
+}
+
+/// `2.00e4`, as the paper writes stiffnesses.
+pub fn stiffness(k1: f64) -> String {
+    format!("{k1:.2e}")
+}

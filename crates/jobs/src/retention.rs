@@ -1,0 +1,146 @@
+//! `retention`: how long a tuning lasts. Dampers tuned for one stiffness k1 of the structure, for the worst over several, and anew for each; E1max
+//! of each along k1; the range of k1 in which it still does its work, and what a wider range costs.
+//!
+//! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
+//! more refinement starts at the design of the neighbouring k1. Read `anew` (the searches), `tuned` (what they give), `curves`, `range`,
+//! `trade`, `force`, then `page`.
+
+mod again;
+mod anew;
+mod curves;
+mod draw;
+mod force;
+mod forces;
+mod opening;
+mod page;
+mod range;
+mod retained;
+mod trade;
+mod tuned;
+
+pub use again::again;
+pub use anew::label;
+pub use curves::Curve;
+pub use force::Forced;
+pub use range::{Range, Threshold, best_tmd};
+pub use retained::Retained;
+pub use trade::Point;
+pub use tuned::{Kept, Tuned, Tuning};
+
+use crate::artefact::{Content, Kind, artefact};
+use crate::designs::{Designs, Row};
+use crate::job::{Done, Job, Made};
+use crate::needs::Largest;
+use crate::resolved;
+use crate::searches::Searches;
+use crate::summary::TunedDamper;
+use crate::{Error, Observer, Request};
+use range::Still;
+use retune_study::{self as study, Setting};
+use serde_json::json;
+use tuned::{CURVES, DESIGNS, FORCES};
+
+/// The files of the retention of tuning.
+pub static KIND: Kind = Kind {
+    command: "retention",
+    answer: DESIGNS,
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact(DESIGNS, Content::Own),
+        artefact(CURVES, Content::Own),
+        artefact("range.csv", Content::Own),
+        artefact(FORCES, Content::Own),
+        artefact("retune.txt", Content::Derived),
+        artefact("retention.svg", Content::Derived),
+        artefact("still.svg", Content::Derived),
+        artefact("force.svg", Content::Derived),
+        artefact("path.svg", Content::Derived),
+        artefact("range.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
+    ],
+};
+
+/// Tunes dampers anew for each stiffness of the primary structure, and for the worst over all, and computes how long each tuning lasts.
+///
+/// # Errors
+/// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
+pub fn retention(
+    request: &Request,
+    stiffnesses: &[Setting],
+    watch: &dyn Observer,
+) -> Result<Done<Retained>, Error> {
+    let (said, rows) = study::read_rows(&request.study)?;
+    for setting in stiffnesses {
+        rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
+    }
+    let mut others: Vec<f64> = stiffnesses.iter().map(Setting::value).collect();
+    others.sort_by(f64::total_cmp);
+    others.dedup();
+    let mut k1 = others.clone();
+    k1.extend(rows.iter().map(|row| row.study.scene.primary.stiffness.get()));
+    k1.sort_by(f64::total_cmp);
+    k1.dedup();
+    let plan = json!({ "k1": k1, "k2_bounds": said.k2_bounds, "samples": said.samples });
+    let studies = rows.iter().map(|row| (row.damper.as_str(), &row.study));
+    let job = Job::of_studies(&KIND, request, plan, studies)?;
+    job.run(request, watch, |directory| {
+        let mut searches = Searches::new(directory, &job.order, watch);
+        let (mut dampers, mut designs) = (Vec::new(), Vec::new());
+        for row in &rows {
+            let (tuned, rows) = anew::tune(row, &said, &others, &mut searches, watch)?;
+            designs.extend(paper(&tuned));
+            designs.extend(rows.into_iter().map(|row| looked_at_again(&tuned, row, &k1)));
+            dampers.push(tuned);
+        }
+        let table = Designs { column: "tuning", rows: designs, infeasible: searches.infeasible.take() };
+        let thresholds: Vec<Threshold> =
+            dampers.iter().map(|damper| Threshold::of(&damper.study)).collect::<Result<_, _>>()?;
+        let stills: Vec<Option<Still>> =
+            dampers.iter().map(|damper| Still::of(&damper.study)).collect::<Result<_, _>>()?;
+        let curves = curves::curves(&dampers, &stills);
+        let forced = force::forced(&dampers);
+        let (mut kept, mut points) = (Vec::new(), Vec::new());
+        for (number, (damper, threshold)) in dampers.iter().zip(&thresholds).enumerate() {
+            let still = stills[number].as_ref();
+            for one in &damper.kept {
+                kept.push((one.tuning.name(), Point::new(number, damper, one.at, threshold, still)));
+            }
+            points.extend(trade::trade(number, damper, (threshold, still), &searches, watch)?);
+        }
+        directory.write(FORCES, &force::csv(&dampers, &forced))?;
+        directory.write(CURVES, &curves::csv(&dampers, &curves))?;
+        directory.write("range.csv", &trade::csv(&dampers, &kept, &points))?;
+        table.write("retune", directory)?;
+        let bounds = said.k2_bounds;
+        let retained = Retained { dampers, bounds, curves, thresholds, forced, kept, points, table };
+        page::write(&retained, directory)?;
+        let report = format!("\n{}\n\n{}", opening::answer(&retained).join("\n"), retained.table.text());
+        Ok(Made { report, answer: retained, parts: searches.results })
+    })
+}
+
+/// A row with the energies on the common samples, so that designs are compared on the same frequencies.
+fn looked_at_again(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
+    let at = row.found.design;
+    let of = if row.label == Tuning::Robust.name() { tuned.over(k1) } else { tuned.study.clone() };
+    let own = k1.iter().copied().find(|k1| label(*k1) == row.label).unwrap_or(tuned.nominal());
+    let e1_max = tuned::energy(&of, tuned.samples, &at, own).unwrap_or(f64::NAN);
+    Row { e1_max, ..row }
+}
+
+/// The row of the paper's design at the stiffness of its study. It has no certificate here.
+fn paper(tuned: &Tuned) -> Option<Row> {
+    let (at, damper) = (tuned.of(Tuning::Paper)?, tuned.study.scene.damper?);
+    Some(Row {
+        label: Tuning::Paper.name().to_owned(),
+        damper: tuned.name.clone(),
+        found: TunedDamper::of(&at.on(damper), tuned.study.varied()),
+        printed: None,
+        e1_max: tuned.energy(&at, tuned.nominal()),
+        none: tuned.study.energy_without_damper(),
+        verdict: "",
+        reason: "the paper's design is not certified here".to_owned(),
+        needs: Largest::of(&tuned.study, &tuned.study.scene_at(&at)?),
+    })
+}

@@ -1,0 +1,157 @@
+//! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
+
+use super::tuned::{Kept, Tuned, Tuning, energy, over};
+use crate::designs::Row;
+use crate::fronts::SAME;
+use crate::searches::Searches;
+use crate::tune::{Found, Optimum};
+use crate::{Error, Observer};
+use retune_model::{Design, Parameter};
+use retune_study::{self as study, PaperStudy, Setting, SpringBounds, Study, Table2, short};
+
+/// The label of a design that is tuned for a stiffness, N/m.
+pub fn label(k1: f64) -> String {
+    format!("k1 = {k1}")
+}
+
+/// Tunes one damper for the stiffness of its study, then for each of `others`, upwards from there, then downwards, and last for the worst
+/// over all of them. The rows say what each search found.
+///
+/// # Errors
+/// A search fails.
+pub(super) fn tune(
+    PaperStudy { damper: name, study, .. }: &PaperStudy,
+    said: &Table2,
+    others: &[f64],
+    searches: &mut Searches,
+    watch: &dyn Observer,
+) -> Result<(Tuned, Vec<Row>), Error> {
+    let nominal = study.scene.primary.stiffness.get();
+    let mut rows = Vec::new();
+    let mut at = |k1: f64, neighbour: Option<(f64, Design)>| -> Result<Design, Error> {
+        let study = anew(study, k1, neighbour, said.k2_bounds)?;
+        let warm = if neighbour.is_some() { ", and from the design of the k1 beside it" } else { "" };
+        let natural = short(study.scene.primary.natural_frequency());
+        watch.log(&format!(
+            "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
+            study::over(&study.objective(), study.scene.forcing.frequency.get())
+        ))?;
+        let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches, watch)?;
+        rows.push((k1, Row::of_optimum(&label(k1), name, &study, &optimum)));
+        Ok(optimum.found().damper.design)
+    };
+    let first = at(nominal, None)?;
+    let mut designs = vec![(nominal, first)];
+    let (mut below, above): (Vec<f64>, Vec<f64>) = others.iter().partition(|k1| **k1 < nominal);
+    below.reverse();
+    for outwards in [above, below] {
+        let mut neighbour = (nominal, first);
+        for k1 in outwards.into_iter().filter(|k1| *k1 != nominal) {
+            neighbour = (k1, at(k1, Some(neighbour))?);
+            designs.push(neighbour);
+        }
+    }
+    designs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
+    let mut kept = Vec::new();
+    kept.extend(
+        study
+            .scene
+            .damper
+            .map(|damper| Kept { tuning: Tuning::Paper, at: Design::of_varied(&damper, study.varied()) }),
+    );
+    kept.push(Kept { tuning: Tuning::Nominal, at: first });
+    if designs.len() > 1 {
+        let study = robust(study, &designs)?;
+        watch.log(&format!(
+            "\n{name} for all k1, {}",
+            study::over(&study.objective(), study.scene.forcing.frequency.get())
+        ))?;
+        let optimum = searched(study.clone(), said.samples, Tuning::Robust.name(), searches, watch)?;
+        rows.push(Row::of_optimum(Tuning::Robust.name(), name, &study, &optimum));
+        kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design });
+    }
+    let tuned =
+        Tuned { name: name.clone(), study: study.clone(), samples: said.samples, kept, anew: designs };
+    Ok((tuned, rows))
+}
+
+/// Makes the search of a study. Where its design rises on the samples on which all are compared, the design is refined on these: the search
+/// has found a gap between its own.
+fn searched(
+    mut study: Study,
+    samples: Option<usize>,
+    place: &str,
+    searches: &mut Searches,
+    watch: &dyn Observer,
+) -> Result<Optimum, Error> {
+    let optimum = searches.tune(&study, place)?;
+    watch.log(&optimum.report())?;
+    let Found { damper, e1_max } = optimum.found();
+    let own = study.scene.primary.stiffness.get();
+    let rises = |again: f64| again > (1.0 + SAME) * e1_max;
+    if !energy(&study, samples, &damper.design, own).is_some_and(rises) {
+        return Ok(optimum);
+    }
+    if let Some(optimize) = &mut study.optimize {
+        (optimize.global, optimize.surf) = (None, None);
+        optimize.starts = vec![damper.design.only(&optimize.vary)];
+        if let Some(band) = &mut optimize.objective.omega {
+            band.samples = samples.unwrap_or(band.samples);
+        }
+    }
+    watch.log(&format!("refined on {} frequencies, on which it rises", samples.unwrap_or_default()))?;
+    let optimum = searches.tune(&study, &format!("{place}-finer"))?;
+    watch.log(&optimum.report())?;
+    Ok(optimum)
+}
+
+/// The study at another stiffness, its bounds on k2 as asked for. One more search starts at the design of the neighbouring stiffness.
+fn anew(study: &Study, k1: f64, from: Option<(f64, Design)>, bounds: SpringBounds) -> Result<Study, Error> {
+    let ratio = match bounds {
+        SpringBounds::Scaled => k1 / study.scene.primary.stiffness.get(),
+        SpringBounds::Fixed => 1.0,
+    };
+    let mut scaled = study.clone();
+    if let Some(optimize) = &mut scaled.optimize {
+        if let Some((low, high)) = optimize.bounds.get_mut(Parameter::K2) {
+            (*low, *high) = (ratio * *low, high.map(|high| ratio * high));
+        }
+        let side = optimize.global.as_mut().and_then(|global| global.sides.get_mut(Parameter::K2));
+        if let Some(side) = side {
+            (side.from, side.to) = (ratio * side.from, ratio * side.to);
+        }
+        if let Some(axis) = optimize.surf.as_mut().and_then(|axes| axes.get_mut(Parameter::K2)) {
+            (axis.from, axis.to) = (ratio * axis.from, ratio * axis.to);
+        }
+        for start in &mut optimize.starts {
+            start.get_mut(Parameter::K2).into_iter().for_each(|k2| *k2 *= ratio);
+        }
+        if let Some((own, design)) = from {
+            // A spring in proportion to k1 is in tune as before, as far as the bounds allow it.
+            let bounds = optimize.bounds.get(Parameter::K2).unwrap_or((0.0, None));
+            let k2 = design.get(Parameter::K2) * k1 / own;
+            let mut start = design.only(&optimize.vary);
+            if let Some(start) = start.get_mut(Parameter::K2) {
+                *start = k2.min(bounds.1.unwrap_or(k2)).max(bounds.0);
+            }
+            optimize.starts.push(start);
+        }
+    }
+    Ok(scaled.with(&[Setting::new(Parameter::K1, k1)])?)
+}
+
+/// The study for the worst over all stiffnesses. One more search starts at the design of its own.
+fn robust(study: &Study, designs: &[(f64, Design)]) -> Result<Study, Error> {
+    let all: Vec<f64> = designs.iter().map(|(k1, _)| *k1).collect();
+    let nominal = study.scene.primary.stiffness.get();
+    let mut study = over(study, &all);
+    if let Some(optimize) = &mut study.optimize {
+        let own = designs.iter().find(|(k1, _)| *k1 == nominal);
+        optimize.starts.extend(own.map(|(_, design)| design.only(&optimize.vary)));
+    }
+    let refuse = Error::rule(&study);
+    study.check().map_err(refuse)?;
+    Ok(study)
+}

@@ -1,0 +1,90 @@
+//! What a smaller force does to a tuning: E1max of the nominal designs, as a share of that without a damper. A linear damper keeps its share;
+//! one with gaps is tuned for a force, unless they are in proportion to it.
+
+use super::tuned::{Tuned, Tuning, bare, energy};
+use crate::designs::quoted;
+use rayon::prelude::*;
+use retune_model::{Design, Parameter};
+use retune_study::{Setting, Study};
+
+/// Forces below that of the study, each the fourth root of a half of the one before: down to an eighth.
+const STEPS: i32 = 12;
+/// The steps that halve it.
+pub const HALF: usize = 4;
+/// The names of gaps in the table: those of the design, and in proportion to the force.
+pub const GAPS: [&str; 2] = ["kept", "in proportion"];
+/// Shares that differ by less do not depend on the force.
+const SAME: f64 = 1e-3;
+
+/// E1max of a design under smaller and smaller forces.
+#[derive(Debug)]
+pub struct Forced {
+    /// The number of its damper, whose nominal design it is.
+    pub damper: usize,
+    /// Whether D and C are in proportion to the force.
+    pub proportional: bool,
+    /// The force, N, E1max and that without a damper, J, that of the study first.
+    pub points: Vec<(f64, [f64; 2])>,
+}
+
+impl Forced {
+    /// E1max as a share of that without a damper, after so many steps.
+    pub fn share(&self, step: usize) -> f64 {
+        self.points.get(step).map_or(f64::NAN, |(_, [with, without])| with / without)
+    }
+
+    /// Whether its share is the same under every force.
+    pub fn is_constant(&self) -> bool {
+        (0..self.points.len()).all(|step| (self.share(step) / self.share(0) - 1.0).abs() < SAME)
+    }
+}
+
+/// All nominal designs, and those whose share changes with gaps in proportion to the force, too.
+pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
+    let mut all = Vec::new();
+    for (number, damper) in dampers.iter().enumerate() {
+        let (Some(at), Some(own)) = (damper.of(Tuning::Nominal), damper.study.value_of(Parameter::P)) else {
+            continue;
+        };
+        let series = |gaps: &str| {
+            let one = |step: i32| {
+                let force = own * 2_f64.powf(-0.25 * f64::from(step));
+                (force, under(&damper.study, damper.samples, &at, gaps, force).unwrap_or([f64::NAN; 2]))
+            };
+            let proportional = gaps == GAPS[1];
+            Forced { damper: number, proportional, points: (0..=STEPS).into_par_iter().map(one).collect() }
+        };
+        let kept = series(GAPS[0]);
+        let depends = !kept.is_constant();
+        all.push(kept);
+        all.extend(depends.then(|| series(GAPS[1])));
+    }
+    all
+}
+
+/// E1max of a design under a force (N), and that without a damper, J.
+pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, force: f64) -> Option<[f64; 2]> {
+    let ratio = force / study.value_of(Parameter::P)?;
+    let share = |variable: Parameter| match variable {
+        Parameter::D | Parameter::C if gaps == GAPS[1] => ratio,
+        _ => 1.0,
+    };
+    let at = Design::new(|variable| share(variable) * at.get(variable)).ok()?;
+    let study = study.with(&[Setting::new(Parameter::P, force)]).ok()?;
+    let own = study.scene.primary.stiffness.get();
+    Some([energy(&study, samples, &at, own)?, bare(&study, own)?])
+}
+
+/// A row for each force.
+pub fn csv(dampers: &[Tuned], all: &[Forced]) -> String {
+    let mut text = "damper,gaps,P,E1max,none\n".to_owned();
+    for of in all {
+        let (name, gaps) = (quoted(&dampers[of.damper].name), GAPS[usize::from(of.proportional)]);
+        for (force, [with, without]) in
+            of.points.iter().filter(|(_, pair)| pair.iter().all(|e| e.is_finite()))
+        {
+            text += &format!("{name},{gaps},{force},{with},{without}\n");
+        }
+    }
+    text
+}

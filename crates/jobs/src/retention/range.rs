@@ -1,0 +1,241 @@
+//! The retention range: the stiffnesses k1 about the nominal one at which a design still does half of what tuning anew would do.
+//!
+//! The reduction of a damper is counted in decibels, `10 lg(E1max without / E1max with)`, each the worst over the structure's own band. A
+//! design does its work at a k1 if its reduction is at least half of that of the best TMD of the same mass for that k1, with k2 and c2
+//! free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
+
+use super::tuned::{on_samples, still};
+use crate::Error;
+use rayon::prelude::*;
+use retune_model::{Bare, Coupled, Damper, Design, Parameter, Scene, den_hartog};
+use retune_optim::{Bounds, Failures, Options, Scaling, minimize};
+use retune_study::{Rule, Setting, Study};
+use std::ops::ControlFlow;
+
+/// Stiffnesses are looked at outwards in steps of this ratio.
+const STEP: f64 = 1.02;
+/// Number of steps to either side: a range ends there at the latest, at 0.2 and at 5 times the nominal stiffness.
+const STEPS: usize = 81;
+
+/// How closely a range is looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Care {
+    /// Steps of 2 % that are taken at once.
+    pub stride: usize,
+    /// Bisections of the step in which a range ends.
+    pub bisections: u32,
+}
+
+impl Care {
+    /// For a result: its ends are within 2e-5.
+    pub const RESULT: Self = Self { stride: 1, bisections: 10 };
+    /// For a search: its ends are within 1e-3.
+    pub const SEARCH: Self = Self { stride: 2, bisections: 5 };
+}
+
+/// A retention range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The nominal stiffness, N/m.
+    pub nominal: f64,
+    /// Its lower end, N/m.
+    pub from: f64,
+    /// Its upper end, N/m.
+    pub to: f64,
+    /// Whether each end is where the search ended rather than the range.
+    pub open: [bool; 2],
+}
+
+impl Range {
+    /// The factor by which the stiffness may rise and fall: half and double the stiffness detune a damper by as much, and a range that
+    /// reaches far to one side alone is of no use.
+    pub fn factor(&self) -> f64 {
+        (self.to / self.nominal).min(self.nominal / self.from)
+    }
+}
+
+/// The least reduction that counts, along k1.
+#[derive(Debug)]
+pub struct Threshold {
+    nominal: f64,
+    /// The logarithm of the largest E1max (J), at steps of k1 from below to above the nominal one.
+    most: Vec<f64>,
+}
+
+impl Threshold {
+    /// For the structure, the mass of the damper and the band of a study.
+    ///
+    /// # Errors
+    /// The study has no damper, a stiffness is beyond all numbers, or the best TMD cannot be searched for.
+    pub fn of(study: &Study) -> Result<Self, Error> {
+        let nominal = study.scene.primary.stiffness.get();
+        let steps = (-(STEPS as i32)..=STEPS as i32).into_par_iter();
+        let at = |step: i32| Ok(limit(study, nominal * STEP.powi(step))?.ln());
+        Ok(Self { nominal, most: steps.map(at).collect::<Result<_, Error>>()? })
+    }
+
+    /// The largest E1max at a stiffness (N/m) that counts as half of the work, J: exact at the steps, between them by interpolation of
+    /// logarithms, with an error below 1e-4 of it.
+    pub fn at(&self, k1: f64) -> f64 {
+        let place = (k1 / self.nominal).ln() / STEP.ln() + STEPS as f64;
+        let place = place.clamp(0.0, (self.most.len() - 1) as f64);
+        let below = (place.floor() as usize).min(self.most.len() - 2);
+        let share = place - below as f64;
+        (self.most[below] * (1.0 - share) + self.most[below + 1] * share).exp()
+    }
+
+    /// The range of a design: outwards from the nominal stiffness as far as E1max, J, `energy(k1, cutoff)` is at most the threshold; it
+    /// may be any larger number once it is above the cutoff. None where it is not even at the nominal stiffness. A gap that is narrower
+    /// than a step can be missed.
+    pub fn range(&self, care: Care, energy: impl Fn(f64, f64) -> f64 + Sync) -> Option<Range> {
+        let works = |k1: f64| {
+            let most = self.at(k1);
+            energy(k1, most) <= most
+        };
+        if !works(self.nominal) {
+            return None;
+        }
+        let end = |ratio: f64| {
+            let mut good = self.nominal;
+            for step in (1..=STEPS).step_by(care.stride) {
+                let step = (step + care.stride - 1).min(STEPS) as i32;
+                let next = self.nominal * ratio.powi(step);
+                if !works(next) {
+                    let mut bad = next;
+                    for _ in 0..care.bisections {
+                        let middle = (good * bad).sqrt();
+                        if works(middle) { good = middle } else { bad = middle }
+                    }
+                    return (good, false);
+                }
+                good = next;
+            }
+            (good, true)
+        };
+        let ((from, low), (to, high)) = rayon::join(|| end(1.0 / STEP), || end(STEP));
+        Some(Range { nominal: self.nominal, from, to, open: [low, high] })
+    }
+}
+
+/// A study whose band stays where the natural frequency of its own structure puts it, whatever k1 becomes, and what counts as half of the
+/// work then.
+#[derive(Debug)]
+pub struct Still {
+    /// The study.
+    pub study: Study,
+    /// The least reduction that counts.
+    pub threshold: Threshold,
+}
+
+impl Still {
+    /// Of a study; none if its band does not move with k1.
+    ///
+    /// # Errors
+    /// As [`Threshold::of`].
+    pub fn of(study: &Study) -> Result<Option<Self>, Error> {
+        still(study).map(|study| Ok(Self { threshold: Threshold::of(&study)?, study })).transpose()
+    }
+}
+
+/// The range of a design by the objective of a study, on so many samples of its band.
+pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Threshold) -> Option<Range> {
+    let study = on_samples(study, samples, at)?;
+    let (goal, settings) = (study.goal(), study.solver.settings());
+    threshold.range(Care::RESULT, |k1, cutoff| {
+        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]);
+        let found = scene.ok().and_then(|scene| goal.evaluate(&scene, &settings, cutoff).ok());
+        found.map_or(f64::INFINITY, |found| found.energy)
+    })
+}
+
+/// The largest E1max that counts as half of the work at a stiffness, J.
+fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
+    let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)])?;
+    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
+    let damper = scene.damper.ok_or_else(no_damper)?;
+    let omega = scene.forcing.frequency.get();
+    let band = study.objective().omega.map(|band| band.of(&scene.primary));
+    let band = band.map_or([omega; 2], |band| [band.from, band.to]);
+    let none = Bare::new(&scene.primary, &scene.forcing).steady_e1_max(band).value;
+    Ok((none * best_tmd(&scene, damper, band)?.1).sqrt())
+}
+
+/// The TMD with the mass of a damper, k2 and c2 free, that has the least steady E1max over a band (rad/s), and this, J.
+///
+/// # Errors
+/// Nothing can be found.
+pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
+    let tuned = |x: &[f64]| {
+        let mut tmd = damper;
+        let set = Parameter::K2.set_damper(&mut tmd, x[0]);
+        set.and_then(|()| Parameter::C2.set_damper(&mut tmd, x[1])).map(|()| tmd)
+    };
+    let steady = |x: &[f64], _cutoff: f64| {
+        let worst = |tmd| Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
+        tuned(x).map_or(f64::INFINITY, worst)
+    };
+    let start = den_hartog(&scene.primary, damper.mass.get());
+    let not_negative = Bounds { lower: Some(0.0), upper: None };
+    let options = Options {
+        tol_x: 1e-9,
+        tol_fun: 1e-9,
+        bounds: vec![not_negative; 2],
+        scaling: Scaling::Start,
+        ..Options::default()
+    };
+    let refuse = |source| Error::Search { source, failures: Failures::default() };
+    let found = minimize(steady, &start, options, |_| ControlFlow::Continue(())).map_err(refuse)?;
+    Ok((tuned(&found.x).unwrap_or(damper), found.value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn threshold(level: f64) -> Threshold {
+        Threshold { nominal: 4e4, most: vec![f64::ln(level); 2 * STEPS + 1] }
+    }
+
+    /// Half of the decibels between no damper and the free TMD of `results/tmd-free`, 1568.3 and 160.6 J. A best TMD that could not be
+    /// found once left every range empty.
+    #[test]
+    fn regress_the_threshold_of_the_study_is_half_of_the_best_tmd() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/retune-tmd.json");
+        let threshold = Threshold::of(&retune_study::read(&path).expect("a study")).expect("a threshold");
+        assert!((threshold.at(39_500.0) - (1568.3_f64 * 160.6).sqrt()).abs() < 0.5, "{threshold:?}");
+    }
+
+    #[test]
+    fn contract_a_study_without_a_damper_has_no_threshold() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/retune-tmd.json");
+        let mut study = retune_study::read(&path).expect("a study");
+        study.scene.damper = None;
+        assert!(matches!(Threshold::of(&study), Err(Error::Rule { rule: Rule::NoDamper, .. })));
+    }
+
+    /// E1max grows as the square of the detuning: 100 J (1 + 25 (k1/4e4 - 1)²) is at most 200 J from 0.8 to 1.2 times 4e4 N/m.
+    #[test]
+    fn exact_the_range_of_a_parabola() {
+        let energy = |k1: f64, _cutoff: f64| 100.0 * (1.0 + 25.0 * (k1 / 4e4 - 1.0).powi(2));
+        let range = threshold(200.0).range(Care::RESULT, energy).expect("a range");
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 3e-5;
+        assert!(near(range.from, 3.2e4) && near(range.to, 4.8e4) && range.open == [false; 2], "{range:?}");
+        assert!(near(range.factor(), 1.2), "{range:?}");
+        assert_eq!(
+            threshold(99.0).range(Care::RESULT, energy),
+            None,
+            "it does not work at the nominal stiffness"
+        );
+        let all = threshold(1e9).range(Care::RESULT, energy).expect("a range");
+        assert!(all.open == [true; 2] && all.to > 4.9 * 4e4, "{all:?}");
+    }
+
+    #[test]
+    fn exact_the_threshold_is_interpolated_in_logarithms() {
+        let most = (0..=2 * STEPS).map(|i| i as f64).collect();
+        let threshold = Threshold { nominal: 4e4, most };
+        let at = |k1: f64| threshold.at(k1).ln();
+        assert!((at(4e4) - STEPS as f64).abs() < 1e-9);
+        assert!((at(4e4 * STEP.powf(2.25)) - STEPS as f64 - 2.25).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,259 @@
+//! The trade between the least E1max at the nominal stiffness and the retention range.
+//!
+//! For each damper the widest range is searched for (Sobol points and CMA-ES over the box of its study, if it has one, then `fminsearch`), then, for ranges between that of
+//! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design that was seen). The
+//! front is what no design that was seen dominates, looked at again on the common samples, at the tolerance of the study.
+
+use super::range::{Care, Range, Still, Threshold, range};
+use super::tuned::{Tuned, Tuning};
+use crate::searches::Searches;
+use crate::tune::objective::{kept, loose};
+use crate::{Error, Observer};
+use retune_model::{Design, Parameter};
+use retune_optim::{DesignObjective, Global, explore, minimize};
+use retune_study::{Setting, Study};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+/// The search for the widest range.
+const WIDEST: Global = Global {
+    samples: 48,
+    searches: 2,
+    apart: 0.15,
+    spread: 0.15,
+    tolerance: 5e-3,
+    evaluations: 100,
+    seed: 1,
+};
+/// Number of ranges between that of the nominal design and the widest.
+const BETWEEN: u32 = 6;
+/// Evaluations of the search under each.
+const EVALUATIONS: u64 = 60;
+/// Relative tolerances of these searches: of E1max at the nominal stiffness, and of those that are only compared with the threshold, as ends
+/// of ranges are looked for within 1e-3 alone ([`Care::SEARCH`]).
+const RTOL: f64 = 1e-6;
+const OF_RANGES: f64 = 1e-4;
+/// About the most designs of a front that are looked at again.
+const MOST: usize = 32;
+/// A value above every E1max, J: of a design with too small a range.
+const TOO_NARROW: f64 = 1e6;
+
+/// A design with both measures, on the common samples.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The number of its damper.
+    pub damper: usize,
+    /// The design.
+    pub at: Design,
+    /// E1max at the nominal stiffness, J.
+    pub e1_max: f64,
+    /// Its retention range.
+    pub range: Option<Range>,
+    /// The same with the band where it is at the nominal k1, if the band of its study moves.
+    pub still: Option<Range>,
+}
+
+impl Point {
+    /// A design of a damper, looked at on the common samples.
+    pub fn new(
+        damper: usize,
+        tuned: &Tuned,
+        at: Design,
+        threshold: &Threshold,
+        still: Option<&Still>,
+    ) -> Self {
+        let e1_max = tuned.energy(&at, tuned.nominal());
+        let still = still.and_then(|still| range(&still.study, tuned.samples, &at, &still.threshold));
+        Self { damper, at, e1_max, range: range(&tuned.study, tuned.samples, &at, threshold), still }
+    }
+
+    /// The factor by which k1 may rise and fall; 1 without a range.
+    pub fn factor(&self) -> f64 {
+        self.range.map_or(1.0, |range| range.factor())
+    }
+
+    /// Whether it is of the same damper, as good as `other` in both measures and better in one of them.
+    pub fn dominates(&self, other: &Self) -> bool {
+        let (e1_max, factor) = (self.e1_max, self.factor());
+        self.damper == other.damper
+            && e1_max <= other.e1_max
+            && factor >= other.factor()
+            && (e1_max < other.e1_max || factor > other.factor())
+    }
+}
+
+/// The designs that no other of the same damper dominates, the least E1max first.
+pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
+    let good = |point: &&Point| point.damper == damper && point.range.is_some();
+    let dominated = |point: &Point| points.iter().any(|other| other.dominates(point));
+    let mut front: Vec<&Point> = points.iter().filter(good).filter(|point| !dominated(point)).collect();
+    front.sort_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
+    front
+}
+
+/// The designs between the nominal one and that with the widest range, of one damper.
+///
+/// # Errors
+/// The study cannot be searched, or the journal not be written.
+pub fn trade(
+    number: usize,
+    tuned: &Tuned,
+    (threshold, still): (&Threshold, Option<&Still>),
+    searches: &Searches,
+    watch: &dyn Observer,
+) -> Result<Vec<Point>, Error> {
+    let study = &tuned.study;
+    let search = study.search().map_err(Error::rule(study))?;
+    let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
+    let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
+    let seen =
+        Seen { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all: Mutex::default() };
+    // The designs that are kept are seen first, those within the bounds of the search.
+    let mut least = 0.0;
+    for kept in &tuned.kept {
+        let x: Vec<f64> = search.variables.iter().map(|variable| kept.at.get(*variable)).collect();
+        if search.options.bounds.iter().zip(&x).all(|(bounds, value)| bounds.contain(*value)) {
+            let (_, width) = seen.look(&x);
+            if kept.tuning == Tuning::Nominal {
+                least = width;
+            }
+        }
+    }
+    // Without a range, the nearer to one the better.
+    let score = |(e1_max, width): (f64, f64)| {
+        if width > 0.0 { -width } else { e1_max / threshold.at(tuned.nominal()) }
+    };
+    let widest = |x: &[f64]| score(seen.look(x));
+    if let Some((_, space, _)) = &search.global {
+        let found = explore(|x, _| widest(x), space, &WIDEST, || ());
+        found.map_err(|source| Error::Global { source, failures: of.failures() })?;
+    }
+    let options = || retune_optim::Options { max_fun_evals: Some(EVALUATIONS), ..search.options.clone() };
+    let refuse = |source| Error::Search { source, failures: of.failures() };
+    if let Some((from, _)) = seen.best(score) {
+        minimize(|x, _| widest(x), &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
+    }
+    searches.journal().check()?;
+    let most = seen.best(|(_, width)| -width).map_or(0.0, |(_, (_, width))| width);
+    let targets = if most > 0.0 { BETWEEN } else { 0 };
+    for i in 1..=targets {
+        let wanted = least + (most - least) * f64::from(i) / f64::from(BETWEEN);
+        let value = |x: &[f64], _cutoff: f64| match seen.look(x) {
+            (e1_max, width) if width >= wanted => e1_max,
+            (_, width) => TOO_NARROW * (1.0 + wanted - width),
+        };
+        let keeps = |(e1_max, width): (f64, f64)| if width >= wanted { e1_max } else { f64::INFINITY };
+        let Some((from, _)) = seen.best(keeps) else { continue };
+        minimize(value, &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
+        searches.journal().check()?;
+    }
+    let designs = seen.front()?;
+    watch.log(&format!(
+        "{}: {} designs between the least E1max and the widest range",
+        tuned.name,
+        designs.len()
+    ))?;
+    Ok(designs.into_iter().map(|at| Point::new(number, tuned, at, threshold, still)).collect())
+}
+
+/// What was seen of a damper's designs: E1max at the nominal stiffness, J, and the factor of its range less 1.
+struct Seen<'a> {
+    study: &'a Study,
+    of: &'a DesignObjective,
+    of_ranges: &'a DesignObjective,
+    threshold: &'a Threshold,
+    searches: &'a Searches<'a>,
+    stages: [String; 2],
+    all: Mutex<BTreeMap<Vec<u64>, (f64, f64)>>,
+}
+
+impl Seen<'_> {
+    /// Looks at a design; both numbers are kept in the journal.
+    fn look(&self, x: &[f64]) -> (f64, f64) {
+        let journal = self.searches.journal();
+        let [first, second] = &self.stages;
+        let e1_max = kept(self.of, journal, first, || ())(x, f64::INFINITY);
+        let nominal = self.study.scene.primary.stiffness.get();
+        let width = match e1_max <= self.threshold.at(nominal) {
+            true => journal.value(second, x, f64::INFINITY, || self.width(x), |_| ()),
+            false => 0.0,
+        };
+        let key = x.iter().map(|value| value.to_bits()).collect();
+        self.all.lock().unwrap_or_else(PoisonError::into_inner).insert(key, (e1_max, width));
+        (e1_max, width)
+    }
+
+    fn width(&self, x: &[f64]) -> f64 {
+        let Ok(scene) = self.of.scene(x) else { return 0.0 };
+        let study = Study { scene, ..self.study.clone() };
+        let energy = |k1: f64, cutoff: f64| {
+            let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
+            let found = scene.and_then(|scene| self.of_ranges.evaluate(&scene, cutoff).ok());
+            found.map_or(f64::INFINITY, |found| found.energy)
+        };
+        self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)
+    }
+
+    /// All designs with what was seen of them; the order does not depend on which thread was first.
+    fn all(&self) -> Vec<(Vec<f64>, (f64, f64))> {
+        let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        let design = |key: &Vec<u64>| key.iter().map(|bits| f64::from_bits(*bits)).collect();
+        all.iter().map(|(key, seen)| (design(key), *seen)).collect()
+    }
+
+    /// The design with the least finite value.
+    fn best(&self, value: impl Fn((f64, f64)) -> f64) -> Option<(Vec<f64>, (f64, f64))> {
+        let finite = self.all().into_iter().filter(|(_, seen)| value(*seen).is_finite());
+        finite.min_by(|a, b| value(a.1).total_cmp(&value(b.1)))
+    }
+
+    /// The designs that no other dominates, about [`MOST`] of them at most, evenly along the front.
+    fn front(&self) -> Result<Vec<Design>, Error> {
+        let mut all = self.all();
+        all.retain(|(_, (_, width))| *width > 0.0);
+        all.sort_by(|a, b| a.1.0.total_cmp(&b.1.0).then(b.1.1.total_cmp(&a.1.1)));
+        let mut widest = 0.0;
+        all.retain(|(_, (_, width))| {
+            let more = *width > widest;
+            widest = widest.max(*width);
+            more
+        });
+        let step = widest / MOST as f64;
+        let mut next = 0.0;
+        let last = all.len().saturating_sub(1);
+        let mut number = 0;
+        all.retain(|(_, (_, width))| {
+            let kept = *width >= next || number == last;
+            if kept {
+                next = width + step;
+            }
+            number += 1;
+            kept
+        });
+        all.iter().map(|(x, _)| Ok(Design::of(&self.of.damper(x)?))).collect()
+    }
+}
+
+/// A row for each design: those that are kept, with their tuning, and those of the front.
+pub fn csv(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) -> String {
+    let mut text = "damper,tuning,k2,c2,D,C,E1max,from,to,still_from,still_to\n".to_owned();
+    let named = kept.iter().map(|(tuning, point)| (*tuning, point));
+    for (tuning, point) in named.chain(points.iter().map(|point| (FRONT, point))) {
+        let name = crate::designs::quoted(&dampers[point.damper].name);
+        let values = retune_study::fields(&point.at.values());
+        let ends = |range: Option<Range>| {
+            range.map_or(",".to_owned(), |range| format!("{},{}", range.from, range.to))
+        };
+        text += &format!(
+            "{name},{tuning},{values},{},{},{}\n",
+            point.e1_max,
+            ends(point.range),
+            ends(point.still)
+        );
+    }
+    text
+}
+
+/// The tuning of a design between the nominal one and that with the widest range.
+pub const FRONT: &str = "front";

@@ -1,0 +1,136 @@
+//! Dampers tuned for several stiffnesses of the structure.
+
+use crate::look::finer;
+use retune_model::{Design, NonNegative, Positive, Scene};
+use retune_optim::Stiffnesses;
+use retune_study::Study;
+
+/// The table of the designs.
+pub(super) const DESIGNS: &str = "retune.csv";
+/// The table of the curves.
+pub(super) const CURVES: &str = "retention.csv";
+/// The table of smaller forces.
+pub(super) const FORCES: &str = "force.csv";
+
+/// How a damper came to its design. It keeps this design, whatever k1 becomes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tuning {
+    /// That of the paper.
+    Paper,
+    /// Tuned for the k1 of its study.
+    Nominal,
+    /// Tuned for the worst over all k1.
+    Robust,
+}
+
+impl Tuning {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Paper, Self::Nominal, Self::Robust];
+
+    /// Its name in tables and figures.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Nominal => "nominal",
+            Self::Robust => "k1-robust",
+        }
+    }
+}
+
+/// A design that is kept while k1 changes.
+#[derive(Clone, Copy, Debug)]
+pub struct Kept {
+    /// How it was found.
+    pub tuning: Tuning,
+    /// The design.
+    pub at: Design,
+}
+
+/// A damper with its designs.
+#[derive(Debug)]
+pub struct Tuned {
+    /// Its name.
+    pub name: String,
+    /// Its study; the damper in the scene is the paper's.
+    pub study: Study,
+    /// The samples of the band on which all designs are compared.
+    pub samples: Option<usize>,
+    /// The designs that are kept.
+    pub kept: Vec<Kept>,
+    /// The design for each stiffness k1, N/m, in their order.
+    pub anew: Vec<(f64, Design)>,
+}
+
+impl Tuned {
+    /// The stiffness of its study, N/m.
+    pub fn nominal(&self) -> f64 {
+        self.study.scene.primary.stiffness.get()
+    }
+
+    /// Its study for the worst over some stiffnesses, N/m.
+    pub fn over(&self, k1: &[f64]) -> Study {
+        over(&self.study, k1)
+    }
+
+    /// The kept design of a tuning, if it has one.
+    pub fn of(&self, tuning: Tuning) -> Option<Design> {
+        self.kept.iter().find(|kept| kept.tuning == tuning).map(|kept| kept.at)
+    }
+
+    /// E1max of a design at a stiffness (N/m), J, on the common samples; NaN where it cannot be run.
+    pub fn energy(&self, at: &Design, k1: f64) -> f64 {
+        energy(&self.study, self.samples, at, k1).unwrap_or(f64::NAN)
+    }
+}
+
+/// A study with its band where the natural frequency of its own structure puts it; none if it does not move with k1.
+pub fn still(study: &Study) -> Option<Study> {
+    let mut study = study.clone();
+    let (primary, mut moves) = (study.scene.primary, false);
+    if let Some(optimize) = &mut study.optimize {
+        optimize.objective.for_each_term(&mut |term| {
+            if let Some(band) = term.omega.as_mut().filter(|band| band.relative) {
+                let ends = band.of(&primary);
+                if let (Ok(from), Ok(to)) = (Positive::new(ends.from), Positive::new(ends.to)) {
+                    (band.from, band.to, band.relative, moves) = (from, to, false, true);
+                }
+            }
+        });
+    }
+    moves.then_some(study)
+}
+
+/// E1max by the objective of a study for a design at a stiffness (N/m), J, on so many samples; none where it cannot be run.
+pub fn energy(study: &Study, samples: Option<usize>, at: &Design, k1: f64) -> Option<f64> {
+    let study = on_samples(study, samples, at)?;
+    study.energy(&scene_at(&study, k1)?)
+}
+
+/// A study for the worst over some stiffnesses, N/m.
+pub fn over(study: &Study, k1: &[f64]) -> Study {
+    let mut study = study.clone();
+    let all: Vec<Positive> = k1.iter().filter_map(|k1| Positive::new(*k1).ok()).collect();
+    if let Some(optimize) = &mut study.optimize {
+        optimize.objective.for_each_term(&mut |term| term.k1 = Some(Stiffnesses::Set(all.clone())));
+    }
+    study
+}
+
+/// E1max without a damper by the objective of a study at a stiffness (N/m), J.
+pub fn bare(study: &Study, k1: f64) -> Option<f64> {
+    study.energy(&Scene { damper: None, ..scene_at(study, k1)? })
+}
+
+/// A study with a design in its scene, its band on so many samples, or on its own.
+pub fn on_samples(study: &Study, samples: Option<usize>, at: &Design) -> Option<Study> {
+    match samples {
+        Some(samples) => finer(study, samples, at),
+        None => Some(Study { scene: study.scene_at(at)?, ..study.clone() }),
+    }
+}
+
+fn scene_at(study: &Study, k1: f64) -> Option<Scene> {
+    let mut scene = study.scene;
+    scene.primary.stiffness = NonNegative::new(k1).ok()?;
+    Some(scene)
+}

@@ -1,0 +1,205 @@
+//! `sweep`: the run of a scene, or the objective of a study, at each value of one parameter.
+
+pub mod draw;
+pub mod plan;
+pub mod points;
+mod quantity;
+pub mod table;
+pub mod words;
+
+pub use plan::{Options, Plan};
+pub use points::Sweep;
+pub use quantity::Quantity;
+pub use table::Table;
+
+use crate::artefact::{Content, Kind, artefact};
+use crate::job::{Job, Made};
+use crate::parts::{self, PARTS, Shard, Wanted, Work, complete};
+use crate::resolved::{self, Resolved};
+use crate::{Error, Observer, Progress, Request};
+use rayon::prelude::*;
+use retune_store::identity::VERSION;
+use retune_store::{Directory, Journal};
+use retune_study::{found_in, read};
+use serde_json::{Value, json};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The file with all points.
+pub const FILE: &str = "sweep.csv";
+/// The same as JSON.
+const JSON: &str = "sweep.json";
+
+/// The files of a sweep.
+pub static KIND: Kind = Kind {
+    command: "sweep",
+    answer: FILE,
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact(FILE, Content::Swept),
+        artefact(JSON, Content::Derived),
+        artefact("sweep.txt", Content::Derived),
+        artefact("sweep.svg", Content::Derived),
+    ],
+};
+
+// A journal must hold every sweep; no point has more than 16 numbers.
+const _: () = assert!(16 * plan::MOST_POINTS <= retune_store::MOST_POINTS);
+
+/// What becomes of the points of a sweep.
+#[derive(Clone, Debug, Default)]
+pub enum Points {
+    /// All are computed.
+    #[default]
+    All,
+    /// Those of a share are computed, and written as a part.
+    Share(Shard),
+    /// They are read from the parts that shares have made.
+    Merged,
+}
+
+impl Points {
+    /// Those that two options ask for.
+    pub fn of(shard: Option<Shard>, merge: bool) -> Self {
+        shard.map_or(if merge { Self::Merged } else { Self::All }, Self::Share)
+    }
+}
+
+/// Sweeps a parameter through a study, or through the design that a search found. Returns the table as `sweep.json` has it; none of
+/// a share.
+///
+/// # Errors
+/// The study or what is asked for is wrong, parts are missing, or the results cannot be written.
+pub fn sweep(
+    request: &Request,
+    options: &Options,
+    points: &Points,
+    watch: &dyn Observer,
+) -> Result<Option<String>, Error> {
+    let sweep = Sweep::new(Plan::read(options)?, read(&request.study)?)?;
+    let out = out(request, &sweep)?;
+    let request = Request { out: Some(out.clone()), ..request.clone() };
+    let plan = json!(sweep.plan());
+    let studies = [(sweep.study().name(), sweep.study())];
+    let job = Job::of_studies(&KIND, &request, plan, studies.into_iter())?;
+    if let Points::Share(shard) = points {
+        let (len, width) = (sweep.len(), sweep.width());
+        let work = Work { shard: *shard, len, width, identity: job.identity(), out: &out, order: &job.order };
+        request.on_threads(|| {
+            work.make(watch, |journal, points, bar| numbers(&sweep, journal, points, bar).0)
+        })?;
+        return Ok(None);
+    }
+    job.run(&request, watch, |results| {
+        if let Points::Merged = points {
+            merge(&sweep, &job, results, watch)?;
+        }
+        Ok(Made { answer: (), report: write(&sweep, results, watch)?, parts: Vec::new() })
+    })?;
+    let path = out.join(JSON);
+    let text =
+        std::fs::read_to_string(&path).map_err(|source| retune_store::Error::Input { path, source })?;
+    Ok(Some(text))
+}
+
+/// The directory of the results: by default `results/sweep-<study>-<parameter>`, of a design that a search found
+/// `results/sweep-<study>-tuned-<parameter>`; sweeps of the objective have names of their own.
+fn out(request: &Request, sweep: &Sweep) -> Result<PathBuf, Error> {
+    if let Some(out) = &request.out {
+        return Ok(out.clone());
+    }
+    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
+    let objective = if sweep.plan().objective { "-objective" } else { "" };
+    let (study, over) = (sweep.study().name(), sweep.plan().over.symbol());
+    Ok(Path::new("results").join(format!("sweep-{study}{tuned}-{over}{objective}")))
+}
+
+/// Takes the numbers of all points from parts.
+fn merge(sweep: &Sweep, job: &Job, results: &mut Directory, watch: &dyn Observer) -> Result<(), Error> {
+    let wanted = Wanted {
+        identity: job.identity(),
+        len: sweep.len(),
+        width: sweep.width(),
+        place: job.out.join(PARTS),
+        command: format!("retune sweep {} {}", job.order.study.display(), sweep.plan().options()),
+    };
+    for head in complete(&wanted, &[], watch)? {
+        parts::read(&head.path, |number, value| results.know(number, value))?;
+    }
+    Ok(())
+}
+
+/// Computes all points and writes them; returns the answer.
+fn write(sweep: &Sweep, results: &Directory, watch: &dyn Observer) -> Result<String, Error> {
+    let bar = watch.progress("sweep", sweep.len() as u64);
+    let (found, reasons) = numbers(sweep, results.journal(), 0..sweep.len(), &*bar);
+    bar.finish();
+    results.journal().check()?;
+    let table = sweep.table(&found);
+    let [all, few] = [true, false].map(|all| words::text(sweep, &table, &reasons, all));
+    results.write(FILE, &table.csv())?;
+    results.write_json(JSON, &json(sweep, &table))?;
+    results.write("sweep.txt", &(all.clone() + "\n"))?;
+    results.write("sweep.svg", &draw::draw(sweep, &table))?;
+    watch.log(&format!("{all}\n"))?;
+    Ok(few)
+}
+
+/// The table with what made it.
+fn json(sweep: &Sweep, table: &Table) -> Value {
+    let mut json = json!({ "retune": VERSION, "study": sweep.study().name(), "sweep": sweep.plan() });
+    json["window"] = json!(sweep.study().window);
+    json["solver"] = json!(sweep.study().solver);
+    if sweep.plan().objective {
+        json["objective"] = json!(sweep.study().objective());
+    }
+    if let (Some(all), Value::Object(more)) = (json.as_object_mut(), table.json()) {
+        all.extend(more);
+    }
+    json
+}
+
+/// The numbers of some points, one after the other, and the values of the parameter where there is none, each with the reason. What the
+/// journal knows is not computed again.
+fn numbers(
+    sweep: &Sweep,
+    journal: &Journal,
+    points: Range<usize>,
+    bar: &dyn Progress,
+) -> (Vec<f64>, Vec<(f64, String)>) {
+    let width = sweep.width();
+    let point = |point: usize| {
+        let value = sweep.value(point);
+        let mut made: Option<(Vec<f64>, Option<String>)> = None;
+        let numbers: Vec<f64> = (0..width)
+            .map(|i| {
+                let number = || made.get_or_insert_with(|| sweep.numbers(value)).0[i];
+                journal.grid_value(width * point + i, number, |_| {})
+            })
+            .collect();
+        if made.is_none() {
+            bar.known();
+        }
+        bar.inc(1);
+        (numbers, made.and_then(|(_, reason)| Some((value, reason?))))
+    };
+    let found: Vec<_> = points.into_par_iter().map(point).collect();
+    let (numbers, reasons): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    (numbers.concat(), reasons.into_iter().flatten().collect())
+}
+
+/// The sweep behind results.
+///
+/// # Errors
+/// They cannot be read, or are not those of a sweep.
+pub fn behind(place: &Path) -> Result<Sweep, Error> {
+    let resolved = Resolved::read(place)?;
+    let refuse = |problem: String| {
+        let path = place.join(resolved::SEVERAL);
+        Error::from(retune_store::Error::Input { path, source: std::io::Error::other(problem) })
+    };
+    let plan = serde_json::from_value(resolved.plan.clone()).map_err(|error| refuse(error.to_string()))?;
+    let (_, study) =
+        resolved.studies()?.into_iter().next().ok_or_else(|| refuse("it names no study".to_owned()))?;
+    Sweep::new(plan, study)
+}

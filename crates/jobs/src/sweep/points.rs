@@ -1,0 +1,223 @@
+//! The points of a sweep. Each depends on its value alone, so they can be computed in any order, by any number of machines.
+
+use crate::Error;
+use crate::sweep::plan::Plan;
+use crate::sweep::table::{Column, Table};
+use retune_model::{Measure, Parameter, Scene};
+use retune_optim::{Axis, Goal, Limits, Objective};
+use retune_solver::simulate;
+use retune_study::{Rule, Setting, Study, hertz_and_rpm};
+
+/// What is swept, with the study that it is swept in.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    plan: Plan,
+    study: Study,
+    axis: Axis,
+}
+
+/// Numbers of a run of the structure alone: its largest values. With a damper, those of the damper and its impacts follow.
+const BARE: usize = Measure::OF_STRUCTURE.len();
+/// Numbers of a run with a damper.
+const DAMPED: usize = BARE + Measure::OF_DAMPER.len() + 2;
+/// Numbers of an objective: its value, the frequency of its worst run, the violation of the limits, and its value without a damper.
+const OBJECTIVE: usize = 4;
+
+impl Sweep {
+    /// A plan for a study, checked.
+    ///
+    /// # Errors
+    /// The scene cannot have one of the values, or the objective does not depend on the parameter.
+    pub fn new(plan: Plan, study: Study) -> Result<Self, Error> {
+        let axis = plan.axis()?;
+        // What a parameter may be is a range: the ends tell of all values between.
+        for end in [plan.from, plan.to] {
+            study.scene_with(&[Setting::new(plan.over, end)])?;
+        }
+        if plan.objective {
+            if study.optimize.is_none() {
+                return Err(Error::rule(&study)(Rule::NoOptimize));
+            }
+            let objective = study.objective();
+            let own = |term: &Objective| match plan.over {
+                Parameter::Omega => term.omega.is_some(),
+                Parameter::K1 => term.k1.is_some(),
+                _ => false,
+            };
+            if objective.terms().iter().all(|(_, term)| own(term)) {
+                let over = plan.over;
+                let problem = format!(
+                    "{over}: the objective takes its own values of {over}, so that it does not change with that of the scene: \
+                     sweep another parameter, or leave out --objective"
+                );
+                return Err(Error::Argument { option: "--over", problem });
+            }
+        }
+        Ok(Self { plan, study, axis })
+    }
+
+    /// What is swept.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The study that it is swept in.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.axis.points()
+    }
+
+    /// Whether there are none, which no sweep is.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value of the parameter at a point, in its SI unit.
+    pub fn value(&self, point: usize) -> f64 {
+        self.axis.value(point)
+    }
+
+    /// The number of numbers that each point has.
+    pub fn width(&self) -> usize {
+        match (self.plan.objective, self.study.scene.damper) {
+            (true, _) => OBJECTIVE,
+            (false, Some(_)) => DAMPED + BARE,
+            (false, None) => BARE,
+        }
+    }
+
+    /// The numbers at a value of the parameter, infinite where there is none; and then why the first of them has no value.
+    pub fn numbers(&self, value: f64) -> (Vec<f64>, Option<String>) {
+        let scene = match self.study.scene_with(&[Setting::new(self.plan.over, value)]) {
+            Ok(scene) => scene,
+            Err(error) => return (vec![f64::INFINITY; self.width()], Some(error.to_string())),
+        };
+        let (mut numbers, reason) =
+            if self.plan.objective { self.objective(&scene) } else { self.runs(&scene) };
+        // A journal takes NaN for a number that was never computed.
+        numbers.iter_mut().filter(|number| !number.is_finite()).for_each(|number| *number = f64::INFINITY);
+        (numbers, reason)
+    }
+
+    /// One run with the damper, and one without.
+    fn runs(&self, scene: &Scene) -> (Vec<f64>, Option<String>) {
+        let (window, settings) = (self.study.window.window(), self.study.solver.settings());
+        let mut numbers = Vec::with_capacity(self.width());
+        let mut reason = None;
+        if scene.damper.is_some() {
+            match simulate(scene, window, &settings) {
+                Ok(run) => {
+                    numbers.extend(Measure::ALL.map(|measure| run.largest(measure)));
+                    numbers.extend(run.impacts.map(|count| count as f64));
+                }
+                Err(error) => {
+                    numbers.resize(DAMPED, f64::INFINITY);
+                    reason = Some(error.to_string());
+                }
+            }
+        }
+        match simulate(&Scene { damper: None, ..*scene }, window, &settings) {
+            Ok(run) => numbers.extend(Measure::OF_STRUCTURE.map(|measure| run.largest(measure))),
+            Err(error) => {
+                numbers.resize(self.width(), f64::INFINITY);
+                reason = reason.or_else(|| Some(error.to_string()));
+            }
+        }
+        (numbers, reason)
+    }
+
+    /// The objective with the damper, and without.
+    fn objective(&self, scene: &Scene) -> (Vec<f64>, Option<String>) {
+        let (goal, settings) = (self.study.goal(), self.study.solver.settings());
+        let bare = Goal { limits: Limits::default(), ..goal.clone() };
+        let bare = bare.evaluate(&Scene { damper: None, ..*scene }, &settings, f64::INFINITY);
+        let none = bare.map_or(f64::INFINITY, |found| found.energy);
+        match goal.evaluate(scene, &settings, f64::INFINITY) {
+            Ok(found) => {
+                let omega = found.worst.scene.forcing.frequency.get();
+                // An empty sum of violations is -0.
+                (vec![found.energy, omega, found.violation + 0.0, none], None)
+            }
+            Err(error) => (vec![f64::INFINITY, f64::INFINITY, f64::INFINITY, none], Some(error.to_string())),
+        }
+    }
+
+    /// The columns of its table.
+    pub fn columns(&self) -> Vec<Column> {
+        let mut columns = vec![Column::new(self.plan.over.symbol(), self.plan.over.unit())];
+        if self.plan.over.is_frequency() {
+            columns.extend([Column::new("f_Hz", "Hz"), Column::new("n_rpm", "rpm")]);
+        }
+        if self.plan.objective {
+            let (name, unit) = (self.study.quantity().name(), self.study.quantity().unit());
+            columns.extend([
+                Column::new(name, unit),
+                Column::new("omega_worst", "rad/s"),
+                Column::new("violation", ""),
+                Column::new(&format!("{name}_none"), unit),
+            ]);
+            return columns;
+        }
+        let structure = || {
+            let all = Measure::OF_STRUCTURE.iter().map(|measure| (measure.name(), measure.unit()));
+            all.chain([("transmissibility", "")])
+        };
+        columns.extend(structure().map(|(name, unit)| Column::new(name, unit)));
+        if self.study.scene.damper.is_some() {
+            columns.extend(Measure::OF_DAMPER.map(|measure| Column::new(measure.name(), measure.unit())));
+            columns.extend(
+                ["impacts", "impacts_structure", "impacts_obstacle"].map(|name| Column::new(name, "")),
+            );
+            columns.extend(structure().map(|(name, unit)| Column::new(&format!("{name}_none"), unit)));
+        }
+        columns
+    }
+
+    /// The row of a table at a value of the parameter, from its numbers.
+    pub fn row(&self, value: f64, numbers: &[f64]) -> Vec<f64> {
+        let mut row = vec![value];
+        if self.plan.over.is_frequency() {
+            row.extend(hertz_and_rpm(value));
+        }
+        if self.plan.objective {
+            row.extend(numbers);
+            return row;
+        }
+        let scene = self.study.scene_with(&[Setting::new(self.plan.over, value)]);
+        let structure = |row: &mut Vec<f64>, numbers: &[f64]| {
+            row.extend(numbers);
+            let of = |measure| {
+                Measure::OF_STRUCTURE.iter().position(|other| *other == measure).map(|i| numbers[i])
+            };
+            let [displacement, ground] = [Measure::Displacement, Measure::GroundForce].map(of);
+            let share = scene.as_ref().ok().zip(displacement.zip(ground));
+            row.push(
+                share.map_or(f64::NAN, |(scene, (x1, force))| scene.forcing.transmissibility(x1, force)),
+            );
+        };
+        match numbers.split_at_checked(DAMPED) {
+            Some((damped, bare)) if self.study.scene.damper.is_some() => {
+                structure(&mut row, &damped[..BARE]);
+                row.extend(&damped[BARE..DAMPED - 2]);
+                let [one, other] = [damped[DAMPED - 2], damped[DAMPED - 1]];
+                row.extend([one + other, one, other]);
+                structure(&mut row, bare);
+            }
+            _ => structure(&mut row, numbers),
+        }
+        row
+    }
+
+    /// The table of all points, from their numbers one after the other.
+    pub fn table(&self, numbers: &[f64]) -> Table {
+        let points = numbers.chunks(self.width()).enumerate();
+        Table {
+            columns: self.columns(),
+            rows: points.map(|(i, numbers)| self.row(self.value(i), numbers)).collect(),
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A sweep in words: the answer first, then some of its rows.
+
+use crate::sweep::points::Sweep;
+use crate::sweep::table::{Column, Table};
+use retune_model::Parameter;
+use retune_study::{counted, frequency, hertz_and_rpm, over, rounded};
+use textwrap::{Options, fill};
+
+/// Widest line.
+const WIDEST: usize = 80;
+/// Width of a column with a frequency or another parameter, and of one with a quantity.
+const NARROW: usize = 9;
+const WIDE: usize = 12;
+/// Rows of a short table, beside those with the largest and the smallest value.
+const FEW: usize = 12;
+/// The mark of the row with the smallest value, the longer of the two.
+const SMALLEST: &str = " < smallest";
+
+/// What a sweep shows: the name of a column, in a table or figure.
+pub(crate) fn shown(sweep: &Sweep) -> Vec<String> {
+    if sweep.plan().objective {
+        return vec![sweep.study().quantity().name().to_owned()];
+    }
+    sweep.plan().quantities.iter().map(|quantity| quantity.name().to_owned()).collect()
+}
+
+/// A sweep in a few words: `ssvi, omega from 5 to 8 rad/s`.
+pub(crate) fn title(sweep: &Sweep) -> String {
+    let plan = sweep.plan();
+    let unit = plan.over.unit();
+    let ends = |ends: [f64; 2]| ends.map(|end| rounded(end, 4)).join(" to ");
+    let hertz = [plan.from, plan.to].map(|end| hertz_and_rpm(end)[0]);
+    let hertz = if plan.over.is_frequency() { format!(" ({} Hz)", ends(hertz)) } else { String::new() };
+    let range = ends([plan.from, plan.to]);
+    format!("{}: {} from {range} {unit}{hertz}", sweep.study().name(), plan.over.symbol())
+}
+
+/// The damper of the scene, without the parameter that is swept.
+fn damper(sweep: &Sweep) -> String {
+    let Some(damper) = sweep.study().scene.damper else { return "no damper".to_owned() };
+    let all = [Parameter::M2].into_iter().chain(Parameter::PAPER);
+    // A damper without walls has no gaps.
+    let words: Vec<String> = all
+        .filter(|parameter| *parameter != sweep.plan().over)
+        .filter_map(|parameter| Some((parameter, parameter.of_damper(&damper)?)))
+        .map(|(parameter, value)| format!("{parameter} {} {}", rounded(value, 4), parameter.unit()))
+        .collect();
+    format!("damper: {}", words.join(", "))
+}
+
+/// What each point is.
+pub(crate) fn each(sweep: &Sweep) -> String {
+    let study = sweep.study();
+    if sweep.plan().objective {
+        let omega = study.scene.forcing.frequency.get();
+        return format!("each the objective of the study: {}", over(&study.objective(), omega));
+    }
+    let (t0, end) = (study.window.t0.get(), study.window.end.get());
+    format!("each a run from rest, largest values from {t0} to {end} s")
+}
+
+/// A value of the parameter with its unit.
+fn at(sweep: &Sweep, value: f64) -> String {
+    let over = sweep.plan().over;
+    if over.is_frequency() {
+        return format!("omega = {}", frequency(value));
+    }
+    format!("{} = {} {}", over.symbol(), rounded(value, 4), over.unit())
+}
+
+/// The row with the largest or the smallest value of a column, and that value. `sign` is 1 or -1.
+pub(crate) fn extreme(values: &[f64], sign: f64) -> Option<(usize, f64)> {
+    let known = values.iter().copied().enumerate().filter(|(_, value)| value.is_finite());
+    // Of equal ones the first.
+    known.fold(None, |best: Option<(usize, f64)>, next| match best {
+        Some((_, value)) if sign * value >= sign * next.1 => best,
+        _ => Some(next),
+    })
+}
+
+/// The answer and a table: of all rows, or of a few and those with the largest and the smallest value. `reasons` are points without a value,
+/// each with why.
+pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) -> String {
+    let count = counted(sweep.len() as u64, "value");
+    let each = fill(&format!("{count}, {}", each(sweep)), Options::new(WIDEST).subsequent_indent("  "));
+    let mut lines = vec![title(sweep), damper(sweep), each, String::new()];
+    if let Some((value, reason)) = reasons.first() {
+        let count = counted(reasons.len() as u64, "point");
+        let have = if reasons.len() == 1 { "has" } else { "have" };
+        let words = format!("{count} {have} no value; the first, {}: {reason}", at(sweep, *value));
+        lines.push(fill(&words, Options::new(WIDEST).subsequent_indent("  ")));
+    }
+    let values: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
+    for name in shown(sweep) {
+        lines.extend(answer(sweep, table, &values, &name));
+    }
+    lines.push(String::new());
+    let columns = columns(sweep, table);
+    lines.extend(header(&columns));
+    let end = |sign| shown(sweep).first().and_then(|name| Some(extreme(&table.column(name)?, sign)?.0));
+    let (high, low) = (end(1.0), end(-1.0));
+    for i in chosen(table.rows.len(), [high, low].into_iter().flatten(), all) {
+        let cells = columns.iter().map(|(_, width, values)| format!("{:>width$}", cell(values[i])));
+        let mark = match Some(i) {
+            _ if high == low => "",
+            row if row == high => " < largest",
+            row if row == low => SMALLEST,
+            _ => "",
+        };
+        lines.push(cells.collect::<String>() + mark);
+    }
+    lines.join("\n")
+}
+
+/// Where a quantity is largest and smallest, and the same without a damper.
+fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<String> {
+    let unit = table.columns.iter().find(|column| column.name == name).map_or("", |column| column.unit);
+    let said = |column: &str| -> Option<[String; 2]> {
+        let numbers = table.column(column)?;
+        let (high, low) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);
+        let words = |(row, value): (usize, f64)| {
+            format!(
+                "{} {unit}{}at {}",
+                rounded(value, 4),
+                if unit.is_empty() { "" } else { " " },
+                at(sweep, values[row])
+            )
+        };
+        let same = high.1 == low.1;
+        let always = format!("{} {unit} at every value", rounded(high.1, 4));
+        Some(if same { [always, String::new()] } else { [words(high), words(low)] })
+    };
+    let Some([high, low]) = said(name) else { return vec![format!("{name} has no value anywhere")] };
+    let mut lines = vec![format!("{name}: largest {high}")];
+    if low.is_empty() {
+        lines = vec![format!("{name}: {high}")];
+    } else {
+        lines.push(format!("  smallest {low}"));
+    }
+    if let Some([high, low]) = said(&format!("{name}_none")) {
+        let largest = if low.is_empty() { "" } else { "largest " };
+        lines.push(format!("  without a damper {largest}{high}"));
+    }
+    lines
+}
+
+/// The columns that have room on a line: the heading, the width and the values of each.
+fn columns(sweep: &Sweep, table: &Table) -> Vec<([String; 2], usize, Vec<f64>)> {
+    let of = |column: &Column, heading: &str, width| {
+        let values = table.column(&column.name).unwrap_or_default();
+        ([heading.to_owned(), column.unit.to_owned()], width, values)
+    };
+    let find = |name: &str| table.columns.iter().find(|column| column.name == name);
+    let mut columns = vec![("omega", "omega"), ("f_Hz", ""), ("n_rpm", "")]
+        .into_iter()
+        .filter_map(|(name, heading)| Some(of(find(name)?, heading, NARROW)))
+        .collect::<Vec<_>>();
+    if !sweep.plan().over.is_frequency() {
+        columns = table.columns.first().map(|column| of(column, &column.name, WIDE)).into_iter().collect();
+    }
+    let names = shown(sweep);
+    let with: Vec<_> =
+        names.iter().filter_map(|name| Some(of(find(name)?, name, WIDE.max(name.len() + 2)))).collect();
+    let without = names.iter().filter_map(|name| Some(of(find(&format!("{name}_none"))?, "no damper", WIDE)));
+    let worst = find("omega_worst").map(|column| of(column, "worst at", WIDE));
+    let used =
+        |columns: &[([String; 2], usize, Vec<f64>)]| columns.iter().map(|(_, width, _)| width).sum::<usize>();
+    // The mark of a row must have room.
+    for column in with.into_iter().chain(without).chain(worst) {
+        if used(&columns) + column.1 + SMALLEST.len() <= WIDEST {
+            columns.push(column);
+        }
+    }
+    columns
+}
+
+fn header(columns: &[([String; 2], usize, Vec<f64>)]) -> [String; 2] {
+    [0, 1].map(|line| {
+        columns
+            .iter()
+            .map(|(heading, width, _)| format!("{:>width$}", heading[line]))
+            .collect::<String>()
+            .trim_end()
+            .to_owned()
+    })
+}
+
+fn cell(value: f64) -> String {
+    if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
+}
+
+/// The rows that are shown.
+fn chosen(count: usize, ends: impl Iterator<Item = usize>, all: bool) -> Vec<usize> {
+    if all || count <= FEW {
+        return (0..count).collect();
+    }
+    let mut rows: Vec<usize> = (0..FEW).map(|i| i * (count - 1) / (FEW - 1)).chain(ends).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_few_rows_are_shown_and_the_largest_among_them() {
+        assert_eq!(chosen(5, [3].into_iter(), false), [0, 1, 2, 3, 4]);
+        let few = chosen(601, [333].into_iter(), false);
+        assert!(few.len() == FEW + 1 && few.contains(&333), "{few:?}");
+        assert_eq!((few[0], few[FEW]), (0, 600));
+        assert_eq!(chosen(601, [].into_iter(), true).len(), 601);
+    }
+
+    #[test]
+    fn contract_the_largest_of_some_is_the_first_of_equal_ones_and_finite() {
+        let values = [f64::INFINITY, 1.0, 3.0, 3.0, f64::NAN, 0.5];
+        assert_eq!(extreme(&values, 1.0), Some((2, 3.0)));
+        assert_eq!(extreme(&values, -1.0), Some((5, 0.5)));
+        assert_eq!(extreme(&[f64::NAN], 1.0), None);
+    }
+}

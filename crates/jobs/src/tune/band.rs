@@ -1,0 +1,133 @@
+//! The band of a tuned damper: the objective against ω without a damper, with the damper of the study, and with the tuned one.
+
+use crate::Error;
+use crate::amount::{self, measured};
+use crate::summary::{MadeBy, whose};
+use rayon::prelude::*;
+use retune_model::{Measure, NonNegative, Scene};
+use retune_optim::{Band, Goal, Objective, Response};
+use retune_report::colour::{BLACK, BLUE, VERMILION};
+use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
+use retune_store::Directory;
+use retune_study::Study;
+use retune_study::short;
+
+/// Number of frequencies of the curves if each is a closed form.
+const FINE: usize = 601;
+/// Factor on the number of the search's samples if each frequency is a run.
+const FINER: usize = 4;
+
+/// A frequency, rad/s, and there the quantity without a damper, with that of the study and with the tuned one; NaN where there is none.
+pub(crate) type Rows = Vec<(f64, [f64; 3])>;
+
+/// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
+/// that reaches a wall, a run that fails) are empty fields and gaps.
+///
+/// # Errors
+/// A file cannot be written.
+pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<Option<Rows>, Error> {
+    let objective = study.objective();
+    let Some((term, band)) = first(&objective).and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
+    else {
+        return Ok(None);
+    };
+    let samples = if term.response == Response::Steady {
+        FINE.max(band.samples)
+    } else {
+        FINER * (band.samples - 1) + 1
+    };
+    let fine = Band { samples, ..band };
+    let scenes = [Scene { damper: None, ..tuned }, study.scene, tuned];
+    let worst = scenes.map(|scene| energy(study, scene, term));
+    let single = Objective { omega: None, ..term.clone() };
+    let rows: Rows = (0..samples)
+        .into_par_iter()
+        .map(|i| {
+            let omega = fine.at(i);
+            let energy = |scene| at(omega, scene).map_or(f64::NAN, |scene| energy(study, scene, &single));
+            (omega, scenes.map(energy))
+        })
+        .collect();
+
+    let mut csv = format!("omega,{}\n", columns(study.quantity()).join(","));
+    for (omega, energies) in &rows {
+        let fields = energies.map(|e| if e.is_finite() { e.to_string() } else { String::new() });
+        csv += &format!("{omega},{}\n", fields.join(","));
+    }
+    results.write("band.csv", &csv)?;
+    results.write("band.svg", &picture(study, &rows, worst))?;
+    Ok(Some(rows))
+}
+
+/// The columns of the three curves.
+pub(crate) fn columns(quantity: Measure) -> [String; 3] {
+    ["none", "study", "tuned"].map(|of| format!("{}_{of}", quantity.name()))
+}
+
+/// The scene at another frequency, rad/s.
+pub(crate) fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
+    scene.forcing.frequency = NonNegative::new(omega).ok()?;
+    Some(scene)
+}
+
+/// The quantity of a scene as in a term, without limits; NaN if it has none.
+pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
+    let goal = Goal { objective: term.clone(), ..study.window.window().into() };
+    let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
+    value.map_or(f64::NAN, |found| found.energy)
+}
+
+/// The first term of an objective.
+pub(crate) fn first(objective: &Objective) -> Option<&Objective> {
+    objective.terms().first().map(|(_, term)| *term)
+}
+
+/// The quantity of a scene at its own frequency, as in `band.csv`; NaN if it has none.
+pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
+    let objective = study.objective();
+    first(&objective)
+        .map_or(f64::NAN, |term| energy(study, scene, &Objective { omega: None, ..term.clone() }))
+}
+
+fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
+    let lines: [(&str, Stroke); 3] = [
+        ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
+        (whose(&study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
+        ("tuned for the band", Stroke::new(VERMILION, 1.3, Dash::Solid)),
+    ];
+    let quantity = study.quantity();
+    let name = quantity.name();
+    let said = |value: f64| match value.is_finite() {
+        true => format!(": {}", measured(value, quantity)),
+        false => String::new(),
+    };
+    let words: Vec<String> = (0..3).map(|i| format!("{}{}", lines[i].0, said(worst[i]))).collect();
+    let layers = lines.iter().enumerate().map(|(i, &(_, stroke))| {
+        let points = rows.iter().map(|(omega, energies)| (*omega, energies[i])).collect();
+        Layer::Line { points, stroke }
+    });
+    let top = rows.iter().flat_map(|row| row.1).filter(|e| e.is_finite()).fold(0.0, f64::max);
+    let (first, last) = (rows[0].0, rows[rows.len() - 1].0);
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::linear("ω, rad/s", (first, last)),
+        y: Axis::linear(amount::label(quantity), (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
+        layers: layers.collect(),
+        height: 160.0,
+    };
+    svg(&Sheet {
+        title: format!("{name} over the band"),
+        description: format!(
+            "{name} against ω from {} to {} rad/s. The worst of each curve: {}.",
+            short(first),
+            short(last),
+            words.join("; ")
+        ),
+        width: Width::Column,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend: lines.iter().map(|(_, stroke)| Key::Line(*stroke)).zip(words).collect(),
+        caption: vec![MadeBy::new(study).to_string()],
+    })
+}

@@ -1,0 +1,76 @@
+//! The page of a search, `report.html`: the answer first, then how sure it is and how it was found. One file that needs no network
+//! and no script. Every number on it is computed or read from what the search has found; nothing is stated that was not.
+//!
+//! Read `findings` (what a page is made of), `answer` and `flags`, then the sections in their order on the page: `response`,
+//! `motion`, `sensitivity`, `place`, `course`, `origin`. `numbers` has how numbers are written, `retune_report::html` the elements.
+
+mod answer;
+mod course;
+mod curves;
+mod findings;
+mod flags;
+mod motion;
+mod numbers;
+mod origin;
+mod place;
+mod response;
+mod sensitivity;
+
+pub(crate) use findings::Findings;
+
+use crate::Error;
+use crate::resolved::study_text;
+use maud::{DOCTYPE, Markup, html};
+use retune_report::html;
+use retune_store::Directory;
+
+/// The file.
+pub const FILE: &str = "report.html";
+
+/// What this page has beside it.
+const OWN: &str = include_str!("report/report.css");
+
+/// Writes the page, after all other files of the results but those that say what made them.
+///
+/// # Errors
+/// The worst run cannot be followed, or the page cannot be written.
+pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Error> {
+    let flags = flags::flags(findings);
+    let compared = findings.compared();
+    let (response, motion) =
+        rayon::join(|| response::section(findings, &compared), || motion::section(findings));
+    let mut files = results.whole()?;
+    files.retain(|name| name != FILE); // that of a run that was cut off
+    let sections = [
+        answer::section(findings, &compared, &flags),
+        response,
+        motion?,
+        sensitivity::section(findings),
+        place::section(findings, &files, results),
+        course::section(findings, results),
+        origin::section(findings, &files, &study_text(findings.study)?),
+    ];
+    let name = findings.study.name();
+    let title = format!("{name}: {}", answer::title(findings));
+    Ok(results.write(FILE, &page(&title, &sections))?)
+}
+
+fn page(title: &str, sections: &[html::Section]) -> String {
+    let markup: Markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            (html::head(title, OWN))
+            body {
+                header {
+                    h1 { (title) }
+                    nav aria-label="Sections" { ul {
+                        @for section in sections { li { a href={ "#" (section.id) } { (section.title) } } }
+                    } }
+                }
+                main { @for section in sections { (section.markup()) } }
+                footer { p { "Made by " code { "retune optimize" } ", Retune " (env!("CARGO_PKG_VERSION")) "." } }
+            }
+        }
+    };
+    markup.into_string()
+}

@@ -1,0 +1,201 @@
+//! The answer: the damper, what it does, how sure that is, and what to do next.
+
+use super::findings::{Compared, Findings};
+use super::flags::Flag;
+use super::numbers::{amount, compared, digits, four, frequency};
+use crate::needs::{Needs, sized};
+use crate::summary::whose;
+use maud::{Markup, html};
+use retune_model::{Measure, Parameter};
+use retune_optim::{Evaluation, Response, Unusable};
+use retune_report::html::{Section, Table};
+use retune_study::over;
+
+/// The answer in a line.
+pub fn title(findings: &Findings) -> String {
+    let (kind, quantity) = (findings.optimum.damper_type, findings.quantity());
+    let (name, value) = (quantity.name(), amount(findings.evaluation.energy, quantity));
+    if findings.evaluation.violation > 0.0 {
+        return format!("none found that keeps the limits; the nearest, a {kind}, has {name} {value}");
+    }
+    format!("tuned {kind}, {name} {value}")
+}
+
+/// The section.
+pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Section {
+    let body = html! {
+        (lead(findings))
+        @for words in findings.optimum.needs.iter().flat_map(Needs::warnings) { p { strong { "Note: " (words) "." } } }
+        @if !flags.is_empty() {
+            ul.flags { @for flag in flags { li.flag data-flag=(flag.name) { (flag.words) } } }
+        }
+        (facts(findings, compared))
+        (parameters(findings))
+        @if let Some(table) = limits(findings) { (table.markup()) }
+        (next(findings, flags))
+    };
+    Section { id: "answer", title: "The answer", body }
+}
+
+/// What the value is taken over, in words.
+pub fn objective(findings: &Findings) -> String {
+    let objective = findings.study.objective();
+    let omega = findings.study.scene.forcing.frequency.get();
+    let window = findings.study.window;
+    let window = format!("{} s to {} s of a run from rest", window.t0.get(), window.end.get());
+    let how = |response| match response {
+        Response::Window => format!("in the window from {window}"),
+        Response::Settled => "of the settled motion".to_owned(),
+        Response::Motions => "of every stable motion that is found".to_owned(),
+        Response::Steady => "of the steady motion, in closed form".to_owned(),
+    };
+    let mut hows: Vec<String> = objective.terms().iter().map(|(_, term)| how(term.response)).collect();
+    hows.dedup();
+    format!("{}, {}", over(&objective, omega), hows.join(" and "))
+}
+
+fn lead(findings: &Findings) -> Markup {
+    let (Evaluation { energy, .. }, quantity) = (findings.evaluation, findings.quantity());
+    let touches = match findings.response.force_max.map(|force| force > 0.0) {
+        [true, true] => "strikes both walls of its cavity",
+        [true, false] => "strikes the structure, not the obstacle",
+        [false, true] => "strikes the obstacle, not the structure",
+        [false, false] => "touches neither wall of its cavity",
+    };
+    let several = findings.study.objective().terms().iter().any(|(_, term)| term.omega.is_some());
+    html! {
+        p.lead {
+            "With this damper " (quantity.words()) ", " (quantity.name()) ", is " strong { (amount(*energy, quantity)) }
+            " (" (objective(findings)) "). " @if several { "It is worst at" } @else { "The frequency is" }
+            " ω = " strong { (frequency(findings.worst_omega())) } "; there the damper " (touches) "."
+        }
+    }
+}
+
+fn facts(findings: &Findings, beside: &Compared) -> Markup {
+    let (energy, quantity) = (findings.evaluation.energy, findings.quantity());
+    let against = |other: &Result<Evaluation, Unusable>| match other {
+        Ok(other) => {
+            let words = compared(energy, other.energy).unwrap_or_else(|| "–".to_owned());
+            (
+                words,
+                format!(
+                    "{}, worst at {}",
+                    amount(other.energy, quantity),
+                    frequency(other.worst.scene.forcing.frequency.get())
+                ),
+            )
+        }
+        Err(reason) => ("–".to_owned(), format!("it has no value: {reason}")),
+    };
+    let none = against(&beside.none);
+    let study = against(&beside.study);
+    let certificate = findings.certificate;
+    let verdict = certificate.verdict.map_or("no verdict", |_| findings.optimum.verdict());
+    let words = certificate
+        .words
+        .strip_prefix(verdict)
+        .map_or(certificate.words.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+    let fact = |name: &str, value: &str, more: &str| {
+        html! { div { dt { (name) } dd { strong { (value) } @if !more.is_empty() { span.more { (more) } } } } }
+    };
+    let span = findings.study.window;
+    let window = format!("{} s to {} s", span.t0.get(), span.end.get());
+    html! {
+        dl.facts {
+            (fact("Against no damper", &none.0, &none.1))
+            (fact(&format!("Against {}", whose(&findings.study.scene)), &study.0, &study.1))
+            (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
+            @if let Some(needs) = &findings.optimum.needs {
+                @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
+                    "{what}, from rest on, at {}{}{}", frequency(needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
+                ));
+                (say("Stroke", Measure::Stroke, "largest spring deflection |x2 − x1 − D|"))
+                (say("Contact force", Measure::ContactForce, "largest force on a wall"))
+                (say("Displacement", Measure::Displacement, "largest |x1| of the structure"))
+                (say("Acceleration", Measure::Acceleration, "largest |a1| of the structure"))
+                (say("Force on the ground", Measure::GroundForce, "largest |k1 x1 + c1 v1|"))
+            }
+            (fact("Motion", &certificate.motion.regime, &format!("at the worst frequency it {}", certificate.motion.sentence)))
+        }
+    }
+}
+
+/// What the part of the response has that the objective looks at, where that is less.
+fn own(needs: &Needs, measure: Measure, window: &str) -> String {
+    let own = needs.damper.own(measure);
+    own.map_or(String::new(), |value| format!("; {} in the objective ({window})", sized(measure, value)))
+}
+
+/// The same without a damper and with the best linear one.
+fn others(needs: &Needs, measure: Measure) -> String {
+    let linear =
+        needs.linear.as_ref().map(|linear| format!("; {} with the best TMD", linear.needs.sized(measure)));
+    let damper = measure.is_of_damper();
+    let none = needs.none.as_ref().filter(|_| !damper);
+    let none = none.map(|none| format!("; {} without a damper", none.sized(measure)));
+    none.unwrap_or_default() + &linear.unwrap_or_default()
+}
+
+fn parameters(findings: &Findings) -> Markup {
+    let Some(damper) = findings.tuned.damper else { return html! {} };
+    let varied = &findings.search.variables;
+    let mut table =
+        Table::new("The damper", &["symbol", "name", "value", "unit", whose(&findings.study.scene), "tuned"]);
+    let mut shown = vec![Parameter::M2];
+    shown.extend(Parameter::columns(varied).into_iter().filter(|one| *one != Parameter::M2));
+    for parameter in shown {
+        let Some(value) = parameter.of_damper(&damper) else { continue };
+        table.row([
+            parameter.to_string(),
+            parameter.words().to_owned(),
+            four(value),
+            parameter.unit().to_owned(),
+            four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN)),
+            if varied.contains(&parameter) { "tuned" } else { "given" }.to_owned(),
+        ]);
+    }
+    table.markup()
+}
+
+fn limits(findings: &Findings) -> Option<Table> {
+    let note = findings.optimum.limits.as_ref()?;
+    let mut table = Table::new("Limits", &["limit", "largest in any run", "allowed", "unit", "state"]);
+    for &(limit, reached) in &note.reached {
+        let Some(allowed) = note.allowed.get(limit) else { continue };
+        let state = match (reached > allowed, note.active.contains(&limit)) {
+            (true, _) => "broken",
+            (_, true) => "kept, and it determines the design",
+            _ => "kept",
+        };
+        table.row([
+            limit.to_string(),
+            four(reached),
+            four(allowed),
+            limit.unit().to_owned(),
+            state.to_owned(),
+        ]);
+    }
+    Some(table)
+}
+
+/// What to do next: what the flags ask for, else the checks that a design deserves before it is built.
+fn next(findings: &Findings, flags: &[Flag]) -> Markup {
+    let changes: Vec<&str> = flags.iter().filter_map(|flag| flag.change.as_deref()).collect();
+    let (omega, k1) = (findings.worst_omega(), findings.worst.primary.stiffness);
+    let other = k1 != findings.study.scene.primary.stiffness;
+    let k1 = if other { format!(" --set k1={}", k1.get()) } else { String::new() };
+    let simulate = format!("retune simulate optimum.json --set omega={omega}{k1} --trajectory motion.csv");
+    html! {
+        h3 { "What to do next" }
+        @if !changes.is_empty() {
+            p { "Give " code { "study.json" } " " (changes.join("; ")) ", and search again:" }
+            pre { code { "retune optimize study.json --out again" } }
+        }
+        p { "Look at the motion at the worst frequency, row by row:" }
+        pre { code { (simulate) } }
+        p { "Compute a sample of these results again, on your machine:" }
+        pre { code { "retune verify ." } }
+        p.note { "All commands are for the directory of this page." }
+    }
+}

@@ -1,0 +1,130 @@
+//! How the search went: its stages, where each refinement began and ended, and why it stopped.
+
+use super::findings::Findings;
+use super::numbers::four;
+use crate::amount::label;
+use crate::tune::log::worth;
+use crate::tune::optimum::stop_words;
+use crate::tune::refine::Descended;
+use maud::html;
+use retune_optim::energy;
+use retune_report::html::{Section, Table, figure, link};
+use retune_store::Directory;
+use retune_study::counted;
+
+/// The section.
+pub fn section(findings: &Findings, results: &Directory) -> Section {
+    let failures = &findings.optimum.failures;
+    let winner = &findings.refined.best().minimum;
+    let convergence = results.read("convergence.svg");
+    let body = html! {
+        p {
+            @if findings.refined.winner < findings.refined.starts {
+                "The design was found by refinement " (findings.refined.winner + 1) " of " (findings.refined.starts) ", which "
+                (stop_words(winner.stop)) " after " (counted(winner.iterations, "iteration")) " and "
+                (counted(winner.func_count, "evaluation"))
+            } @else { "The design was found from the best TMD" }
+            @if let Some(Descended { from, evaluations }) = findings.refined.best().descent {
+                ", by a descent with derivatives from " (worth(from, findings.quantity())) " in " (counted(evaluations, "evaluation"))
+            }
+            ". "
+            @if failures.count == 0 { "Every design could be computed." }
+            @else { (counted(failures.count, "design")) " could not be computed." }
+        }
+        (stages(findings).markup())
+        (starts(findings).markup())
+        @if let Some(table) = basins(findings) { (table.markup()) }
+        @if let Some(svg) = convergence {
+            (figure(&svg.into(), html! { (findings.quantity().name()) " and the tuned parameters over the best refinement. " (link("convergence.svg")) }))
+        }
+    };
+    Section { id: "search", title: "How the search went", body }
+}
+
+fn stages(findings: &Findings) -> Table {
+    let quantity = findings.quantity();
+    let mut table = Table::new(
+        "Stages of the search",
+        &[
+            "stage",
+            "evaluations",
+            "broke a limit",
+            "could not be computed",
+            &format!("best {}", quantity.name()),
+        ],
+    );
+    let mut row = |stage: &str, counts: retune_optim::Counts, failed: u64, best: f64| {
+        let counts = [counts.evaluations, counts.infeasible, failed].map(|count| count.to_string());
+        let [evaluations, infeasible, failed] = counts;
+        table.row([stage.to_owned(), evaluations, infeasible, failed, worth(best, quantity)]);
+    };
+    if let Some(surf) = findings.surf {
+        row("grid", surf.counts, surf.failures.count, surf.least);
+    }
+    if let Some(explored) = findings.explored {
+        let best = explored.basins.first().map_or(f64::NAN, |basin| basin.best.value);
+        row("global search", explored.counts, explored.failures.count, best);
+    }
+    let objective = &findings.refined.objective;
+    row("refinements", objective.counts(), objective.failures().count, findings.refined.best().minimum.value);
+    table
+}
+
+fn starts(findings: &Findings) -> Table {
+    let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
+    let mut head: Vec<String> = [
+        "refinement",
+        "starts from",
+        &format!("{name} there, {unit}"),
+        &format!("{name} found, {unit}"),
+        "iterations",
+        "evaluations",
+        "stop",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    head.extend(findings.search.variables.iter().map(|variable| format!("{variable}, {}", variable.unit())));
+    let mut table = Table { head, ..Table::new("Refinements", &[]) };
+    for (i, run) in findings.refined.runs.iter().enumerate() {
+        let minimum = &run.minimum;
+        let start = run.rows.first().map_or(f64::NAN, |row| energy(row.value));
+        let best = if i == findings.refined.winner { " (best)" } else { "" };
+        let mut cells = vec![
+            format!("{}{best}", i + 1),
+            findings.origin(i).to_owned(),
+            four(start),
+            four(energy(minimum.value)),
+            minimum.iterations.to_string(),
+            minimum.func_count.to_string(),
+            if run.descent.is_some() { "descent".to_owned() } else { stop_words(minimum.stop).to_owned() },
+        ];
+        cells.extend(minimum.x.iter().map(|value| four(*value)));
+        table.row(cells);
+    }
+    table
+}
+
+fn basins(findings: &Findings) -> Option<Table> {
+    let found = findings.optimum.global.as_ref()?;
+    let mut head: Vec<String> =
+        ["basin", "searches that reached it", "refinements", &label(findings.quantity())]
+            .map(str::to_owned)
+            .to_vec();
+    head.extend(findings.search.variables.iter().map(|variable| format!("{variable}, {}", variable.unit())));
+    let caption = format!(
+        "Basins: that of the optimum was reached by {} of {}",
+        found.reached_optimum,
+        counted(found.searches as u64, "search")
+    );
+    let mut table = Table { head, ..Table::new(caption, &[]) };
+    for (i, basin) in found.basins.iter().enumerate() {
+        let counts = [i + 1, basin.searches, basin.refinements].map(|count| count.to_string());
+        let design = findings
+            .search
+            .variables
+            .iter()
+            .map(|variable| four(basin.design.get(*variable).unwrap_or(f64::NAN)));
+        table.row(counts.into_iter().chain([four(basin.found.value)]).chain(design));
+    }
+    Some(table)
+}

@@ -1,0 +1,163 @@
+//! The response over frequency: how far the tuning reaches.
+
+use super::curves::{ABOUT, Curves};
+use super::findings::{Compared, Findings};
+use super::numbers::{HERTZ, amount, four, frequency};
+use crate::amount::label;
+use crate::summary::whose;
+use maud::{Markup, html};
+use retune_model::Measure;
+use retune_report::colour::{BLACK, BLUE, GREY, VERMILION};
+use retune_report::html::{Section, figure, link};
+use retune_report::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
+};
+
+/// The curves and their looks.
+fn lines(findings: &Findings) -> [(&'static str, Stroke); 3] {
+    [
+        ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
+        (whose(&findings.study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
+        ("tuned", Stroke::new(VERMILION, 1.4, Dash::Solid)),
+    ]
+}
+/// Ratio of the largest values of two curves above which the smaller would be squashed on a linear scale.
+const SQUASHED: f64 = 10.0;
+
+/// A quantity that is drawn against the frequency.
+struct Curve<'a> {
+    name: &'static str,
+    label: String,
+    unit: &'static str,
+    values: &'a [Vec<f64>; 3],
+    /// The largest value that the objective covers, and before it its frequency, rad/s.
+    worst: [f64; 2],
+}
+
+impl<'a> Curve<'a> {
+    /// What the search made small.
+    fn objective(findings: &Findings, curves: &'a Curves) -> Self {
+        let quantity = findings.quantity();
+        Self {
+            name: quantity.name(),
+            label: label(quantity),
+            unit: quantity.unit(),
+            values: &curves.value,
+            worst: [findings.worst_omega(), findings.evaluation.worst.largest],
+        }
+    }
+
+    fn displacement(findings: &Findings, curves: &'a Curves) -> Self {
+        let needs = findings.optimum.needs.as_ref().map(|needs| needs.damper.0.own);
+        let place = needs.map(|own| own.get(Measure::Displacement)).filter(|need| need.value.is_finite());
+        let (omega, there) = (findings.worst_omega(), findings.response.structure.displacement.value);
+        Self {
+            name: "Displacement amplitude",
+            label: "|x1|, mm".to_owned(),
+            unit: "mm",
+            values: &curves.displacement,
+            worst: place.map_or([omega, 1e3 * there], |need| [need.omega, 1e3 * need.value]),
+        }
+    }
+}
+
+/// The section.
+pub fn section(findings: &Findings, compared: &Compared) -> Section {
+    let curves = Curves::new(findings);
+    let names = lines(findings).map(|(name, _)| name);
+    let body = html! {
+        (words(findings, compared, &curves))
+        (figure(&picture(findings, &curves, Curve::objective(findings, &curves)), html! {
+            (findings.quantity().name()) " against the frequency of the force: " (names[0]) ", " (names[1]) ", " (names[2]) ". "
+            @if curves.is_objective { (link("band.csv")) } @else { "Outside of the dotted line nothing was asked of the search." }
+        }))
+        (figure(&picture(findings, &curves, Curve::displacement(findings, &curves)), html! {
+            "Largest displacement |x1| of the structure, from " (four(findings.study.window.t0.get())) " to "
+            (four(findings.study.window.end.get())) " s of a run from rest."
+        }))
+    };
+    Section { id: "response", title: "Response over frequency", body }
+}
+
+fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
+    let quantity = findings.quantity();
+    let worst = |of: &Result<retune_optim::Evaluation, retune_optim::Unusable>| {
+        of.as_ref().map_or_else(|_| "none".to_owned(), |of| amount(of.energy, quantity))
+    };
+    let omega = findings.worst_omega();
+    if curves.is_objective {
+        return html! { p {
+            "The objective is the worst over this band: " (worst(&compared.none)) " without a damper, " (worst(&compared.study))
+            " with " (whose(&findings.study.scene)) ", " (amount(findings.evaluation.energy, quantity)) " with the tuned one, at " (frequency(omega)) "."
+        } };
+    }
+    let top = curves.value.each_ref().map(|curve| Curves::largest(curve));
+    html! { p {
+        "The search looked at ω = " (frequency(omega)) " alone, and the band here is outside of its objective: ± " (100.0 * ABOUT)
+        " % of the natural frequency about it, for the reader to see how sharp the tuning is. In this band the largest " (quantity.name()) " is "
+        (amount(top[0], quantity)) " without a damper, " (amount(top[1], quantity)) " with " (whose(&findings.study.scene)) ", and " (amount(top[2], quantity)) " with the tuned one."
+    } }
+}
+
+fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
+    let Curve { name, label, unit, values, worst: [omega, worst] } = curve;
+    let lines = lines(findings);
+    let top = values.each_ref().map(|curve| Curves::largest(curve));
+    let (high, low) = (
+        top.into_iter().fold(0.0, f64::max),
+        top.into_iter().filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min),
+    );
+    let log = high > SQUASHED * low;
+    let range = (curves.omega.first().copied().unwrap_or(0.0), curves.omega.last().copied().unwrap_or(1.0));
+    let y = if log {
+        Axis::around(&*label, Scale::Log, values.iter().flatten().copied())
+    } else {
+        Axis::linear(&*label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 }))
+    };
+    let mut layers = Vec::new();
+    if !curves.is_objective {
+        layers.push(Layer::Upright { x: omega, stroke: Stroke::new(GREY, 1.0, Dash::Dots) });
+    }
+    for (curve, (_, stroke)) in values.iter().zip(lines) {
+        let points = curves.omega.iter().copied().zip(curve.iter().copied()).collect();
+        layers.push(Layer::Line { points, stroke });
+    }
+    let mark = Mark { rim: true, ..Mark::new(Shape::Disc, VERMILION, 5.0) };
+    layers.push(Layer::Marks { points: vec![(omega, worst)], mark });
+    let mut legend: Vec<(Key, String)> =
+        lines.iter().map(|(name, stroke)| (Key::Line(*stroke), (*name).to_owned())).collect();
+    legend.push((
+        Key::Mark(mark),
+        format!(
+            "{}: {} {unit} at {} rad/s",
+            if curves.is_objective { "worst" } else { "tuned for" },
+            four(worst),
+            four(omega)
+        ),
+    ));
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ),
+        y,
+        layers,
+        height: 210.0,
+    };
+    let said: Vec<String> =
+        lines.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
+    drawing(&Sheet {
+        title: format!("{name} against the frequency of the force"),
+        description: format!(
+            "{name} against ω from {} to {} rad/s on a {} scale. Highest points: {}.",
+            four(range.0),
+            four(range.1),
+            if log { "logarithmic" } else { "linear" },
+            said.join(", ")
+        ),
+        width: Width::Page,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend,
+        caption: Vec::new(),
+    })
+}

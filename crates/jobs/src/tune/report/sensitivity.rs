@@ -1,0 +1,132 @@
+//! The sensitivity of the value to small errors, from the certificate.
+
+use super::findings::Findings;
+use super::numbers::{amount, digits, four};
+use crate::amount::label;
+use maud::html;
+use retune_model::Measure;
+use retune_report::colour::{BLACK, BLUE, SKY, VERMILION};
+use retune_report::html::{Section, Table, figure, link};
+use retune_report::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing, scale_for,
+};
+
+/// Height of a bar, pt, and half of it as a share of the distance between two.
+const ROW: f64 = 17.0;
+const HALF: f64 = 0.32;
+
+/// The section.
+pub fn section(findings: &Findings) -> Section {
+    let near = &findings.certificate.neighbourhood;
+    let quantity = findings.quantity();
+    let name = quantity.name();
+    let said = |value: f64| said(value, quantity);
+    let body = html! {
+        p {
+            "Of " (near.members) " designs whose k1, k2, c2, D and C are off by at most " (digits(100.0 * near.errors, 3))
+            " %, nine in ten have an " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
+            (said(near.median)) ". The design itself has " (said(findings.certificate.value.value)) "."
+        }
+        (figure(&picture(findings), html! {
+            "The largest " (name) " with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
+        }))
+        (table(findings).markup())
+    };
+    Section { id: "sensitivity", title: "Sensitivity to small errors", body }
+}
+
+/// A value; one that is infinite is of a design that cannot be computed.
+fn said(value: f64, quantity: Measure) -> String {
+    if value.is_finite() { amount(value, quantity) } else { "no value (it cannot be computed)".to_owned() }
+}
+
+fn table(findings: &Findings) -> Table {
+    let certificate = findings.certificate;
+    let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
+    let head = [
+        "parameter",
+        "value",
+        &format!("change for 1 % more, {unit}"),
+        &format!("largest within 1 %, {unit}"),
+        "at, %",
+        "against the design, %",
+    ];
+    let mut table = Table::new(format!("{name} with one parameter off"), &head);
+    for one in &certificate.sensitivity {
+        let sign = |value: f64, text: String| if value > 0.0 { format!("+{text}") } else { text };
+        let percent = 100.0 * (one.worst / certificate.value.value - 1.0);
+        table.row([
+            one.parameter.to_owned(),
+            four(one.value),
+            sign(one.slope_per_percent, digits(one.slope_per_percent, 3)),
+            four(one.worst),
+            sign(one.worst_at_percent, digits(one.worst_at_percent, 3)),
+            sign(percent, digits(percent, 3)),
+        ]);
+    }
+    table
+}
+
+fn picture(findings: &Findings) -> Drawing {
+    let (certificate, quantity) = (findings.certificate, findings.quantity());
+    let name = quantity.name();
+    let (own, near) = (certificate.value.value, &certificate.neighbourhood);
+    let bars = &certificate.sensitivity;
+    let place = |i: usize| -(i as f64);
+    let bar = |i: usize, ends: (f64, f64), colour| Layer::Band {
+        x: ends,
+        y: (place(i) - HALF, place(i) + HALF),
+        colour,
+        opacity: 1.0,
+    };
+    let mut layers = Vec::new();
+    let mut names = Vec::new();
+    for (i, one) in bars.iter().enumerate() {
+        let worst = if one.worst.is_nan() { f64::INFINITY } else { one.worst };
+        layers.push(bar(i, (own.min(worst), own.max(worst)), VERMILION));
+        let sign = if one.worst_at_percent > 0.0 { "+" } else { "" };
+        names.push((place(i), format!("{} {sign}{} %", one.parameter, digits(one.worst_at_percent, 3))));
+    }
+    let last = bars.len();
+    layers.push(bar(last, (near.low, near.high), SKY));
+    names.push((place(last), "neighbours".to_owned()));
+    let median = Mark { rim: true, ..Mark::new(Shape::Disc, BLUE, 4.5) };
+    layers.push(Layer::Marks { points: vec![(near.median, place(last))], mark: median });
+    let rule = Stroke::new(BLACK, 1.1, Dash::Short);
+    layers.push(Layer::Upright { x: own, stroke: rule });
+    let values: Vec<f64> =
+        bars.iter().map(|one| one.worst).chain([own, near.low, near.median, near.high]).collect();
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::around(label(quantity), scale_for(&values), values.iter().copied()),
+        y: Axis::of_names((place(last) - 0.7, 0.7), names),
+        layers,
+        height: ROW * (last as f64 + 1.4) + 30.0,
+    };
+    let said: Vec<String> =
+        bars.iter().map(|one| format!("{} {}", one.parameter, amount(one.worst, quantity))).collect();
+    drawing(&Sheet {
+        title: format!("{name} with one parameter off by at most 1 %"),
+        description: format!(
+            "A bar for each parameter from the design's {name}, {}, to the largest: {}. Neighbours: {} to {}.",
+            amount(own, quantity),
+            said.join(", "),
+            four(near.low),
+            amount(near.high, quantity)
+        ),
+        width: Width::Page,
+        charts: vec![chart],
+        columns: 1,
+        stacked: false,
+        legend: vec![
+            (Key::Line(rule), "the design".to_owned()),
+            (Key::Area(VERMILION, 1.0), "largest within 1 % of one parameter".to_owned()),
+            (
+                Key::Area(SKY, 1.0),
+                format!("90 % of the neighbours within {} %", digits(100.0 * near.errors, 3)),
+            ),
+            (Key::Mark(median), "their median".to_owned()),
+        ],
+        caption: Vec::new(),
+    })
+}

@@ -1,0 +1,43 @@
+//! Descriptions of studies in words.
+
+use crate::band::ssvi_band;
+use retune_jobs::describe;
+use retune_study::read::from_text;
+use retune_testkit::desk::{committed, global};
+use serde_json::{Value, json};
+
+#[track_caller]
+fn said(study: &Value) -> String {
+    describe::study(&from_text(&study.to_string(), "study.json").unwrap_or_else(|error| panic!("{error}")))
+}
+
+#[test]
+fn contract_the_objective_is_described() {
+    let line = "for the worst E1max over omega = 6 to 6.6 rad/s, in the window, on 5 samples and refined at their peaks";
+    let band = said(&ssvi_band());
+    assert!(band.contains(line), "{band}");
+    let steady = said(&committed("tmd-free.json"));
+    assert!(steady.contains("for the worst E1max over omega = 5 to 8 rad/s, steady, exact"), "{steady}");
+}
+
+#[test]
+fn contract_every_part_of_an_objective_is_described() {
+    let robust = json!({
+        "omega": { "from": 0.9, "to": 1.1, "samples": 3, "relative": true },
+        "k1": { "set": [3e4, 4e4] },
+        "ensemble": { "members": 4, "statistic": { "quantile": 0.9 } }
+    });
+    let sum = json!({ "sum": [{ "weight": 2, "objective": robust }, { "weight": 1, "objective": {} }] });
+    let words = said(&global(robust, json!({ "cavity": 0.4 })));
+    for line in [
+        "for the 0.9 quantile of 4 members (all phases, errors to 0.1 %), worst E1max over omega = 0.9 to 1.1 times √(k1/m1) \
+         and k1 = 30000, 40000 N/m, in the window, on 3 samples",
+        "under limits: cavity at most 0.4 m",
+        "a global search (24 designs, 2 CMA-ES searches)",
+    ] {
+        assert!(words.contains(line), "{line}: {words}");
+    }
+    let words = said(&global(sum, json!({})));
+    assert!(words.contains("weighted sum of 2 objectives"), "{words}");
+    assert!(words.contains("1 times E1max, omega = 6.28 rad/s"), "{words}");
+}

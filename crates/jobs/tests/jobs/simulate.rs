@@ -1,0 +1,195 @@
+//! `simulate`: one run, its summary and its motion.
+
+use crate::{read, request, search};
+use retune_jobs::simulate::{Trajectory, simulate};
+use retune_jobs::table2::table2;
+use retune_jobs::{Error, Silent};
+use retune_model::Parameter;
+use retune_solver::{Remedy, SolverError};
+use retune_store::Error as StoreError;
+use retune_study::{Setting, Study};
+use retune_testkit::desk::{Desk, studies, tiny};
+use retune_testkit::observers::{good, refused};
+use serde_json::json;
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// Writes the motion of the tiny study into a file of the desk.
+fn motion(desk: &Desk, file: &str, interval: f64) -> Result<(), Error> {
+    let (file, study) = (desk.path(file), desk.path("study.json"));
+    let trajectory = Trajectory { file: &file, interval, inputs: &[&study] };
+    simulate(&read(desk, "study.json"), Some(trajectory)).map(drop)
+}
+
+#[test]
+fn contract_the_trajectory_has_a_row_for_each_interval() {
+    let desk = Desk::with(&tiny());
+    good(motion(&desk, "motion.csv", 0.5));
+    let csv = desk.rows("motion.csv");
+    assert_eq!(csv[0].join(","), "t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment");
+    let grid = csv[1..].iter().filter(|row| row[9] == "grid");
+    let times: Vec<&String> = grid.map(|row| &row[0]).collect();
+    assert_eq!(times, ["1", "1.5", "2", "2.5", "3", "3.5", "4"]);
+    for interval in [1e-9, 0.0, -1.0, f64::NAN] {
+        let error = refused(motion(&desk, "other.csv", interval));
+        let Error::Interval { value, most } = error else { panic!("{error}") };
+        assert_eq!((value.to_bits(), most), (interval.to_bits(), 100_000_000));
+    }
+    assert_eq!(desk.names("."), ["motion.csv", "study.json"]);
+}
+
+#[test]
+fn contract_a_trajectory_replaces_only_trajectories() {
+    let desk = Desk::with(&tiny());
+    let before = desk.read("study.json");
+    let protected = |file: &str, reason: &str| match refused(motion(&desk, file, 1.0)) {
+        Error::Store(StoreError::Protected { path, problem }) => {
+            assert_eq!(path, desk.path(file));
+            assert!(problem.starts_with(reason), "{problem}");
+        }
+        other => panic!("{file}: {other}"),
+    };
+    for file in ["study.json", "./study.json"] {
+        protected(file, "it is an input of this command");
+    }
+    desk.write("notes.csv", "t,x\n1,2\n");
+    desk.write("surf.csv", "k2,c2,D,C,E1max\n");
+    for file in ["notes.csv", "surf.csv"] {
+        protected(file, "a file stands there that Retune did not make");
+    }
+    assert_eq!([desk.read("study.json"), desk.read("notes.csv")], [before, "t,x\n1,2\n".to_owned()]);
+    desk.write("empty.csv", "");
+    for file in ["motion.csv", "motion.csv", "empty.csv"] {
+        good(motion(&desk, file, 1.0));
+        assert!(desk.read(file).starts_with("t,x1,v1,x2,v2,"));
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("motion.csv", desk.path("link.csv")).expect("a link");
+        protected("link.csv", "it is a symbolic link");
+        protected("/dev/null", "it is no plain file");
+    }
+}
+
+/// One cause and one remedy, immediately: a typing error must not start a run of a day.
+#[test]
+fn contract_values_that_nobody_means_are_told_with_what_helps() {
+    let study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
+    let too_fast = |error, what| matches!(error, SolverError::TooFast { remedy, .. } if remedy == what);
+    let too_slow = |error, what| matches!(error, SolverError::TooSlow { remedy, .. } if remedy == what);
+    type Expected<'a> = &'a dyn Fn(SolverError) -> bool;
+    let cases: [(&str, f64, Expected, &str, &str); 7] = [
+        (
+            "T",
+            1e300,
+            &|error| too_fast(error, Remedy::ShorterRun),
+            "lost to rounding at t = 1e300 s",
+            "shorten T",
+        ),
+        ("T", 1e10, &|error| too_slow(error, Remedy::ShorterRun), "and max_steps is 20000000", "shorten T"),
+        (
+            "omega",
+            1e300,
+            &|error| too_fast(error, Remedy::Slower("omega")),
+            "the motion changes within 1.2e-300 s",
+            "lower omega, which makes the motion this fast",
+        ),
+        (
+            "R",
+            1e-200,
+            &|error| matches!(error, SolverError::Contact { .. }),
+            "a contact at t = 2.29",
+            "check what it is made of: R, q, E1 to E4",
+        ),
+        (
+            "m2",
+            1e-6,
+            &|error| too_slow(error, Remedy::Slower("c2/m2")),
+            "at this rate it takes 9.3e9 steps",
+            "lower c2/m2, which makes the motion this fast",
+        ),
+        (
+            "k1",
+            1e20,
+            &|error| too_slow(error, Remedy::Slower("k1/m1")),
+            "at this rate it takes 1.3e10 steps",
+            "lower k1/m1, which makes the motion this fast",
+        ),
+        (
+            "P",
+            1e150,
+            &|error| too_slow(error, Remedy::LessForce),
+            "at this rate it takes 1.6e22 steps",
+            "lower P: nearly all steps are those of contacts",
+        ),
+    ];
+    for (name, value, expected, cause, remedy) in cases {
+        let begin = std::time::Instant::now();
+        let error = refused(simulate(
+            &study.with(&[format!("{name}={value}").parse().expect("a setting")]).expect("a study"),
+            None,
+        ));
+        assert!(begin.elapsed().as_secs() < 10, "{name}: {:?}", begin.elapsed()); // a fraction of a second on an idle machine
+        let words = error.to_string();
+        let Error::Run(error) = error else { panic!("{name}: {words}") };
+        assert!(expected(error), "{name}: {error:?}");
+        assert!(words.contains(cause) && words.ends_with(&format!("; {remedy}")), "{name}: {words}");
+        assert_eq!(words.matches(';').count(), 1, "{name}: {words}");
+    }
+}
+
+fn read_file(path: &Path) -> Result<Study, Error> {
+    Ok(retune_study::read(path)?)
+}
+
+/// The results of a search stand for its study with the design that it found, wherever a study is read.
+#[test]
+fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
+    let desk = Desk::with(&tiny());
+    let found = search(&desk, "study.json", "out").found();
+    let own = good(read_file(&desk.path("study.json")));
+    let scene = own.scene_at(&found.damper.design).expect("a damper");
+    for path in ["out", "out/optimum.json"] {
+        let study = good(read_file(&desk.path(path)));
+        assert_eq!((study.scene, study.name()), (scene, "study"), "{path}");
+        let run = good(simulate(&study, None));
+        assert_eq!(json!(run)["E1max"].as_f64(), Some(found.e1_max), "{path}");
+    }
+    // Of several searches one has to be named.
+    let row = json!({ "damper": "NES", "study": "study.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
+    desk.write_json("table2.json", &json!({ "rows": [row] }));
+    good(table2(&request(&desk, "table2.json", "table"), &Silent));
+    let said = refused(read_file(&desk.path("table"))).to_string();
+    assert!(
+        said.contains("holds the designs of several searches") && said.ends_with("table/study"),
+        "{said}"
+    );
+}
+
+/// Without a damper, once the transient has died out: √((1 + (2ζr)²) / ((1 - r²)² + (2ζr)²)) with r = ω/ω1.
+#[test]
+fn exact_transmissibility_and_frequency_are_those_of_a_linear_oscillator() {
+    let mut study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
+    (study.scene.damper, study.optimize) = (None, None);
+    let study = study.with(&["omega=1.2Hz", "t0=200", "T=300"].map(|text| text.parse().expect("a setting")));
+    let study = study.expect("a study");
+    let run = json!(good(simulate(&study, None)));
+    let (omega, natural, zeta) =
+        (2.4 * PI, 39_500_f64.sqrt() / 1000_f64.sqrt(), 452.0 / 2.0 / 3.95e7_f64.sqrt());
+    let (r, damped) = (omega / natural, 2.0 * zeta * omega / natural);
+    let expected = ((1.0 + damped * damped) / ((1.0 - r * r).powi(2) + damped * damped)).sqrt();
+    let number = |name: &str| run[name].as_f64().expect(name);
+    assert!((number("transmissibility") / expected - 1.0).abs() < 1e-9, "{run}");
+    assert!((number("f_Hz") - 1.2).abs() < 1e-12 && (number("n_rpm") - 72.0).abs() < 1e-9, "{run}");
+    assert!((number("omega") / omega - 1.0).abs() < 1e-15);
+}
+
+/// A structure without a force transmits none of it.
+#[test]
+fn contract_without_a_force_there_is_no_transmissibility() {
+    let study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
+    let study = study.with(&[Setting::new(Parameter::P, 0.0)]).expect("a study");
+    let run = good(simulate(&study, None));
+    assert_eq!((run.summary.transmissibility(), &json!(run)["transmissibility"]), (None, &json!(null)));
+    assert!(!run.to_string().contains("transmiss"));
+}

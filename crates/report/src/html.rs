@@ -1,0 +1,111 @@
+//! The elements of a page: its head, sections, tables, figures.
+
+use crate::Drawing;
+use maud::{Markup, PreEscaped, html};
+
+/// What all pages of Retune look like: light and dark, wide, narrow and in print.
+const STYLE: &str = include_str!("page.css");
+
+/// The head of a page: its title, and the style of all pages with what this page has beside it, as CSS.
+pub fn head(title: &str, own: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="color-scheme" content="light dark";
+            link rel="icon" href="data:,";
+            title { (title) }
+            style { (PreEscaped(STYLE)) (PreEscaped(own)) }
+        }
+    }
+}
+
+/// A section with its heading.
+pub struct Section {
+    /// The target of links to it.
+    pub id: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// What stands below it.
+    pub body: Markup,
+}
+
+impl Section {
+    /// Its HTML.
+    pub fn markup(&self) -> Markup {
+        let heading = format!("{}-title", self.id);
+        html! {
+            section id=(self.id) aria-labelledby=(heading) {
+                h2 id=(heading) { (self.title) }
+                (self.body)
+            }
+        }
+    }
+}
+
+/// A table. The first cell of each row is the row's heading.
+pub struct Table {
+    /// What it shows.
+    pub caption: String,
+    /// The headings of its columns.
+    pub head: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<Markup>>,
+    /// Whether its cells break into lines.
+    pub wraps: bool,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(caption: impl Into<String>, head: &[&str]) -> Self {
+        let head = head.iter().map(|name| (*name).to_owned()).collect();
+        Self { caption: caption.into(), head, rows: Vec::new(), wraps: false }
+    }
+
+    /// The same for cells with words, which break into lines.
+    pub fn wrapping(caption: impl Into<String>, head: &[&str]) -> Self {
+        Self { wraps: true, ..Self::new(caption, head) }
+    }
+
+    /// Adds a row of texts.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().map(|text| html! { (text) }).collect());
+    }
+
+    /// Its HTML: it scrolls in its own box where it is wider than the page.
+    pub fn markup(&self) -> Markup {
+        html! {
+            div.scroll tabindex="0" role="group" aria-label=(self.caption) {
+                table class=[self.wraps.then_some("wrap")] {
+                    caption { (self.caption) }
+                    thead { tr { @for name in &self.head { th scope="col" { (name) } } } }
+                    tbody {
+                        @for row in &self.rows {
+                            tr { @for (i, cell) in row.iter().enumerate() {
+                                @if i == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                            } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A figure with its caption.
+pub fn figure(drawing: &Drawing, caption: Markup) -> Markup {
+    let Drawing { wide, narrow } = drawing;
+    let class = if narrow.is_some() { "wide" } else { "any" };
+    html! {
+        figure {
+            div.(class) { (PreEscaped(wide)) }
+            @if let Some(narrow) = narrow { div.narrow { (PreEscaped(narrow)) } }
+            figcaption { (caption) }
+        }
+    }
+}
+
+/// A link to a file beside the page.
+pub fn link(name: &str) -> Markup {
+    html! { a href=(name) { (name) } }
+}
