@@ -2,7 +2,7 @@
 
 use crate::record::Found;
 use crate::scenes::Case;
-use retune_jobs::verify::methods;
+use retune_jobs::methods;
 use retune_model::Coupled;
 use retune_solver::methods::{Dop853, Euler, Ode23, Ode23s, Ode45, Rk4, Run};
 use retune_solver::observe::Observer;

@@ -1,6 +1,6 @@
 //! One run of one method at one tolerance, and its line in `runs.csv`.
 
-use retune_jobs::verify::methods;
+use retune_jobs::methods;
 use std::fmt::Write;
 
 /// The result of a run.

@@ -1,38 +1,19 @@
 //! The files that each kind of job makes. From this list follow the files that a job may replace, and how `verify` computes each
 //! of them again.
 
+use crate::again::{Rows, Whole};
+
 /// The contents of a file of results, and so how they are computed again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Content {
     /// The complete input that all the other files follow from; the manifest holds its hash.
     Input,
-    /// A row for each design of a grid: its parameters and the value that the coarse stage gave it.
-    Grid,
-    /// A row for each design of a search: its parameters and the value that the search gave it.
-    Searched,
-    /// A row for each frequency: E1max without a damper, with that of the study, with the tuned one.
-    Band,
-    /// The design that a search found, and the run at its worst frequency.
-    Optimum,
-    /// A certificate of the design that a search found, or of the damper of the study.
-    Certificate,
-    /// A row for each design of several studies: its damper, its parameters, its E1max.
-    Designs,
-    /// A row for each value of a parameter: what the runs at it gave.
-    Swept,
-    /// A row for each run of a method on a scene: what does not depend on the machine's speed is computed again.
-    Methods,
-    /// Contents that only the job itself knows: the crate of the job computes them again.
-    Own,
+    /// A table, whose rows can be computed one by one.
+    Rows(Rows),
+    /// What is made again as a whole.
+    Whole(Whole),
     /// Numbers of the other files as text or figure, the log of a search, the manifest: checked by their hash alone.
     Derived,
-}
-
-impl Content {
-    /// Whether only a search leaves it.
-    pub fn is_of_a_search(self) -> bool {
-        matches!(self, Self::Grid | Self::Searched | Self::Band)
-    }
 }
 
 /// A file of results.

@@ -15,7 +15,6 @@ mod remedy;
 mod tables;
 mod words;
 
-pub(crate) use again::again;
 pub use found::{Found, Margin};
 pub use options::Options;
 pub use tables::summary;
@@ -36,11 +35,11 @@ pub static KIND: Kind = Kind {
     answer: tables::BRANCHES,
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
-        artefact(tables::BRANCHES, Content::Own),
-        artefact(tables::BIFURCATIONS, Content::Own),
-        artefact(tables::ATTRACTORS, Content::Own),
+        artefact(tables::BRANCHES, Content::Rows(again::again)),
+        artefact(tables::BIFURCATIONS, Content::Rows(again::again)),
+        artefact(tables::ATTRACTORS, Content::Rows(again::again)),
         artefact(tables::STATES, Content::Derived),
-        artefact(basins::STARTS, Content::Own),
+        artefact(basins::STARTS, Content::Rows(again::again)),
         artefact("branches.json", Content::Derived),
         artefact("branches.svg", Content::Derived),
         artefact("basins.svg", Content::Derived),

@@ -7,6 +7,7 @@ mod motions;
 
 pub use certificate::{Certificate, Short, Verdict, periodic};
 
+use crate::again::{Made, json};
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Job, open};
 use crate::request::where_results_are;
@@ -25,7 +26,7 @@ pub const FILE: &str = "certificate.json";
 pub static KIND: Kind = Kind {
     command: "certify",
     answer: FILE,
-    artefacts: &[artefact(resolved::ONE, Content::Input), artefact(FILE, Content::Certificate)],
+    artefacts: &[artefact(resolved::ONE, Content::Input), artefact(FILE, Content::Whole(of_study))],
 };
 
 /// Certifies the design of a study, or the one that a search found: `request.study` is a study, an `optimum.json`, or the directory of
@@ -73,6 +74,20 @@ fn is_same(one: &Path, other: &Path) -> bool {
 /// There is no damper, or the design has no value.
 pub fn certify(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study, damper_of(study)?, OtherStarts::Always)
+}
+
+/// The certificate of the damper of a study, made again.
+fn of_study(place: &Path, name: &str) -> Result<Made, Error> {
+    let study = study::read(&place.join(resolved::ONE))?;
+    Ok(again(&study, json(place, name)?))
+}
+
+/// A certificate of the damper in the scene of a study, made again beside what a file says.
+pub(crate) fn again(study: &Study, said: serde_json::Value) -> Made {
+    match certify(study) {
+        Ok(again) => Made::Of { what: "all of it", said, again: serde_json::json!(again) },
+        Err(error) => Made::Not(format!("cannot be made again: {error}")),
+    }
 }
 
 /// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without.

@@ -1,13 +1,16 @@
 //! Tables of designs in the form of the paper's Table 2, as `table2` and `track` make them.
 
-use crate::Error;
+use crate::again::Source;
 use crate::needs::{Largest, TOLD};
+use crate::resolved::Resolved;
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, table2_header, table2_row};
+use crate::{Error, look};
 use retune_model::Measure;
 use retune_store::Directory;
 use retune_study::{Study, fields, short};
 use serde::Serialize;
+use std::path::Path;
 
 /// A table of designs: the paper's columns, one column of its own, and what each design is worth.
 #[derive(Debug, Serialize)]
@@ -145,4 +148,26 @@ pub fn quoted(text: &str) -> String {
     } else {
         text.to_owned()
     }
+}
+
+/// E1max of a row with a design, computed again by the objective of the study of its damper: on the samples that the plan names, or else
+/// on those of the study.
+///
+/// # Errors
+/// The input of the results cannot be read.
+pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+    let resolved = Resolved::read(place)?;
+    let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
+    let studies = resolved.studies()?;
+    let source = Source::new(move |row| {
+        let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
+        let at = row.design().filter(|_| !row.number("E1max").is_nan())?;
+        let found = match samples {
+            Some(samples) => look::energy(study, samples, &at),
+            None => study.scene_at(&at).and_then(|scene| study.energy(&scene)),
+        };
+        Some(vec![("E1max".to_owned(), found.unwrap_or(f64::INFINITY))])
+    });
+    // A row whose fields are empty says that no design keeps its bound.
+    Ok(source.only(|row| ["k2", "c2", "D", "C", "E1max"].iter().any(|name| !row.text(name).is_empty())))
 }

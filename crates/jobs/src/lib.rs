@@ -8,7 +8,7 @@
 //! again; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
 //!
 //! ```
-//! use crate::simulate::simulate;
+//! use retune_jobs::simulate::simulate;
 //!
 //! // The damper of `studies/ssvi.json`. SI units: kg, N·s/m, N/m, N, rad/s, m, Pa, s.
 //! let text = r#"{
@@ -40,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod again;
 pub mod amount;
 pub mod artefact;
 pub mod branches;
@@ -53,6 +54,7 @@ pub mod evaluate;
 pub mod fronts;
 pub mod job;
 pub mod look;
+pub mod methods;
 pub mod needs;
 pub mod observer;
 pub mod paper;

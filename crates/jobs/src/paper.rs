@@ -27,7 +27,6 @@ mod table1;
 mod table2;
 mod variants;
 
-pub(crate) use again::again;
 pub use describe::describe;
 use items::{ITEMS, Maker, SEARCHES, statements};
 

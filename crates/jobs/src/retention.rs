@@ -18,7 +18,6 @@ mod retained;
 mod trade;
 mod tuned;
 
-pub use again::again;
 pub use anew::label;
 pub use curves::Curve;
 pub use force::Forced;
@@ -46,10 +45,10 @@ pub static KIND: Kind = Kind {
     answer: DESIGNS,
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
-        artefact(DESIGNS, Content::Own),
-        artefact(CURVES, Content::Own),
-        artefact("range.csv", Content::Own),
-        artefact(FORCES, Content::Own),
+        artefact(DESIGNS, Content::Rows(again::again)),
+        artefact(CURVES, Content::Rows(again::again)),
+        artefact("range.csv", Content::Rows(again::again)),
+        artefact(FORCES, Content::Rows(again::again)),
         artefact("retune.txt", Content::Derived),
         artefact("retention.svg", Content::Derived),
         artefact("still.svg", Content::Derived),

@@ -1,23 +1,46 @@
 //! `sweep`: the run of a scene, or the objective of a study, at each value of one parameter.
+//!
+//! ```
+//! use retune_jobs::sweep::{Options, Plan, Sweep};
+//!
+//! let study = retune_study::read::from_text(
+//!     r#"{
+//!         "scene": {
+//!             "primary": { "m1": 1000, "c1": 452, "k1": 39500 },
+//!             "forcing": { "P": 800, "omega": 6.28 }
+//!         },
+//!         "window": { "t0": 200, "T": 230 }
+//!     }"#,
+//!     "bare.json",
+//! )?;
+//! let options = Options { from: "0.8Hz".into(), to: "1.2Hz".into(), points: 5, ..Options::over("omega".parse()?) };
+//! let sweep = Sweep::new(Plan::read(&options)?, study)?;
+//! let points: Vec<f64> = (0..sweep.len()).flat_map(|i| sweep.numbers(sweep.value(i)).0).collect();
+//! let table = sweep.table(&points);
+//! assert_eq!(table.column("f_Hz").map(|column| column[2]), Some(1.0)); // resonance is at 1 Hz
+//! let energy = table.column("E1max").ok_or("a column")?;
+//! assert!(energy[2] > 10.0 * energy[0] && energy[2] > 10.0 * energy[4]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod draw;
 pub mod plan;
 pub mod points;
 mod quantity;
-pub mod table;
 pub mod words;
 
 pub use plan::{Options, Plan};
 pub use points::Sweep;
 pub use quantity::Quantity;
-pub use table::Table;
 
+use crate::again::{Row, Source, broken};
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Job, Made};
 use crate::parts::{self, PARTS, Shard, Wanted, Work, complete};
 use crate::resolved::{self, Resolved};
 use crate::{Error, Observer, Progress, Request};
 use rayon::prelude::*;
+use retune_report::table::Table;
 use retune_store::identity::VERSION;
 use retune_store::{Directory, Journal};
 use retune_study::{found_in, read};
@@ -36,7 +59,7 @@ pub static KIND: Kind = Kind {
     answer: FILE,
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
-        artefact(FILE, Content::Swept),
+        artefact(FILE, Content::Rows(again)),
         artefact(JSON, Content::Derived),
         artefact("sweep.txt", Content::Derived),
         artefact("sweep.svg", Content::Derived),
@@ -188,18 +211,21 @@ fn numbers(
     (numbers.concat(), reasons.into_iter().flatten().collect())
 }
 
-/// The sweep behind results.
-///
-/// # Errors
-/// They cannot be read, or are not those of a sweep.
-pub fn behind(place: &Path) -> Result<Sweep, Error> {
+/// A row of the table, computed again: every number of it.
+fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
-    let refuse = |problem: String| {
-        let path = place.join(resolved::SEVERAL);
-        Error::from(retune_store::Error::Input { path, source: std::io::Error::other(problem) })
-    };
-    let plan = serde_json::from_value(resolved.plan.clone()).map_err(|error| refuse(error.to_string()))?;
-    let (_, study) =
-        resolved.studies()?.into_iter().next().ok_or_else(|| refuse("it names no study".to_owned()))?;
-    Sweep::new(plan, study)
+    let plan = serde_json::from_value(resolved.plan.clone())
+        .map_err(|error| broken(place, resolved::SEVERAL, error.to_string()))?;
+    let (_, study) = resolved
+        .studies()?
+        .into_iter()
+        .next()
+        .ok_or_else(|| broken(place, resolved::SEVERAL, "it names no study"))?;
+    let sweep = Sweep::new(plan, study)?;
+    Ok(Source::new(move |row: Row| {
+        let columns = sweep.columns();
+        let value = row.number(&columns[0].name);
+        let numbers = value.is_finite().then(|| sweep.row(value, &sweep.numbers(value).0))?;
+        Some(columns.into_iter().zip(numbers).map(|(column, number)| (column.name, number)).collect())
+    }))
 }

@@ -1,9 +1,11 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
+mod again;
 pub mod band;
 pub(crate) mod choice;
 pub mod descent;
 pub mod ends;
+pub mod files;
 pub(crate) mod global;
 pub mod log;
 pub mod merge;
@@ -17,6 +19,7 @@ pub(crate) mod surf;
 mod tmd;
 pub(crate) mod valley;
 
+pub use files::OPTIMUM;
 pub use optimum::{Found, Optimum, table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
@@ -33,22 +36,19 @@ use retune_store::{Directory, Order};
 use retune_study::{Search, Study, are};
 use std::path::Path;
 
-/// The file with the design that a search found.
-pub const OPTIMUM: &str = "optimum.json";
-
 /// The files of a search.
 pub static KIND: Kind = Kind {
     command: "optimize",
     answer: OPTIMUM,
     artefacts: &[
         artefact(resolved::ONE, Content::Input),
-        artefact("surf.csv", Content::Grid),
-        artefact("fminsearch.csv", Content::Searched),
-        artefact("fminsearch-starts.csv", Content::Searched),
-        artefact("basins.csv", Content::Searched),
-        artefact("band.csv", Content::Band),
-        artefact(OPTIMUM, Content::Optimum),
-        artefact(certify::FILE, Content::Certificate),
+        artefact(files::GRID, Content::Rows(again::grid)),
+        artefact(files::LOG, Content::Rows(again::search)),
+        artefact(files::STARTS, Content::Rows(again::search)),
+        artefact(files::BASINS, Content::Rows(again::search)),
+        artefact(files::BAND, Content::Rows(again::band)),
+        artefact(OPTIMUM, Content::Whole(again::optimum)),
+        artefact(certify::FILE, Content::Whole(again::certificate)),
         artefact(report::FILE, Content::Derived),
         artefact("fminsearch.txt", Content::Derived),
         artefact("surf-*.svg", Content::Derived),

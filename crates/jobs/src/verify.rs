@@ -3,29 +3,21 @@
 //! reported.
 
 mod files;
-pub mod input;
-pub mod methods;
-pub mod one;
-pub mod report;
-mod several;
-mod swept;
-pub mod table;
+mod report;
+mod rows;
 mod tally;
 mod values;
 
+use crate::again::Made;
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
-use crate::{Error, Observer, branches, certify, fronts, paper, resolved, retention, sweep, table2, tune};
-use one::One;
-pub use report::{Check, Report};
+use crate::{
+    Error, Observer, branches, certify, fronts, methods, paper, resolved, retention, sweep, table2, tune,
+};
+use report::Report;
 use retune_store::manifest::Manifest;
 use retune_store::{UNFINISHED, manifest};
-use several::Several;
 use std::path::{Path, PathBuf};
-
-/// Computes a file of a job's own contents again and compares it with what it says: in a directory of results, the name of the file,
-/// the most rows to run again, and the report.
-pub type Again = fn(&Path, &str, usize, &mut Report<'_>) -> Result<(), Error>;
 
 /// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
 /// again; numbers that differ by at most `within` of their size hold.
@@ -53,16 +45,16 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
     report.end(path)
 }
 
-/// The kinds of jobs, and how files that only the job itself knows are computed again.
-static KINDS: [(&Kind, Option<Again>); 8] = [
-    (&tune::KIND, None),
-    (&certify::KIND, None),
-    (&table2::KIND, None),
-    (&sweep::KIND, None),
-    (&retention::KIND, Some(retention::again)),
-    (&fronts::KIND, Some(fronts::again)),
-    (&branches::KIND, Some(branches::again)),
-    (&paper::KIND, Some(paper::again)),
+/// The kinds of jobs.
+static KINDS: [&Kind; 8] = [
+    &tune::KIND,
+    &certify::KIND,
+    &table2::KIND,
+    &sweep::KIND,
+    &retention::KIND,
+    &fronts::KIND,
+    &branches::KIND,
+    &paper::KIND,
 ];
 /// Those of the comparison of methods, whose files have names that say little: only where their manifest names them.
 static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
@@ -71,22 +63,21 @@ static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
 fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
     let known = known(place, &there);
-    let plain = |content| matches!(content, Content::Input | Content::Derived);
-    if !has(&known, Content::Input) || known.iter().all(|(_, content, _)| plain(*content)) {
+    let is_input = |content: &Content| matches!(content, Content::Input);
+    if !known.iter().any(|(_, content)| is_input(content))
+        || known.iter().all(|(_, content)| is_input(content) || matches!(content, Content::Derived))
+    {
         return report.unchecked("no row of these results can be run again by itself");
     }
-    for &(name, content, again) in &known {
+    for &(name, content) in &known {
         let done = match content {
             Content::Input | Content::Derived => Ok(()),
-            Content::Grid => One::read(place).and_then(|one| one.grid(name, most, report)),
-            Content::Searched => One::read(place).and_then(|one| one.searched(name, most, report)),
-            Content::Band => One::read(place).and_then(|one| one.band(name, most, report)),
-            Content::Optimum => One::read(place).and_then(|one| one.optimum(name, report)),
-            Content::Certificate => One::read(place).and_then(|one| one.certificate(name, report)),
-            Content::Designs => Several::read(place).and_then(|all| all.designs(name, most, report)),
-            Content::Methods => methods::methods(place, name, most, report),
-            Content::Swept => swept::swept(place, name, most, report),
-            Content::Own => again.map_or(Ok(()), |again| again(place, name, most, report)),
+            Content::Rows(source) => source(place, name)
+                .and_then(|source| rows::check(&place.join(name), name, &source, most, report)),
+            Content::Whole(made) => made(place, name).and_then(|made| match made {
+                Made::Of { what, said, again } => report.compare(name, what, &said, &again),
+                Made::Not(why) => report.fail(name, &why),
+            }),
         };
         match done {
             // Damaged files do not hold either.
@@ -99,35 +90,27 @@ fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error>
             other => other?,
         }
     }
-    if known.iter().any(|(_, content, _)| content.is_of_a_search()) && !has(&known, Content::Optimum) {
+    let is_found = known.iter().any(|(name, _)| *name == tune::OPTIMUM);
+    if known.iter().any(|(name, _)| tune::files::SEARCHED.contains(name)) && !is_found {
         return report.unchecked("there is no optimum.json: the design that was found");
     }
     Ok(())
 }
 
-/// A file of results: its name, its contents, and how its own are computed again.
-type Known<'a> = (&'a str, Content, Option<Again>);
-
 /// The files of a directory that a job makes, in the order of its list.
-fn known<'a>(place: &Path, there: &'a [String]) -> Vec<Known<'a>> {
-    let mut known: Vec<Known> = Vec::new();
+fn known<'a>(place: &Path, there: &'a [String]) -> Vec<(&'a str, Content)> {
+    let mut known: Vec<(&str, Content)> = Vec::new();
     let command =
         Manifest::read(place).ok().flatten().and_then(|manifest| manifest.made_by).map(|made| made.command);
     let compared = COMPARISONS.iter().filter(|kind| command.as_deref() == Some(kind.command));
-    for (kind, again) in compared.map(|kind| (*kind, None)).chain(KINDS) {
-        for artefact in kind.artefacts {
-            for name in there.iter().filter(|name| artefact.is(name)) {
-                if known.iter().all(|(other, ..)| other != name) {
-                    known.push((name, artefact.content, again));
-                }
+    for artefact in compared.chain(&KINDS).flat_map(|kind| kind.artefacts) {
+        for name in there.iter().filter(|name| artefact.is(name)) {
+            if known.iter().all(|(other, _)| other != name) {
+                known.push((name, artefact.content));
             }
         }
     }
     known
-}
-
-fn has(known: &[Known], content: Content) -> bool {
-    known.iter().any(|(_, other, _)| *other == content)
 }
 
 fn is_result(place: &Path) -> bool {

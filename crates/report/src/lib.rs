@@ -48,6 +48,7 @@ mod layout;
 mod path;
 mod sheet;
 mod svg;
+pub mod table;
 mod text;
 mod ticks;
 

@@ -9,7 +9,7 @@ use retune_bench::reference::{REFERENCE, Reference};
 use retune_bench::savings::savings;
 use retune_bench::scenes::{Case, cases};
 use retune_bench::{external, own, peers, sealed, statistics, text};
-use retune_jobs::verify::methods;
+use retune_jobs::methods;
 use retune_model::{Coupled, Side};
 use retune_solver::{Contacts, Method};
 use std::error::Error;

@@ -7,7 +7,7 @@ use retune_bench::atlas::{
     rigid, stable, truth,
 };
 use retune_bench::sealed;
-use retune_jobs::verify::methods;
+use retune_jobs::methods;
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;

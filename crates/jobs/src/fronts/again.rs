@@ -1,9 +1,9 @@
 //! `fronts`, computed again: its certificates.
 
 use crate::Error;
+use crate::again::{Made, design, json};
 use crate::look::finer;
 use crate::resolved::Resolved;
-use crate::verify::{Report, input, one};
 use retune_model::Design;
 use retune_study::Study;
 use serde_json::Value;
@@ -12,24 +12,24 @@ use std::path::Path;
 /// Most samples of a band that a certificate begins with.
 const MOST: usize = 121;
 
-/// Checks the certificate of a design by making it again.
+/// The certificate of a design.
 ///
 /// # Errors
-/// The file cannot be read, as of all checks.
-pub fn again(place: &Path, name: &str, _most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-    let said = input::json(place, name)?;
+/// The file cannot be read.
+pub(super) fn again(place: &Path, name: &str) -> Result<Made, Error> {
+    let said = json(place, name)?;
     let resolved = Resolved::read(place)?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
-    match certified(&resolved.studies()?, samples, &said) {
-        Some(study) => one::certificate(&study, &said, name, report),
-        None => report.fail(name, "is of none of the studies"),
-    }
+    Ok(match certified(&resolved.studies()?, samples, &said) {
+        Some(study) => crate::certify::again(&study, said),
+        None => Made::Not("is of none of the studies".to_owned()),
+    })
 }
 
 /// The study with the design that a certificate is of.
 fn certified(studies: &[(String, Study)], samples: Option<usize>, said: &Value) -> Option<Study> {
     let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
-    certifiable(study, samples?, &one::design(&said["design"])?)
+    certifiable(study, samples?, &design(&said["design"])?)
 }
 
 /// The study that a design is certified by: on the samples of the study of fronts, or fewer, since a certificate looks at a hundred designs

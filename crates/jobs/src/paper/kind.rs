@@ -1,5 +1,6 @@
 //! The files of the reproduction.
 
+use super::again;
 use crate::artefact::{Content, Kind, artefact};
 use crate::resolved;
 
@@ -10,9 +11,9 @@ pub static KIND: Kind = Kind {
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
         artefact("study.json", Content::Derived),
-        artefact("table1-statements.json", Content::Own),
-        artefact("table2-statements.json", Content::Own),
-        artefact("figure*-statements.json", Content::Own),
+        artefact("table1-statements.json", Content::Whole(again::again)),
+        artefact("table2-statements.json", Content::Whole(again::again)),
+        artefact("figure*-statements.json", Content::Whole(again::again)),
         artefact("table1-*", Content::Derived),
         artefact("table2-*", Content::Derived),
         artefact("figure*", Content::Derived),

@@ -1,9 +1,9 @@
 //! A sweep as a figure: a chart for each quantity, one below the other, with a damper and without.
 
 use crate::sweep::points::Sweep;
-use crate::sweep::table::Table;
 use crate::sweep::words::{each, extreme, shown, title};
 use retune_report::colour::{BLACK, VERMILION};
+use retune_report::table::Table;
 use retune_report::{
     Axis, Chart, Dash, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, scale_for, svg,
 };
@@ -45,7 +45,7 @@ const MARK: Mark = Mark::new(Shape::Disc, VERMILION, 3.0);
 fn peak(sweep: &Sweep, table: &Table, name: &str) -> Option<String> {
     let (row, value) = extreme(&table.column(name)?, 1.0)?;
     let over = sweep.plan().over;
-    let unit = table.columns.iter().find(|column| column.name == name)?.unit;
+    let unit = table.unit(name);
     let at = rounded(sweep.value(row), 4);
     Some(format!(
         "{name} is largest at {} = {at} {}: {} {unit}",
@@ -64,7 +64,7 @@ fn made_by(sweep: &Sweep) -> String {
 fn chart(sweep: &Sweep, table: &Table, name: &str, top: bool, count: usize) -> Chart {
     let column = |name: &str| table.column(name).unwrap_or_default();
     let points = |values: &[f64]| -> Vec<(f64, f64)> {
-        table.rows.iter().map(|row| row[0]).zip(values.iter().copied()).collect()
+        table.rows.iter().map(|row| row[0].number()).zip(values.iter().copied()).collect()
     };
     let (with, without) = (column(name), column(&format!("{name}_none")));
     let mut layers = Vec::new();
@@ -75,7 +75,7 @@ fn chart(sweep: &Sweep, table: &Table, name: &str, top: bool, count: usize) -> C
     if sweep.len() < FEW {
         layers.push(Layer::Marks { points: points(&with), mark: MARK });
     }
-    let unit = table.columns.iter().find(|column| column.name == name).map_or("", |column| column.unit);
+    let unit = table.unit(name);
     let label =
         if unit.is_empty() { name.replace('_', " ") } else { format!("{}, {unit}", name.replace('_', " ")) };
     let values: Vec<f64> = with.iter().chain(&without).copied().collect();

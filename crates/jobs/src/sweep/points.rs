@@ -2,9 +2,9 @@
 
 use crate::Error;
 use crate::sweep::plan::Plan;
-use crate::sweep::table::{Column, Table};
 use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Axis, Goal, Limits, Objective};
+use retune_report::table::{Cell, Column, Table};
 use retune_solver::simulate;
 use retune_study::{Rule, Setting, Study, hertz_and_rpm};
 
@@ -158,7 +158,7 @@ impl Sweep {
                 Column::new(name, unit),
                 Column::new("omega_worst", "rad/s"),
                 Column::new("violation", ""),
-                Column::new(&format!("{name}_none"), unit),
+                Column::new(format!("{name}_none"), unit),
             ]);
             return columns;
         }
@@ -172,7 +172,7 @@ impl Sweep {
             columns.extend(
                 ["impacts", "impacts_structure", "impacts_obstacle"].map(|name| Column::new(name, "")),
             );
-            columns.extend(structure().map(|(name, unit)| Column::new(&format!("{name}_none"), unit)));
+            columns.extend(structure().map(|(name, unit)| Column::new(format!("{name}_none"), unit)));
         }
         columns
     }
@@ -212,12 +212,18 @@ impl Sweep {
         row
     }
 
-    /// The table of all points, from their numbers one after the other.
+    /// The table of all points, from their numbers one after the other; those that are not finite are missing.
     pub fn table(&self, numbers: &[f64]) -> Table {
-        let points = numbers.chunks(self.width()).enumerate();
-        Table {
-            columns: self.columns(),
-            rows: points.map(|(i, numbers)| self.row(self.value(i), numbers)).collect(),
+        let mut table = Table::new(self.columns());
+        for (i, numbers) in numbers.chunks(self.width()).enumerate() {
+            let row = self.row(self.value(i), numbers);
+            let cell = |(column, value): (&Column, f64)| match column.name.starts_with("impacts") {
+                true if value.is_finite() => Cell::Count(value as u64),
+                _ => Cell::finite(value),
+            };
+            let row = table.columns.iter().zip(row).map(cell).collect();
+            table.push(row);
         }
+        table
     }
 }

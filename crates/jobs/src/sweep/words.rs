@@ -1,8 +1,8 @@
 //! A sweep in words: the answer first, then some of its rows.
 
 use crate::sweep::points::Sweep;
-use crate::sweep::table::{Column, Table};
 use retune_model::Parameter;
+use retune_report::table::{Column, Table};
 use retune_study::{counted, frequency, hertz_and_rpm, over, rounded};
 use textwrap::{Options, fill};
 
@@ -90,7 +90,7 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
         let words = format!("{count} {have} no value; the first, {}: {reason}", at(sweep, *value));
         lines.push(fill(&words, Options::new(WIDEST).subsequent_indent("  ")));
     }
-    let values: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
+    let values: Vec<f64> = table.rows.iter().map(|row| row[0].number()).collect();
     for name in shown(sweep) {
         lines.extend(answer(sweep, table, &values, &name));
     }
@@ -114,7 +114,7 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
 
 /// Where a quantity is largest and smallest, and the same without a damper.
 fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<String> {
-    let unit = table.columns.iter().find(|column| column.name == name).map_or("", |column| column.unit);
+    let unit = table.unit(name);
     let said = |column: &str| -> Option<[String; 2]> {
         let numbers = table.column(column)?;
         let (high, low) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);

@@ -1,5 +1,6 @@
 //! The band of a tuned damper: the objective against ω without a damper, with the damper of the study, and with the tuned one.
 
+use super::files::BAND;
 use crate::Error;
 use crate::amount::{self, measured};
 use crate::summary::{MadeBy, whose};
@@ -54,7 +55,7 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
         let fields = energies.map(|e| if e.is_finite() { e.to_string() } else { String::new() });
         csv += &format!("{omega},{}\n", fields.join(","));
     }
-    results.write("band.csv", &csv)?;
+    results.write(BAND, &csv)?;
     results.write("band.svg", &picture(study, &rows, worst))?;
     Ok(Some(rows))
 }

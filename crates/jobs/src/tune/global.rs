@@ -1,5 +1,6 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
+use super::files::BASINS;
 use super::log::worth;
 use super::objective::{coarse, kept, searched};
 use super::refine::{Refined, Run, columns};
@@ -183,7 +184,7 @@ impl Basins {
             csv +=
                 &format!("{},{searches},{refinements},{},{value}\n", i + 1, fields(&columns(objective, &x)?));
         }
-        Ok(results.write("basins.csv", &csv)?)
+        Ok(results.write(BASINS, &csv)?)
     }
 
     /// A line on screen.

@@ -1,5 +1,7 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
+use super::files::LOG;
+use super::files::STARTS;
 use super::log;
 use super::objective::{kept, searched};
 use crate::Error;
@@ -65,7 +67,7 @@ pub(super) fn refine(
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Refined, Error> {
-    let mut all = results.file("fminsearch-starts.csv")?;
+    let mut all = results.file(STARTS)?;
     all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
     let mut begun = 0;
     let refined = each(study, search, starts, (results.journal(), "fminsearch"), |number, row, design| {
@@ -188,7 +190,7 @@ fn simplex(
 /// A file cannot be written.
 pub(super) fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
     let varied = refined.objective.variables();
-    let mut csv = results.file("fminsearch.csv")?;
+    let mut csv = results.file(LOG)?;
     let mut txt: Pending = results.file("fminsearch.txt")?;
     csv.push(&format!("{}\n", log::csv_header(varied, study.quantity())))?;
     txt.push(&format!("{}\n", log::table1_header(varied, study.quantity())))?;

@@ -1,5 +1,6 @@
 //! The coarse stage: the objective on a grid.
 
+use super::files::GRID;
 use super::log::worth;
 use super::objective::{coarse, kept, searched};
 use super::refine::columns;
@@ -108,7 +109,7 @@ fn write(
     quantity: Measure,
     results: &Directory,
 ) -> Result<(), Error> {
-    let mut file = results.file("surf.csv")?;
+    let mut file = results.file(GRID)?;
     file.push(&format!("{},{}\n", joined(&Parameter::columns(objective.variables()), ","), quantity.name()))?;
     let mut point = vec![0.0; grid.dim()];
     for (i, value) in values.iter().enumerate() {

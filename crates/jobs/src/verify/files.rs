@@ -1,8 +1,8 @@
 //! Comparison of the files of a directory with its manifest.
 
-use super::input::text;
 use super::report::Report;
 use crate::Error;
+use crate::again::text;
 use crate::resolved;
 use retune_store::identity::{Identity, VERSION, sha256};
 use retune_store::manifest::{self, Manifest};

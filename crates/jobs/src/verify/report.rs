@@ -1,26 +1,10 @@
-//! The report of a verification, and the checks that it makes.
+//! The report of a verification.
 
 use super::tally::Tally;
 use super::values;
 use crate::{Error, Observer};
-use rayon::prelude::*;
 use serde_json::Value;
 use std::path::Path;
-
-/// A number of a result, and the computation that gives it again.
-pub struct Check<'a> {
-    /// The number in the file.
-    pub said: f64,
-    /// The computation.
-    pub again: Box<dyn Fn() -> f64 + Sync + 'a>,
-}
-
-impl Check<'_> {
-    /// A check that fails: of a row that no command writes.
-    pub fn never() -> Self {
-        Self { said: f64::NAN, again: Box::new(|| 0.0) }
-    }
-}
 
 /// A report to the observer; it collects what does not hold and what cannot be checked.
 pub struct Report<'a> {
@@ -61,14 +45,6 @@ impl<'a> Report<'a> {
         self.watch.result(&format!("  cannot be checked: {words}"))
     }
 
-    /// Runs all `checks` of the file `name` and reports how many differ; `what` says of which part of the file they are.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
-    pub fn look(&mut self, name: &str, what: &str, checks: &[Check]) -> Result<(), Error> {
-        self.tell(name, &format!("{what} run again"), &run(checks))
-    }
-
     /// Compares a JSON file, or a part of it, with the same made again.
     ///
     /// # Errors
@@ -78,7 +54,11 @@ impl<'a> Report<'a> {
         self.tell(name, &format!("{what} made again"), &tally)
     }
 
-    fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
+    /// Reports how many numbers of the file `name` differ; `what` says which were compared.
+    ///
+    /// # Errors
+    /// As [`Self::fail`].
+    pub fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
         let most = if tally.most.is_finite() {
             format!(
                 "by at most {:.1e} of {} value",
@@ -119,14 +99,4 @@ impl<'a> Report<'a> {
         let problem = format!("does not hold: {}{and}{unchecked}", problems.join("; "));
         Err(Error::NotHeld { path: path.to_owned(), problem })
     }
-}
-
-/// Runs all checks in parallel.
-fn run(checks: &[Check]) -> Tally {
-    let found: Vec<f64> = checks.par_iter().map(|check| (check.again)()).collect();
-    let mut tally = Tally::default();
-    for (check, found) in checks.iter().zip(found) {
-        tally.see(check.said, found);
-    }
-    tally
 }

@@ -1,8 +1,9 @@
 //! Sweeps against closed form, and what they refuse.
 
 use retune_jobs::Error;
-use retune_jobs::sweep::{Options, Plan, Sweep, Table, words};
+use retune_jobs::sweep::{Options, Plan, Sweep, words};
 use retune_model::Bare;
+use retune_report::table::Table;
 use retune_study::{Study, read::from_text};
 
 const SCENE: &str = r#"{

@@ -1,12 +1,10 @@
 //! The runs of methods on scenes, which the comparison of methods leaves (`crates/bench`), computed again: of each row what does not depend on
 //! the machine's speed. The plan beside them holds the tolerance of the reference, the bound on steps, and the settings behind names.
 
-use super::report::{Check, Report};
-use super::table::{Row, Sample};
 use crate::Error;
+use crate::again::{Row, Source};
 use crate::artefact::{Content, Kind, artefact};
 use crate::resolved::{Resolved, SEVERAL};
-use rayon::prelude::*;
 use retune_model::Scene;
 use retune_solver::{Contacts, Method, Response, Settings, Window, simulate, touch_downs};
 use retune_study::Study;
@@ -19,7 +17,7 @@ pub static ACCURACY: Kind = Kind {
     answer: "runs.csv",
     artefacts: &[
         artefact(SEVERAL, Content::Input),
-        artefact("runs.csv", Content::Methods),
+        artefact("runs.csv", Content::Rows(again)),
         artefact("*.svg", Content::Derived),
         artefact("README.md", Content::Derived),
     ],
@@ -31,7 +29,7 @@ pub static STABILITY: Kind = Kind {
     answer: "atlas.csv",
     artefacts: &[
         artefact(SEVERAL, Content::Input),
-        artefact("atlas.csv", Content::Methods),
+        artefact("atlas.csv", Content::Rows(again)),
         artefact("*.csv", Content::Derived),
         artefact("*.svg", Content::Derived),
         artefact("README.md", Content::Derived),
@@ -75,37 +73,18 @@ pub fn plan<'a>(
     json!({ "reference_rtol": reference_rtol, "max_steps": max_steps, "ways": ways })
 }
 
-/// Checks at most `most` rows of Retune's own runs.
-///
-/// # Errors
-/// The file or the input cannot be read.
-pub fn methods(place: &Path, name: &str, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+/// A row of Retune's own runs on one of the scenes, computed again.
+fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
-    let (plan, studies) = (&resolved.plan, resolved.studies()?);
-    let sample = Sample::read(&place.join(name), usize::MAX)?;
-    let own: Vec<(Row, &Study)> = sample
-        .rows()
-        .filter(|row| ["", "retune"].contains(&row.text("program")))
-        .filter_map(|row| Some((row, &studies.iter().find(|(name, _)| name == scene_of(row))?.1)))
-        .collect();
-    let kept = own.len().min(most);
-    let place_of = |i: usize| i * (own.len() - 1) / kept.saturating_sub(1).max(1);
-    let checked: Vec<(Row, &Study)> = (0..kept).map(|i| own[place_of(i)]).collect();
-    let found: Vec<Option<Vec<f64>>> =
-        checked.par_iter().map(|(row, study)| again(plan, *row, study)).collect();
-    let mut checks = Vec::new();
-    for ((row, _), found) in checked.iter().zip(found) {
-        let Some(found) = found else {
-            checks.push(Check::never());
-            continue;
-        };
-        for (name, found) in columns(*row).into_iter().zip(found) {
-            // A run that failed says why, and has no numbers.
-            let said = if row.text(name).is_empty() { f64::INFINITY } else { row.number(name) };
-            checks.push(Check { said, again: Box::new(move || found) });
-        }
-    }
-    report.look(name, &sample.of(checked.len()), &checks)
+    let (plan, studies) = (resolved.plan.clone(), resolved.studies()?);
+    let names: Vec<String> = studies.iter().map(|(name, _)| name.clone()).collect();
+    let source = Source::new(move |row| {
+        let (_, study) = studies.iter().find(|(name, _)| name == scene_of(row))?;
+        Some(columns(row).map(str::to_owned).into_iter().zip(numbers(&plan, row, study)?).collect())
+    });
+    Ok(source.only(move |row| {
+        ["", "retune"].contains(&row.text("program")) && names.iter().any(|name| name == scene_of(row))
+    }))
 }
 
 /// The name of the study of a row.
@@ -123,7 +102,7 @@ fn columns(row: Row) -> [&'static str; 4] {
 }
 
 /// The numbers of these columns; none where the row is of no method, infinite where the run fails.
-fn again(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
+fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     let way = &plan["ways"][row.text("method")];
     let text = |name: &str| way[name].as_str().unwrap_or_else(|| row.text(name)).to_owned();
     let method: Method = serde_json::from_value(Value::from(if way.is_null() {

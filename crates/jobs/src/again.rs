@@ -1,0 +1,123 @@
+//! Files of results, computed again: of a table the numbers of a row, of any other file the whole. Each job knows how for its own files;
+//! `verify` reads, draws rows and compares.
+
+use crate::Error;
+use retune_model::Design;
+use serde_json::Value;
+use std::path::Path;
+
+/// How the rows of a table are computed again, from the directory of the results and the name of the file.
+pub type Rows = fn(&Path, &str) -> Result<Source, Error>;
+
+/// How a file is made again as a whole.
+pub type Whole = fn(&Path, &str) -> Result<Made, Error>;
+
+/// Names of columns, and their numbers computed again.
+pub type Numbers = Vec<(String, f64)>;
+
+/// The function that computes a row again.
+pub struct Source {
+    /// Whether a row has numbers that can be computed.
+    pub applies: Box<dyn Fn(Row) -> bool + Sync>,
+    /// The numbers of a row, from what says which row it is; none where no command writes such a row.
+    pub row: Box<dyn Fn(Row) -> Option<Numbers> + Sync>,
+}
+
+impl Source {
+    /// A source of all rows.
+    pub fn new(row: impl Fn(Row) -> Option<Numbers> + Sync + 'static) -> Self {
+        Self { applies: Box::new(|_| true), row: Box::new(row) }
+    }
+
+    /// The same of those rows that have such numbers.
+    pub fn only(self, applies: impl Fn(Row) -> bool + Sync + 'static) -> Self {
+        Self { applies: Box::new(applies), ..self }
+    }
+}
+
+/// A file made again.
+pub enum Made {
+    /// A part of it, in words; the fields of `again` are compared with those of `said`.
+    Of {
+        /// Which part.
+        what: &'static str,
+        /// As the file says it.
+        said: Value,
+        /// Made again.
+        again: Value,
+    },
+    /// It cannot be: the reason.
+    Not(String),
+}
+
+/// A row of a table.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    pub(crate) names: &'a csv::StringRecord,
+    pub(crate) fields: &'a csv::StringRecord,
+}
+
+impl<'a> Row<'a> {
+    /// A field; empty where there is none.
+    pub fn text(self, name: &str) -> &'a str {
+        let number = self.names.iter().position(|other| other == name);
+        number.and_then(|number| self.fields.get(number)).unwrap_or_default()
+    }
+
+    /// A field as a number; NaN where it is not a number.
+    pub fn number(self, name: &str) -> f64 {
+        self.text(name).parse().unwrap_or(f64::NAN)
+    }
+
+    /// Its design; none where a field is no number, or none of a damper.
+    pub fn design(self) -> Option<Design> {
+        Design::new(|variable| self.number(variable.symbol())).ok()
+    }
+}
+
+/// All rows of a table that `visit` is to see, with their number.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn each_row(path: &Path, mut visit: impl FnMut(usize, Row)) -> Result<(), Error> {
+    let refuse =
+        |error: csv::Error| retune_store::Error::Input { path: path.to_owned(), source: error.into() };
+    let file = retune_store::plain::open(path).map_err(|error| refuse(error.into()))?;
+    let mut table = csv::ReaderBuilder::new().flexible(true).from_reader(file);
+    let names = table.headers().map_err(refuse)?.clone();
+    let mut fields = csv::StringRecord::new();
+    let mut number = 0;
+    while table.read_record(&mut fields).map_err(refuse)? {
+        visit(number, Row { names: &names, fields: &fields });
+        number += 1;
+    }
+    Ok(())
+}
+
+/// The text of a file of results.
+///
+/// # Errors
+/// It cannot be read.
+pub fn text(place: &Path, name: &str) -> Result<String, Error> {
+    let path = place.join(name);
+    Ok(retune_store::plain::text(&path).map_err(|source| retune_store::Error::Input { path, source })?)
+}
+
+/// A JSON file of results.
+///
+/// # Errors
+/// It cannot be read, or is not JSON.
+pub fn json(place: &Path, name: &str) -> Result<Value, Error> {
+    serde_json::from_str(&text(place, name)?).map_err(|error| broken(place, name, error.to_string()))
+}
+
+/// The design in a JSON object; none where a number is missing or none of a damper.
+pub fn design(of: &Value) -> Option<Design> {
+    Design::new(|variable| of[variable.symbol()].as_f64().unwrap_or(f64::NAN)).ok()
+}
+
+/// The error of a file whose contents are not those of results.
+pub fn broken(place: &Path, name: &str, problem: impl Into<String>) -> Error {
+    let source = std::io::Error::other(problem.into());
+    retune_store::Error::Input { path: place.join(name), source }.into()
+}

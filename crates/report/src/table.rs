@@ -1,0 +1,215 @@
+//! A table as data: named columns with units, rows of cells. Its CSV and its JSON are written here alone.
+
+use serde_json::{Map, Value, json};
+
+/// A column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, as it stands in files.
+    pub name: String,
+    /// Its SI unit; empty for texts and pure numbers.
+    pub unit: &'static str,
+}
+
+impl Column {
+    /// A column of a name and a unit.
+    pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
+        Self { name: name.into(), unit }
+    }
+}
+
+/// A cell. In files numbers have all their digits, so that they can be compared to the last bit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A number; an empty field where it is NaN.
+    Number(f64),
+    /// A whole number.
+    Count(u64),
+    /// A text.
+    Text(String),
+    /// No value.
+    Empty,
+}
+
+impl Cell {
+    /// A number, or no value where it is not finite.
+    pub fn finite(value: f64) -> Self {
+        if value.is_finite() { Self::Number(value) } else { Self::Empty }
+    }
+
+    /// Its number; NaN of a text or of no value.
+    pub fn number(&self) -> f64 {
+        match self {
+            Self::Number(value) => *value,
+            Self::Count(count) => *count as f64,
+            Self::Text(_) | Self::Empty => f64::NAN,
+        }
+    }
+
+    /// Its field in a CSV file.
+    fn field(&self) -> String {
+        match self {
+            Self::Number(value) if value.is_nan() => String::new(),
+            Self::Number(value) => value.to_string(),
+            Self::Count(count) => count.to_string(),
+            Self::Text(text) => quoted(text),
+            Self::Empty => String::new(),
+        }
+    }
+
+    /// As JSON; null where it is no finite number.
+    fn json(&self) -> Value {
+        match self {
+            Self::Number(value) => json!(value),
+            Self::Count(count) => json!(count),
+            Self::Text(text) => json!(text),
+            Self::Empty => Value::Null,
+        }
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Self::Count(count as u64)
+    }
+}
+
+impl From<u64> for Cell {
+    fn from(count: u64) -> Self {
+        Self::Count(count)
+    }
+}
+
+/// 1 or 0.
+impl From<bool> for Cell {
+    fn from(is: bool) -> Self {
+        Self::Count(is.into())
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<T: Into<Self>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Empty, Into::into)
+    }
+}
+
+/// Cells of a row, from values of different types: `cells![name, 3, 0.5]`.
+#[macro_export]
+macro_rules! cells {
+    ($($value:expr),* $(,)?) => { vec![$($crate::table::Cell::from($value)),*] };
+}
+
+/// A table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Its columns.
+    pub columns: Vec<Column>,
+    /// Its rows: a cell for each column.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(columns: impl IntoIterator<Item = Column>) -> Self {
+        Self { columns: columns.into_iter().collect(), rows: Vec::new() }
+    }
+
+    /// The same, of columns whose units do not matter, as they stand in the first line of a CSV file.
+    pub fn named(names: &str) -> Self {
+        Self::new(names.split(',').map(|name| Column::new(name, "")))
+    }
+
+    /// Adds a row.
+    pub fn push(&mut self, row: Vec<Cell>) {
+        debug_assert_eq!(row.len(), self.columns.len(), "{:?}", self.columns);
+        self.rows.push(row);
+    }
+
+    /// The place of a column.
+    fn place(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
+    /// The numbers of a column; NaN where there is none.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let place = self.place(name)?;
+        Some(self.rows.iter().map(|row| row[place].number()).collect())
+    }
+
+    /// The unit of a column; empty where there is no such column.
+    pub fn unit(&self, name: &str) -> &'static str {
+        self.place(name).map_or("", |place| self.columns[place].unit)
+    }
+
+    /// As CSV.
+    pub fn csv(&self) -> String {
+        let names: Vec<Cell> = self.columns.iter().map(|column| column.name.as_str().into()).collect();
+        std::iter::once(&names).chain(&self.rows).map(|row| line(row)).collect()
+    }
+
+    /// As JSON: the unit of each column, and an object for each row.
+    pub fn json(&self) -> Value {
+        let units: Map<String, Value> =
+            self.columns.iter().map(|column| (column.name.clone(), json!(column.unit))).collect();
+        let row = |row: &Vec<Cell>| -> Map<String, Value> {
+            self.columns.iter().zip(row).map(|(column, cell)| (column.name.clone(), cell.json())).collect()
+        };
+        json!({ "units": units, "rows": self.rows.iter().map(row).collect::<Vec<_>>() })
+    }
+}
+
+/// A row as a line of CSV, with its end: for a table that is too long to be held.
+pub fn line(row: &[Cell]) -> String {
+    row.iter().map(Cell::field).collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// A text as a field.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_cells_in_files() {
+        let mut table = Table::new([
+            Column::new("damper", ""),
+            Column::new("E1max", "J"),
+            Column::new("n", ""),
+            Column::new("D", "m"),
+        ]);
+        table.push(cells!["TMD, \"free\"", 0.1 + 0.2, 3_usize, f64::NAN]);
+        table.push(cells!["", f64::INFINITY, true, None::<f64>]);
+        assert_eq!(table.csv(), "damper,E1max,n,D\n\"TMD, \"\"free\"\"\",0.30000000000000004,3,\n,inf,1,\n");
+        assert_eq!(table.column("n"), Some(vec![3.0, 1.0]));
+        assert_eq!((table.column("C"), table.unit("E1max")), (None, "J"));
+        let json = table.json();
+        assert_eq!(json["units"]["D"], "m");
+        assert_eq!(json["rows"][1], json!({ "damper": "", "E1max": Value::Null, "n": 1, "D": Value::Null }));
+        assert_eq!(Cell::finite(f64::INFINITY), Cell::Empty);
+    }
+}
