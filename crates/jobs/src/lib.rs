@@ -62,6 +62,7 @@ pub mod parts;
 pub mod request;
 pub mod resolved;
 pub mod retention;
+pub mod rows;
 pub mod searches;
 pub mod simulate;
 pub mod summary;

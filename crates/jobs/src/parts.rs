@@ -6,5 +6,4 @@
 mod complete;
 mod part;
 
-pub use complete::{Wanted, complete};
-pub use part::{ENDING, Head, PARTS, Shard, Work, list, read};
+pub use part::{PARTS, Shard, Shared};

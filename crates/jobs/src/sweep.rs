@@ -1,6 +1,7 @@
 //! `sweep`: the run of a scene, or the objective of a study, at each value of one parameter.
 //!
 //! ```
+//! use retune_jobs::rows::Rows;
 //! use retune_jobs::sweep::{Options, Plan, Sweep};
 //!
 //! let study = retune_study::read::from_text(
@@ -15,7 +16,7 @@
 //! )?;
 //! let options = Options { from: "0.8Hz".into(), to: "1.2Hz".into(), points: 5, ..Options::over("omega".parse()?) };
 //! let sweep = Sweep::new(Plan::read(&options)?, study)?;
-//! let points: Vec<f64> = (0..sweep.len()).flat_map(|i| sweep.numbers(sweep.value(i)).0).collect();
+//! let points: Vec<f64> = (0..sweep.len()).flat_map(|i| sweep.numbers(i).0).collect();
 //! let table = sweep.table(&points);
 //! assert_eq!(table.column("f_Hz").map(|column| column[2]), Some(1.0)); // resonance is at 1 Hz
 //! let energy = table.column("E1max").ok_or("a column")?;
@@ -36,16 +37,15 @@ pub use quantity::Quantity;
 use crate::again::{Row, Source, broken};
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Job, Made};
-use crate::parts::{self, PARTS, Shard, Wanted, Work, complete};
+use crate::parts::{Shard, Shared};
 use crate::resolved::{self, Resolved};
-use crate::{Error, Observer, Progress, Request};
-use rayon::prelude::*;
+use crate::rows::{Rows, compute};
+use crate::{Error, Observer, Request};
 use retune_report::table::Table;
+use retune_store::Directory;
 use retune_store::identity::VERSION;
-use retune_store::{Directory, Journal};
 use retune_study::{found_in, read};
 use serde_json::{Value, json};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The file with all points.
@@ -105,17 +105,16 @@ pub fn sweep(
     let plan = json!(sweep.plan());
     let studies = [(sweep.study().name(), sweep.study())];
     let job = Job::of_studies(&KIND, &request, plan, studies.into_iter())?;
+    let command = format!("retune sweep {} {}", request.study.display(), sweep.plan().options());
+    let (rows, identity) = (&sweep, job.identity());
+    let shared = Shared { rows, identity, out: &out, order: &job.order, command };
     if let Points::Share(shard) = points {
-        let (len, width) = (sweep.len(), sweep.width());
-        let work = Work { shard: *shard, len, width, identity: job.identity(), out: &out, order: &job.order };
-        request.on_threads(|| {
-            work.make(watch, |journal, points, bar| numbers(&sweep, journal, points, bar).0)
-        })?;
+        request.on_threads(|| shared.make(*shard, watch))?;
         return Ok(None);
     }
     job.run(&request, watch, |results| {
         if let Points::Merged = points {
-            merge(&sweep, &job, results, watch)?;
+            shared.merge(&[], results, watch)?;
         }
         Ok(Made { answer: (), report: write(&sweep, results, watch)?, parts: Vec::new() })
     })?;
@@ -137,27 +136,18 @@ fn out(request: &Request, sweep: &Sweep) -> Result<PathBuf, Error> {
     Ok(Path::new("results").join(format!("sweep-{study}{tuned}-{over}{objective}")))
 }
 
-/// Takes the numbers of all points from parts.
-fn merge(sweep: &Sweep, job: &Job, results: &mut Directory, watch: &dyn Observer) -> Result<(), Error> {
-    let wanted = Wanted {
-        identity: job.identity(),
-        len: sweep.len(),
-        width: sweep.width(),
-        place: job.out.join(PARTS),
-        command: format!("retune sweep {} {}", job.order.study.display(), sweep.plan().options()),
-    };
-    for head in complete(&wanted, &[], watch)? {
-        parts::read(&head.path, |number, value| results.know(number, value))?;
-    }
-    Ok(())
-}
-
 /// Computes all points and writes them; returns the answer.
 fn write(sweep: &Sweep, results: &Directory, watch: &dyn Observer) -> Result<String, Error> {
     let bar = watch.progress("sweep", sweep.len() as u64);
-    let (found, reasons) = numbers(sweep, results.journal(), 0..sweep.len(), &*bar);
+    let found = compute(sweep, 0..sweep.len(), results.journal(), &*bar);
     bar.finish();
     results.journal().check()?;
+    let reasons: Vec<(f64, String)> = found
+        .iter()
+        .enumerate()
+        .filter_map(|(i, (_, reason))| Some((sweep.value(i), reason.clone()?)))
+        .collect();
+    let found: Vec<f64> = found.into_iter().flat_map(|(numbers, _)| numbers).collect();
     let table = sweep.table(&found);
     let [all, few] = [true, false].map(|all| words::text(sweep, &table, &reasons, all));
     results.write(FILE, &table.csv())?;
@@ -182,35 +172,6 @@ fn json(sweep: &Sweep, table: &Table) -> Value {
     json
 }
 
-/// The numbers of some points, one after the other, and the values of the parameter where there is none, each with the reason. What the
-/// journal knows is not computed again.
-fn numbers(
-    sweep: &Sweep,
-    journal: &Journal,
-    points: Range<usize>,
-    bar: &dyn Progress,
-) -> (Vec<f64>, Vec<(f64, String)>) {
-    let width = sweep.width();
-    let point = |point: usize| {
-        let value = sweep.value(point);
-        let mut made: Option<(Vec<f64>, Option<String>)> = None;
-        let numbers: Vec<f64> = (0..width)
-            .map(|i| {
-                let number = || made.get_or_insert_with(|| sweep.numbers(value)).0[i];
-                journal.grid_value(width * point + i, number, |_| {})
-            })
-            .collect();
-        if made.is_none() {
-            bar.known();
-        }
-        bar.inc(1);
-        (numbers, made.and_then(|(_, reason)| Some((value, reason?))))
-    };
-    let found: Vec<_> = points.into_par_iter().map(point).collect();
-    let (numbers, reasons): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    (numbers.concat(), reasons.into_iter().flatten().collect())
-}
-
 /// A row of the table, computed again: every number of it.
 fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
@@ -225,7 +186,7 @@ fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     Ok(Source::new(move |row: Row| {
         let columns = sweep.columns();
         let value = row.number(&columns[0].name);
-        let numbers = value.is_finite().then(|| sweep.row(value, &sweep.numbers(value).0))?;
+        let numbers = value.is_finite().then(|| sweep.row(value, &sweep.numbers_at(value).0))?;
         Some(columns.into_iter().zip(numbers).map(|(column, number)| (column.name, number)).collect())
     }))
 }

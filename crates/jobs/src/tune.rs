@@ -14,7 +14,6 @@ pub(crate) mod optimum;
 pub mod pictures;
 pub(crate) mod refine;
 mod report;
-pub mod shard;
 pub(crate) mod surf;
 mod tmd;
 pub(crate) mod valley;
@@ -25,7 +24,6 @@ pub use optimum::{Found, Optimum, table2_header, table2_row};
 use crate::artefact::{Content, Kind, artefact};
 use crate::certify;
 use crate::job::{Done, Job, Made};
-use crate::parts::Shard;
 use crate::resolved;
 use crate::summary::Summary;
 use crate::{Error, Observer, Request};
@@ -72,16 +70,6 @@ pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Er
 pub fn tune_study(study: &Study, request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let search = searched(study)?;
     run(study, request, watch, |results| tuned(study, &search, results, watch))
-}
-
-/// Computes a share of the grid of a study file, for [`merge`].
-///
-/// # Errors
-/// The study is wrong or has no grid, or the part cannot be written.
-pub fn tune_share(request: &Request, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
-    let study = retune_study::read(&request.study)?;
-    let (out, order) = (request.out_of(&study), request.order(KIND.command));
-    request.on_threads(|| shard::shard(&study, shard, &out, &order, watch))
 }
 
 /// Searches for the best design of a study as a part of a larger job. The results in the directory `out` can be resumed until it is

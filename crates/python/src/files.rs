@@ -74,7 +74,7 @@ fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
         }
         Job::Reproduce { only } => drop(retune_jobs::paper::reproduce(request, only.as_deref(), watch)?),
         Job::Share(shard) => {
-            tune::tune_share(request, read("shard", &shard)?, watch)?;
+            tune::merge::share(request, read("shard", &shard)?, watch)?;
             out = out_of_one(request)?;
         }
         Job::Sweep(swept) => return swept.made(request, watch),

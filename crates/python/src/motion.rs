@@ -68,7 +68,7 @@ pub fn sweep<'py>(
     let sweep = swept(core.at(x)?, over, &values, objective)?;
     let columns = sweep.columns();
     let rows = on_pool(py, &*pool(threads)?, move |watch| {
-        let row = |value: &f64| (!watch.is_stopped()).then(|| sweep.row(*value, &sweep.numbers(*value).0));
+        let row = |value: &f64| (!watch.is_stopped()).then(|| sweep.row(*value, &sweep.numbers_at(*value).0));
         let rows: Option<Vec<_>> = values.par_iter().map(row).collect();
         Ok(rows.unwrap_or_default())
     })?;

@@ -27,7 +27,7 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Optimize { study, shard, running } => {
             let (request, screen) = running.request(&study);
             match shard {
-                Some(shard) => tune::tune_share(&request, shard, &screen),
+                Some(shard) => tune::merge::share(&request, shard, &screen),
                 None => found(tune::tune(&request, &screen)?),
             }
         }

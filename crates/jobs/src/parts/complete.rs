@@ -1,55 +1,52 @@
 //! Whether parts are of one work, disjoint and complete.
 
-use super::part::{Head, list, read};
+use super::part::{Head, PARTS, Shared, list, read};
 use crate::{Error, Observer};
-use retune_store::Identity;
+use retune_store::Directory;
 use retune_study::counted;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Most shares that a message names.
 const NAMED: usize = 5;
 
-/// The work that parts have to make up.
-pub struct Wanted {
-    /// Its identity.
-    pub identity: Identity,
-    /// Its number of points.
-    pub len: usize,
-    /// The numbers that each point has.
-    pub width: usize,
-    /// The directory of its parts.
-    pub place: PathBuf,
-    /// The command that makes a part, without `--shard`.
-    pub command: String,
-}
-
-/// The heads of parts, in the order of their points: the files `parts`, or all in the directory of parts if there are none.
-///
-/// # Errors
-/// A part cannot be read, is of another work, or overlaps another; or points are missing.
-pub fn complete(wanted: &Wanted, parts: &[PathBuf], watch: &dyn Observer) -> Result<Vec<Head>, Error> {
-    let paths = if parts.is_empty() { list(&wanted.place)? } else { parts.to_owned() };
-    let mut heads = Vec::new();
-    for path in &paths {
-        let mut head = read(path, |_, _| {})?;
-        if let Some(difference) = wanted.identity.difference(&head.identity) {
-            return Err(Error::Part { path: path.clone(), problem: format!("it is {difference}") });
+impl Shared<'_> {
+    /// Takes the numbers of all rows from the files `parts`, or from all in the directory of parts if there are none, into the journal.
+    ///
+    /// # Errors
+    /// A part cannot be read, is of another work, or overlaps another; or rows are missing.
+    pub fn merge(
+        &self,
+        parts: &[PathBuf],
+        results: &mut Directory,
+        watch: &dyn Observer,
+    ) -> Result<(), Error> {
+        let place = self.out.join(PARTS);
+        let paths = if parts.is_empty() { list(&place)? } else { parts.to_owned() };
+        let width = self.rows.width();
+        let mut heads = Vec::new();
+        for path in &paths {
+            let mut head = read(path, |_, _| {})?;
+            if let Some(difference) = self.identity.difference(&head.identity) {
+                return Err(Error::Part { path: path.clone(), problem: format!("it is {difference}") });
+            }
+            head.points = head.points.start / width..head.points.end / width;
+            heads.push(head);
         }
-        head.points = head.points.start / wanted.width..head.points.end / wanted.width;
-        heads.push(head);
+        check(&mut heads, self.rows.len(), &self.command, &place)?;
+        watch.log(&format!(
+            "{}, {}: complete, disjoint, of this study",
+            counted(heads.len() as u64, "part"),
+            counted(self.rows.len() as u64, "point")
+        ))?;
+        for head in heads {
+            read(&head.path, |number, value| results.know(number, value))?;
+        }
+        Ok(())
     }
-    check(&mut heads, wanted)?;
-    watch.log(&format!(
-        "{}, {}: complete, disjoint, of this study",
-        counted(heads.len() as u64, "part"),
-        counted(wanted.len as u64, "point")
-    ))?;
-    Ok(heads)
 }
 
 /// Checks that the parts are disjoint and contain every point.
-fn check(heads: &mut [Head], wanted: &Wanted) -> Result<(), Error> {
-    let len = wanted.len;
+fn check(heads: &mut [Head], len: usize, command: &str, place: &Path) -> Result<(), Error> {
     heads.sort_by_key(|head| (head.points.start, head.points.end));
     let mut missing = Vec::new();
     let mut next = 0;
@@ -80,8 +77,8 @@ fn check(heads: &mut [Head], wanted: &Wanted) -> Result<(), Error> {
         points: named(points),
         len,
         shards: missing_shards(heads).map(named),
-        command: wanted.command.clone(),
-        place: wanted.place.clone(),
+        command: command.to_owned(),
+        place: place.to_owned(),
     })
 }
 

@@ -1,11 +1,12 @@
 //! One part: its share, its making, its reading.
 
 use crate::job;
-use crate::{Error, Observer, Progress};
+use crate::rows::{Rows, compute};
+use crate::{Error, Observer};
 use retune_store::identity::{Identity, hexadecimal};
 use retune_store::journal::{grid_text, grid_value};
 use retune_store::seal::Seal;
-use retune_store::{Begin, Directory, Extent, Journal, Order, plain};
+use retune_store::{Begin, Directory, Extent, Order, plain};
 use sha2::{Digest, Sha256};
 use std::io::{BufRead, BufReader, Read};
 use std::ops::Range;
@@ -77,34 +78,28 @@ pub struct Head {
     pub points: Range<usize>,
 }
 
-/// The share of a work that becomes a part.
-pub struct Work<'a> {
-    /// The share.
-    pub shard: Shard,
-    /// The number of points of the whole work.
-    pub len: usize,
-    /// The numbers that each point has.
-    pub width: usize,
+/// Rows of which shares become parts, in the directory of their results.
+pub struct Shared<'a> {
+    /// The rows.
+    pub rows: &'a dyn Rows,
     /// The identity of the whole work.
     pub identity: Identity,
-    /// The directory of its results; the part is written to [`PARTS`] in it.
+    /// The directory of its results; parts are in [`PARTS`] in it.
     pub out: &'a Path,
     /// The request for it.
     pub order: &'a Order,
+    /// The command that makes a part, without `--shard`.
+    pub command: String,
 }
 
-impl Work<'_> {
-    /// Computes the numbers of its points with `numbers` and writes them, unless the part is there already.
+impl Shared<'_> {
+    /// Computes a share and writes it, unless the part is there already.
     ///
     /// # Errors
     /// A part of another work is there, or the part cannot be written.
-    pub fn make(
-        &self,
-        watch: &dyn Observer,
-        numbers: impl FnOnce(&Journal, Range<usize>, &dyn Progress) -> Vec<f64>,
-    ) -> Result<(), Error> {
-        let Self { shard, len, width, ref identity, out, order } = *self;
-        let parts = out.join(PARTS);
+    pub fn make(&self, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
+        let Self { rows, ref identity, out, order, .. } = *self;
+        let (len, width, parts) = (rows.len(), rows.width(), out.join(PARTS));
         let place = parts.join(shard.name());
         if let Some(path) = find(&parts, shard)? {
             return match identity.difference(&read(&path, |_, _| {})?.identity) {
@@ -120,20 +115,20 @@ impl Work<'_> {
                 Some(difference) => Err(Error::Part { path, problem: format!("it is {difference}") }),
             };
         }
-
         let work = open(&place, order, identity, watch)?;
-        let points = shard.points(len);
+        let some = shard.points(len);
         watch.log(&format!(
             "shard {shard}: points {} to {} of {len}, {} of them known",
-            points.start,
-            points.end,
+            some.start,
+            some.end,
             work.journal().known() / width as u64
         ))?;
-        let bar = watch.progress("shard", points.len() as u64);
-        let values = numbers(work.journal(), points.clone(), &*bar);
+        let bar = watch.progress("shard", some.len() as u64);
+        let found = compute(rows, some.clone(), work.journal(), &*bar);
         bar.finish();
         work.journal().check()?;
-        let path = write(&work, shard, identity, width * points.start, &values, &parts)?;
+        let values: Vec<f64> = found.into_iter().flat_map(|(numbers, _)| numbers).collect();
+        let path = write(&work, shard, identity, width * some.start, &values, &parts)?;
         put_away(work, &place);
         watch.result(&format!("wrote {}", path.display()))
     }

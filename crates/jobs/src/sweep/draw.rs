@@ -1,5 +1,6 @@
 //! A sweep as a figure: a chart for each quantity, one below the other, with a damper and without.
 
+use crate::rows::Rows;
 use crate::sweep::points::Sweep;
 use crate::sweep::words::{each, extreme, shown, title};
 use retune_report::colour::{BLACK, VERMILION};

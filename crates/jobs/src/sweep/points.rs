@@ -1,6 +1,7 @@
 //! The points of a sweep. Each depends on its value alone, so they can be computed in any order, by any number of machines.
 
 use crate::Error;
+use crate::rows::Rows;
 use crate::sweep::plan::Plan;
 use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Axis, Goal, Limits, Objective};
@@ -14,6 +15,25 @@ pub struct Sweep {
     plan: Plan,
     study: Study,
     axis: Axis,
+}
+
+/// The points.
+impl Rows for Sweep {
+    fn len(&self) -> usize {
+        self.axis.points()
+    }
+
+    fn width(&self) -> usize {
+        match (self.plan.objective, self.study.scene.damper) {
+            (true, _) => OBJECTIVE,
+            (false, Some(_)) => DAMPED + BARE,
+            (false, None) => BARE,
+        }
+    }
+
+    fn numbers(&self, row: usize) -> (Vec<f64>, Option<String>) {
+        self.numbers_at(self.value(row))
+    }
 }
 
 /// Numbers of a run of the structure alone: its largest values. With a damper, those of the damper and its impacts follow.
@@ -66,32 +86,13 @@ impl Sweep {
         &self.study
     }
 
-    /// The number of points.
-    pub fn len(&self) -> usize {
-        self.axis.points()
-    }
-
-    /// Whether there are none, which no sweep is.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// The value of the parameter at a point, in its SI unit.
     pub fn value(&self, point: usize) -> f64 {
         self.axis.value(point)
     }
 
-    /// The number of numbers that each point has.
-    pub fn width(&self) -> usize {
-        match (self.plan.objective, self.study.scene.damper) {
-            (true, _) => OBJECTIVE,
-            (false, Some(_)) => DAMPED + BARE,
-            (false, None) => BARE,
-        }
-    }
-
     /// The numbers at a value of the parameter, infinite where there is none; and then why the first of them has no value.
-    pub fn numbers(&self, value: f64) -> (Vec<f64>, Option<String>) {
+    pub fn numbers_at(&self, value: f64) -> (Vec<f64>, Option<String>) {
         let scene = match self.study.scene_with(&[Setting::new(self.plan.over, value)]) {
             Ok(scene) => scene,
             Err(error) => return (vec![f64::INFINITY; self.width()], Some(error.to_string())),

@@ -1,5 +1,6 @@
 //! A sweep in words: the answer first, then some of its rows.
 
+use crate::rows::Rows;
 use crate::sweep::points::Sweep;
 use retune_model::Parameter;
 use retune_report::table::{Column, Table};

@@ -1,12 +1,38 @@
-//! `merge`: merges the parts of a grid that many machines computed, and completes the search.
+//! Shares of the grid, for many machines: one computed by `optimize --shard 3/64`, all merged by `merge`.
 
+use super::surf::Designs;
 use super::{Optimum, run, searched, tuned};
 use crate::job::Done;
-use crate::parts::{self, PARTS, Wanted, complete};
+use crate::parts::{Shard, Shared};
 use crate::resolved::identity_of;
 use crate::{Error, Observer, Request};
-use retune_study::Rule;
-use std::path::PathBuf;
+use retune_store::Order;
+use retune_study::{Rule, Study};
+use std::path::{Path, PathBuf};
+
+/// The grid of a study, of which shares are made in `out`.
+fn shared<'a>(
+    study: &Study,
+    rows: &'a Designs,
+    request: &Request,
+    out: &'a Path,
+    order: &'a Order,
+) -> Result<Shared<'a>, Error> {
+    let command = format!("retune optimize {}", request.study.display());
+    Ok(Shared { rows, identity: identity_of(study)?, out, order, command })
+}
+
+/// Computes a share of the grid of a study file, for [`merge`].
+///
+/// # Errors
+/// The study is wrong or has no grid, or the part cannot be written.
+pub fn share(request: &Request, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
+    let study = retune_study::read(&request.study)?;
+    let (out, order) = (request.out_of(&study), request.order(super::KIND.command));
+    let rows = Designs::of(&study, &searched(&study)?).ok_or_else(|| Error::rule(&study)(Rule::NoGrid))?;
+    let shared = shared(&study, &rows, request, &out, &order)?;
+    request.on_threads(|| shared.make(shard, watch))
+}
 
 /// Checks that the parts are of one study, one version and one arithmetic, disjoint and complete, and completes the search as
 /// [`tune`] would have done. `parts` are files; by default all in the directory of parts.
@@ -17,20 +43,12 @@ use std::path::PathBuf;
 /// [`tune`]: super::tune()
 pub fn merge(request: &Request, parts: &[PathBuf], watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let study = retune_study::read(&request.study)?;
-    let refuse = Error::rule(&study);
+    let (out, order) = (request.out_of(&study), request.order(super::KIND.command));
     let search = searched(&study)?;
-    let (_, grid) = search.surf.as_ref().ok_or_else(|| refuse(Rule::NoGrid))?;
-    let wanted = Wanted {
-        identity: identity_of(&study)?,
-        len: grid.len(),
-        width: 1,
-        place: request.out_of(&study).join(PARTS),
-        command: format!("retune optimize {}", request.study.display()),
-    };
+    let rows = Designs::of(&study, &search).ok_or_else(|| Error::rule(&study)(Rule::NoGrid))?;
+    let shared = shared(&study, &rows, request, &out, &order)?;
     run(&study, request, watch, |results| {
-        for head in complete(&wanted, parts, watch)? {
-            parts::read(&head.path, |point, value| results.know(point, value))?;
-        }
+        shared.merge(parts, results, watch)?;
         tuned(&study, &search, results, watch)
     })
 }

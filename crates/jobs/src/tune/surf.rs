@@ -6,6 +6,7 @@ use super::objective::{coarse, kept, searched};
 use super::refine::columns;
 use crate::Error;
 use crate::Observer;
+use crate::rows::{Rows, compute};
 use retune_model::Measure;
 use retune_optim::{Counts, DesignObjective, Failures, Grid, Parameter, best_separated_above};
 use retune_store::Directory;
@@ -37,6 +38,40 @@ pub struct Surf {
     pub counts: Counts,
 }
 
+/// The designs of a grid, each with its value.
+pub(super) struct Designs {
+    pub objective: DesignObjective,
+    /// The value from which on it does not matter how large one is.
+    pub most: f64,
+    pub grid: Grid,
+}
+
+impl Designs {
+    /// Those of the grid of a study; none where it has no grid.
+    pub(super) fn of(study: &Study, search: &Search) -> Option<Self> {
+        let (variables, grid) = search.surf.clone()?;
+        Some(Self { objective: coarse(study, search, &variables), most: study.coarse().up_to(), grid })
+    }
+}
+
+impl Rows for Designs {
+    fn len(&self) -> usize {
+        self.grid.len()
+    }
+
+    fn width(&self) -> usize {
+        1
+    }
+
+    fn numbers(&self, row: usize) -> (Vec<f64>, Option<String>) {
+        (vec![self.objective.value_up_to(&point(&self.grid, row), self.most)], None)
+    }
+
+    fn recall(&self, numbers: &[f64]) {
+        self.objective.recall(numbers[0]);
+    }
+}
+
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
 ///
 /// # Errors
@@ -65,14 +100,10 @@ pub(super) fn surf(
     let begun = Instant::now();
     let bar = watch.progress("surf", grid.len() as u64);
     let journal = results.journal();
-    let value = |point: usize, design: &[f64]| {
-        let known = |value| {
-            bar.known();
-            objective.recall(value);
-        };
-        journal.grid_value(point, || objective.value_up_to(design, most), known)
-    };
-    let values = retune_optim::surf_part(&grid, 0..grid.len(), value, |_| bar.inc(1));
+    let rows = Designs { objective, most, grid };
+    let found = compute(&rows, 0..rows.len(), journal, &*bar);
+    let Designs { objective, grid, .. } = rows;
+    let values: Vec<f64> = found.into_iter().flat_map(|(numbers, _)| numbers).collect();
     bar.finish();
     journal.check()?;
 

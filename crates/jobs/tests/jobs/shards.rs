@@ -2,7 +2,7 @@
 
 use crate::{request, search};
 use retune_jobs::tune::merge::merge;
-use retune_jobs::tune::tune_share;
+use retune_jobs::tune::merge::share;
 use retune_jobs::{Error, Request, Silent};
 use retune_study::Rule;
 use retune_testkit::desk::{Desk, edited, tiny};
@@ -20,7 +20,7 @@ fn desk() -> Desk {
 #[track_caller]
 fn make(desk: &Desk, study: &str, shards: &[&str]) {
     for shard in shards {
-        good(tune_share(&request(desk, study, "out"), shard.parse().expect("a share"), &Silent));
+        good(share(&request(desk, study, "out"), shard.parse().expect("a share"), &Silent));
     }
 }
 
@@ -80,7 +80,7 @@ fn contract_a_part_is_made_once_and_is_the_same_from_any_number_of_threads() {
     let said = |out: &str, threads| {
         let record = Record::default();
         let request = Request { threads, ..request(&desk, "study.json", out) };
-        good(tune_share(&request, "2/3".parse().expect("a share"), &record));
+        good(share(&request, "2/3".parse().expect("a share"), &record));
         record.results()
     };
     let wrote = said("out", None);
@@ -142,7 +142,7 @@ fn contract_parts_of_another_study_or_version_are_named() {
     make(&desk, "study.json", &["1/2"]);
     make(&desk, "other.json", &["2/2"]);
     let foreign = desk.path("out/parts").join(part(&desk, "00002"));
-    let share = tune_share(&request(&desk, "study.json", "out"), "2/2".parse().expect("a share"), &Silent);
+    let share = share(&request(&desk, "study.json", "out"), "2/2".parse().expect("a share"), &Silent);
     // The part of another study is not accepted for the share either.
     for error in [refused(merged(&desk)), refused(share)] {
         let Error::Part { path, problem } = error else { panic!("{error}") };
@@ -182,7 +182,7 @@ fn contract_only_a_grid_has_shares() {
     let mut study = tiny();
     study["optimize"]["surf"] = json!(null);
     let desk = Desk::with(&study);
-    let share = tune_share(&request(&desk, "study.json", "out"), "1/2".parse().expect("a share"), &Silent);
+    let share = share(&request(&desk, "study.json", "out"), "1/2".parse().expect("a share"), &Silent);
     for error in [refused(share), refused(merged(&desk))] {
         assert!(matches!(&error, Error::Rule { name, rule: Rule::NoGrid } if name == "study"), "{error}");
     }

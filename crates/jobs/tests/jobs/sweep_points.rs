@@ -1,6 +1,7 @@
 //! Sweeps against closed form, and what they refuse.
 
 use retune_jobs::Error;
+use retune_jobs::rows::Rows;
 use retune_jobs::sweep::{Options, Plan, Sweep, words};
 use retune_model::Bare;
 use retune_report::table::Table;
@@ -31,7 +32,7 @@ fn sweep(options: &Options, optimize: &str) -> Result<Sweep, Error> {
 }
 
 fn table(sweep: &Sweep) -> Table {
-    let numbers: Vec<f64> = (0..sweep.len()).flat_map(|i| sweep.numbers(sweep.value(i)).0).collect();
+    let numbers: Vec<f64> = (0..sweep.len()).flat_map(|i| sweep.numbers(i).0).collect();
     sweep.table(&numbers)
 }
 
@@ -155,7 +156,7 @@ fn contract_what_cannot_be_swept_is_refused_with_what_to_do() {
 #[test]
 fn contract_a_point_without_a_value_is_a_gap_with_a_reason() {
     let sweep = sweep(&Options { objective: true, ..options("D", "0.01", "1", 2) }, BAND).expect("a sweep");
-    let (numbers, reason) = sweep.numbers(0.01);
+    let (numbers, reason) = sweep.numbers_at(0.01);
     assert!(numbers[0].is_infinite() && numbers[3].is_finite(), "{numbers:?}");
     let reason = reason.expect("a reason");
     assert!(reason.starts_with("the damper reaches a wall"), "{reason}");
