@@ -32,7 +32,7 @@ use std::path::Path;
 /// The files of `branches`.
 pub static KIND: Kind = Kind {
     command: "branches",
-    answer: tables::BRANCHES,
+    answer: "branches.json",
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
         artefact(tables::BRANCHES, Content::Rows(again::again)),

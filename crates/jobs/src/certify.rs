@@ -59,6 +59,7 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
     results.finish()?;
     watch.result(&certificate.to_string())?;
     watch.result(&where_results_are(&out)?)?;
+    watch.answered(&out.join(FILE))?;
     Ok(certificate)
 }
 

@@ -125,6 +125,7 @@ impl Job {
             Directory::tidy(&self.out);
             let place = where_results_are(&self.out)?;
             watch.result(&format!("finished already: nothing to go on with\n{place}"))?;
+            watch.answered(&self.out.join(&self.answer))?;
             return Ok(Done::FinishedBefore);
         }
         let (Made { answer, report, parts }, results) = request.on_threads(|| self.make(watch, work))?;
@@ -134,6 +135,7 @@ impl Job {
             watch.result(&report)?;
         }
         watch.result(&where_results_are(&self.out)?)?;
+        watch.answered(&self.out.join(&self.answer))?;
         Ok(Done::Made(answer))
     }
 }

@@ -42,6 +42,7 @@
 
 pub mod again;
 pub mod amount;
+pub mod answer;
 pub mod artefact;
 pub mod branches;
 mod caption;

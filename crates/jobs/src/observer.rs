@@ -1,6 +1,7 @@
 //! Observers of a job.
 
 use crate::Error;
+use std::path::Path;
 
 /// Receives the output and the progress of a job. A command line prints them, a page may draw them, [`Silent`] ignores them.
 pub trait Observer: Sync {
@@ -20,6 +21,13 @@ pub trait Observer: Sync {
     fn progress(&self, stage: &'static str, count: u64) -> Box<dyn Progress>;
     /// From now on the job can be resumed if the process ends.
     fn resumable(&self);
+    /// The job is done, and its answer stands in a file, see [`crate::answer`].
+    ///
+    /// # Errors
+    /// As [`Self::result`].
+    fn answered(&self, _file: &Path) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 /// The progress of a stage.

@@ -56,7 +56,7 @@ const JSON: &str = "sweep.json";
 /// The files of a sweep.
 pub static KIND: Kind = Kind {
     command: "sweep",
-    answer: FILE,
+    answer: JSON,
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
         artefact(FILE, Content::Rows(again)),
@@ -88,8 +88,7 @@ impl Points {
     }
 }
 
-/// Sweeps a parameter through a study, or through the design that a search found. Returns the table as `sweep.json` has it; none of
-/// a share.
+/// Sweeps a parameter through a study, or through the design that a search found.
 ///
 /// # Errors
 /// The study or what is asked for is wrong, parts are missing, or the results cannot be written.
@@ -98,7 +97,7 @@ pub fn sweep(
     options: &Options,
     points: &Points,
     watch: &dyn Observer,
-) -> Result<Option<String>, Error> {
+) -> Result<(), Error> {
     let sweep = Sweep::new(Plan::read(options)?, read(&request.study)?)?;
     let out = out(request, &sweep)?;
     let request = Request { out: Some(out.clone()), ..request.clone() };
@@ -109,8 +108,7 @@ pub fn sweep(
     let (rows, identity) = (&sweep, job.identity());
     let shared = Shared { rows, identity, out: &out, order: &job.order, command };
     if let Points::Share(shard) = points {
-        request.on_threads(|| shared.make(*shard, watch))?;
-        return Ok(None);
+        return request.on_threads(|| shared.make(*shard, watch));
     }
     job.run(&request, watch, |results| {
         if let Points::Merged = points {
@@ -118,10 +116,7 @@ pub fn sweep(
         }
         Ok(Made { answer: (), report: write(&sweep, results, watch)?, parts: Vec::new() })
     })?;
-    let path = out.join(JSON);
-    let text =
-        std::fs::read_to_string(&path).map_err(|source| retune_store::Error::Input { path, source })?;
-    Ok(Some(text))
+    Ok(())
 }
 
 /// The directory of the results: by default `results/sweep-<study>-<parameter>`, of a design that a search found

@@ -67,9 +67,6 @@ pub enum Command {
         /// A study (the design in its scene is certified), the optimum.json of a search, or the directory of its results
         #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
         design: PathBuf,
-        /// Print the certificate as one JSON object
-        #[arg(long)]
-        json: bool,
         /// How it is run; the certificate goes beside an optimum, or to results/certify/<study>, unless --out says otherwise.
         #[command(flatten)]
         running: Running,

@@ -6,7 +6,6 @@ use clap::CommandFactory;
 use retune_jobs::design::Requirements;
 use retune_jobs::designs::Designs;
 use retune_jobs::evaluate::Streams;
-use retune_jobs::observer::Quiet;
 use retune_jobs::simulate::Trajectory;
 use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
@@ -39,15 +38,9 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Verify { results, sample, within } => {
             verify::verify(&results, sample as usize, within, &all)
         }
-        Command::Certify { design, json: as_json, running } => {
+        Command::Certify { design, running } => {
             let (request, screen) = running.request(&design);
-            let quiet = Quiet(&screen);
-            let watch: &dyn Observer = if as_json { &quiet } else { &screen };
-            let certificate = certify::certify_file(&request, watch)?;
-            if as_json {
-                screen.line(json(&certificate)?)?;
-            }
-            certificate.check_limits()
+            certify::certify_file(&request, &screen)?.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments, &all),
         Command::Explore { study, port, no_browser } => {
@@ -136,23 +129,15 @@ fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
     let (request, screen) = arguments.running.request(&study);
     let options = Options { over, from, to, unit, points, log, quantities: quantity, objective };
     let points = Points::of(arguments.shard, arguments.merge);
-    let quiet = Quiet(&screen);
-    let watch: &dyn Observer = if arguments.json { &quiet } else { &screen };
-    let table = retune_jobs::sweep::sweep(&request, &options, &points, watch)?;
-    table.filter(|_| arguments.json).map_or(Ok(()), |table| screen.line(table.trim_end()))
+    retune_jobs::sweep::sweep(&request, &options, &points, &screen)
 }
 
 fn branches(arguments: cli::Branches) -> Result<(), Error> {
     let (request, screen) = arguments.running.request(&arguments.study);
-    let cli::Branches { over, from, to, samples, starts, apart, fine, margin, basins, json: as_json, .. } =
-        arguments;
+    let cli::Branches { over, from, to, samples, starts, apart, fine, margin, basins, .. } = arguments;
     let options =
         retune_jobs::branches::Options { over, from, to, samples, starts, apart, fine, margin, basins };
-    if !as_json {
-        return retune_jobs::branches::branches(&request, &options, &screen).map(drop);
-    }
-    let found = retune_jobs::branches::branches(&request, &options, &Quiet(&screen))?;
-    made(found, |found| screen.line(json(&retune_jobs::branches::summary(&found))?))
+    retune_jobs::branches::branches(&request, &options, &screen).map(drop)
 }
 
 fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<(), Error> {

@@ -1,10 +1,12 @@
 //! Output: results and the log on standard output, errors and progress on standard error.
 
 use crate::{interrupt, progress};
+use retune_jobs::answer;
 use retune_jobs::{Error, Observer, Progress};
 use retune_study::visible;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The observer of all jobs: shows them on the terminal.
@@ -12,12 +14,19 @@ use std::process::ExitCode;
 pub struct Screen {
     quiet: bool,
     verbose: bool,
+    /// Whether nothing is shown but the answer, as JSON.
+    json: bool,
 }
 
 impl Screen {
     /// A screen that shows results, unless `quiet` also progress, and where `verbose` also the log.
     pub fn new(quiet: bool, verbose: bool) -> Self {
-        Self { quiet, verbose }
+        Self { quiet, verbose, json: false }
+    }
+
+    /// The same that shows nothing but the answer, as JSON, where asked for.
+    pub fn as_json(self, json: bool) -> Self {
+        Self { json, quiet: self.quiet || json, ..self }
     }
 
     /// Shows a line of the result.
@@ -37,6 +46,9 @@ impl Screen {
 
 impl Observer for Screen {
     fn result(&self, line: &str) -> Result<(), Error> {
+        if self.json {
+            return Ok(());
+        }
         self.line(as_typed(line, std::env::var(interrupt::RUN_AS).ok()))
     }
     fn log(&self, line: &str) -> Result<(), Error> {
@@ -50,6 +62,9 @@ impl Observer for Screen {
     }
     fn resumable(&self) {
         interrupt::say_how_to_go_on();
+    }
+    fn answered(&self, file: &Path) -> Result<(), Error> {
+        if self.json { self.line(answer::as_json(file)?) } else { Ok(()) }
     }
 }
 

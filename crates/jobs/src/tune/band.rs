@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use retune_model::{Measure, NonNegative, Scene};
 use retune_optim::{Band, Goal, Objective, Response};
 use retune_report::colour::{BLACK, BLUE, VERMILION};
+use retune_report::table::{Cell, Column, Table};
 use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
 use retune_store::Directory;
 use retune_study::Study;
@@ -50,12 +51,13 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
         })
         .collect();
 
-    let mut csv = format!("omega,{}\n", columns(study.quantity()).join(","));
-    for (omega, energies) in &rows {
-        let fields = energies.map(|e| if e.is_finite() { e.to_string() } else { String::new() });
-        csv += &format!("{omega},{}\n", fields.join(","));
+    let unit = study.quantity().unit();
+    let values = columns(study.quantity()).map(|name| Column::new(name, unit));
+    let mut table = Table::new([Column::new("omega", "rad/s")].into_iter().chain(values));
+    for (omega, values) in &rows {
+        table.push([Cell::Number(*omega)].into_iter().chain(values.map(Cell::finite)).collect());
     }
-    results.write(BAND, &csv)?;
+    results.write(BAND, &table.csv())?;
     results.write("band.svg", &picture(study, &rows, worst))?;
     Ok(Some(rows))
 }

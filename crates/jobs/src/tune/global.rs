@@ -12,9 +12,11 @@ use retune_model::{Measure, Parameter, PerVariable};
 use retune_optim::{
     Basin, Counts, Descent, DesignObjective, Failures, Point, Space, basins, energy, explore,
 };
+use retune_report::cells;
+use retune_report::table::{Cell, Column, Table};
 use retune_store::{Directory, Journal};
 use retune_study::{Search, Study};
-use retune_study::{counted, fields, joined, short};
+use retune_study::{counted, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -175,16 +177,19 @@ impl Basins {
     /// Writes `basins.csv`.
     pub(super) fn write(&self, objective: &DesignObjective, results: &Directory) -> Result<(), Error> {
         let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);
-        let names = joined(&Parameter::columns(objective.variables()), ",");
-        let mut csv = format!("basin,searches,refinements,{names},{}\n", quantity.name());
+        let mut table = Table::new(["basin", "searches", "refinements"].map(|name| Column::new(name, "")));
+        table.columns.extend(
+            Parameter::columns(objective.variables()).iter().map(|one| Column::new(one.symbol(), one.unit())),
+        );
+        table.columns.push(Column::new(quantity.name(), quantity.unit()));
         for (i, basin) in self.basins.iter().enumerate() {
             let BasinNote { design: at, found, searches, refinements } = basin;
             let x: Vec<f64> = objective.variables().iter().filter_map(|&v| at.get(v)).collect();
-            let value = if found.value.is_nan() { String::new() } else { found.value.to_string() };
-            csv +=
-                &format!("{},{searches},{refinements},{},{value}\n", i + 1, fields(&columns(objective, &x)?));
+            let mut row = cells![i + 1, *searches, *refinements];
+            row.extend(columns(objective, &x)?.into_iter().chain([found.value]).map(Cell::Number));
+            table.push(row);
         }
-        Ok(results.write(BASINS, &csv)?)
+        Ok(results.write(BASINS, &table.csv())?)
     }
 
     /// A line on screen.

@@ -9,9 +9,10 @@ use crate::Observer;
 use crate::rows::{Rows, compute};
 use retune_model::Measure;
 use retune_optim::{Counts, DesignObjective, Failures, Grid, Parameter, best_separated_above};
+use retune_report::table::{Cell, line};
 use retune_store::Directory;
 use retune_study::{Coarse, Search, Study};
-use retune_study::{counted, fields, joined, short};
+use retune_study::{counted, joined, short};
 use std::time::Instant;
 
 // A journal must hold every grid that a study may have.
@@ -141,11 +142,14 @@ fn write(
     results: &Directory,
 ) -> Result<(), Error> {
     let mut file = results.file(GRID)?;
-    file.push(&format!("{},{}\n", joined(&Parameter::columns(objective.variables()), ","), quantity.name()))?;
+    let names = Parameter::columns(objective.variables());
+    let names = names.iter().map(|one| one.symbol()).chain([quantity.name()]).map(Cell::from);
+    file.push(&line(&names.collect::<Vec<_>>()))?;
     let mut point = vec![0.0; grid.dim()];
     for (i, value) in values.iter().enumerate() {
         grid.point(i, &mut point);
-        file.push(&format!("{},{value}\n", fields(&columns(objective, &point)?)))?;
+        let row = columns(objective, &point)?.into_iter().chain([*value]).map(Cell::Number);
+        file.push(&line(&row.collect::<Vec<_>>()))?;
     }
     file.finish()?;
     Ok(())

@@ -38,9 +38,6 @@ pub struct Branches {
     /// Picture where starts in a plane end at this value of the parameter: the structure displaced and moving, the damper at rest in it
     #[arg(long, value_name = "X")]
     pub basins: Option<String>,
-    /// Print the answer as one JSON object
-    #[arg(long)]
-    pub json: bool,
     /// How it is run; results go to results/branches-<study>-<parameter> (of results: <study>-tuned) unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,

@@ -18,6 +18,9 @@ pub struct Running {
     /// Print only the result, without progress
     #[arg(long, conflicts_with = "verbose")]
     pub quiet: bool,
+    /// Print the answer as one JSON object, and nothing else
+    #[arg(long, conflicts_with = "verbose")]
+    pub json: bool,
     /// Print every iteration as it is made, as the paper's Table 1 does
     #[arg(long)]
     pub verbose: bool,
@@ -40,8 +43,8 @@ impl Running {
             (false, true) => Begin::Restart,
             (false, false) => Begin::New,
         };
-        let &Self { ref out, threads, replace, quiet, verbose, .. } = self;
+        let &Self { ref out, threads, replace, quiet, verbose, json, .. } = self;
         let request = Request { study: study.to_owned(), out: out.clone(), threads, begin, replace };
-        (request, Screen::new(quiet, verbose))
+        (request, Screen::new(quiet, verbose).as_json(json))
     }
 }

@@ -35,9 +35,6 @@ pub struct Sweep {
     /// Compute the objective of the study at each value, for instance the worst over its band, instead of one run
     #[arg(long)]
     pub objective: bool,
-    /// Print the table as one JSON object
-    #[arg(long)]
-    pub json: bool,
     /// Compute only share i of N of the values, into DIR/parts; the same command with --merge combines the shares
     #[arg(long, value_name = "i/N", conflicts_with_all = ["merge", "json"])]
     pub shard: Option<Shard>,

@@ -57,6 +57,28 @@ fn contract_a_sweep_is_one_object_on_standard_output() {
     assert!(code == Some(2) && stderr.contains("give one of k2, c2, D"), "{stderr}");
 }
 
+/// So is the answer of every job that makes results; a table has the units of its columns. A search that was finished before has it, too.
+#[test]
+fn contract_the_answer_of_a_job_is_one_object_on_standard_output() {
+    let desk = Desk::with(&tiny());
+    let answer = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&desk.good(arguments)).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
+    };
+    let optimize = ["optimize", "study.json", "--out", "out", "--json"];
+    let optimum = answer(&optimize);
+    assert_eq!(optimum, desk.read_json("out/optimum.json"));
+    assert_eq!(answer(&[&optimize[..], &["--resume"]].concat()), optimum);
+    assert_eq!(answer(&["certify", "out", "--json"]), desk.read_json("out/certificate.json"));
+    desk.write_json(
+        "table.json",
+        &serde_json::json!({ "rows": [{ "damper": "NES", "study": "study.json" }] }),
+    );
+    let table = answer(&["table2", "table.json", "--json"]);
+    assert_eq!(table["units"]["E1max_none"], "J");
+    assert_eq!(table["rows"][1]["damper"], "NES");
+    assert!(table["rows"][1]["k2"].is_number() && table["rows"][1]["E1max_printed"].is_null(), "{table}");
+}
+
 /// `branches` answers with one object, too; its results are verified by the program, and a wrong parameter is refused.
 #[test]
 fn contract_branches_are_one_object_on_standard_output_and_are_verified() {

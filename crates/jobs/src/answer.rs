@@ -1,0 +1,71 @@
+//! The answer of a job as JSON: the file without which its results are not complete.
+
+use crate::Error;
+use crate::again::{each_row, text};
+use retune_model::{Measure, Parameter};
+use retune_report::table::{Cell, Column, Table};
+use retune_store::json_text;
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// The answer that stands in a file of results: JSON as it is; a table with the units of its columns; of a page, the statements beside it.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn as_json(file: &Path) -> Result<String, Error> {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let place = file.parent().unwrap_or(Path::new(""));
+    let value = match file.extension().and_then(|ending| ending.to_str()) {
+        Some("csv") => table(file)?.json(),
+        Some("html") => statements(place)?,
+        _ => return Ok(text(place, &name)?.trim_end().to_owned()),
+    };
+    Ok(json_text(&value, &name)?.trim_end().to_owned())
+}
+
+/// A table of results.
+///
+/// # Errors
+/// It cannot be read.
+pub fn table(file: &Path) -> Result<Table, Error> {
+    let mut table = Table::default();
+    each_row(file, |_, row| {
+        if table.columns.is_empty() {
+            table.columns = row.names.iter().map(|name| Column::new(name, unit(name))).collect();
+        }
+        table.push(row.fields.iter().map(cell).collect());
+    })?;
+    Ok(table)
+}
+
+fn cell(field: &str) -> Cell {
+    match (field, field.parse::<u64>(), field.parse::<f64>()) {
+        ("", ..) => Cell::Empty,
+        (_, Ok(count), _) => Cell::Count(count),
+        (_, _, Ok(number)) => Cell::Number(number),
+        _ => Cell::from(field),
+    }
+}
+
+/// The unit of a column, which is named by a parameter or a measure, and may say of what it is: `E1max_none`.
+fn unit(name: &str) -> &'static str {
+    let known = |name: &str| {
+        let measure = Measure::ALL.into_iter().find(|measure| measure.name() == name).map(Measure::unit);
+        measure.or_else(|| name.parse::<Parameter>().ok().map(Parameter::unit))
+    };
+    known(name).or_else(|| known(name.rsplit_once('_')?.0)).unwrap_or_default()
+}
+
+/// The statements on the paper in a directory, by the name of their table or figure.
+fn statements(place: &Path) -> Result<Value, Error> {
+    const ENDING: &str = "-statements.json";
+    let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
+    let mut all = Map::new();
+    for entry in std::fs::read_dir(place).map_err(refuse)? {
+        let name = entry.map_err(refuse)?.file_name().to_string_lossy().into_owned();
+        if let Some(item) = name.strip_suffix(ENDING) {
+            all.insert(item.to_owned(), crate::again::json(place, &name)?);
+        }
+    }
+    Ok(Value::Object(all))
+}
