@@ -7,10 +7,11 @@
 
 use crate::error::SolverError;
 use crate::extremes::{Ask, extremes};
+use crate::plan::{Plan, Request};
 use crate::recurrence::test::Settle;
 use crate::response::Extreme;
-use crate::settings::{Method, Settings, Window};
-use crate::settle::{in_closed_form, settled};
+use crate::settings::{Settings, Window};
+use crate::settle::settled;
 use crate::tangent::{Tangent, gradient_at};
 use retune_model::{Coupled, Parameter, Scene};
 
@@ -50,7 +51,7 @@ pub fn settled_by(
     let Some((system, settings)) = exact(scene, settings, ask) else {
         return Ok(vec![0.0; parameters.len()]);
     };
-    if in_closed_form(&system, &settings).is_some() {
+    if Plan::of(&system, &settings, Request::Settled) == Plan::Closed {
         let omega = scene.forcing.frequency.get();
         return Ok(parameters.iter().map(|&by| system.steady_by(ask.measure, by, omega)).collect());
     }
@@ -62,7 +63,7 @@ pub fn settled_by(
 fn exact(scene: &Scene, settings: &Settings, ask: Ask) -> Option<(Coupled, Settings)> {
     let damper = scene.damper.as_ref()?;
     let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-    Some((system, Settings { method: Method::Hybrid, ..*settings }))
+    Some((system, settings.exact()))
 }
 
 fn by(

@@ -2,7 +2,7 @@
 
 use crate::error::SolverError;
 use crate::response::{Extreme, Response};
-use crate::settings::{Method, Settings, Window};
+use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Measure, Scene};
 
 /// Allowance in the bound on the energy, relative: for rounding; and for the error of a general method, which at a fixed step or a loose
@@ -33,7 +33,7 @@ pub fn energy(
         return Err(SolverError::NonFinite { t: window.to });
     }
     let most = most(scene, window);
-    let gained = value > most * (1.0 + SLACK[usize::from(settings.method != Method::Hybrid)]);
+    let gained = value > most * (1.0 + SLACK[usize::from(!settings.method.is_exact())]);
     if gained || value < 0.0 || !(window.from..=window.to).contains(&time) {
         return Err(SolverError::Implausible { t: window.to, value, time, most });
     }
@@ -140,6 +140,7 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Method;
     use retune_model::{Forcing, NonNegative, Positive, Primary};
 
     /// 2 kg pushed by 4 N for 3 s have 36 J at most.

@@ -13,9 +13,9 @@ use crate::observe::quantity::{BareEnergy, PrimaryEnergy};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::since::Since;
 use crate::observe::structure::{Structure, StructureMotion};
-use crate::recurrence::repeats::follow_until_it_repeats;
+use crate::plan::{Plan, Request};
 use crate::response::Extreme;
-use crate::run::follow_bare;
+use crate::run::Follow;
 use crate::settings::{Settings, Window};
 use crate::simulate::e1_max;
 use retune_model::{Bare, Coupled, Measure, PerMeasure, Scene};
@@ -124,15 +124,16 @@ pub(crate) fn bare_values(
 }
 
 fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Result<Extremes, SolverError> {
+    let plan = Plan::of(system, settings, Request::Largest { window, late: window.from });
     let largest = match observed(ask.measure) {
         Observed::Motion(quantity) => {
             let mut size = Magnitude::new(|sign| quantity(system, sign), ask.cutoff);
-            follow_bare(system, window, settings, &mut Unobserved, &mut size)?;
+            system.follow(plan, window, settings, &mut Unobserved, &mut size)?;
             size.record()
         }
         Observed::Energy => {
             let mut e1 = RunningMaximum::new(BareEnergy::new(system), ask.cutoff);
-            follow_bare(system, window, settings, &mut Unobserved, &mut e1)?;
+            system.follow(plan, window, settings, &mut Unobserved, &mut e1)?;
             e1.record()
         }
         // There is no damper that could move or touch.
@@ -151,7 +152,8 @@ fn in_coupled(
     let mut before = beside(system, ask);
     let mut seen = maxima(system, ask);
     let late = ask.also.map_or(window.from, |also| also.from);
-    follow_until_it_repeats(system, window, late, settings, &mut before, &mut seen)?;
+    let plan = Plan::of(system, settings, Request::Largest { window, late });
+    system.follow(plan, window, settings, &mut before, &mut seen)?;
     let (before, seen) = (values(before.as_ref()), read(&seen));
     Ok(Extremes { reached: before.max(seen.reached), ..seen })
 }

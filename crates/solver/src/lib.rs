@@ -33,8 +33,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Inside, files import downwards only: `simulate`, `extremes`, `settle` and `trajectory` ask; `run` chooses the method; `hybrid`
-//! alternates flight (`linear`) and contact (`contact`); `observe` keeps the answers; `motion` is the ground floor.
+//! Inside, files import downwards only: `simulate`, `extremes`, `settle` and `trajectory` ask; `plan` chooses the smallest model
+//! that is exact, and `run` follows the motion by it; `recurrence` ends a run that repeats; `hybrid` alternates flight (`linear`) and contact (`contact`); `observe` keeps the answers; `motion` is the ground floor.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod budget;
@@ -48,6 +48,7 @@ mod linear;
 pub mod methods;
 mod motion;
 pub mod observe;
+mod plan;
 mod recurrence;
 mod response;
 mod run;

@@ -1,4 +1,4 @@
-//! The one dispatch: the loop that follows a scene, by the method in [`Settings`].
+//! Follows a motion by its [`Plan`]: the one place where a plan becomes a loop over time.
 
 use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
@@ -7,8 +7,10 @@ use crate::linear::flow::Flow;
 use crate::methods::onestep::Run;
 use crate::methods::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
 use crate::observe::observer::Observer;
+use crate::plan::{General, Plan, Planned, Request};
+use crate::recurrence::repeats::follow_until_it_repeats;
 use crate::response::Work;
-use crate::settings::{Method, Settings, Window};
+use crate::settings::{Settings, Window};
 use crate::system::{LinearSystem, System};
 use nalgebra::{Const, DimMin};
 use retune_model::{Bare, Coupled, Scene};
@@ -16,7 +18,7 @@ use retune_model::{Bare, Coupled, Scene};
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// The least number of steps of a run of `seconds` (s) by [`Method::Hybrid`]: those of its flight. Contacts add to them.
+/// The least number of steps of a run of `seconds` (s) by the default method: those of its flight. Contacts add to them.
 pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
     let Scene { primary, forcing, damper } = scene;
     let step = match damper {
@@ -26,21 +28,65 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
     seconds / step
 }
 
-/// Follows the bare structure from its start at t = 0: `before` sees the motion to the window, `observer` that inside it.
-pub fn follow_bare(
-    system: &Bare,
-    window: Window,
-    settings: &Settings,
-    before: &mut impl Observer<2>,
-    observer: &mut impl Observer<2>,
-) -> Followed<2> {
-    if let Some(method) = General::of(settings.method) {
-        let mut run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
-        method.follow(&mut run, window.from, before)?;
-        method.follow(&mut run, window.to, observer)?;
-        return Ok((run.state(), run.work));
+/// A system whose run from its start at t = 0 can be followed by any plan.
+pub trait Follow<const N: usize>: Planned<N> {
+    /// Follows it to the end of a window, or until its motion repeats where the plan allows: `before` sees the motion to the window,
+    /// `observer` that inside it. Returns the last state that was reached, and the work.
+    ///
+    /// # Errors
+    /// [`SolverError`] with the time reached.
+    fn follow(
+        &self,
+        plan: Plan,
+        window: Window,
+        settings: &Settings,
+        before: &mut impl Observer<N>,
+        observer: &mut impl Observer<N>,
+    ) -> Followed<N>;
+}
+
+impl Follow<2> for Bare {
+    fn follow(
+        &self,
+        plan: Plan,
+        window: Window,
+        settings: &Settings,
+        before: &mut impl Observer<2>,
+        observer: &mut impl Observer<2>,
+    ) -> Followed<2> {
+        match plan {
+            Plan::General(method) => follow_by(method, self, window, settings, before, observer),
+            _ => follow_free(self, window, settings, before, observer),
+        }
     }
-    follow_free(system, window, settings, before, observer)
+}
+
+impl Follow<4> for Coupled {
+    #[inline(always)]
+    fn follow(
+        &self,
+        plan: Plan,
+        window: Window,
+        settings: &Settings,
+        before: &mut impl Observer<4>,
+        observer: &mut impl Observer<4>,
+    ) -> Followed<4> {
+        match plan {
+            Plan::General(method) => follow_by(method, self, window, settings, before, observer),
+            Plan::Closed | Plan::Free => follow_free(self, window, settings, before, observer),
+            Plan::UntilItRepeats(late) => {
+                follow_until_it_repeats(self, window, late, settings, before, observer)
+            }
+            Plan::Hybrid => {
+                let mut hybrid = Hybrid::new(self, settings.rtol, window.to, settings.max_steps);
+                let start = Motion::start(self);
+                let middle =
+                    if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
+                let end = hybrid.propagate(middle, window.to, observer)?;
+                Ok((end.y, hybrid.work))
+            }
+        }
+    }
 }
 
 /// Follows what has no walls to touch.
@@ -59,33 +105,25 @@ fn follow_free<S: LinearSystem<N>, const N: usize>(
     Ok((free.state(), free.work))
 }
 
-/// Follows a structure and its damper from their start at t = 0: `before` sees the motion to the window, `observer` that inside it.
-#[inline(always)]
-pub fn follow_coupled(
-    system: &Coupled,
+/// Follows any system by a general method.
+fn follow_by<S: LinearSystem<N>, const N: usize>(
+    method: General,
+    system: &S,
     window: Window,
     settings: &Settings,
-    before: &mut impl Observer<4>,
-    observer: &mut impl Observer<4>,
-) -> Followed<4> {
-    if let Some(method) = General::of(settings.method) {
-        let mut run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
-        method.follow(&mut run, window.from, before)?;
-        method.follow(&mut run, window.to, observer)?;
-        return Ok((run.state(), run.work));
-    }
-    if !system.has_walls() {
-        return follow_free(system, window, settings, before, observer);
-    }
-    let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
-    let y = system.start();
-    let start = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
-    let middle = if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
-    let end = hybrid.propagate(middle, window.to, observer)?;
-    Ok((end.y, hybrid.work))
+    before: &mut impl Observer<N>,
+    observer: &mut impl Observer<N>,
+) -> Followed<N>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    let mut run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
+    method.follow(&mut run, window.from, before)?;
+    method.follow(&mut run, window.to, observer)?;
+    Ok((run.state(), run.work))
 }
 
-/// A structure and its damper, followed from any moment on by the method in [`Settings`].
+/// A structure and its damper, followed from any moment on by the plan for its motion.
 pub struct Follower<'a> {
     system: &'a Coupled,
     settings: Settings,
@@ -102,10 +140,12 @@ enum Way<'a> {
 impl<'a> Follower<'a> {
     /// Prepares for stretches of at most `longest` seconds, each of which may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings, longest: f64) -> Self {
-        let way = match General::of(settings.method) {
-            Some(method) => Way::Steps(method),
-            None if !system.has_walls() => Way::Free(longest),
-            None => Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps))),
+        let way = match Plan::of(system, settings, Request::Motion) {
+            Plan::General(method) => Way::Steps(method),
+            Plan::Closed | Plan::Free => Way::Free(longest),
+            Plan::Hybrid | Plan::UntilItRepeats(_) => {
+                Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps)))
+            }
         };
         Self { system, settings: *settings, way }
     }
@@ -141,31 +181,7 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// A general method: every one but the hybrid.
-#[derive(Clone, Copy)]
-enum General {
-    Ode23s,
-    Ode45,
-    Ode23,
-    Dop853,
-    Rk4,
-    Euler,
-}
-
 impl General {
-    /// The general method of this name; `None` for the hybrid.
-    fn of(method: Method) -> Option<Self> {
-        match method {
-            Method::Hybrid => None,
-            Method::Ode23s => Some(Self::Ode23s),
-            Method::Ode45 => Some(Self::Ode45),
-            Method::Ode23 => Some(Self::Ode23),
-            Method::Dop853 => Some(Self::Dop853),
-            Method::Rk4 => Some(Self::Rk4),
-            Method::Euler => Some(Self::Euler),
-        }
-    }
-
     /// Continues a run to time `to` (s).
     fn follow<S: System<N>, const N: usize>(
         self,

@@ -48,6 +48,11 @@ impl Method {
         }
     }
 
+    /// Whether a motion by this method is exact but for rounding and the tolerance of its contacts.
+    pub const fn is_exact(self) -> bool {
+        matches!(self, Method::Hybrid)
+    }
+
     /// Whether the method takes equal steps, whatever the error.
     pub const fn has_fixed_step(self) -> bool {
         matches!(self, Method::Rk4 | Method::Euler)
@@ -99,6 +104,12 @@ impl Default for Settings {
 impl Settings {
     /// Step of a method of fixed step that was given none, 1 ms.
     pub const FIXED_STEP: f64 = 1e-3;
+
+    /// The same by the exact method.
+    #[must_use]
+    pub fn exact(self) -> Self {
+        Self { method: Method::Hybrid, ..self }
+    }
 
     /// The longest step that a run to time `to` (s) may take.
     pub fn longest_step(&self, to: f64) -> f64 {

@@ -2,17 +2,17 @@
 
 use crate::energy_bound;
 use crate::error::SolverError;
-use crate::hybrid::contact_free::{ContactFree, clears_walls};
+use crate::hybrid::contact_free::ContactFree;
 use crate::observe::Magnitude;
 use crate::observe::counters::{TouchDownTimes, TouchDowns};
 use crate::observe::observer::Unobserved;
-use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, RelativePosition};
+use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::structure::{Structure, StructureMotion};
-use crate::recurrence::repeats::follow_until_it_repeats;
+use crate::plan::{Plan, Request};
 use crate::response::{Extreme, Response, SceneKind, StructureMaxima};
-use crate::run::{follow_bare, follow_coupled};
-use crate::settings::{Method, Settings, Window};
+use crate::run::Follow;
+use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
 
 /// Largest energy of the primary structure over the window, J, and when.
@@ -28,40 +28,36 @@ pub fn e1_max(
     settings: &Settings,
     cutoff: f64,
 ) -> Result<Extreme, SolverError> {
-    largest_energy(scene, window, settings, cutoff)
+    let found = match &scene.damper {
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            largest_energy(&system, BareEnergy::new(&system), window, settings, cutoff)
+        }
+        Some(damper) => {
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            largest_energy(&system, PrimaryEnergy::new(&system), window, settings, cutoff)
+        }
+    };
+    found
         .map_err(|error| energy_bound::error(window, error))
         .and_then(|e1| energy_bound::energy(scene, window, settings, e1))
 }
 
-fn largest_energy(
-    scene: &Scene,
+fn largest_energy<S: Follow<N>, const N: usize>(
+    system: &S,
+    energy: impl Quantity<N>,
     window: Window,
     settings: &Settings,
     cutoff: f64,
 ) -> Result<Extreme, SolverError> {
-    let hybrid = settings.method == Method::Hybrid;
-    match &scene.damper {
-        None => {
-            let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut e1 = RunningMaximum::new(BareEnergy::new(&system), cutoff);
-            if hybrid {
-                let steady = system.steady(system.frequency()).e1_max;
-                return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, e1, steady);
-            }
-            follow_bare(&system, window, settings, &mut Unobserved, &mut e1)?;
-            Ok(e1.record())
-        }
-        Some(damper) => {
-            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut e1 = RunningMaximum::new(PrimaryEnergy::new(&system), cutoff);
-            if hybrid && clears_walls(&system) {
-                let steady = system.steady(system.bare().frequency()).e1_max;
-                return ContactFree::new(&system, window.to, settings.max_steps).e1_max(window, e1, steady);
-            }
-            follow_until_it_repeats(&system, window, window.from, settings, &mut Unobserved, &mut e1)?;
-            Ok(e1.record())
-        }
+    let mut e1 = RunningMaximum::new(energy, cutoff);
+    let plan = Plan::of(system, settings, Request::Energy(window));
+    if plan == Plan::Closed {
+        let mut free = ContactFree::new(system, window.to, settings.max_steps);
+        return free.e1_max(window, e1, system.steady_energy());
     }
+    system.follow(plan, window, settings, &mut Unobserved, &mut e1)?;
+    Ok(e1.record())
 }
 
 /// Runs a scene and returns everything that [`Response`] reports.
@@ -83,7 +79,8 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
     let e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
     let mut seen = (e1, watched(system));
-    let (state, work) = follow_bare(system, window, settings, &mut Unobserved, &mut seen)?;
+    let plan = Plan::of(system, settings, Request::Motion);
+    let (state, work) = system.follow(plan, window, settings, &mut Unobserved, &mut seen)?;
     let (e1, structure) = seen;
     Ok(Response {
         e1_max: e1.record(),
@@ -128,7 +125,8 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
     let mut before = TouchDowns::default();
     let mut seen = ((e1, e2), ([1.0, -1.0].map(position), (TouchDowns::default(), watched(system))));
-    let (final_state, work) = follow_coupled(system, window, settings, &mut before, &mut seen)?;
+    let plan = Plan::of(system, settings, Request::Motion);
+    let (final_state, work) = system.follow(plan, window, settings, &mut before, &mut seen)?;
     let ((e1, e2), ([farthest, nearest], (TouchDowns(impacts), structure))) = seen;
     let (nearest, farthest) = (-nearest.record().value, farthest.record().value);
     let e1_max = e1.record();
@@ -137,7 +135,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let spring_deflection_max = farthest_from(system.rest_distance());
     let places = [nearest, farthest];
     let mut depths = Side::BOTH.map(|side| side.sign() * (places[side as usize] - system.wall(side)));
-    if settings.method == Method::Hybrid {
+    if settings.method.is_exact() {
         for side in Side::BOTH {
             let i = side as usize;
             // One that starts at a wall, or inside it, is in contact without a touch-down.
@@ -178,7 +176,8 @@ pub fn touch_downs(
     let mut times = TouchDownTimes::default();
     if let Some(damper) = &scene.damper {
         let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-        follow_coupled(&system, window, settings, &mut Unobserved, &mut times)?;
+        let plan = Plan::of(&system, settings, Request::Motion);
+        system.follow(plan, window, settings, &mut Unobserved, &mut times)?;
     }
     Ok(times.0)
 }

@@ -1,4 +1,4 @@
-//! The solver's view of a system: right-hand side, linear part, energy norm. Only this file knows the model's equations.
+//! The solver's view of a system: right-hand side, linear part, energy norm.
 
 use nalgebra::{Complex, SMatrix};
 use retune_model::{Bare, Coupled, Excitation};

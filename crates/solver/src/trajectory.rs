@@ -6,7 +6,8 @@ use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Unobserved};
-use crate::run::{follow_bare, follow_coupled};
+use crate::plan::{Plan, Request};
+use crate::run::Follow;
 use crate::settings::{Settings, Window};
 use falls::falls;
 use retune_model::{Bare, Coupled, Scene, Side};
@@ -88,17 +89,23 @@ pub fn trajectory(
     visit: &mut dyn FnMut(&Sample),
 ) -> Result<(), SolverError> {
     match &scene.damper {
-        None => {
-            let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut recorder = Recorder::new(&system, window.from, rows, visit);
-            follow_bare(&system, window, settings, &mut Unobserved, &mut recorder)?;
-        }
+        None => recorded(&Bare::new(&scene.primary, &scene.forcing), window, settings, rows, visit),
         Some(damper) => {
-            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut recorder = Recorder::new(&system, window.from, rows, visit);
-            follow_coupled(&system, window, settings, &mut Unobserved, &mut recorder)?;
+            recorded(&Coupled::new(&scene.primary, &scene.forcing, damper), window, settings, rows, visit)
         }
     }
+}
+
+fn recorded<S: Recorded<N> + Follow<N>, const N: usize>(
+    system: &S,
+    window: Window,
+    settings: &Settings,
+    rows: Rows,
+    visit: &mut dyn FnMut(&Sample),
+) -> Result<(), SolverError> {
+    let mut recorder = Recorder::new(system, window.from, rows, visit);
+    let plan = Plan::of(system, settings, Request::Motion);
+    system.follow(plan, window, settings, &mut Unobserved, &mut recorder)?;
     Ok(())
 }
 

@@ -41,6 +41,14 @@ pub struct Motion {
     pub phase: Phase,
 }
 
+impl Motion {
+    /// The start of a run at t = 0.
+    pub fn start(system: &Coupled) -> Self {
+        let y = system.start();
+        Self { t: 0.0, y, phase: Phase::of(system, &y) }
+    }
+}
+
 /// The propagator of one coupled system. Preparing it costs about as much as a hundred flight steps; it allocates nothing.
 pub struct Hybrid<'a> {
     pub(super) system: &'a Coupled,

@@ -9,12 +9,12 @@ use super::ahead::{Converging, LookAhead};
 use super::section::Periods;
 use super::test::{Recurrence, Settle};
 use crate::error::SolverError;
-use crate::hybrid::propagator::{Hybrid, Motion, Phase};
+use crate::hybrid::propagator::{Hybrid, Motion};
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Path, Unobserved};
-use crate::run::follow_coupled;
-use crate::settings::{Method, Settings, Window};
+use crate::response::Work;
+use crate::settings::{Settings, Window};
 use retune_model::Coupled;
 use std::f64::consts::TAU;
 
@@ -136,8 +136,15 @@ impl Observer<4> for Repeats<'_> {
     }
 }
 
-/// Follows a structure and its damper as [`follow_coupled`] does, to the end of the window or until the motion repeats; it is then observed
-/// from `late` (s) on, or from the start of the window, whichever is later, for as many periods as it takes to repeat.
+/// Whether a run to `to` (s) that is observed from `from` (s) on is longer than it takes to see that its motion repeats, with a force of
+/// this period, s.
+pub fn has_room(period: f64, from: f64, to: f64) -> bool {
+    from + (LONGEST + 1) as f64 * period < to
+}
+
+/// Follows a structure and its damper from their start at t = 0 to the end of the window or until the motion repeats; it is then observed
+/// from `late` (s) on, or from the start of the window, whichever is later, for as many periods as it takes to repeat. Returns the last state
+/// that was reached, and the work.
 #[inline(always)]
 pub fn follow_until_it_repeats(
     system: &Coupled,
@@ -146,43 +153,39 @@ pub fn follow_until_it_repeats(
     settings: &Settings,
     before: &mut impl Observer<4>,
     observer: &mut impl Observer<4>,
-) -> Result<(), SolverError> {
+) -> Result<([f64; 4], Work), SolverError> {
     let period = TAU / system.bare().frequency();
     let from = window.from.max(late);
-    let has_room = from + (LONGEST + 1) as f64 * period < window.to;
-    if settings.method != Method::Hybrid || !system.has_walls() || !has_room {
-        return follow_coupled(system, window, settings, before, observer).map(|_| ());
-    }
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
     // Nothing before the window is passed over if it is observed, too.
     let ahead = if late == window.from { LookAhead::new(system, window, settings) } else { None };
     let mut repeats = Repeats::new(system, settings, ahead);
-    let y = system.start();
-    let mut now = Motion { t: 0.0, y, phase: Phase::of(system, &y) };
+    let mut now = Motion::start(system);
     if window.from > 0.0 {
         now = hybrid.propagate(now, window.from, &mut (before, &mut repeats))?;
     }
     if repeats.known.is_none() {
         now = hybrid.propagate(now, window.to, &mut (&mut *observer, &mut repeats))?;
     }
-    let periods = match repeats.known.filter(|_| !observer.satisfied()) {
-        None => return Ok(()),
+    match repeats.known.filter(|_| !observer.satisfied()) {
+        None => {}
         Some(Known::Converges(Converging { late, repeats })) => {
-            let now = hybrid.propagate(late, window.from, &mut Unobserved)?;
-            return hybrid.propagate(now, repeats, observer).map(|_| ());
+            now = hybrid.propagate(late, window.from, &mut Unobserved)?;
+            now = hybrid.propagate(now, repeats, observer)?;
         }
-        Some(Known::Repeats(periods)) => periods,
-    };
-    let span = periods as f64 * period;
-    let [begin, end] = if now.t < from {
-        // After whole periods of the force it moves as it does now.
-        let begin = now.t + ((from - now.t) / period).ceil() * period;
-        [begin, begin + span]
-    } else {
-        [now.t, from + span]
-    };
-    if begin < end {
-        hybrid.propagate(Motion { t: begin, ..now }, end, observer)?;
+        Some(Known::Repeats(periods)) => {
+            let span = periods as f64 * period;
+            let [begin, end] = if now.t < from {
+                // After whole periods of the force it moves as it does now.
+                let begin = now.t + ((from - now.t) / period).ceil() * period;
+                [begin, begin + span]
+            } else {
+                [now.t, from + span]
+            };
+            if begin < end {
+                now = hybrid.propagate(Motion { t: begin, ..now }, end, observer)?;
+            }
+        }
     }
-    Ok(())
+    Ok((now.y, hybrid.work))
 }

@@ -7,13 +7,13 @@ mod blocks;
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::extremes::{Ask, Extremes, bare_values};
-use crate::hybrid::contact_free::clears_walls;
 use crate::observe::largest_values::LargestValues;
 use crate::observe::observer::Unobserved;
+use crate::plan::{Plan, Request};
 use crate::recurrence::test::Settle;
 use crate::response::Extreme;
-use crate::run::follow_coupled;
-use crate::settings::{Method, Settings, Window};
+use crate::run::Follow;
+use crate::settings::{Settings, Window};
 use blocks::Blocks;
 use retune_model::{Bare, Coupled, PerMeasure, Scene, Steady};
 
@@ -47,28 +47,26 @@ pub fn settled(
     };
     let early = ask.also.filter(|also| also.from < window.to);
     let Some(damper) = &scene.damper else {
+        // Without a damper the settled motion is the steady one, whichever the method.
         let system = Bare::new(&scene.primary, &scene.forcing).with_phase(ask.phase);
         let before = early.map(|also| bare_values(&system, also, window.to, settings)).transpose()?;
         return Ok(closed(system.steady(omega), &system, before.unwrap_or_default()));
     };
     let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-    if let Some(steady) = in_closed_form(&system, settings) {
+    let plan = Plan::of(&system, settings, Request::Settled);
+    if plan == Plan::Closed {
+        let steady = system.steady(omega);
         let Some(also) = early else { return Ok(closed(steady, system.bare(), PerMeasure::default())) };
         let mut seen = LargestValues::new(&system, also.measures);
         let watched = Window { from: also.from, ..window };
-        follow_coupled(&system, watched, settings, &mut Unobserved, &mut seen)?;
+        let plan = Plan::of(&system, settings, Request::Motion);
+        system.follow(plan, watched, settings, &mut Unobserved, &mut seen)?;
         return Ok(closed(steady, system.bare(), seen.values()));
     }
     let mut blocks = Blocks::new(&system, window.from, settle, settings, ask);
     let whole = Window { from: 0.0, ..window };
-    follow_coupled(&system, whole, settings, &mut Unobserved, &mut blocks)?;
+    system.follow(plan, whole, settings, &mut Unobserved, &mut blocks)?;
     let seen = blocks.verdict();
     let largest = energy_bound::largest(scene, whole, settings, ask.measure, seen.largest)?;
     Ok(Extremes { largest, ..seen })
-}
-
-/// The steady motion, if the damper provably stays off both walls.
-pub(crate) fn in_closed_form(system: &Coupled, settings: &Settings) -> Option<Steady> {
-    let steady = system.steady(system.bare().frequency());
-    (settings.method == Method::Hybrid && clears_walls(system) && steady.e1_max.is_finite()).then_some(steady)
 }

@@ -3,7 +3,7 @@
 use super::observer::{Tangent, Transition};
 use crate::error::SolverError;
 use crate::extremes::{Ask, maxima, read};
-use crate::hybrid::propagator::{Motion, Phase};
+use crate::hybrid::propagator::Motion;
 use crate::observe::observer::Unobserved;
 use crate::response::Extreme;
 use crate::run::Follower;
@@ -40,7 +40,7 @@ pub fn gradients(
     measure: Measure,
     parameters: &[Parameter],
 ) -> Result<Vec<Gradient>, SolverError> {
-    let start = start(system);
+    let start = Motion::start(system);
     let period = TAU / system.bare().frequency();
     let mut follower = Follower::new(system, settings, window.to);
     let mut now = follower.propagate(start, window.from, &mut Unobserved)?;
@@ -71,18 +71,13 @@ pub(crate) fn gradient_at(
     at: Extreme,
     parameters: &[Parameter],
 ) -> Result<Gradient, SolverError> {
-    let start = start(system);
+    let start = Motion::start(system);
     let mut found = tangent.propagate(start, at.time, &mut Unobserved)?;
     let late = lateness(system, measure, &found.end);
     if late != 0.0 && late.abs() <= LATE && at.time - late <= last {
         found = tangent.propagate(start, at.time - late, &mut Unobserved)?;
     }
     Ok(Gradient { at, by: derivatives(system, measure, &found, parameters) })
-}
-
-fn start(system: &Coupled) -> Motion {
-    let y = system.start();
-    Motion { t: 0.0, y, phase: Phase::of(system, &y) }
 }
 
 /// By how much (s) a moment is later than the maximum beside it: the slope of the measured quantity over its curvature.

@@ -11,7 +11,7 @@ use crate::motion::linearised::LinearContact;
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Path};
 use crate::run::Follower;
-use crate::settings::{Method, Settings};
+use crate::settings::Settings;
 use retune_model::{Coupled, Excitation, Parameter, Side};
 
 /// Where a motion is after some time, and how that changes with where it started and with parameters, at a fixed time.
@@ -40,7 +40,6 @@ impl<'a> Tangent<'a> {
     /// Prepares for derivatives by these parameters, of stretches of at most `longest` seconds, by the exact method at the tolerance in
     /// the settings.
     pub fn new(system: &'a Coupled, settings: &Settings, longest: f64, parameters: &[Parameter]) -> Self {
-        let settings = Settings { method: Method::Hybrid, ..*settings };
         let bare = system.bare();
         let forces =
             |&parameter: &Parameter| [0.0, 1.0].iter().any(|t| bare.excitation_by(parameter, *t) != [0.0; 2]);
@@ -48,7 +47,7 @@ impl<'a> Tangent<'a> {
         Self {
             system,
             kicks: Side::BOTH.map(|side| Kicks::new(system, &flight, side, parameters)),
-            follower: Follower::new(system, &settings, longest),
+            follower: Follower::new(system, &settings.exact(), longest),
             flight,
             parameters: parameters.to_vec(),
             forces: parameters.iter().map(forces).collect(),
