@@ -124,7 +124,7 @@ impl Job {
         if resumed && Directory::is_finished(&self.out, &self.identity(), &self.answer) {
             Directory::tidy(&self.out);
             let place = where_results_are(&self.out)?;
-            watch.result(&format!("finished already: nothing to go on with\n{place}"))?;
+            watch.result(&format!("finished already: nothing to resume\n{place}"))?;
             watch.answered(&self.out.join(&self.answer))?;
             return Ok(Done::FinishedBefore);
         }

@@ -99,7 +99,7 @@ fn run(
     let done = job.run(request, watch, |results| {
         match results.journal().known() {
             0 => {}
-            known => watch.result(&format!("goes on: {} known", are(known, "value")))?,
+            known => watch.result(&format!("resumed: {} known", are(known, "value")))?,
         }
         let answer = work(results)?;
         watch.log(&answer.search())?;

@@ -100,8 +100,7 @@ fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error>
 /// The files of a directory that a job makes, in the order of its list.
 fn known<'a>(place: &Path, there: &'a [String]) -> Vec<(&'a str, Content)> {
     let mut known: Vec<(&str, Content)> = Vec::new();
-    let command =
-        Manifest::read(place).ok().flatten().and_then(|manifest| manifest.made_by).map(|made| made.command);
+    let command = Manifest::read(place).ok().flatten().map(|manifest| manifest.made_by.command);
     let compared = COMPARISONS.iter().filter(|kind| command.as_deref() == Some(kind.command));
     for artefact in compared.chain(&KINDS).flat_map(|kind| kind.artefacts) {
         for name in there.iter().filter(|name| artefact.is(name)) {

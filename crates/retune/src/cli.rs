@@ -1,4 +1,4 @@
-//! What may be typed: commands, arguments and their help.
+//! The command line: commands, arguments and their help.
 
 mod branches;
 mod design;

@@ -48,7 +48,7 @@ Exit codes:
     2  the command line, a study or another file is wrong, or a file cannot be read or written
     3  none found that keeps the limits: the nearest design is written, without a verdict
     4  something cannot be checked, and all that can be holds (`verify`)
-  130  stopped by Ctrl-C or SIGTERM; what was computed is kept, and --resume goes on";
+  130  stopped by Ctrl-C or SIGTERM; what was computed is kept, and --resume continues";
 
 #[cfg(test)]
 #[path = "../tests/unit/exit.rs"]

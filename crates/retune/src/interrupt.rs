@@ -7,7 +7,7 @@ pub const RUN_AS: &str = "RETUNE_RUN_AS";
 
 /// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(unix)]
-pub fn say_how_to_go_on() {
+pub fn say_how_to_resume() {
     use signal_hook::consts::{SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     use std::io::Write;
@@ -17,10 +17,12 @@ pub fn say_how_to_go_on() {
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {
-                let words = go_on(std::env::var(RUN_AS).ok(), std::env::args_os());
+                let words = resume_command(std::env::var(RUN_AS).ok(), std::env::args_os());
                 let words = retune_study::visible(&words).into_owned();
-                let _ =
-                    writeln!(std::io::stderr(), "\nstopped; what was computed is kept. To go on:\n  {words}");
+                let _ = writeln!(
+                    std::io::stderr(),
+                    "\nstopped; what was computed is kept. To resume:\n  {words}"
+                );
                 std::process::exit(crate::exit::STOPPED.into());
             }
         };
@@ -30,11 +32,11 @@ pub fn say_how_to_go_on() {
 
 /// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(not(unix))]
-pub fn say_how_to_go_on() {}
+pub fn say_how_to_resume() {}
 
 /// The command line that resumes the work of this one. `run_as` replaces the program's name, if it is given.
 #[cfg(unix)]
-fn go_on(run_as: Option<String>, mut arguments: impl Iterator<Item = std::ffi::OsString>) -> String {
+fn resume_command(run_as: Option<String>, mut arguments: impl Iterator<Item = std::ffi::OsString>) -> String {
     let program = arguments.next().unwrap_or_else(|| "retune".into());
     let mut words = vec![run_as.unwrap_or_else(|| quoted(&program))];
     words
@@ -63,12 +65,15 @@ fn quoted(word: &std::ffi::OsStr) -> String {
 
 #[cfg(all(test, unix))]
 mod tests {
-    use super::go_on;
+    use super::resume_command;
     use std::ffi::{OsStr, OsString};
     use std::os::unix::ffi::OsStrExt;
 
     fn said(run_as: Option<&str>, words: &[&[u8]]) -> String {
-        go_on(run_as.map(str::to_owned), words.iter().map(|word| OsString::from(OsStr::from_bytes(word))))
+        resume_command(
+            run_as.map(str::to_owned),
+            words.iter().map(|word| OsString::from(OsStr::from_bytes(word))),
+        )
     }
 
     #[test]

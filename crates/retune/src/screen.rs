@@ -61,7 +61,7 @@ impl Observer for Screen {
         Box::new(progress::Stage::new(stage, count, self.quiet))
     }
     fn resumable(&self) {
-        interrupt::say_how_to_go_on();
+        interrupt::say_how_to_resume();
     }
     fn answered(&self, file: &Path) -> Result<(), Error> {
         if self.json { self.line(answer::as_json(file)?) } else { Ok(()) }

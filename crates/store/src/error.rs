@@ -43,7 +43,7 @@ pub enum Error {
     },
     /// The work of a journal cannot be identified.
     #[error(
-        "{}: {problem}: move it away to look at it, or throw the unfinished work away with --restart",
+        "{}: {problem}: move it away to look at it, or discard the unfinished work with --restart",
         path.display()
     )]
     Journal {
@@ -87,12 +87,12 @@ fn unfinished(lines: u64, damaged: u64, difference: Option<&str>) -> String {
     let kept = if lines == 1 { "1 result is".to_owned() } else { format!("{lines} results are") };
     let kept = format!("{kept} kept{damaged}");
     match difference {
-        None => format!(
-            "unfinished work was found here ({kept}): --resume goes on with it, --restart begins anew"
-        ),
+        None => {
+            format!("unfinished work was found here ({kept}): --resume continues it, --restart discards it")
+        }
         Some(difference) => format!(
             "unfinished work was found here ({kept}), but it is {difference}: finish it as it was begun, \
-             choose another directory with --out, or throw it away with --restart"
+             choose another directory with --out, or discard it with --restart"
         ),
     }
 }

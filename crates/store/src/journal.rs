@@ -67,7 +67,7 @@ impl Journal {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn go_on(path: &Path, identity: &Identity, known: Known, damage: Damage) -> Result<Self, Error> {
+    pub fn resume(path: &Path, identity: &Identity, known: Known, damage: Damage) -> Result<Self, Error> {
         if !damage.is_none() {
             read::mend(path, identity)?;
         }

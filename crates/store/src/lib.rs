@@ -3,7 +3,7 @@
 //!
 //! A run opens a [`Directory`] for work of an [`Identity`], writes its files, and finishes. The new files are written into the
 //! subdirectory [`UNFINISHED`]; only when all are complete do they take the place of the earlier ones. Every value that the run
-//! computes goes through its [`Journal`] there, so a run that was stopped, killed or cut off can go on where it was.
+//! computes goes through its [`Journal`] there, so a run that was stopped, killed or cut off can be resumed.
 //!
 //! ```
 //! use retune_store::{Begin, Directory, Extent, Identity, Order};
@@ -13,7 +13,7 @@
 //! let order = Order { command: "tune", study: "study.json".into(), begin: Begin::New, replace: false };
 //! let results = Directory::open(&path, &order, &Identity::of("a study"), Extent::Whole, |name| name == "table.csv")?;
 //!
-//! // The objective x² at x = 3. A run that goes on after an interruption takes the value from the journal.
+//! // The objective x² at x = 3. A resumed run takes the value from the journal.
 //! let energy = results.journal().value("search", &[3.0], f64::INFINITY, || 3.0 * 3.0, |recalled| drop(recalled));
 //! results.write("table.csv", &format!("x,energy\n3,{energy}\n"))?;
 //! assert!(!path.join("table.csv").exists()); // not before all is complete

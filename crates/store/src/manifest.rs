@@ -22,9 +22,8 @@ pub type Fields = IndexMap<String, Value>;
 pub struct Manifest {
     /// The version of Retune.
     pub retune: String,
-    /// The command and the study file that made them; none where that was not written down yet.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub made_by: Option<MadeBy>,
+    /// The command and the study file that made them.
+    pub made_by: MadeBy,
     /// SHA-256 of the resolved study, `study.json`; of a result of several studies, of `resolved.json`.
     pub study_sha256: String,
     /// A checksum of the machine's sines and powers.

@@ -92,7 +92,7 @@ impl Order {
             return Ok(());
         }
         let problem =
-            format!("{} stands here, which Retune did not make or which was changed since", list(&foreign));
+            format!("{} is in the way: Retune did not make it, or it was changed since", list(&foreign));
         Err(Error::Standing { path: place.to_owned(), problem })
     }
 
@@ -101,15 +101,10 @@ impl Order {
         if manifest.identity() == *identity {
             return None;
         }
-        let Some(made_by) = &manifest.made_by else {
-            // Manifests of early versions do not name the owner; the directory then must have the name of the study.
-            let name = self.study.file_stem();
-            let is_named = place.components().any(|part| Some(part.as_os_str()) == name);
-            return (!is_named).then(|| "the results of another study stand here".to_owned());
-        };
+        let made_by = &manifest.made_by;
         (*made_by != self.made_by(place)).then(|| {
             format!(
-                "the results of `retune {}` with {} stand here",
+                "the directory holds results of `retune {}` for {}",
                 made_by.command,
                 made_by.seen_from_here(place)
             )
@@ -146,7 +141,7 @@ pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error>
     let read = plain::open(path).and_then(|file| file.take(head.len() as u64).read_to_end(&mut found));
     match read {
         Ok(_) if found.is_empty() || found == head.as_bytes() => Ok(()),
-        Ok(_) => Err(protected("a file stands there that Retune did not make")),
+        Ok(_) => Err(protected("there is a file that Retune did not make")),
         Err(source) => Err(Error::Output { path: path.to_owned(), source }),
     }
 }

@@ -22,13 +22,13 @@ pub const JOURNAL: &str = "journal";
 #[derive(Debug)]
 pub enum Unfinished {
     /// It resumes the work with this journal.
-    GoOn(Known, Damage),
+    Resume(Known, Damage),
     /// It starts afresh, and discards the work in these directories below.
     Anew(BTreeSet<String>),
 }
 
 impl Unfinished {
-    /// Looks for unfinished work in a directory, and whether a run of this identity may go on with it.
+    /// Looks for unfinished work in a directory, and whether a run of this identity may resume it.
     ///
     /// # Errors
     /// There is some and `begin` neither resumes nor discards it, or it is of another work, or its journal cannot be attributed or
@@ -60,7 +60,7 @@ impl Unfinished {
             let damaged = damage.lines + u64::from(damage.head);
             return Err(Error::Unfinished { path: place.to_owned(), lines: kept, damaged, difference });
         }
-        Ok(Self::GoOn(known, damage))
+        Ok(Self::Resume(known, damage))
     }
 
     /// Starts the run in its directory. Returns the journal, the directories below whose work is discarded, and a warning where the
@@ -77,10 +77,10 @@ impl Unfinished {
         let refuse = |source| Error::Output { path: unfinished.to_owned(), source };
         std::fs::create_dir_all(unfinished).map_err(refuse)?;
         match self {
-            Self::GoOn(known, damage) => {
+            Self::Resume(known, damage) => {
                 clear(unfinished, |name| name == JOURNAL || name.ends_with(".item")).map_err(refuse)?;
                 let warning = (!damage.is_none()).then(|| damaged(&path, known.lines, damage));
-                Ok((Journal::go_on(&path, identity, known, damage)?, BTreeSet::new(), warning))
+                Ok((Journal::resume(&path, identity, known, damage)?, BTreeSet::new(), warning))
             }
             Self::Anew(parts) => {
                 clear(unfinished, |name| name == JOURNAL)

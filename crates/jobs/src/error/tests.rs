@@ -1,4 +1,4 @@
-//! The words of every error, beside each other in `words.txt`. A new one is refused by the compiler until it stands here;
+//! The words of every error, beside each other in `words.txt`. A new one is refused by the compiler until it is listed here;
 //! `RETUNE_WORDS=write cargo test -p retune words` writes the file anew.
 
 use super::*;
@@ -165,7 +165,7 @@ fn stores() -> Vec<StoreError> {
         StoreError::Busy { path: path.clone(), holder: None },
         StoreError::Standing {
             path: path.clone(),
-            problem: "surf.csv stands here, which Retune did not make".into(),
+            problem: "surf.csv is in the way: Retune did not make it".into(),
         },
         StoreError::Protected {
             path: path.join("motion.csv"),

@@ -49,7 +49,7 @@ fn contract_a_search_that_is_cut_off_resumes_and_ends_in_the_same_bytes() {
         good(tune(&resume(&desk, "study.json", "out"), &record));
         let known = if kept == 1 { "1 value is".to_owned() } else { format!("{kept} values are") };
         let said = record.all();
-        assert!(said.starts_with(&format!("goes on: {known} known\n")), "{at}: {said}");
+        assert!(said.starts_with(&format!("resumed: {known} known\n")), "{at}: {said}");
         assert_eq!(record.warnings(), "");
         desk.assert_same("whole", "out");
         desk.remove("out");
@@ -70,7 +70,7 @@ fn contract_resuming_finished_work_computes_nothing() {
     let place = desk.path("whole").display().to_string();
     let said = record.all();
     assert!(
-        said.starts_with(&format!("finished already: nothing to go on with\nresults in {place}: ")),
+        said.starts_with(&format!("finished already: nothing to resume\nresults in {place}: ")),
         "{said}"
     );
     assert!(!desk.path("whole/.lock").exists());
@@ -99,7 +99,7 @@ fn contract_unfinished_work_of_another_study_is_left_alone() {
     for request in [request(&desk, "other.json", "out"), resume(&desk, "other.json", "out")] {
         let error = refused(tune(&request, &Silent));
         let words = error.to_string();
-        assert!(words.ends_with("or throw it away with --restart"), "{words}");
+        assert!(words.ends_with("or discard it with --restart"), "{words}");
         let (lines, difference) = unfinished(error, &desk);
         assert_eq!(lines, kept);
         assert!(difference.is_some_and(|it| it.starts_with("of another study (SHA-256 ")), "{words}");

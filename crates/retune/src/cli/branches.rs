@@ -1,4 +1,4 @@
-//! What may be typed for `branches`.
+//! The arguments of `branches`.
 
 use super::running::Running;
 use clap::Args;

@@ -1,4 +1,4 @@
-//! What may be typed for `design`.
+//! The arguments of `design`.
 
 use super::running::Running;
 use clap::Args;

@@ -1,4 +1,4 @@
-//! What may be typed for every job that makes results.
+//! The options of every job that makes results.
 
 use crate::screen::Screen;
 use clap::Args;

@@ -1,4 +1,4 @@
-//! What may be typed for `sweep`.
+//! The arguments of `sweep`.
 
 use super::running::Running;
 use clap::Args;

@@ -37,10 +37,10 @@ fn contract_a_killed_run_resumes_and_ends_in_the_same_bytes() {
     child.kill().and_then(|()| child.wait()).expect("killed");
     let kept = count_lines(&desk.path("out/unfinished/journal")) - 1;
     let words = format!("error: out: unfinished work was found here ({kept} results are kept): ");
-    assert_eq!(desk.refused(&RUN), words + "--resume goes on with it, --restart begins anew\n");
+    assert_eq!(desk.refused(&RUN), words + "--resume continues it, --restart discards it\n");
     assert_eq!(count_lines(&desk.path("out/unfinished/journal")) - 1, kept, "it is still there");
     let said = desk.good(&["optimize", "study.json", "--out", "out", "--resume"]);
-    assert!(said.starts_with(&format!("goes on: {kept} values are known\n")), "{said}");
+    assert!(said.starts_with(&format!("resumed: {kept} values are known\n")), "{said}");
     desk.assert_same("whole", "out");
 }
 
@@ -83,7 +83,7 @@ fn contract_ctrl_c_stops_within_a_second_and_says_how_to_resume() {
     for signal in ["INT", "TERM"] {
         let said = stop(begun(&desk, &RUN, "out", 100), signal);
         let command = said.lines().last().expect("a line").trim();
-        assert!(said.starts_with("\nstopped; what was computed is kept. To go on:\n"), "{said}");
+        assert!(said.starts_with("\nstopped; what was computed is kept. To resume:\n"), "{said}");
         assert!(command.ends_with(" optimize study.json --quiet --out out --resume"), "{said}");
         let again = Command::new("sh").args(["-c", command]).current_dir(desk.path(".")).output();
         assert!(again.expect("the command it names").status.success());

@@ -100,7 +100,7 @@ fn contract_a_failed_run_exits_with_1_not_2() {
     assert_eq!(code, Some(1));
     let part = "no point of the grid could be computed (24 failed; at [100.0, 100.0, 0.05, 0.1]: the run needed more than";
     assert!(stderr.contains(part), "{stderr}");
-    assert!(desk.names("out").is_empty(), "no half files, and nothing to go on with");
+    assert!(desk.names("out").is_empty(), "no half files, and nothing to resume");
 }
 
 /// As long as none is found that keeps the limits: by the search, by one that is finished already, and by the certificate.
@@ -165,7 +165,7 @@ fn contract_results_of_another_study_are_not_replaced_unasked() {
     let said = desk.refused(&["optimize", "other/small.json"]);
     assert_eq!(
         said,
-        "error: results/small: the results of `retune optimize` with studies/small.json stand here: \
+        "error: results/small: the directory holds results of `retune optimize` for studies/small.json: \
          choose another directory with --out, or give --replace to have it replaced\n"
     );
     desk.good(&["optimize", "other/small.json", "--quiet", "--replace"]);

@@ -33,14 +33,15 @@ impl Directory {
                 parts.extend(old.parts); // those of the files that stay
             }
             // The same study from another place is still that of the first.
-            made_by = old.made_by.filter(|_| same).unwrap_or(made_by);
+            if same {
+                made_by = old.made_by;
+            }
         }
         let Identity { study: study_sha256, version, arithmetic } = self.identity.clone();
         let solvers =
             solvers.into_iter().map(|solver| fields(&solver)).collect::<Result<Vec<Fields>, Error>>()?;
         let mut solvers = solvers.into_iter();
         let solver = solvers.next().filter(|first| solvers.all(|other| other == *first));
-        let made_by = Some(made_by);
         let manifest =
             Manifest { retune: version, made_by, study_sha256, arithmetic, solver, files, earlier, parts };
         self.write_json(NAME, &manifest)

@@ -12,13 +12,13 @@ impl Desk {
         self.0.path().join("journal")
     }
 
-    /// Opens the journal as a run that goes on does; none if nobody can tell whose it is.
+    /// Opens the journal as a resumed run does; none if nobody can tell whose it is.
     fn try_open(&self) -> Option<(Journal, Damage)> {
         let identity = Identity::of("study");
         let journal = match read(&self.path(), &identity).expect("a journal") {
             Found::Work(of, known, damage) => {
                 assert_eq!(of, identity);
-                (Journal::go_on(&self.path(), &identity, *known, damage), damage)
+                (Journal::resume(&self.path(), &identity, *known, damage), damage)
             }
             Found::Nothing => {
                 let _ = std::fs::remove_file(self.path()); // an empty one
@@ -267,6 +267,6 @@ fn contract_no_link_is_followed() {
     let identity = Identity::of("study");
     assert!(read(&desk.path(), &identity).is_err());
     assert!(Journal::begin(&desk.path(), &identity).is_err());
-    assert!(Journal::go_on(&desk.path(), &identity, Known::default(), Damage::default()).is_err());
+    assert!(Journal::resume(&desk.path(), &identity, Known::default(), Damage::default()).is_err());
     assert_eq!(std::fs::read(&treasure).expect("the file"), b"");
 }
