@@ -52,7 +52,7 @@ pub fn seal<'a>(
         }
     }
     let Identity { study: study_sha256, version, arithmetic } = Identity::of(&input);
-    let made_by = Some(MadeBy { command: kind.command.to_owned(), study: SEVERAL.to_owned() });
+    let made_by = MadeBy { command: kind.command.to_owned(), study: SEVERAL.to_owned() };
     let manifest = Manifest {
         retune: version,
         made_by,

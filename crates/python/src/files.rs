@@ -2,9 +2,10 @@
 
 use crate::errors::{Fault, Given};
 use crate::jobs;
+use crate::monitor::{Monitor, monitored};
 use crate::problem::json;
-use crate::watch::{Watch, watched};
 use pyo3::prelude::*;
+use retune_jobs::answer::as_json;
 use retune_jobs::design::Requirements;
 use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
@@ -59,30 +60,30 @@ pub fn job(
 ) -> PyResult<String> {
     let job: Job = serde_json::from_str(job).map_err(|error| Fault::Other(error.to_string()))?;
     let request = asked.request(study)?;
-    watched(py, tell.as_ref(), |watch| done(job, &request, watch))
+    monitored(py, tell.as_ref(), |monitor| done(job, &request, monitor))
 }
 
-fn done(job: Job, request: &Request, watch: &Watch) -> Result<String, Fault> {
+fn done(job: Job, request: &Request, monitor: &Monitor) -> Result<String, Fault> {
     let mut out = request.out_of_file();
     match job {
-        Job::Certify => return json(&certify::certify_file(request, watch)?),
-        Job::Design(requirements) => drop(design::design(&requirements, request, watch)?),
-        Job::Fronts => drop(fronts::fronts(request, watch)?),
+        Job::Certify => return json(&certify::certify_file(request, monitor)?),
+        Job::Design(requirements) => drop(design::design(&requirements, request, monitor)?),
+        Job::Fronts => drop(fronts::fronts(request, monitor)?),
         Job::Merge { parts } => {
-            tune::merge::merge(request, &parts, watch)?;
+            tune::merge::merge(request, &parts, monitor)?;
             out = out_of_one(request)?;
         }
-        Job::Reproduce { only } => drop(retune_jobs::paper::reproduce(request, only.as_deref(), watch)?),
+        Job::Reproduce { only } => drop(retune_jobs::paper::reproduce(request, only.as_deref(), monitor)?),
         Job::Share(shard) => {
-            tune::merge::share(request, read("shard", &shard)?, watch)?;
+            tune::merge::share(request, read("shard", &shard)?, monitor)?;
             out = out_of_one(request)?;
         }
-        Job::Sweep(swept) => return swept.made(request, watch),
-        Job::Table2 => drop(table2::table2(request, watch)?),
+        Job::Sweep(swept) => return swept.made(request, monitor),
+        Job::Table2 => drop(table2::table2(request, monitor)?),
         Job::Retention(k1) => {
             let settings: Vec<Setting> =
                 k1.into_iter().map(|value| Setting::new(Parameter::K1, value)).collect();
-            retention::retention(request, &settings, watch)?;
+            retention::retention(request, &settings, monitor)?;
         }
     }
     json(&out)
@@ -95,15 +96,15 @@ fn out_of_one(request: &Request) -> Result<PathBuf, Error> {
 
 impl Swept {
     /// The table as `sweep.json` has it; null of a share.
-    fn made(self, request: &Request, watch: &Watch) -> Result<String, Fault> {
+    fn made(self, request: &Request, monitor: &Monitor) -> Result<String, Fault> {
         let Self { over, from, to, points, log, quantities, objective, shard, merge } = self;
         let over = read("over", &over)?;
         let quantities =
             quantities.iter().map(|name| read("quantities", name)).collect::<Result<Vec<_>, _>>()?;
         let shard = shard.map(|shard| read("shard", &shard)).transpose()?;
         let options = Options { over, from, to, unit: None, points, log, quantities, objective };
-        let table = sweep::sweep(request, &options, &Points::of(shard, merge), watch)?;
-        Ok(table.unwrap_or_else(|| "null".to_owned()))
+        sweep::sweep(request, &options, &Points::of(shard, merge), monitor)?;
+        Ok(monitor.answer().map_or(Ok("null".to_owned()), |file| as_json(&file))?)
     }
 }
 

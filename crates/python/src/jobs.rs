@@ -1,9 +1,9 @@
 //! What takes seconds to hours: searches, certificates, verification. The files are those of the command line, to the last byte.
 
 use crate::errors::Fault;
+use crate::monitor::{caught, monitored, on_pool};
 use crate::pool::{check, pool};
 use crate::problem::{Core, json};
-use crate::watch::{caught, on_pool, watched};
 use pyo3::prelude::*;
 use retune_jobs::design::Requirements;
 use retune_jobs::job::Done;
@@ -69,8 +69,8 @@ pub fn optimize(
     let out = request.out_of(study);
     // A problem that no file says is made of what is written beside its results.
     request.study = core.file.as_ref().map_or_else(|| out.join("study.json"), PathBuf::from);
-    watched(py, tell.as_ref(), |watch| {
-        tune::tune_study(study, &request, watch)?;
+    monitored(py, tell.as_ref(), |monitor| {
+        tune::tune_study(study, &request, monitor)?;
         Ok(())
     })?;
     Ok(out)
@@ -107,7 +107,7 @@ pub fn verify(
     within: f64,
     tell: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    watched(py, tell.as_ref(), |watch| Ok(verification::verify(&path, sample, within, watch)?))
+    monitored(py, tell.as_ref(), |monitor| Ok(verification::verify(&path, sample, within, monitor)?))
 }
 
 /// The study with which `design` tunes a damper of a kind, "TMD" or "SSVI NES", for a structure and what is wished: from JSON to JSON.
@@ -164,10 +164,12 @@ pub fn branches(
         fine,
         ..retune_jobs::branches::Options::default()
     };
-    watched(py, tell.as_ref(), |watch| match retune_jobs::branches::branches(&request, &asked, watch)? {
-        Done::Made(found) => json(&retune_jobs::branches::summary(&found)),
-        Done::FinishedBefore => {
-            Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
+    monitored(py, tell.as_ref(), |monitor| {
+        match retune_jobs::branches::branches(&request, &asked, monitor)? {
+            Done::Made(found) => json(&retune_jobs::branches::summary(&found)),
+            Done::FinishedBefore => {
+                Err(Fault::Other("these results are finished: there is nothing to resume".to_owned()))
+            }
         }
     })
 }

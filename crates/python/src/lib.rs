@@ -6,7 +6,7 @@
 //! - `errors`: from every error to one of the package's exceptions.
 //! - `arrays`: numbers from numpy and back.
 //! - `columns`: what is told of an evaluation.
-//! - `watch`: long work without the interpreter's lock, which Ctrl-C ends and which tells how far it is.
+//! - `monitor`: long work without the interpreter's lock, which Ctrl-C ends and which tells how far it is.
 //! - `pool`: the threads that an evaluation may use.
 //! - `problem`: a study as a function of a design; `motion`: its runs and sweeps; `jobs`: what takes minutes and writes files;
 //!   `files`: the jobs whose answer is their files.
@@ -16,10 +16,10 @@ mod columns;
 mod errors;
 mod files;
 mod jobs;
+mod monitor;
 mod motion;
 mod pool;
 mod problem;
-mod watch;
 
 /// The private part of the package `retune`.
 #[pyo3::pymodule]

@@ -2,9 +2,9 @@
 
 use crate::arrays::{numbers, table};
 use crate::errors::{Fault, Given};
+use crate::monitor::on_pool;
 use crate::pool::pool;
 use crate::problem::{Core, json};
-use crate::watch::on_pool;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -67,8 +67,9 @@ pub fn sweep<'py>(
     }
     let sweep = swept(core.at(x)?, over, &values, objective)?;
     let columns = sweep.columns();
-    let rows = on_pool(py, &*pool(threads)?, move |watch| {
-        let row = |value: &f64| (!watch.is_stopped()).then(|| sweep.row(*value, &sweep.numbers_at(*value).0));
+    let rows = on_pool(py, &*pool(threads)?, move |monitor| {
+        let row =
+            |value: &f64| (!monitor.is_stopped()).then(|| sweep.row(*value, &sweep.numbers_at(*value).0));
         let rows: Option<Vec<_>> = values.par_iter().map(row).collect();
         Ok(rows.unwrap_or_default())
     })?;

@@ -3,8 +3,8 @@
 use crate::arrays::{numbers, plain_row, table};
 use crate::columns::{COUNT, TOLD, column_names, in_columns, numbers_of};
 use crate::errors::{Fault, Given};
+use crate::monitor::{caught, on_pool};
 use crate::pool::pool;
-use crate::watch::{caught, on_pool};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -135,7 +135,7 @@ impl Core {
             Ok((found.value, by))
         };
         let (value, by) = if self.takes_long {
-            on_pool(py, &*pool(None)?, move |watch| by(&|| !watch.is_stopped()))?
+            on_pool(py, &*pool(None)?, move |monitor| by(&|| !monitor.is_stopped()))?
         } else {
             py.detach(|| caught(|| by(&|| true)))?
         };
@@ -157,11 +157,11 @@ impl Core {
             return Err(self.shape("X", &shape, &format!("(n, {width})"))?.into());
         }
         let (goal, knows) = (Arc::clone(objective), self.knows);
-        let (columns, failed) = on_pool(py, &*pool(threads)?, move |watch| {
+        let (columns, failed) = on_pool(py, &*pool(threads)?, move |monitor| {
             // Nobody asks for the rows of a batch that was stopped.
-            let goes_on = || !watch.is_stopped();
+            let goes_on = || !monitor.is_stopped();
             let row = |design: &[f64]| {
-                if watch.is_stopped() {
+                if monitor.is_stopped() {
                     return Ok([f64::NAN; COUNT]);
                 }
                 caught(|| {
@@ -276,8 +276,8 @@ impl Core {
             return Ok(py.detach(|| caught(here))?);
         }
         let (objective, design) = (Arc::clone(objective), design.to_vec());
-        on_pool(py, &*pool(None)?, move |watch| {
-            let goes_on = || !watch.is_stopped();
+        on_pool(py, &*pool(None)?, move |monitor| {
+            let goes_on = || !monitor.is_stopped();
             Ok(objective.evaluate_while(&objective.scene(&design)?, f64::INFINITY, &goes_on)?)
         })
     }

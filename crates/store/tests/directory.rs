@@ -79,7 +79,7 @@ fn contract_results_of_another_identity_are_refused_unless_they_may_be_replaced(
     let of_other = Order { study: "other.json".into(), ..of_study.clone() };
     match open(&path, &of_other, &other).map(drop) {
         Err(Error::Standing { problem, .. }) => {
-            assert!(problem.starts_with("the results of `retune tune` with "), "{problem}");
+            assert!(problem.starts_with("the directory holds results of `retune tune` for "), "{problem}");
         }
         other => panic!("{other:?}"),
     }

@@ -113,7 +113,7 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     match refused(reproduce(&request(&desk, "out"), Some("figure6"), &Silent)) {
         Error::Store(StoreError::Standing { problem, .. }) => {
             assert!(
-                problem.starts_with("figure6-old.csv stands here, which Retune did not make"),
+                problem.starts_with("figure6-old.csv is in the way: Retune did not make it"),
                 "{problem}"
             );
         }
@@ -199,7 +199,7 @@ fn contract_figures_made_one_by_one_stay_retunes() {
     desk.write("out/notes.txt", "mine");
     match refused(make("figure5")) {
         Error::Store(StoreError::Standing { problem, .. }) => {
-            assert!(problem.starts_with("figure5-notes.txt stands here"), "{problem}");
+            assert!(problem.starts_with("figure5-notes.txt is in the way"), "{problem}");
         }
         other => panic!("{other}"),
     }

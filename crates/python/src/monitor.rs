@@ -1,6 +1,6 @@
 //! Long work without the interpreter's lock: Ctrl-C ends it, and it tells how far it is.
 //!
-//! The work is done on other threads: a job on one of its own ([`watched`]), anything else on a pool ([`on_pool`]). The thread that called
+//! The work is done on other threads: a job on one of its own ([`monitored`]), anything else on a pool ([`on_pool`]). The thread that called
 //! waits for it, and now and then takes the lock to let Python handle its signals and to pass on what the work has to tell.
 
 use crate::errors::{Fault, of_panic};
@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use rayon::ThreadPool;
 use retune_jobs::{Error, Observer, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,13 +20,14 @@ const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// What a piece of work tells, and whether it is to end.
 #[derive(Clone, Default)]
-pub struct Watch(Arc<Told>);
+pub struct Monitor(Arc<State>);
 
 #[derive(Default)]
-struct Told {
+struct State {
     stopped: AtomicBool,
     lines: Mutex<Vec<(&'static str, String)>>,
     stage: Mutex<Option<Arc<Stage>>>,
+    answer: Mutex<Option<PathBuf>>,
 }
 
 /// A stage of a job.
@@ -41,7 +43,7 @@ struct Stage {
 /// is in its journal.
 struct Stopped;
 
-impl Watch {
+impl Monitor {
     /// Whether the work is to end.
     pub fn is_stopped(&self) -> bool {
         self.0.stopped.load(Relaxed)
@@ -52,10 +54,15 @@ impl Watch {
     }
 
     /// Ends the job if that was asked for.
-    fn go_on(&self) {
+    fn end_if_stopped(&self) {
         if self.is_stopped() {
             resume_unwind(Box::new(Stopped));
         }
+    }
+
+    /// The file with the answer of a job that was made.
+    pub fn answer(&self) -> Option<PathBuf> {
+        self.0.answer.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn tell(&self, kind: &'static str, words: &str) {
@@ -81,17 +88,17 @@ impl Watch {
 }
 
 /// Does `work` on a pool, while the thread that called looks for Ctrl-C: that ends the wait at once. What has begun goes on until it next
-/// asks [`Watch::is_stopped`], and nobody waits for it.
+/// asks [`Monitor::is_stopped`], and nobody waits for it.
 ///
 /// # Errors
 /// The error of the work, or Ctrl-C.
 pub fn on_pool<T: Send + 'static>(
     py: Python<'_>,
     pool: &ThreadPool,
-    work: impl FnOnce(&Watch) -> Result<T, Fault> + Send + 'static,
+    work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static,
 ) -> PyResult<T> {
-    let watch = Watch::default();
-    let own = watch.clone();
+    let monitor = Monitor::default();
+    let own = monitor.clone();
     let (answers, answer) = mpsc::sync_channel(1);
     pool.spawn(move || {
         // Nobody may wait for it any more.
@@ -103,7 +110,7 @@ pub fn on_pool<T: Send + 'static>(
                 Ok(found) => return found,
                 Err(RecvTimeoutError::Timeout) => {
                     if let Err(error) = Python::attach(|py| py.check_signals()) {
-                        watch.stop();
+                        monitor.stop();
                         give_up();
                         return Err(Fault::Python(error));
                     }
@@ -119,20 +126,20 @@ fn no_answer() -> Fault {
     Fault::Other("the work ended without an answer".to_owned())
 }
 
-/// Does `work` on a thread of its own, to the end whatever ends it. `tell` is called with what the [`Watch`] is told.
+/// Does `work` on a thread of its own, to the end whatever ends it. `tell` is called with what the [`Monitor`] is told.
 ///
 /// # Errors
 /// The error of the work, Ctrl-C, or an exception of `tell`.
-pub fn watched<T: Send>(
+pub fn monitored<T: Send>(
     py: Python<'_>,
     tell: Option<&Py<PyAny>>,
-    work: impl FnOnce(&Watch) -> Result<T, Fault> + Send,
+    work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send,
 ) -> PyResult<T> {
-    let watch = Watch::default();
+    let monitor = Monitor::default();
     let looked = py.detach(|| {
         let (answers, answer) = mpsc::sync_channel(1);
         std::thread::scope(|scope| {
-            let own = watch.clone();
+            let own = monitor.clone();
             let thread =
                 std::thread::Builder::new().name("retune".to_owned()).spawn_scoped(scope, move || {
                     // The receiver is there until this thread has ended.
@@ -146,10 +153,11 @@ pub fn watched<T: Send>(
                 match answer.recv_timeout(LOOK_EVERY) {
                     Ok(found) => return raised.map_or(found, |error| Err(Fault::Python(error))),
                     Err(RecvTimeoutError::Timeout) if raised.is_none() => {
-                        let look = |py: Python<'_>| py.check_signals().and_then(|()| watch.pass_on(py, tell));
+                        let look =
+                            |py: Python<'_>| py.check_signals().and_then(|()| monitor.pass_on(py, tell));
                         raised = Python::attach(look).err();
                         if raised.is_some() {
-                            watch.stop();
+                            monitor.stop();
                         }
                     }
                     Err(RecvTimeoutError::Timeout) => {}
@@ -161,7 +169,7 @@ pub fn watched<T: Send>(
         })
     });
     let found = looked?;
-    watch.pass_on(py, tell)?;
+    monitor.pass_on(py, tell)?;
     Ok(found)
 }
 
@@ -173,14 +181,14 @@ pub fn caught<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| Err(of_panic(&*payload)))
 }
 
-impl Observer for Watch {
+impl Observer for Monitor {
     fn result(&self, line: &str) -> Result<(), Error> {
-        self.go_on();
+        self.end_if_stopped();
         self.tell("result", line);
         Ok(())
     }
     fn log(&self, line: &str) -> Result<(), Error> {
-        self.go_on();
+        self.end_if_stopped();
         self.tell("log", line);
         Ok(())
     }
@@ -191,24 +199,28 @@ impl Observer for Watch {
         let [done, known] = [0; 2].map(AtomicU64::new);
         let stage = Arc::new(Stage { name, count, done, known, finished: AtomicBool::new(false) });
         *self.0.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&stage));
-        Box::new(Watched { watch: self.clone(), stage })
+        Box::new(MonitoredStage { monitor: self.clone(), stage })
     }
     fn resumable(&self) {}
+    fn answered(&self, file: &Path) -> Result<(), Error> {
+        *self.0.answer.lock().unwrap_or_else(PoisonError::into_inner) = Some(file.to_owned());
+        Ok(())
+    }
 }
 
-/// A stage that is watched.
-struct Watched {
-    watch: Watch,
+/// A stage that is monitored.
+struct MonitoredStage {
+    monitor: Monitor,
     stage: Arc<Stage>,
 }
 
-impl Progress for Watched {
+impl Progress for MonitoredStage {
     fn known(&self) {
         self.stage.known.fetch_add(1, Relaxed);
     }
     fn inc(&self, more: u64) {
         self.stage.done.fetch_add(more, Relaxed);
-        self.watch.go_on();
+        self.monitor.end_if_stopped();
     }
     fn finish(&self) {
         self.stage.finished.store(true, Relaxed);
