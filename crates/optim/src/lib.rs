@@ -6,8 +6,8 @@
 //!
 //! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
 //!   number of threads; [`best_separated`] picks starts for a refinement from it.
-//! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998) as an argmin solver, [`Fminsearch`], which logs
-//!   each iteration and can be continued.
+//! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998); [`Fminsearch`] is the state of a run, which logs each
+//!   iteration and can be continued.
 
 mod chunks;
 pub mod objective;

@@ -1,6 +1,5 @@
 //! Searches and what they search, from outside of the crate.
 
-mod argmin;
 mod band;
 mod fminsearch;
 mod global;
