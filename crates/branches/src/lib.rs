@@ -23,7 +23,7 @@ pub use tables::summary;
 use options::plan_json;
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::basins::SIDE;
-use retune_dynamics::periodic::branches::{Watch, branches as motions};
+use retune_dynamics::periodic::branches::{Control, branches as motions};
 use retune_study::{found_in, read};
 use retune_workbench::artefact::{Content, Kind, artefact};
 use retune_workbench::job::{Done, Job, Made};
@@ -80,7 +80,7 @@ pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> R
             &study.scene,
             plan,
             &study.solver.settings(),
-            Watch { done: &|| bar.inc(1), ..Watch::default() },
+            Control { done: &|| bar.inc(1), ..Control::default() },
         )?;
         bar.finish();
         let mut found = Found::new(study.clone(), branches);

@@ -6,7 +6,7 @@ use crate::found::{Found, Margin};
 use crate::remedy::{Remedy, remedies};
 use crate::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
 use crate::words::{joule, kind};
-use retune_dynamics::periodic::look::Attractor;
+use retune_dynamics::periodic::Attractor;
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, Sample};
 use retune_store::Directory;
 use retune_study::{counted, rounded, short};

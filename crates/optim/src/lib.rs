@@ -21,9 +21,9 @@ pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
 pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
+pub use objective::runs::Proceed;
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;
-pub use objective::watch::GoesOn;
 pub use retune_model::{Design, Parameter};
 pub use search::fminsearch::{
     Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize,

@@ -12,7 +12,7 @@ pub fn doubled<S: Forced>(
     shooting: &Shooting<S>,
     event: &Event,
     range: [f64; 2],
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Option<Branch<S>> {
     if event.kind != EventKind::PeriodDoubling {
         return None;
@@ -33,7 +33,7 @@ pub fn doubled<S: Forced>(
     }
     direction /= twice.norm(&direction);
     let start = Node::doubled(&twice, &event.orbit.states, event.orbit.value, direction)?;
-    let branch = trace_from(&twice, &start, range, goes_on);
+    let branch = trace_from(&twice, &start, range, proceed);
     // One that is closed does not begin at the period doubling: the step has missed.
     (branch.points.len() > 1 && branch.ends[1] != End::Closed).then_some(branch)
 }

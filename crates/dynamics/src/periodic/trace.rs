@@ -73,25 +73,25 @@ pub fn trace<S: Forced>(
     shooting: &Shooting<S>,
     seed: &Solution,
     [from, to]: [f64; 2],
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Option<Branch<S>> {
-    trace_while(shooting, seed, [from, to], &|_| goes_on())
+    trace_while(shooting, seed, [from, to], &|_| proceed())
 }
 
-/// The same as long as `goes_on` says so of the motion that it has come to.
+/// The same as long as `proceed` says so of the motion that it has come to.
 pub(super) fn trace_while<S: Forced>(
     shooting: &Shooting<S>,
     seed: &Solution,
     [from, to]: [f64; 2],
-    goes_on: &dyn Fn(&Orbit) -> bool,
+    proceed: &dyn Fn(&Orbit) -> bool,
 ) -> Option<Branch<S>> {
     let start = Node::new(shooting, seed.clone(), &shooting.by_value())?;
-    let (after, end) = side(shooting, &start, [from, to], goes_on);
+    let (after, end) = side(shooting, &start, [from, to], proceed);
     if end == End::Closed {
         return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));
     }
     let back = start.clone().turned();
-    let (before, begin) = side(shooting, &back, [from, to], goes_on);
+    let (before, begin) = side(shooting, &back, [from, to], proceed);
     Some(joined(shooting, before, &start, after, [begin, end]))
 }
 
@@ -100,27 +100,27 @@ pub(super) fn trace_from<S: Forced>(
     shooting: &Shooting<S>,
     start: &Node,
     range: [f64; 2],
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Branch<S> {
-    let (after, end) = side(shooting, start, range, &|_| goes_on());
+    let (after, end) = side(shooting, start, range, &|_| proceed());
     joined(shooting, Vec::new(), start, after, [End::Halved, end])
 }
 
 /// A motion, or an event, found on the way.
-type Found = (Orbit, Option<Event>);
+type Passed = (Orbit, Option<Event>);
 
 /// The motions to one side of a start.
 fn side(
     shooting: &Shooting<impl Forced>,
     start: &Node,
     range: [f64; 2],
-    goes_on: &dyn Fn(&Orbit) -> bool,
-) -> (Vec<Found>, End) {
-    let mut found: Vec<Found> = Vec::new();
+    proceed: &dyn Fn(&Orbit) -> bool,
+) -> (Vec<Passed>, End) {
+    let mut found: Vec<Passed> = Vec::new();
     let (mut now, mut step) = (start.clone(), FIRST);
     let (mut apart, mut unstable) = (0.0, 0);
     for _ in 0..MOST {
-        if !goes_on(&now.orbit) {
+        if !proceed(&now.orbit) {
             return (found, End::Ended);
         }
         let (next, events, end) = loop {
@@ -255,9 +255,9 @@ fn halves(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> Option<DVector<
 /// Both sides as one branch.
 fn joined<S: Forced>(
     shooting: &Shooting<S>,
-    before: Vec<Found>,
+    before: Vec<Passed>,
     start: &Node,
-    after: Vec<Found>,
+    after: Vec<Passed>,
     ends: [End; 2],
 ) -> Branch<S> {
     let middle = (start.orbit.clone(), None);

@@ -3,9 +3,9 @@
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
 use super::motions::{Known, Sought};
+use super::runs::{FREE, Hooks, Proceed};
 use super::spec::Goal;
 use super::unusable::Unusable;
-use super::watch::{FREE, GoesOn, Hooks};
 use crate::search::minimax::{Height, Piece};
 use retune_model::{Damper, Parameter, Scene, den_hartog};
 use retune_solver::Settings;
@@ -144,7 +144,7 @@ impl DesignObjective {
     }
 
     /// What is behind [`Self::value`], with the runs that it is made of; failures are not recorded.
-    pub fn look(&self, design: &[f64], cutoff: f64) -> (Height, Vec<Run>) {
+    pub fn height_and_runs(&self, design: &[f64], cutoff: f64) -> (Height, Vec<Run>) {
         self.counts[0].fetch_add(1, Relaxed);
         let runs = Mutex::new(Vec::new());
         let keep = |run| runs.lock().unwrap_or_else(PoisonError::into_inner).push(run);
@@ -158,7 +158,7 @@ impl DesignObjective {
         (height, runs.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// The peaks of the `runs` of [`Self::look`], with their derivatives.
+    /// The peaks of the `runs` of [`Self::height_and_runs`], with their derivatives.
     pub fn pieces(&self, design: &[f64], runs: &[Run]) -> Vec<Piece> {
         let scene = self.scene(design).ok();
         scene.map_or_else(Vec::new, |scene| self.goal.pieces(&scene, &self.settings, runs, &self.variables))
@@ -202,7 +202,7 @@ impl DesignObjective {
         self.goal.evaluate_with(scene, &self.settings, cutoff, Hooks { sought: self.sought(), ..FREE })
     }
 
-    /// The same as long as `goes_on` says so; see [`Goal::evaluate_while`].
+    /// The same as long as `proceed` says so; see [`Goal::evaluate_while`].
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
@@ -210,13 +210,13 @@ impl DesignObjective {
         &self,
         scene: &Scene,
         cutoff: f64,
-        goes_on: GoesOn<'_>,
+        proceed: Proceed<'_>,
     ) -> Result<Evaluation, Unusable> {
         self.goal.evaluate_with(
             scene,
             &self.settings,
             cutoff,
-            Hooks { goes_on, sought: self.sought(), ..FREE },
+            Hooks { proceed, sought: self.sought(), ..FREE },
         )
     }
 

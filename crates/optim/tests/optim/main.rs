@@ -8,6 +8,7 @@ mod gradient;
 mod grid;
 mod interrupted;
 mod limits;
+mod minimax;
 mod needs;
 mod objective;
 mod paper;

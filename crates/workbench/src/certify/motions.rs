@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use retune_dynamics::Error;
 use retune_dynamics::periodic::branches::Plan;
 use retune_dynamics::periodic::worst::{quantity, width_missed};
-use retune_dynamics::periodic::{Branches, Watch, branches};
+use retune_dynamics::periodic::{Branches, Control, branches};
 use retune_model::{Measure, NonNegative, Parameter, Scene, Source};
 use retune_optim::{Evaluation, Goal, Limit, Limits, PerLimit, Stiffnesses, Unusable};
 use retune_solver::Settings;
@@ -166,11 +166,11 @@ impl Place {
         };
         // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
         let plan = if times == 1.0 {
-            Plan { looks: 1, ..self.plan() }
+            Plan { passes: 1, ..self.plan() }
         } else {
             Plan { least: Some((self.goal.objective.quantity(), FOLLOWED * from_rest)), ..self.plan() }
         };
-        let branches = branches(&scene, plan, settings, Watch::default())?;
+        let branches = branches(&scene, plan, settings, Control::default())?;
         Ok(AtForce { times, from_rest, branches })
     }
 
