@@ -5,7 +5,7 @@
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
 //! Read `forced` (what it asks of a system), `shooting` (the equations and their solution), `orbit` (a motion, and `seen` of it), `trace` (a
-//! branch), `events` (its bifurcations), `switch` (to the branch of twice the period), `settle` (what a run settles on), `attractors` (what runs
+//! branch, and that of twice the period which begins on it), `events` (its bifurcations), `settle` (what a run settles on), `attractors` (what runs
 //! from many starts do), `largest`, then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
 //! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, `onset`
 //! (from which value of a parameter on a motion is there), `known` (motions of one damper followed to another), and `basins`, where starts end.
@@ -26,7 +26,6 @@ mod seek;
 pub mod seen;
 pub mod settle;
 pub mod shooting;
-pub mod switch;
 pub mod trace;
 pub mod worst;
 

@@ -3,7 +3,7 @@
 //! From a motion, a step along the branch's direction, then Newton's iteration in the plane across it. A step is taken again, half as
 //! long, where the iteration needs many rounds, ends far from the prediction or on a motion of a shorter period, the direction turns by more
 //! than [`TURN`], or what happens on the way cannot be located, because the motions there are not one branch: so it neither jumps to another
-//! branch nor cuts a fold short.
+//! branch nor cuts a fold short. At a period doubling it goes on to the branch of twice the period.
 
 use super::events::{End, Event, EventKind, located};
 use super::forced::{Damped, Forced};
@@ -11,7 +11,7 @@ use super::node::Node;
 use super::orbit::Orbit;
 use super::settle::least_periods;
 use super::shooting::{Shooting, Solution};
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix4, Vector4};
 
 /// The step at the start, the longest and the shortest, in units of the motion's size and of the parameter's span.
 const FIRST: f64 = 2e-3;
@@ -95,8 +95,39 @@ pub(super) fn trace_while<S: Forced>(
     Some(joined(shooting, before, &start, after, [begin, end]))
 }
 
+/// The branch that begins at a period doubling of another; none if it is not one, or no motion is found on it.
+pub fn doubled<S: Forced>(
+    shooting: &Shooting<S>,
+    event: &Event,
+    range: [f64; 2],
+    proceed: &dyn Fn() -> bool,
+) -> Option<Branch<S>> {
+    if event.kind != EventKind::PeriodDoubling {
+        return None;
+    }
+    // The change that comes back with the opposite sign: `(M + 1) v = 0`.
+    let svd = (event.at.monodromy() + Matrix4::identity()).svd(false, true);
+    let least = svd.singular_values.imin();
+    let mut change: Vector4<f64> = svd.v_t?.row(least).transpose();
+    let twice = shooting.of_periods(2 * shooting.periods);
+    let m = shooting.segments;
+    let mut direction = DVector::zeros(8 * m + 1);
+    for (k, transition) in event.at.transitions.iter().enumerate() {
+        for i in 0..4 {
+            direction[4 * k + i] = change[i];
+            direction[4 * (m + k) + i] = -change[i];
+        }
+        change = transition * change;
+    }
+    direction /= twice.norm(&direction);
+    let start = Node::doubled(&twice, &event.orbit.states, event.orbit.value, direction)?;
+    let branch = trace_from(&twice, &start, range, proceed);
+    // One that is closed does not begin at the period doubling: the step has missed.
+    (branch.points.len() > 1 && branch.ends[1] != End::Closed).then_some(branch)
+}
+
 /// The branch from a solution to one side alone.
-pub(super) fn trace_from<S: Forced>(
+fn trace_from<S: Forced>(
     shooting: &Shooting<S>,
     start: &Node,
     range: [f64; 2],
