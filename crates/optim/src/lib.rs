@@ -18,7 +18,7 @@ pub use objective::descent::Foot;
 pub use objective::design_objective::{Counts, DesignObjective, Failures};
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
 pub use objective::evaluation::{Evaluation, Place, Run};
-pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
+pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked, value_of};
 pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
 pub use objective::runs::Proceed;

@@ -101,7 +101,7 @@ impl Core {
         let mut row = [0.0; Parameter::VARIED.len()];
         let row = &mut row[..objective.variables().len()];
         self.design(x, row)?;
-        Ok(self.found(py, objective, row)?.value)
+        Ok(self.found(py, objective, row)?.ranked)
     }
 
     /// Everything that an evaluation finds, by its name.
@@ -132,7 +132,7 @@ impl Core {
         self.design(x, &mut row)?;
         let by = move |goes_on: Proceed<'_>| {
             let (found, by) = objective.gradient(&row, goes_on)?;
-            Ok((found.value, by))
+            Ok((found.ranked, by))
         };
         let (value, by) = if self.takes_long {
             on_pool(py, &*pool(None)?, move |watch| by(&|| !watch.is_stopped()))?

@@ -39,14 +39,15 @@ impl DesignObjective {
         let evaluate = |x: &[f64], cutoff: f64| {
             let found = self.height_and_runs(x, cutoff);
             counts[0].set(counts[0].get() + 1);
-            counts[1].set(counts[1].get() + u64::from(found.0.broken > 0.0));
+            counts[1].set(counts[1].get() + u64::from(found.0.violation > 0.0));
             if from.get().is_nan() {
-                from.set(ranked(found.0.worst, found.0.broken));
+                from.set(ranked(found.0.worst, found.0.violation));
             }
             found
         };
         let gain = if self.goal().objective.is_steady() { STEADY_GAIN } else { GAIN };
-        let (mut at, mut height) = (start.to_vec(), Height { worst: f64::INFINITY, broken: f64::INFINITY });
+        let (mut at, mut height) =
+            (start.to_vec(), Height { worst: f64::INFINITY, violation: f64::INFINITY });
         for _ in 0..BOXES {
             let space = Space((0..at.len()).map(|i| self.side(i, bounds[i], at[i])).collect());
             let (end, found) = if self.goal().has_pieces() {
@@ -66,7 +67,7 @@ impl DesignObjective {
             }
         }
         let [evaluations, infeasible] = counts.map(Cell::into_inner);
-        let value = ranked(height.worst, height.broken);
+        let value = ranked(height.worst, height.violation);
         Foot { from: from.get(), end: Point { x: at, value }, counts: Counts { evaluations, infeasible } }
     }
 

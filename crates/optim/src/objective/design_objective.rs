@@ -114,16 +114,16 @@ impl DesignObjective {
         Ok(Scene { damper: Some(self.damper(design)?), ..self.scene })
     }
 
-    /// The value that searches minimise: the goal's energy of `design`, J, or a number above [`INFEASIBLE`] if it breaks a
+    /// The number that searches minimise: the goal's value of `design`, or a number above [`INFEASIBLE`] if it breaks a
     /// limit; any number above `cutoff` once the value is known to exceed it; +∞ if there is no value.
     pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
-        self.value_as(design, cutoff, |found| (found.value, found.violation > 0.0))
+        self.value_as(design, cutoff, |found| (found.ranked, found.violation > 0.0))
     }
 
     /// The same, but `most` if it is above that, whichever number it is; a design that is so is not counted as one that breaks a limit.
     pub fn value_up_to(&self, design: &[f64], most: f64) -> f64 {
         self.value_as(design, most, |found| {
-            (found.value.min(most), found.violation > 0.0 && most > INFEASIBLE)
+            (found.ranked.min(most), found.violation > 0.0 && most > INFEASIBLE)
         })
     }
 
@@ -150,11 +150,11 @@ impl DesignObjective {
         let keep = |run| runs.lock().unwrap_or_else(PoisonError::into_inner).push(run);
         let found =
             self.scene(design).and_then(|scene| self.goal.evaluate_and(&scene, &self.settings, cutoff, keep));
-        let height = found.map_or(Height { worst: f64::INFINITY, broken: 0.0 }, |found| Height {
-            worst: found.energy,
-            broken: found.violation,
+        let height = found.map_or(Height { worst: f64::INFINITY, violation: 0.0 }, |found| Height {
+            worst: found.value,
+            violation: found.violation,
         });
-        self.counts[1].fetch_add(u64::from(height.broken > 0.0), Relaxed);
+        self.counts[1].fetch_add(u64::from(height.violation > 0.0), Relaxed);
         (height, runs.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 

@@ -100,25 +100,17 @@ impl Goal {
         };
         // A cavity above its limit makes the design infeasible without any run.
         let too_wide = self.limits.violation(&with_cavity(PerMeasure::default())) > 0.0;
-        let energy = if cutoff < INFEASIBLE && too_wide {
+        let value = if cutoff < INFEASIBLE && too_wide {
             f64::INFINITY
         } else {
             let cutoff = if cutoff < INFEASIBLE { cutoff } else { f64::INFINITY };
-            self.energy(scene, cutoff, &runs)?
+            self.sum(scene, cutoff, &runs)?
         };
         let Seen { reached, worst, runs, unsettled } =
             runs.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
         let reached = with_cavity(reached);
         let violation = self.limits.violation(&reached);
-        Ok(Evaluation {
-            value: ranked(energy, violation),
-            energy,
-            violation,
-            reached,
-            worst,
-            runs,
-            unsettled,
-        })
+        Ok(Evaluation { ranked: ranked(value, violation), value, violation, reached, worst, runs, unsettled })
     }
 
     /// The worst run of a term at a phase of the force (rad), without limits.
@@ -138,7 +130,7 @@ impl Goal {
     }
 
     /// The weighted sum, in the unit of the quantity.
-    pub(super) fn energy(&self, scene: &Scene, cutoff: f64, runs: &Runs) -> Result<f64, Unusable> {
+    pub(super) fn sum(&self, scene: &Scene, cutoff: f64, runs: &Runs) -> Result<f64, Unusable> {
         if self.objective.sum.is_empty() {
             return runs.term(scene, (0, &self.objective), cutoff); // the common case, without an allocation
         }

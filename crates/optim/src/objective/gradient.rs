@@ -33,7 +33,7 @@ impl DesignObjective {
         let goal = self.goal();
         let found = goal.evaluate_while(&scene, self.settings(), f64::INFINITY, proceed)?;
         let slopes = Slopes { goal, scene, settings: self.settings(), variables: self.variables(), proceed };
-        let by = if found.violation > 0.0 { slopes.violation(&found)? } else { slopes.energy(&found)? };
+        let by = if found.violation > 0.0 { slopes.violation(&found)? } else { slopes.sum(&found)? };
         Ok((found, by))
     }
 }
@@ -49,7 +49,7 @@ struct Slopes<'a> {
 
 impl Slopes<'_> {
     /// The derivatives of the weighted sum of the terms.
-    fn energy(&self, found: &Evaluation) -> Result<Vec<f64>, Unusable> {
+    fn sum(&self, found: &Evaluation) -> Result<Vec<f64>, Unusable> {
         let objective = &self.goal.objective;
         if objective.sum.is_empty() && objective.ensemble.is_none() {
             return self.of((found.worst, vec![1.0; self.variables.len()]), objective, self.goal.window);

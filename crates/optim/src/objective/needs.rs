@@ -93,7 +93,7 @@ impl Goal {
         let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
         let observed = Observed { also, own: from.is_none(), matters: PerMeasure([f64::NEG_INFINITY; 7]) };
         let runs = Runs::new(self, scene, settings, observed, Hooks { keep: &keep, proceed, ..FREE });
-        self.energy(scene, f64::INFINITY, &runs)?;
+        self.sum(scene, f64::INFINITY, &runs)?;
         Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 

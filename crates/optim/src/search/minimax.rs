@@ -43,18 +43,18 @@ pub struct Height {
     /// The largest of the functions; infinite where the design has no value.
     pub worst: f64,
     /// By how much limits are broken, 0 where they are kept.
-    pub broken: f64,
+    pub violation: f64,
 }
 
 impl Height {
     /// Whether it is better: breaks limits by less, or keeps them too and has less.
     pub fn is_below(&self, other: &Self) -> bool {
-        self.broken < other.broken || self.broken == other.broken && self.worst < other.worst
+        self.violation < other.violation || self.violation == other.violation && self.worst < other.worst
     }
 
     /// What steps make smaller, as a share of `of`.
     fn merit(&self, of: f64, weight: f64) -> f64 {
-        self.worst / of + weight * self.broken
+        self.worst / of + weight * self.violation
     }
 }
 
@@ -80,7 +80,7 @@ pub fn minimax<T>(
     while let Some((to, promised)) = step(&here, height.worst, space, &x, radius, weight) {
         // Within the region the linear functions are wrong by its square.
         if promised < gain || radius < SMALL * gain.sqrt() || tried == STEPS {
-            if height.broken == 0.0 || weight >= MOST_WEIGHT {
+            if height.violation == 0.0 || weight >= MOST_WEIGHT {
                 break;
             }
             (radius, tried, weight) = (FIRST, 0, 10.0 * weight);

@@ -31,7 +31,7 @@ fn goal(window: Option<Window>, band: Option<Band>) -> Goal {
 /// Its value and frequency.
 fn e1_max(scene: &Scene, window: Option<Window>, band: Option<Band>) -> Result<Worst, Unusable> {
     let found = goal(window, band).evaluate(scene, &Settings::default(), f64::INFINITY)?;
-    Ok(Worst { value: found.value, frequency: found.worst.scene.forcing.frequency.get() })
+    Ok(Worst { value: found.ranked, frequency: found.worst.scene.forcing.frequency.get() })
 }
 
 fn over(band: Band, f: impl Fn(f64) -> f64 + Sync) -> Worst {

@@ -20,7 +20,7 @@ fn reference_charalambous_conn() {
         ]
     };
     let worst = |x: &[f64]| all(x).iter().map(|(value, _)| *value).fold(0.0, f64::max);
-    let evaluate = |x: &[f64], _: f64| (Height { worst: worst(x), broken: 0.0 }, ());
+    let evaluate = |x: &[f64], _: f64| (Height { worst: worst(x), violation: 0.0 }, ());
     let pieces =
         |x: &[f64], (): &()| all(x).map(|(value, slope)| Piece { is_limit: false, value, slope }).to_vec();
     let (x, found) = minimax(evaluate, pieces, &square(-3.0, 3.0), &[1.0, -0.1], 1e-8);
@@ -32,7 +32,7 @@ fn reference_charalambous_conn() {
 #[test]
 fn exact_limits_are_kept_where_they_can_be() {
     let broken = |x: &[f64]| 1.0 - x[0] * x[1];
-    let evaluate = |x: &[f64], _: f64| (Height { worst: x[0] + x[1], broken: broken(x).max(0.0) }, ());
+    let evaluate = |x: &[f64], _: f64| (Height { worst: x[0] + x[1], violation: broken(x).max(0.0) }, ());
     let pieces = |x: &[f64], (): &()| {
         vec![
             Piece { is_limit: false, value: x[0] + x[1], slope: vec![1.0, 1.0] },
@@ -40,5 +40,5 @@ fn exact_limits_are_kept_where_they_can_be() {
         ]
     };
     let (_, found) = minimax(evaluate, pieces, &square(0.1, 4.0), &[0.5, 0.7], 1e-8);
-    assert!(found.broken == 0.0 && (found.worst - 2.0).abs() < 1e-4, "{found:?}");
+    assert!(found.violation == 0.0 && (found.worst - 2.0).abs() < 1e-4, "{found:?}");
 }

@@ -53,7 +53,7 @@ pub(super) fn screen(
     let of = searched(&study, &search, &search.variables);
     let look = || {
         let (height, _) = of.height_and_runs(at, most);
-        if height.broken > 0.0 { f64::MAX } else { height.worst }
+        if height.violation > 0.0 { f64::MAX } else { height.worst }
     };
     let Under { damper, sweep, bound } = under;
     let value =

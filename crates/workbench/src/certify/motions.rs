@@ -120,11 +120,8 @@ fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> 
     let mut places = Vec::new();
     for (_, term) in &terms {
         let alone = Goal { objective: (*term).clone(), limits: Limits::default(), ..goal.clone() };
-        let from_rest = if terms.len() == 1 {
-            own.energy
-        } else {
-            alone.evaluate(scene, settings, f64::INFINITY)?.energy
-        };
+        let from_rest =
+            if terms.len() == 1 { own.value } else { alone.evaluate(scene, settings, f64::INFINITY)?.value };
         let own_k1 = scene.primary.stiffness.get();
         let k1 = match &term.k1 {
             None => vec![own_k1],
@@ -162,7 +159,7 @@ impl Place {
         let from_rest = if times == 1.0 {
             self.from_rest
         } else {
-            self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.energy)
+            self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.value)
         };
         // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
         let plan = if times == 1.0 {

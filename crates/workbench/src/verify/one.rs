@@ -149,12 +149,12 @@ fn again(
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let name = study.quantity().name();
     let mut again = json!({
-        name: found.energy,
+        name: found.value,
         format!("{name}_none"): study.energy_without_damper(),
         format!("{name}_study"): study.energy(&study.scene),
         "simulation": Summary::new(study, scene, &response) });
     if let (Some(_), Ok(search)) = (optimum.get("needs"), study.search()) {
-        again["needs"] = json!(Needs::new(study, &search, &tuned, found.energy));
+        again["needs"] = json!(Needs::new(study, &search, &tuned, found.value));
     }
     if !objective.goal().limits.is_empty() {
         again["limits"] = json!({ "violation": found.violation, "feasible": found.violation == 0.0 });
@@ -198,8 +198,8 @@ fn value<'a>(objective: &'a DesignObjective, study: &'a Study, up_to: f64, row: 
     let again = move || {
         let scene = design.and_then(|design| study.scene_at(&design));
         let found = scene.and_then(|scene| objective.evaluate(&scene, up_to).ok());
-        let value = found.map_or(f64::INFINITY, |found| found.value.min(up_to));
-        if basin { retune_optim::energy(value) } else { value }
+        let value = found.map_or(f64::INFINITY, |found| found.ranked.min(up_to));
+        if basin { retune_optim::value_of(value) } else { value }
     };
     Check { said: row.number(name), again: Box::new(again) }
 }
