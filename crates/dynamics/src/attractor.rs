@@ -5,7 +5,7 @@
 //! directions (an averaged Hausdorff distance). Order and phase do not matter: a period-3 motion shifted by one period is the same
 //! motion.
 
-use crate::record::distance;
+use crate::record::{distance, size};
 use crate::regime::ARRIVED;
 
 /// Motions nearer than this share of their size are one motion: the limit at which a transient has ended
@@ -46,10 +46,4 @@ pub fn separation(a: &[[f64; 4]], b: &[[f64; 4]]) -> f64 {
 fn drift(stretch: &[[f64; 4]]) -> f64 {
     let (before, after) = stretch.split_at(stretch.len() / 2);
     separation(before, after)
-}
-
-/// Root mean square of the states about zero, √J.
-fn size(states: &[[f64; 4]]) -> f64 {
-    let sum: f64 = states.iter().map(|y| y.iter().map(|v| v * v).sum::<f64>()).sum();
-    (sum / states.len().max(1) as f64).sqrt()
 }

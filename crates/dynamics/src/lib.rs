@@ -19,7 +19,6 @@ pub mod periodic;
 pub mod poincare;
 pub mod record;
 pub mod regime;
-mod sentence;
 pub mod sweep;
 
 pub use lyapunov::Exponent;

@@ -41,7 +41,7 @@ impl Exponent {
     }
 }
 
-/// The operations on a system and two of its trajectories that [`growth`] needs.
+/// The operations on a system and two of its trajectories that [`Pair`] needs.
 pub trait Neighbours {
     /// A state.
     type State: Copy;
@@ -92,25 +92,4 @@ impl<S: Copy> Pair<S> {
         );
         Ok(f64::EPSILON.ln())
     }
-}
-
-/// Logarithms of growth over `steps` steps after `settle` steps in which the neighbour finds the fastest direction.
-///
-/// # Errors
-/// The system's own.
-pub fn growth<N: Neighbours>(
-    system: &mut N,
-    mut pair: Pair<N::State>,
-    settle: usize,
-    steps: usize,
-) -> Result<Vec<f64>, N::Error> {
-    let mut rates = Vec::with_capacity(steps);
-    for i in 0..settle + steps {
-        let motion = system.step(pair.motion)?;
-        let rate = pair.advance(system, motion)?;
-        if i >= settle {
-            rates.push(rate);
-        }
-    }
-    Ok(rates)
 }

@@ -5,21 +5,20 @@
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
 //! Read `forced` (what it asks of a system), `shooting` (the equations and their solution), `orbit` (a motion, and `seen` of it), `trace` (a
-//! branch), `events` (its bifurcations), `switch` (to the branch of twice the period), `settle` (what a run settles on), `look` (what runs
-//! from many starts do), `largest`, `crest` (the same for searches), then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
+//! branch, and that of twice the period which begins on it), `events` (its bifurcations), `settle` (what a run settles on), `attractors` (what runs
+//! from many starts do), `largest`, then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
 //! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, `onset`
 //! (from which value of a parameter on a motion is there), `known` (motions of one damper followed to another), and `basins`, where starts end.
 
+pub mod attractors;
 pub mod basins;
 mod belongs;
 pub mod branches;
-mod crest;
 pub mod deflate;
 pub mod events;
 pub mod forced;
 mod known;
 pub mod largest;
-pub mod look;
 mod node;
 pub mod onset;
 pub mod orbit;
@@ -27,17 +26,16 @@ mod seek;
 pub mod seen;
 pub mod settle;
 pub mod shooting;
-pub mod switch;
 pub mod trace;
 pub mod worst;
 
+pub use attractors::{Attractor, Sample};
 pub use basins::{Basins, Plane};
-pub use branches::{Branches, Interval, Watch, branches};
+pub use branches::{Branches, Control, Interval, branches};
 pub use events::{End, Event, EventKind};
 pub use forced::Forced;
 pub use known::from_rest_and;
 pub use largest::largest;
-pub use look::Sample;
 pub use onset::{Onset, Seed, onset};
 pub use orbit::Orbit;
 pub use shooting::Shooting;

@@ -2,9 +2,8 @@
 
 use crate::parameter::Error;
 use rayon::prelude::*;
-use retune_model::{Coupled, Parameter, Scene, Side};
-use retune_solver::observe::{Observer, Path, PrimaryEnergy, RunningMaximum, Segment, Unobserved};
-use retune_solver::steps::Steps;
+use retune_model::{Coupled, Parameter, Scene};
+use retune_solver::observe::{Observer, PrimaryEnergy, RunningMaximum, TouchDowns, Unobserved};
 use retune_solver::{Follower, Motion, Phase, Settings, SolverError};
 use std::f64::consts::TAU;
 
@@ -63,39 +62,6 @@ pub fn resumed(scene: &Scene, y: [f64; 4]) -> Result<Motion, Error> {
     Ok(Motion { t: 0.0, y, phase: Phase::of(&coupled(scene)?, &y) })
 }
 
-/// Counts impacts.
-#[derive(Default)]
-pub(crate) struct Touches(pub(crate) [u64; 2]);
-
-impl Observer<4> for Touches {
-    fn segment(&mut self, _segment: &impl Segment<4>) {}
-    fn path(&mut self, _path: &impl Path<4>) {}
-    fn steps(&mut self, _steps: &Steps<'_, 4>) {}
-    fn touch_down(&mut self, _t: f64, side: Side) {
-        self.0[side as usize] += 1;
-    }
-}
-
-struct Watch<'a> {
-    peak: RunningMaximum<PrimaryEnergy<'a>>,
-    touches: Touches,
-}
-
-impl Observer<4> for Watch<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        self.peak.segment(segment);
-    }
-    fn path(&mut self, path: &impl Path<4>) {
-        self.peak.path(path);
-    }
-    fn steps(&mut self, steps: &Steps<'_, 4>) {
-        self.peak.steps(steps);
-    }
-    fn touch_down(&mut self, t: f64, side: Side) {
-        self.touches.touch_down(t, side);
-    }
-}
-
 /// The stroboscopic samples of a motion at one value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
@@ -137,14 +103,13 @@ pub(crate) fn orbit(
     let mut samples = Vec::with_capacity(periods.record);
     let (mut e1_max, mut impacts) = (0.0_f64, [0; 2]);
     for _ in 0..periods.record {
-        let mut watch = Watch {
-            peak: RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY),
-            touches: Touches::default(),
-        };
-        motion = map.next(motion, &mut watch)?;
+        let peak = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
+        let mut seen = (peak, TouchDowns::default());
+        motion = map.next(motion, &mut seen)?;
         samples.push(motion.y);
-        e1_max = e1_max.max(watch.peak.record().value);
-        impacts = [0, 1].map(|side| impacts[side] + watch.touches.0[side]);
+        let (peak, TouchDowns(touches)) = seen;
+        e1_max = e1_max.max(peak.record().value);
+        impacts = [0, 1].map(|side| impacts[side] + touches[side]);
     }
     Ok((Orbit { value, samples, e1_max, impacts }, motion))
 }

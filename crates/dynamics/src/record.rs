@@ -3,9 +3,9 @@
 
 use crate::lyapunov::{Exponent, Neighbours, Pair};
 use crate::parameter::Error;
-use crate::poincare::{PoincareMap, Touches, at_rest, coupled};
+use crate::poincare::{PoincareMap, at_rest, coupled};
 use retune_model::{Coupled, Scene};
-use retune_solver::observe::Unobserved;
+use retune_solver::observe::{TouchDowns, Unobserved};
 use retune_solver::{Motion, Phase, Settings, SolverError};
 
 /// How long a motion is recorded, in periods of the force.
@@ -73,6 +73,12 @@ pub(crate) fn distance(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
+/// Root mean square of states about zero, √J.
+pub(crate) fn size(states: &[[f64; 4]]) -> f64 {
+    let sum: f64 = states.iter().map(|y| y.iter().map(|v| v * v).sum::<f64>()).sum();
+    (sum / states.len().max(1) as f64).sqrt()
+}
+
 struct Twins<'a> {
     scene: &'a Scene,
     system: &'a Coupled,
@@ -126,7 +132,7 @@ pub fn follow(
         distance: APART * size,
     };
     for _ in 0..count {
-        let mut touches = Touches::default();
+        let mut touches = TouchDowns::default();
         let motion = ahead.next(pair.motion, &mut touches)?;
         record.growth.push(pair.advance(&mut twins, motion)?);
         record.samples.push(coordinates(scene, &motion.y));
@@ -153,8 +159,6 @@ impl Record {
 
     /// Root mean square of the settled samples about zero, √J: the scale for distances.
     pub fn scale(&self) -> f64 {
-        let settled = &self.samples[self.settle.min(self.samples.len())..];
-        let sum: f64 = settled.iter().map(|y| y.iter().map(|v| v * v).sum::<f64>()).sum();
-        (sum / settled.len().max(1) as f64).sqrt()
+        size(&self.samples[self.settle.min(self.samples.len())..])
     }
 }

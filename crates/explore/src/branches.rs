@@ -5,7 +5,7 @@ use crate::protocol::Answer;
 use crate::response::{Stale, band};
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::worst::quantity;
-use retune_dynamics::periodic::{Branch, Branches, Event, EventKind, Largest, Orbit, Watch, branches};
+use retune_dynamics::periodic::{Branch, Branches, Control, Event, EventKind, Largest, Orbit, branches};
 use retune_model::{Parameter, Source};
 use retune_study::{Study, rounded};
 use serde_json::{Value, json};
@@ -46,13 +46,13 @@ pub fn follow(
     let plan = Plan {
         samples: SAMPLES,
         starts: STARTS,
-        looks: SPACINGS.len(),
+        passes: SPACINGS.len(),
         ..Plan::over(Parameter::Omega, range)
     };
     let [done, made] = [AtomicU64::new(0), AtomicU64::new(0)];
-    let watch = Watch {
+    let watch = Control {
         done: &|| send(progress(1 + done.fetch_add(1, SeqCst))),
-        goes_on: &|| !is_stale() && made.fetch_add(1, SeqCst) < MOST_MOTIONS,
+        proceed: &|| !is_stale() && made.fetch_add(1, SeqCst) < MOST_MOTIONS,
     };
     let found = branches(&study.scene, plan, &of_periods(study), watch);
     if is_stale() {

@@ -70,7 +70,7 @@ impl Curve {
         let mut scene: Scene = self.study.scene;
         scene.forcing.frequency = frequency;
         let found = self.goal.evaluate(&scene, &self.study.solver.settings(), f64::INFINITY);
-        found.map_or(f64::NAN, |found| found.energy)
+        found.map_or(f64::NAN, |found| found.value)
     }
 
     /// The values at evenly spaced frequencies of the band: `[omega, value]`.

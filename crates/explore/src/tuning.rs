@@ -6,7 +6,7 @@ use crate::refused::Refused;
 use crate::start::Start;
 use retune_jobs::tune::{log, objective::searched};
 use retune_model::Parameter;
-use retune_optim::{DesignObjective, Objective, Response, Scale, Stiffnesses, Stop, energy, minimize};
+use retune_optim::{DesignObjective, Objective, Response, Scale, Stiffnesses, Stop, minimize, value_of};
 use retune_study::{Search, Study, rounded};
 use std::ops::ControlFlow;
 
@@ -67,8 +67,8 @@ pub fn tune(
         send(
             Answer::new("tuned")
                 .with("design", design)
-                .with("value", energy(found.value))
-                .with("worth", rounded(energy(found.value), 6))
+                .with("value", value_of(found.value))
+                .with("worth", rounded(value_of(found.value), 6))
                 .with("unit", quantity.unit())
                 .with("stop", words)
                 .with("iterations", found.iterations)
@@ -99,7 +99,7 @@ fn refine(
             let columns = Parameter::columns(&search.variables);
             let values: Vec<f64> = columns.iter().map(|column| column.get(&damper)).collect();
             let answer =
-                Answer::new("row").with("text", log::screen(row, &values)).with("value", energy(row.value));
+                Answer::new("row").with("text", log::screen(row, &values)).with("value", value_of(row.value));
             send(answer.with("best", &row.best));
         }
         if is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -114,7 +114,7 @@ fn value(
     goes_on: &(dyn Fn() -> bool + Sync),
 ) -> f64 {
     let found = objective.scene(design).and_then(|scene| objective.evaluate_while(&scene, cutoff, goes_on));
-    found.map_or(f64::INFINITY, |found| found.value)
+    found.map_or(f64::INFINITY, |found| found.ranked)
 }
 
 /// Runs behind a value, without those that locate the maxima of a band.
@@ -198,7 +198,7 @@ impl Map {
                     return;
                 }
                 (design[*i], design[*j]) = (*x, *y);
-                values.push(energy(value(objective, &design, f64::INFINITY, &|| !is_stale())));
+                values.push(value_of(value(objective, &design, f64::INFINITY, &|| !is_stale())));
             }
             send(Answer::new("map").with("row", row).column("value", &values));
         }

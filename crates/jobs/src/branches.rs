@@ -25,7 +25,7 @@ use crate::{Error, Observer, Request, resolved};
 use options::plan_json;
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::basins::SIDE;
-use retune_dynamics::periodic::branches::{Watch, branches as motions};
+use retune_dynamics::periodic::branches::{Control, branches as motions};
 use retune_study::{found_in, read};
 use std::path::Path;
 
@@ -75,7 +75,7 @@ pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> R
             &study.scene,
             plan,
             &study.solver.settings(),
-            Watch { done: &|| bar.inc(1), ..Watch::default() },
+            Control { done: &|| bar.inc(1), ..Control::default() },
         )?;
         bar.finish();
         let mut found = Found::new(study.clone(), branches);

@@ -154,7 +154,7 @@ fn complain(line: u64, failed: u64, reason: &LineError, complaints: &mut dyn FnM
 fn plain(found: &Result<Evaluation, LineError>) -> String {
     match found {
         Ok(found) if found.violation > 0.0 => "inf".to_owned(),
-        Ok(found) => found.energy.to_string(),
+        Ok(found) => found.value.to_string(),
         Err(reason) => format!("error: {reason}"),
     }
 }
@@ -167,7 +167,7 @@ fn object(objective: &DesignObjective, found: &Result<Evaluation, LineError>) ->
     let limits = objective.goal().limits;
     // An empty sum of excesses is -0.
     let mut fields = vec![
-        (objective.goal().objective.quantity().name(), found.energy),
+        (objective.goal().objective.quantity().name(), found.value),
         ("violation", found.violation + 0.0),
     ];
     fields.extend(limits.set().map(|limit| (limit.name(), found.reached.get(limit))));

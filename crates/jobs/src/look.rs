@@ -6,7 +6,7 @@ use retune_study::Study;
 
 /// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
 pub fn energy(study: &Study, samples: usize, at: &Design) -> Option<f64> {
-    Some(look(&finer(study, samples, at)?)?.energy)
+    Some(look(&finer(study, samples, at)?)?.value)
 }
 
 /// A study with a design in its scene, its band on so many samples; none where there is no such scene.

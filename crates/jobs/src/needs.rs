@@ -174,11 +174,11 @@ impl Needs {
                     let found = goal.evaluate(&scene, &settings, f64::INFINITY).ok()?;
                     let damper = scene.damper?;
                     let needs = Largest::of(study, &scene)?;
-                    let better = found.energy < (1.0 - BETTER) * value;
+                    let better = found.value < (1.0 - BETTER) * value;
                     Some(Linear {
                         k2: damper.stiffness.get(),
                         c2: damper.damping.get(),
-                        value: Amount::new(study.quantity(), found.energy),
+                        value: Amount::new(study.quantity(), found.value),
                         better_but: better.then(|| excluded(study, search, design, &scene, &needs)),
                         needs,
                     })

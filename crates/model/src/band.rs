@@ -68,11 +68,6 @@ impl Coupled {
         self.steady_max(Measure::Energy, band)
     }
 
-    /// Largest amplitude `|X1|`, m, of the primary structure over a band; as [`Self::steady_e1_max`].
-    pub fn steady_displacement_max(&self, band: [f64; 2]) -> Worst {
-        self.steady_max(Measure::Displacement, band)
-    }
-
     /// Largest steady stroke (spring deflection) `|X2 - X1|`, m, over a band; as [`Self::steady_e1_max`].
     pub fn steady_stroke_max(&self, band: [f64; 2]) -> Worst {
         self.steady_max(Measure::Stroke, band)

@@ -5,6 +5,12 @@ use crate::{Finite, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// The harmonic force and its quarter-turn: `[P cos(ωt + φ), P sin(ωt + φ)]`, N.
+///
+/// The formulas of this crate take this pair instead of `t`, so that a caller who steps in time may turn it by a rotation instead
+/// of calling `cos` at every step.
+pub type Excitation = [f64; 2];
+
 /// What makes the primary structure move, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "InFile", into = "InFile")]

@@ -6,8 +6,8 @@
 //!
 //! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
 //!   number of threads; [`best_separated`] picks starts for a refinement from it.
-//! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998) as an argmin solver, [`Fminsearch`], which logs
-//!   each iteration and can be continued.
+//! - [`minimize`]: MATLAB's `fminsearch` (Lagarias et al. 1998); [`Fminsearch`] is the state of a run, which logs each
+//!   iteration and can be continued.
 
 mod chunks;
 pub mod objective;
@@ -18,12 +18,12 @@ pub use objective::descent::Foot;
 pub use objective::design_objective::{Counts, DesignObjective, Failures};
 pub use objective::ensemble::{Ensemble, MOST_MEMBERS, Statistic};
 pub use objective::evaluation::{Evaluation, Place, Run};
-pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, energy, ranked};
+pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked, value_of};
 pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
+pub use objective::runs::Proceed;
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;
-pub use objective::watch::GoesOn;
 pub use retune_model::{Design, Parameter};
 pub use search::fminsearch::{
     Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize,

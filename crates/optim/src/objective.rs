@@ -16,6 +16,6 @@ pub mod limits;
 pub mod motions;
 pub mod needs;
 pub mod pieces;
+pub mod runs;
 pub mod spec;
 pub mod unusable;
-pub mod watch;

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let designs = lines.iter().map(design).collect::<Result<Vec<_>, _>>()?;
     let value = |design: &Vec<f64>| {
         let scene = objective.scene(design).ok()?;
-        Some(objective.evaluate(&scene, f64::INFINITY).ok()?.value)
+        Some(objective.evaluate(&scene, f64::INFINITY).ok()?.ranked)
     };
     let threads = threads.parse()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;

@@ -23,7 +23,7 @@ pub fn numbers_of(found: &Evaluation, [stroke, force]: [bool; 2]) -> [f64; COUNT
     let [stroke, force] = [known(Measure::Stroke, stroke), known(Measure::ContactForce, force)];
     let omega = found.worst.scene.forcing.frequency.get();
     // An empty sum of violations is -0.
-    [found.value, found.energy, stroke, force, found.violation + 0.0, omega]
+    [found.ranked, found.value, stroke, force, found.violation + 0.0, omega]
 }
 
 /// The columns of a batch.

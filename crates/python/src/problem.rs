@@ -9,7 +9,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use retune_model::Measure;
-use retune_optim::{DesignObjective, Evaluation, GoesOn, Limit, Objective, Parameter, Response};
+use retune_optim::{DesignObjective, Evaluation, Limit, Objective, Parameter, Proceed, Response};
 use retune_study::{Rule, Setting, Study, read::from_text};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -101,7 +101,7 @@ impl Core {
         let mut row = [0.0; Parameter::VARIED.len()];
         let row = &mut row[..objective.variables().len()];
         self.design(x, row)?;
-        Ok(self.found(py, objective, row)?.value)
+        Ok(self.found(py, objective, row)?.ranked)
     }
 
     /// Everything that an evaluation finds, by its name.
@@ -130,9 +130,9 @@ impl Core {
         let objective = Arc::clone(self.objective()?);
         let mut row = vec![0.0; objective.variables().len()];
         self.design(x, &mut row)?;
-        let by = move |goes_on: GoesOn<'_>| {
+        let by = move |goes_on: Proceed<'_>| {
             let (found, by) = objective.gradient(&row, goes_on)?;
-            Ok((found.value, by))
+            Ok((found.ranked, by))
         };
         let (value, by) = if self.takes_long {
             on_pool(py, &*pool(None)?, move |monitor| by(&|| !monitor.is_stopped()))?

@@ -4,7 +4,7 @@ use crate::error::{Remedy, SolverError};
 use crate::response::Work;
 
 /// Steps, or evaluations, after which the progress of a run is checked.
-const LOOK: u64 = 1 << 18;
+const CHECKED: u64 = 1 << 18;
 
 /// With fewer steps than this the rate of a run is unknown: the remedy is a higher limit.
 const FEW: u64 = 1000;
@@ -75,12 +75,12 @@ impl Budget {
     #[inline(always)]
     pub fn check(&self, work: &Work, t: f64) -> Result<(), SolverError> {
         let Work { steps, evaluations, .. } = *work;
-        let is_long = steps - self.begun.steps > LOOK || evaluations - self.begun.evaluations > LOOK;
-        if steps > self.limit || is_long { self.look(work, t) } else { Ok(()) }
+        let is_long = steps - self.begun.steps > CHECKED || evaluations - self.begun.evaluations > CHECKED;
+        if steps > self.limit || is_long { self.judge(work, t) } else { Ok(()) }
     }
 
     #[cold]
-    fn look(&self, work: &Work, t: f64) -> Result<(), SolverError> {
+    fn judge(&self, work: &Work, t: f64) -> Result<(), SolverError> {
         let Self { pace, limit, begun, span: [from, to] } = *self;
         let Work { steps, evaluations, .. } = *work;
         let (taken, come) = ((steps - begun.steps) as f64, (t - from).max(0.0));
@@ -89,7 +89,7 @@ impl Budget {
         let most_evaluations = (limit / STEPS_OF_AN_EVALUATION).max(LEAST_EVALUATIONS);
         let evaluated = (evaluations - begun.evaluations) as f64 * rest;
         let hopeless =
-            needed > HOPELESS * limit.max(LOOK) as f64 || evaluated > HOPELESS * most_evaluations as f64;
+            needed > HOPELESS * limit.max(CHECKED) as f64 || evaluated > HOPELESS * most_evaluations as f64;
         if steps - begun.steps > FEW && hopeless {
             let remedy = pace.remedy(to, come / taken);
             return Err(SolverError::TooSlow { t, steps, needed, limit, remedy });
@@ -168,8 +168,8 @@ mod tests {
     #[test]
     fn contract_a_budget_counts_the_steps_of_its_stretch() {
         let budget = Budget::new(FLIGHT, 1_000_000, steps(200_000), [10.0, 20.0]);
-        assert_eq!(budget.check(&steps(200_000 + LOOK), 10.0), Ok(()), "too early to tell");
-        assert!(budget.check(&steps(200_001 + LOOK), 10.0).is_err(), "no way made");
+        assert_eq!(budget.check(&steps(200_000 + CHECKED), 10.0), Ok(()), "too early to tell");
+        assert!(budget.check(&steps(200_001 + CHECKED), 10.0).is_err(), "no way made");
         // 300,000 steps for 10 s / 333 are 99.9 million for all of it, whatever came before.
         assert_eq!(budget.check(&steps(500_000), 10.0 + 10.0 / 333.0), Ok(()));
         assert!(budget.check(&steps(500_000), 10.0 + 10.0 / 334.0).is_err());

@@ -78,7 +78,7 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
 
 fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
     let e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
-    let mut seen = (e1, watched(system));
+    let mut seen = (e1, largest_of(system));
     let plan = Plan::of(system, settings, Request::Motion);
     let (state, work) = system.follow(plan, window, settings, &mut Unobserved, &mut seen)?;
     let (e1, structure) = seen;
@@ -97,9 +97,9 @@ fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<R
 }
 
 /// Observers of the largest displacement, velocity and acceleration of the structure and of its largest force on the ground.
-type Watched<'a, S, const N: usize> = [Magnitude<StructureMotion<'a, S, N>>; 4];
+type Largest<'a, S, const N: usize> = [Magnitude<StructureMotion<'a, S, N>>; 4];
 
-fn watched<S: Structure<N>, const N: usize>(system: &S) -> Watched<'_, S, N> {
+fn largest_of<S: Structure<N>, const N: usize>(system: &S) -> Largest<'_, S, N> {
     let quantities = [
         StructureMotion::displacement,
         StructureMotion::velocity,
@@ -110,7 +110,7 @@ fn watched<S: Structure<N>, const N: usize>(system: &S) -> Watched<'_, S, N> {
 }
 
 /// What they have seen. Rounding may not put a time outside the window.
-fn maxima<S: Structure<N>, const N: usize>(seen: &Watched<'_, S, N>, window: Window) -> StructureMaxima {
+fn maxima<S: Structure<N>, const N: usize>(seen: &Largest<'_, S, N>, window: Window) -> StructureMaxima {
     let [displacement, velocity, acceleration, ground_force] = seen.each_ref().map(|largest| {
         let Extreme { value, time } = largest.record();
         let time = if time > window.to { window.to } else { time };
@@ -124,7 +124,7 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let e1 = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
     let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
     let mut before = TouchDowns::default();
-    let mut seen = ((e1, e2), ([1.0, -1.0].map(position), (TouchDowns::default(), watched(system))));
+    let mut seen = ((e1, e2), ([1.0, -1.0].map(position), (TouchDowns::default(), largest_of(system))));
     let plan = Plan::of(system, settings, Request::Motion);
     let (final_state, work) = system.follow(plan, window, settings, &mut before, &mut seen)?;
     let ((e1, e2), ([farthest, nearest], (TouchDowns(impacts), structure))) = seen;

@@ -177,20 +177,20 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
 
     /// The moments in a piece, in the order of time.
     fn moments(&mut self, segment: &impl Segment<N>) -> Vec<(Knot<N>, Moment)> {
-        const LOOKS: usize = 4;
+        const SAMPLES: usize = 4;
         let [from, to] = segment.ends();
-        let theta = |look: usize| segment.length() * look as f64 / LOOKS as f64;
-        let looks: [f64; LOOKS + 1] = std::array::from_fn(theta);
-        let knots: [Knot<N>; LOOKS + 1] = std::array::from_fn(|look| match look {
+        let theta = |number: usize| segment.length() * number as f64 / SAMPLES as f64;
+        let places: [f64; SAMPLES + 1] = std::array::from_fn(theta);
+        let knots: [Knot<N>; SAMPLES + 1] = std::array::from_fn(|number| match number {
             0 => *from,
-            LOOKS => *to,
-            _ => segment.at(looks[look]),
+            SAMPLES => *to,
+            _ => segment.at(places[number]),
         });
         let mut moments = Vec::new();
         let mut maxima = |rate: &dyn Fn(&Knot<N>) -> f64, moment: Moment| {
             let rates = knots.map(|knot| rate(&knot));
-            for look in 0..LOOKS {
-                let [from, to] = [look, look + 1].map(|look| (looks[look], rates[look]));
+            for number in 0..SAMPLES {
+                let [from, to] = [number, number + 1].map(|number| (places[number], rates[number]));
                 if from.1 > 0.0 && to.1 <= 0.0 {
                     let place = falls(|theta| rate(&segment.at(theta)), from, to);
                     moments.push((segment.at(place), moment));

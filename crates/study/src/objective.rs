@@ -197,6 +197,6 @@ impl Study {
 
     /// The value of a scene by its objective, regardless of the limits, in the unit of its quantity; `None` if it cannot be run.
     pub fn energy(&self, scene: &Scene) -> Option<f64> {
-        Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.energy)
+        Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.value)
     }
 }

@@ -3,9 +3,9 @@
 //! At a crest of the force the structure is anywhere that the force can bring it, the damper at rest in it. A run is followed until it is as near to a
 //! motion that is known as [`settle`](super::settle::settle) asks a run to be to its own.
 
+use super::attractors::Sample;
 use super::branches::{Branches, Plan, equations, sample};
-use super::look::Sample;
-use super::settle::{LOOKS, NEAR, Starts};
+use super::settle::{CHECKS, NEAR, Starts};
 use crate::parameter::Error;
 use crate::poincare::{PoincareMap, coupled};
 use crate::record::{coordinates, distance};
@@ -72,7 +72,7 @@ impl Plane {
         let y = [x1, v1, x1 + self.system.rest_distance(), v1];
         let mut map = PoincareMap::new(&self.system, &self.settings);
         let mut motion = Motion { t: 0.0, y, phase: Phase::of(&self.system, &y) };
-        for _ in 0..LOOKS[LOOKS.len() - 1] {
+        for _ in 0..CHECKS[CHECKS.len() - 1] {
             motion = map.next(motion, &mut Unobserved)?;
             let now = at(&motion.y);
             let near = |state: &[f64; 4]| distance(&at(state), &now) < NEAR * distance(&now, &[0.0; 4]);

@@ -1,15 +1,13 @@
 //! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
 
-use super::crest::{COUNTS, crest, keep_crests};
+use super::attractors::{Reached, Sample, attractors_at, attractors_from};
 use super::events::Event;
-use super::largest::{merged, stable_parts};
-use super::look::{Reached, Sample, look, look_from};
+use super::largest::{COUNTS, crest, keep_crests, merged, stable_parts};
 use super::orbit::Orbit;
 use super::seen::quantity;
 use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
-use super::switch::doubled;
-use super::trace::{Branch, trace};
+use super::trace::{Branch, doubled, trace};
 use crate::parameter::{Error, evenly};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, Scene};
@@ -43,7 +41,7 @@ pub struct Plan {
     /// Number of values at which one run more is started, from rest, once the branches through the samples are known.
     pub fine: usize,
     /// How often the gaps without a stable motion are looked into, more closely each time: at most as often as [`SPACINGS`] says.
-    pub looks: usize,
+    pub passes: usize,
     /// Only motions with as much of a measure are followed along the parameter; the others count where runs meet them.
     pub least: Option<(Measure, f64)>,
     /// A branch is followed about its largest value of a measure alone, and none that branches off: enough for that value.
@@ -60,7 +58,7 @@ impl Plan {
             starts: 0,
             apart: 0,
             fine: 0,
-            looks: 0,
+            passes: 0,
             least: None,
             crests: None,
         }
@@ -97,16 +95,16 @@ pub struct Branches {
 
 /// Who follows a search, and may end it.
 #[derive(Clone, Copy)]
-pub struct Watch<'a> {
+pub struct Control<'a> {
     /// Called after each run from rest at a sample of the plan.
     pub done: &'a (dyn Fn() + Sync),
     /// Asked before each run and each motion of a branch: once it is false, no more are made.
-    pub goes_on: &'a (dyn Fn() -> bool + Sync),
+    pub proceed: &'a (dyn Fn() -> bool + Sync),
 }
 
-impl Default for Watch<'_> {
+impl Default for Control<'_> {
     fn default() -> Self {
-        Self { done: &|| (), goes_on: &|| true }
+        Self { done: &|| (), proceed: &|| true }
     }
 }
 
@@ -118,25 +116,30 @@ pub type Interval = [f64; 2];
 ///
 /// # Errors
 /// A scene in the range cannot be run.
-pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>) -> Result<Branches, Error> {
+pub fn branches(
+    scene: &Scene,
+    plan: Plan,
+    settings: &Settings,
+    control: Control<'_>,
+) -> Result<Branches, Error> {
     let shooting = equations(scene, &plan, settings)?;
     let starts = Starts::over(scene, plan.parameter, plan.range)?;
     let mut found = Branches { plan, branches: Vec::new(), samples: Vec::new(), ended: false };
     let ended = AtomicBool::new(false);
-    let goes_on = || {
-        (watch.goes_on)() || {
+    let proceed = || {
+        (control.proceed)() || {
             ended.store(true, SeqCst);
             false
         }
     };
     let from_rest = |value: &f64| {
-        let seen = look(&shooting, *value, (&starts, 0), &goes_on);
-        (watch.done)();
+        let seen = attractors_at(&shooting, *value, (&starts, 0), &proceed);
+        (control.done)();
         seen
     };
     let [from, to] = plan.range;
     if from == to {
-        found.samples.push(look(&shooting, from, (&starts, plan.others()), &goes_on)?.sample());
+        found.samples.push(attractors_at(&shooting, from, (&starts, plan.others()), &proceed)?.sample());
         found.ended |= ended.into_inner();
         return Ok(found);
     }
@@ -145,22 +148,22 @@ pub fn branches(scene: &Scene, plan: Plan, settings: &Settings, watch: Watch<'_>
     if let Some(measure) = plan.crests {
         found.plan.least = Some((measure, COUNTS * keep_crests(&mut seen, quantity(measure))));
     }
-    found.add(&shooting, seen, &goes_on);
-    let other = |number: usize| look_from(&shooting, &starts, number, &goes_on);
+    found.add(&shooting, seen, &proceed);
+    let other = |number: usize| attractors_from(&shooting, &starts, number, &proceed);
     let others = (0..plan.others()).into_par_iter().map(other).collect::<Result<_, Error>>()?;
-    found.add(&shooting, others, &goes_on);
+    found.add(&shooting, others, &proceed);
     for periods in 1..=APART {
-        found.seek_apart(&shooting, &starts, periods, &goes_on)?;
+        found.seek_apart(&shooting, &starts, periods, &proceed)?;
     }
-    for spacing in SPACINGS.iter().take(plan.looks) {
+    for spacing in SPACINGS.iter().take(plan.passes) {
         if ended.load(SeqCst) {
             break;
         }
-        let here = |value: &f64| look(&shooting, *value, (&starts, plan.fewer_starts()), &goes_on);
+        let here = |value: &f64| attractors_at(&shooting, *value, (&starts, plan.fewer_starts()), &proceed);
         let values = found.unseen(*spacing);
-        found.add(&shooting, values.par_iter().map(here).collect::<Result<_, Error>>()?, &goes_on);
+        found.add(&shooting, values.par_iter().map(here).collect::<Result<_, Error>>()?, &proceed);
     }
-    found.seek_from_rest(&shooting, &starts, &goes_on)?;
+    found.seek_from_rest(&shooting, &starts, &proceed)?;
     found.ended |= ended.into_inner();
     found.samples.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(found)
@@ -193,8 +196,8 @@ pub fn sample(
     let shooting = equations(scene, &plan, settings)?;
     let starts = Starts::over(scene, plan.parameter, plan.range)?;
     let seen = match number {
-        Some(number) => look_from(&shooting, &starts, number, &|| true)?,
-        None => look(&shooting, value, (&starts, plan.starts), &|| true)?,
+        Some(number) => attractors_from(&shooting, &starts, number, &|| true)?,
+        None => attractors_at(&shooting, value, (&starts, plan.starts), &|| true)?,
     };
     Ok(seen.sample())
 }
@@ -205,7 +208,7 @@ impl Branches {
         &mut self,
         shooting: &Shooting,
         seen: Vec<Reached>,
-        goes_on: &(dyn Fn() -> bool + Sync),
+        proceed: &(dyn Fn() -> bool + Sync),
     ) {
         let mut seen: Vec<Reached> = seen.into_iter().filter(|seen| seen.starts > 0).collect();
         let mut known = 0;
@@ -220,7 +223,7 @@ impl Branches {
             else {
                 break;
             };
-            next.branch = self.follow(&shooting.of_periods(next.periods), &next.motion, goes_on);
+            next.branch = self.follow(&shooting.of_periods(next.periods), &next.motion, proceed);
         }
         self.samples.extend(seen.into_iter().map(Reached::sample));
     }
@@ -245,7 +248,7 @@ impl Branches {
         &mut self,
         shooting: &Shooting,
         seed: &Solution,
-        goes_on: &(dyn Fn() -> bool + Sync),
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Option<usize> {
         if self.branches.len() >= MOST_BRANCHES {
             self.ended = true;
@@ -256,7 +259,7 @@ impl Branches {
             self.branches.push(crest(shooting, seed, self.plan.range, quantity(measure))?);
             return Some(number);
         }
-        self.branches.push(trace(shooting, seed, self.plan.range, goes_on)?);
+        self.branches.push(trace(shooting, seed, self.plan.range, proceed)?);
         let mut next = number;
         while next < self.branches.len() && self.branches.len() < MOST_BRANCHES {
             let branch = self.branches[next].clone();
@@ -268,7 +271,7 @@ impl Branches {
                 let stable = |place: usize| branch.points.get(place).is_some_and(Orbit::is_stable);
                 let same = stable(event.place.wrapping_sub(1)) == stable(event.place + 1);
                 let follows = !same && self.plan.follows(&event.orbit);
-                follows.then(|| doubled(&branch.shooting, event, self.plan.range, goes_on)).flatten()
+                follows.then(|| doubled(&branch.shooting, event, self.plan.range, proceed)).flatten()
             };
             let off: Vec<Branch> = branch.events.par_iter().filter_map(branches_off).collect();
             for off in off {

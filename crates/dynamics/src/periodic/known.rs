@@ -1,7 +1,7 @@
 //! Motions that are known for one damper, followed to dampers like it: what a search looks at beside runs from rest.
 
-use super::branches::{Branches, Plan, Watch, branches, equations};
-use super::crest::COUNTS;
+use super::branches::{Branches, Control, Plan, branches, equations};
+use super::largest::COUNTS;
 use super::onset::Seed;
 use super::orbit::Orbit;
 use super::seen::quantity;
@@ -24,8 +24,8 @@ pub fn from_rest_and(
     (plan, measure): (Plan, Measure),
     settings: &Settings,
 ) -> Result<Branches, Error> {
-    let plan = Plan { starts: 0, apart: 0, fine: 0, looks: 0, crests: Some(measure), ..plan };
-    let mut found = branches(scene, plan, settings, Watch::default())?;
+    let plan = Plan { starts: 0, apart: 0, fine: 0, passes: 0, crests: Some(measure), ..plan };
+    let mut found = branches(scene, plan, settings, Control::default())?;
     let shooting = equations(scene, &plan, settings)?;
     for seed in known {
         let own = shooting.of_periods(seed.orbit.periods);

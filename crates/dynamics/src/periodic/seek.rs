@@ -1,8 +1,8 @@
 //! What the runs at the samples have not led to: motions that are stable over little of the range, and those that no run settles on.
 
+use super::attractors::{Sample, attractors_at};
 use super::branches::Branches;
 use super::deflate::another;
-use super::look::{Sample, look};
 use super::settle::Starts;
 use super::shooting::{Shooting, Solution};
 use crate::parameter::{Error, evenly};
@@ -23,11 +23,11 @@ impl Branches {
         &mut self,
         shooting: &Shooting,
         starts: &Starts,
-        goes_on: &(dyn Fn() -> bool + Sync),
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
         let [from, to] = self.plan.range;
         let unknown = |branches: &Self, value: f64| -> Result<bool, Error> {
-            let seen = look(shooting, value, (starts, 0), goes_on)?;
+            let seen = attractors_at(shooting, value, (starts, 0), proceed)?;
             Ok(seen.is_any(shooting, |own, motion| branches.holds(own, motion).is_none()))
         };
         let values = evenly(from, to, self.plan.fine);
@@ -35,8 +35,8 @@ impl Branches {
         for (value, _) in values.into_iter().zip(seen?).filter(|(_, is_unknown)| *is_unknown) {
             // The branch through one of them may hold the next.
             if unknown(self, value)? {
-                let seen = look(shooting, value, (starts, self.plan.fewer_starts()), goes_on)?;
-                self.add(shooting, vec![seen], goes_on);
+                let seen = attractors_at(shooting, value, (starts, self.plan.fewer_starts()), proceed)?;
+                self.add(shooting, vec![seen], proceed);
             }
         }
         Ok(())
@@ -52,7 +52,7 @@ impl Branches {
         shooting: &Shooting,
         starts: &Starts,
         periods: usize,
-        goes_on: &(dyn Fn() -> bool + Sync),
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
         let own = shooting.of_periods(periods);
         let near = Periods { settle: PASSED - periods, record: periods };
@@ -65,7 +65,7 @@ impl Branches {
                 let from = Motion { t: 0.0, y, phase: Phase::of(&system, &y) };
                 let (run, _) = orbit(&system, value, from, near, own.settings())?;
                 let start = own.unknowns(&run.samples, value);
-                while let Some(motion) = goes_on().then(|| another(&own, &start, &known)).flatten() {
+                while let Some(motion) = proceed().then(|| another(&own, &start, &known)).flatten() {
                     known.push(motion.x.clone());
                     found.push(motion);
                 }
@@ -76,7 +76,7 @@ impl Branches {
             self.samples.par_iter().filter(|sample| sample.number.is_none()).map(others).collect();
         for motion in found?.into_iter().flatten() {
             if self.holds(&own, &motion).is_none() {
-                self.follow(&own, &motion, goes_on);
+                self.follow(&own, &motion, proceed);
             }
         }
         Ok(())

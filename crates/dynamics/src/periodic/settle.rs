@@ -13,7 +13,7 @@ use retune_solver::{Motion, Phase, Settings};
 use std::f64::consts::TAU;
 
 /// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
-pub(super) const LOOKS: [usize; 4] = [60, 120, 240, 480];
+pub(super) const CHECKS: [usize; 4] = [60, 120, 240, 480];
 /// Periods of the force at resonance whose energy counts as reached.
 const AT_RESONANCE: f64 = 60.0;
 /// Values at which it is looked at.
@@ -48,12 +48,12 @@ pub fn settle(shooting: &Shooting, value: f64, y: [f64; 4]) -> Result<Settled, E
     let mut map = PoincareMap::new(&system, &Settings { rtol: 1e-10, ..*shooting.settings() });
     let mut motion = Motion { t: 0.0, y, phase: Phase::of(&system, &y) };
     let mut taken = 0;
-    for look in LOOKS {
+    for check in CHECKS {
         let mut last = Vec::new();
-        while taken < look {
+        while taken < check {
             motion = map.next(motion, &mut Unobserved)?;
             taken += 1;
-            if taken + MOST_PERIODS >= look {
+            if taken + MOST_PERIODS >= check {
                 last.push(motion.y);
             }
         }

@@ -3,7 +3,7 @@
 //! From a motion, a step along the branch's direction, then Newton's iteration in the plane across it. A step is taken again, half as
 //! long, where the iteration needs many rounds, ends far from the prediction or on a motion of a shorter period, the direction turns by more
 //! than [`TURN`], or what happens on the way cannot be located, because the motions there are not one branch: so it neither jumps to another
-//! branch nor cuts a fold short.
+//! branch nor cuts a fold short. At a period doubling it goes on to the branch of twice the period.
 
 use super::events::{End, Event, EventKind, located};
 use super::forced::{Damped, Forced};
@@ -11,7 +11,7 @@ use super::node::Node;
 use super::orbit::Orbit;
 use super::settle::least_periods;
 use super::shooting::{Shooting, Solution};
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix4, Vector4};
 
 /// The step at the start, the longest and the shortest, in units of the motion's size and of the parameter's span.
 const FIRST: f64 = 2e-3;
@@ -73,54 +73,85 @@ pub fn trace<S: Forced>(
     shooting: &Shooting<S>,
     seed: &Solution,
     [from, to]: [f64; 2],
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Option<Branch<S>> {
-    trace_while(shooting, seed, [from, to], &|_| goes_on())
+    trace_while(shooting, seed, [from, to], &|_| proceed())
 }
 
-/// The same as long as `goes_on` says so of the motion that it has come to.
+/// The same as long as `proceed` says so of the motion that it has come to.
 pub(super) fn trace_while<S: Forced>(
     shooting: &Shooting<S>,
     seed: &Solution,
     [from, to]: [f64; 2],
-    goes_on: &dyn Fn(&Orbit) -> bool,
+    proceed: &dyn Fn(&Orbit) -> bool,
 ) -> Option<Branch<S>> {
     let start = Node::new(shooting, seed.clone(), &shooting.by_value())?;
-    let (after, end) = side(shooting, &start, [from, to], goes_on);
+    let (after, end) = side(shooting, &start, [from, to], proceed);
     if end == End::Closed {
         return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));
     }
     let back = start.clone().turned();
-    let (before, begin) = side(shooting, &back, [from, to], goes_on);
+    let (before, begin) = side(shooting, &back, [from, to], proceed);
     Some(joined(shooting, before, &start, after, [begin, end]))
 }
 
+/// The branch that begins at a period doubling of another; none if it is not one, or no motion is found on it.
+pub fn doubled<S: Forced>(
+    shooting: &Shooting<S>,
+    event: &Event,
+    range: [f64; 2],
+    proceed: &dyn Fn() -> bool,
+) -> Option<Branch<S>> {
+    if event.kind != EventKind::PeriodDoubling {
+        return None;
+    }
+    // The change that comes back with the opposite sign: `(M + 1) v = 0`.
+    let svd = (event.at.monodromy() + Matrix4::identity()).svd(false, true);
+    let least = svd.singular_values.imin();
+    let mut change: Vector4<f64> = svd.v_t?.row(least).transpose();
+    let twice = shooting.of_periods(2 * shooting.periods);
+    let m = shooting.segments;
+    let mut direction = DVector::zeros(8 * m + 1);
+    for (k, transition) in event.at.transitions.iter().enumerate() {
+        for i in 0..4 {
+            direction[4 * k + i] = change[i];
+            direction[4 * (m + k) + i] = -change[i];
+        }
+        change = transition * change;
+    }
+    direction /= twice.norm(&direction);
+    let start = Node::doubled(&twice, &event.orbit.states, event.orbit.value, direction)?;
+    let branch = trace_from(&twice, &start, range, proceed);
+    // One that is closed does not begin at the period doubling: the step has missed.
+    (branch.points.len() > 1 && branch.ends[1] != End::Closed).then_some(branch)
+}
+
 /// The branch from a solution to one side alone.
-pub(super) fn trace_from<S: Forced>(
+fn trace_from<S: Forced>(
     shooting: &Shooting<S>,
     start: &Node,
     range: [f64; 2],
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Branch<S> {
-    let (after, end) = side(shooting, start, range, &|_| goes_on());
+    let (after, end) = side(shooting, start, range, &|_| proceed());
     joined(shooting, Vec::new(), start, after, [End::Halved, end])
 }
 
 /// A motion, or an event, found on the way.
-type Found = (Orbit, Option<Event>);
+type Passed = (Orbit, Option<Event>);
 
 /// The motions to one side of a start.
 fn side(
     shooting: &Shooting<impl Forced>,
     start: &Node,
     range: [f64; 2],
-    goes_on: &dyn Fn(&Orbit) -> bool,
-) -> (Vec<Found>, End) {
-    let mut found: Vec<Found> = Vec::new();
+    proceed: &dyn Fn(&Orbit) -> bool,
+) -> (Vec<Passed>, End) {
+    let mut found: Vec<Passed> = Vec::new();
     let (mut now, mut step) = (start.clone(), FIRST);
     let (mut apart, mut unstable) = (0.0, 0);
     for _ in 0..MOST {
-        if !goes_on(&now.orbit) {
+        if !proceed(&now.orbit) {
             return (found, End::Ended);
         }
         let (next, events, end) = loop {
@@ -255,9 +286,9 @@ fn halves(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> Option<DVector<
 /// Both sides as one branch.
 fn joined<S: Forced>(
     shooting: &Shooting<S>,
-    before: Vec<Found>,
+    before: Vec<Passed>,
     start: &Node,
-    after: Vec<Found>,
+    after: Vec<Passed>,
     ends: [End; 2],
 ) -> Branch<S> {
     let middle = (start.orbit.clone(), None);

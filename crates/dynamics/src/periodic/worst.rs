@@ -1,9 +1,9 @@
 //! The largest value of a quantity over all motions of a scene in a range of a parameter: exact on branches of stable periodic motions, and of
 //! runs where none is known.
 
-use super::branches::{Branches, Interval, Plan, Watch, branches};
+use super::attractors::{Attractor, Sample};
+use super::branches::{Branches, Control, Interval, Plan, branches};
 use super::largest::{largest, stable_ranges};
-use super::look::{Attractor, Sample};
 use super::orbit::Orbit;
 use super::seen::Seen;
 pub use super::seen::quantity;
@@ -70,7 +70,7 @@ pub fn motions(
     settings: &Settings,
     quantities: &[fn(&Seen) -> f64],
 ) -> Result<Motions, Error> {
-    Ok(Motions::of(&branches(scene, plan, settings, Watch::default())?, quantities))
+    Ok(Motions::of(&branches(scene, plan, settings, Control::default())?, quantities))
 }
 
 impl Motions {

@@ -2,7 +2,7 @@
 //! whether branches are followed to their ends.
 
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::branches::{Plan, Watch};
+use retune_dynamics::periodic::branches::{Control, Plan};
 use retune_dynamics::periodic::{Branch, End, Event, EventKind, Orbit, branches};
 use retune_solver::Settings;
 use retune_testkit::scenes::{Numbers, SSVI, Spread};
@@ -192,9 +192,9 @@ fn invariant_each_change_of_stability_is_named() {
             let over = Plan::over(Parameter::Omega, [0.8 * natural, 1.25 * natural]);
             let plan = Plan { samples: 11, starts: 3, ..over };
             let asked = AtomicUsize::new(0);
-            let goes_on = || asked.fetch_add(1, SeqCst) < most;
-            let watch = Watch { goes_on: &goes_on, ..Watch::default() };
-            let found = branches(&numbers.scene(), plan, &Settings::default(), watch).expect("branches");
+            let proceed = || asked.fetch_add(1, SeqCst) < most;
+            let control = Control { proceed: &proceed, ..Control::default() };
+            let found = branches(&numbers.scene(), plan, &Settings::default(), control).expect("branches");
             found.branches.iter().for_each(|branch| own.add(&Count::of(branch)));
         }
         row(name, each, &own);
@@ -210,7 +210,7 @@ fn invariant_each_change_of_stability_is_named() {
 #[test]
 fn regress_a_doubled_branch_begins_with_all_its_bifurcations() {
     let plan = Plan { samples: 2, starts: 0, ..Plan::over(Parameter::Omega, [5.25, 5.28]) };
-    let found = branches(&SSVI.scene(), plan, &Settings::default(), Watch::default()).expect("branches");
+    let found = branches(&SSVI.scene(), plan, &Settings::default(), Control::default()).expect("branches");
     let twice = found.branches.iter().find(|branch| branch.shooting.periods == 2).expect("a doubled branch");
     assert_eq!(twice.ends[0], End::Halved);
     assert!((twice.points[0].value - 5.265_928_357_57).abs() < 1e-9, "{}", twice.points[0].value);

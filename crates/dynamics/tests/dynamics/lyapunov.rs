@@ -2,7 +2,7 @@
 #![allow(clippy::approx_constant, reason = "6.28 and 0.318 are the paper's inputs, not 2π and 1/π")]
 
 use crate::common::{ROW1, TMD, scene};
-use retune_dynamics::lyapunov::{Exponent, Neighbours, Pair, growth};
+use retune_dynamics::lyapunov::{Exponent, Neighbours, Pair};
 use retune_dynamics::{Stretch, follow};
 use retune_model::Coupled;
 use retune_solver::Settings;
@@ -23,6 +23,24 @@ impl<F: FnMut([f64; 3]) -> [f64; 3]> Neighbours for Plane<F> {
     fn between(&self, a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
         std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))
     }
+}
+
+/// Logarithms of growth over `steps` steps after `settle` steps in which the neighbour finds the fastest direction.
+fn growth<N: Neighbours>(
+    system: &mut N,
+    mut pair: Pair<N::State>,
+    settle: usize,
+    steps: usize,
+) -> Result<Vec<f64>, N::Error> {
+    let mut rates = Vec::with_capacity(steps);
+    for i in 0..settle + steps {
+        let motion = system.step(pair.motion)?;
+        let rate = pair.advance(system, motion)?;
+        if i >= settle {
+            rates.push(rate);
+        }
+    }
+    Ok(rates)
 }
 
 fn exponent(map: impl FnMut([f64; 3]) -> [f64; 3], start: [f64; 3], steps: usize, duration: f64) -> Exponent {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use retune_dynamics::parameter::evenly;
-use retune_dynamics::periodic::branches::{Plan, Watch, equations};
+use retune_dynamics::periodic::branches::{Control, Plan, equations};
 use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::{Branch, End, Orbit, branches};
 use retune_dynamics::{Parameter, Stretch, follow};
@@ -40,8 +40,8 @@ fn invariant_what_settles_lies_on_a_branch() {
     for numbers in DAMPERS {
         let settings = Settings::default();
         let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
-        let plan = Plan { samples: 31, starts: 8, fine: count, looks: 2, ..over };
-        let found = branches(&numbers.scene(), plan, &settings, Watch::default()).expect("branches");
+        let plan = Plan { samples: 31, starts: 8, fine: count, passes: 2, ..over };
+        let found = branches(&numbers.scene(), plan, &settings, Control::default()).expect("branches");
         let shooting = equations(&numbers.scene(), &plan, &settings).expect("equations");
         let [low, high] = plan.range;
         let half = 0.5 * (high - low) / (count - 1) as f64;
@@ -106,7 +106,7 @@ fn invariant_deflation_finds_an_isola_that_no_run_from_rest_leads_to() {
     let isola = |apart: usize| {
         let plan = Plan { samples: 7, apart, ..Plan::over(Parameter::Omega, [5.0, 8.0]) };
         let found =
-            branches(&DAMPERS[3].scene(), plan, &Settings::default(), Watch::default()).expect("branches");
+            branches(&DAMPERS[3].scene(), plan, &Settings::default(), Control::default()).expect("branches");
         found.branches.iter().filter(|branch| branch.ends.contains(&End::Closed)).count()
     };
     assert_eq!([0, 4].map(isola), [0, 1]);
@@ -123,9 +123,9 @@ fn invariant_branches_keep_their_period() {
     println!("| ---: | ---: | ---: | ---: | ---: |");
     for &k1 in structures {
         let range = [0.8, 1.25].map(|share| share * f64::sqrt(k1 / 1000.0));
-        let plan = Plan { samples: 31, starts: 16, looks: 2, ..Plan::over(Parameter::Omega, range) };
+        let plan = Plan { samples: 31, starts: 16, passes: 2, ..Plan::over(Parameter::Omega, range) };
         let scene = Numbers { k1, ..SSVI }.scene();
-        let found = branches(&scene, plan, &Settings::default(), Watch::default()).expect("branches");
+        let found = branches(&scene, plan, &Settings::default(), Control::default()).expect("branches");
         let repeated: Vec<bool> = found.branches.iter().flat_map(of_a_shorter_period).collect();
         let shorter = repeated.iter().filter(|sooner| **sooner).count();
         let lost =

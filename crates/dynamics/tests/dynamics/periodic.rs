@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, Vector4};
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::branches::{Plan, Watch, equations};
+use retune_dynamics::periodic::branches::{Control, Plan, equations};
 use retune_dynamics::periodic::settle::{Settled, Starts, settle};
 use retune_dynamics::periodic::shooting::Solution;
 use retune_dynamics::periodic::{End, EventKind, Orbit, Shooting, branches, largest};
@@ -42,13 +42,14 @@ fn shooting(numbers: &Numbers, omega: f64) -> Shooting {
 }
 
 fn plan(samples: usize, starts: usize) -> Plan {
-    Plan { samples, starts, looks: 2, ..Plan::over(Parameter::Omega, [5.0, 8.0]) }
+    Plan { samples, starts, passes: 2, ..Plan::over(Parameter::Omega, [5.0, 8.0]) }
 }
 
 /// A damper that touches nothing: the branch is the steady response, its multipliers those of the linear flow.
 #[test]
 fn exact_the_branch_of_a_tmd() {
-    let found = branches(&TMD.scene(), plan(4, 2), &Settings::default(), Watch::default()).expect("branches");
+    let found =
+        branches(&TMD.scene(), plan(4, 2), &Settings::default(), Control::default()).expect("branches");
     let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
     assert!(branch.events.is_empty() && branch.ends == [End::Range; 2]);
     assert_eq!([branch.points[0].value, branch.points[branch.points.len() - 1].value], [5.0, 8.0]);
@@ -185,8 +186,8 @@ fn regress_a_branch_is_not_left_at_a_grazing() {
 /// At a period doubling a motion of twice the period begins that settles on the one side, the single one on the other.
 #[test]
 fn invariant_a_period_doubling_is_bracketed_by_runs() {
-    let found =
-        branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), Watch::default()).expect("branches");
+    let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), Control::default())
+        .expect("branches");
     let main = found.branches.iter().find(|branch| branch.shooting.periods == 1).expect("the main branch");
     let event = main.events.iter().find(|event| event.kind == EventKind::PeriodDoubling).expect("one");
     assert!((event.orbit.multipliers[0] + 1.0).norm() < 1e-7, "{:?}", event.orbit.multipliers);
@@ -207,9 +208,10 @@ fn invariant_a_period_doubling_is_bracketed_by_runs() {
 fn contract_a_search_that_is_ended_says_so() {
     let search = |most: usize| {
         let asked = AtomicUsize::new(0);
-        let goes_on = || asked.fetch_add(1, SeqCst) < most;
-        let watch = Watch { goes_on: &goes_on, ..Watch::default() };
-        let found = branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), watch).expect("branches");
+        let proceed = || asked.fetch_add(1, SeqCst) < most;
+        let control = Control { proceed: &proceed, ..Control::default() };
+        let found =
+            branches(&WITH_ISOLA.scene(), plan(4, 0), &Settings::default(), control).expect("branches");
         (found, asked.into_inner())
     };
     let (whole, all) = search(usize::MAX);
@@ -231,7 +233,7 @@ fn regress_starts_at_the_resonance_of_an_undamped_structure_settle() {
     for range in [[natural, 1.0001 * natural], [0.5 * natural, 1.5 * natural]] {
         let plan = Plan { range, ..plan(3, 8) };
         let found =
-            branches(&numbers.scene(), plan, &Settings::default(), Watch::default()).expect("branches");
+            branches(&numbers.scene(), plan, &Settings::default(), Control::default()).expect("branches");
         let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
         assert_eq!([branch.points[0].value, branch.points[branch.points.len() - 1].value], range);
         for sample in &found.samples {

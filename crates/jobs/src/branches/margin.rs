@@ -6,7 +6,7 @@
 
 use crate::Error;
 use crate::branches::found::{Found, Margin};
-use retune_dynamics::periodic::branches::{Watch, branches};
+use retune_dynamics::periodic::branches::{Control, branches};
 use retune_dynamics::periodic::{Branch, Onset, onset};
 use retune_model::Parameter;
 
@@ -33,7 +33,7 @@ pub fn margin(found: &Found) -> Result<Option<Margin>, Error> {
     }
     let first_birth = |force: f64| -> Result<Option<Onset>, Error> {
         let scene = amplitude.at(found.study.scene, force).map_err(retune_dynamics::Error::from)?;
-        let there = branches(&scene, plan, &found.study.solver.settings(), Watch::default())?;
+        let there = branches(&scene, plan, &found.study.solver.settings(), Control::default())?;
         let there = Found::new(found.study.clone(), there);
         let births =
             others(&there).filter_map(|branch| onset(&branch.seeds(|_| true), amplitude, own, &|_| true));

@@ -96,7 +96,7 @@ impl Options {
             return Err(Error::Argument { option: "--samples, --starts, --apart, --fine", problem });
         }
         let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
-        let plan = Plan { samples, starts, apart, fine, looks: SPACINGS.len(), ..Plan::over(over, range) };
+        let plan = Plan { samples, starts, apart, fine, passes: SPACINGS.len(), ..Plan::over(over, range) };
         Ok((plan, basins))
     }
 }
@@ -131,7 +131,7 @@ pub(crate) fn plan_of(json: &Value) -> Option<Plan> {
         starts: count("starts")?,
         apart: count("apart")?,
         fine: count("fine")?,
-        looks: SPACINGS.len(),
+        passes: SPACINGS.len(),
         ..Plan::over(json["over"].as_str()?.parse().ok()?, range)
     })
 }

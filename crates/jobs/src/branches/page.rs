@@ -8,7 +8,7 @@ use crate::branches::remedy::{Remedy, remedies};
 use crate::branches::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
 use crate::branches::words::{joule, kind};
 use crate::summary::TunedDamper;
-use retune_dynamics::periodic::look::Attractor;
+use retune_dynamics::periodic::Attractor;
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, Sample};
 use retune_report::document::{Block, Document};
 use retune_store::Directory;

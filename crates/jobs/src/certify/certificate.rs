@@ -122,7 +122,7 @@ impl Short {
 
 impl Certificate {
     pub(super) fn new(study: &Study, damper: &Damper, own: &Evaluation, measured: Measured) -> Self {
-        let value = Amount::new(study.quantity(), own.energy);
+        let value = Amount::new(study.quantity(), own.value);
         let Judged { error_bar, predictable, verdict, words } = measured.judged(value);
         let Measured {
             worst_run,

@@ -103,7 +103,7 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
         neighbourhood,
         limits,
     };
-    let so_far = measured.judged(Amount::new(quantity, own.energy)).verdict;
+    let so_far = measured.judged(Amount::new(quantity, own.value)).verdict;
     let decide = matches!(so_far, Some(Verdict::Robust | Verdict::Edge));
     if (decide || others == OtherStarts::Always)
         && let Some(found) = coexisting(&study.scene, &own, &goal, &settings, study.certificate)?
@@ -143,7 +143,7 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
                 let term = goal.term(worst.term).cloned().unwrap_or_default();
                 let objective = Objective { omega: None, k1: None, ensemble: None, ..term };
                 let own = Goal { objective, limits: Limits::default(), ..goal.clone() };
-                let value = own.evaluate(&worst.scene, &settings, f64::INFINITY)?.energy;
+                let value = own.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
                 return Ok(Run { method, rtol, value: Amount::new(quantity, value) });
             }
             Response::Steady => settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask),
@@ -218,6 +218,6 @@ impl Look {
     const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 8]) };
 
     fn of(found: Result<Evaluation, Unusable>) -> Self {
-        found.map_or(Self::NOTHING, |found| Self { energy: found.energy, reached: found.reached })
+        found.map_or(Self::NOTHING, |found| Self { energy: found.value, reached: found.reached })
     }
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use retune_dynamics::Error;
 use retune_dynamics::periodic::branches::Plan;
 use retune_dynamics::periodic::worst::{quantity, width_missed};
-use retune_dynamics::periodic::{Branches, Watch, branches};
+use retune_dynamics::periodic::{Branches, Control, branches};
 use retune_model::{Measure, NonNegative, Parameter, Scene, Source};
 use retune_optim::{Evaluation, Goal, Limit, Limits, PerLimit, Stiffnesses, Unusable};
 use retune_solver::Settings;
@@ -120,11 +120,8 @@ fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> 
     let mut places = Vec::new();
     for (_, term) in &terms {
         let alone = Goal { objective: (*term).clone(), limits: Limits::default(), ..goal.clone() };
-        let from_rest = if terms.len() == 1 {
-            own.energy
-        } else {
-            alone.evaluate(scene, settings, f64::INFINITY)?.energy
-        };
+        let from_rest =
+            if terms.len() == 1 { own.value } else { alone.evaluate(scene, settings, f64::INFINITY)?.value };
         let own_k1 = scene.primary.stiffness.get();
         let k1 = match &term.k1 {
             None => vec![own_k1],
@@ -162,15 +159,15 @@ impl Place {
         let from_rest = if times == 1.0 {
             self.from_rest
         } else {
-            self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.energy)
+            self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.value)
         };
         // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
         let plan = if times == 1.0 {
-            Plan { looks: 1, ..self.plan() }
+            Plan { passes: 1, ..self.plan() }
         } else {
             Plan { least: Some((self.goal.objective.quantity(), FOLLOWED * from_rest)), ..self.plan() }
         };
-        let branches = branches(&scene, plan, settings, Watch::default())?;
+        let branches = branches(&scene, plan, settings, Control::default())?;
         Ok(AtForce { times, from_rest, branches })
     }
 

@@ -52,8 +52,8 @@ pub(super) fn screen(
     let Some(at) = search.given.first() else { return Ok(None) };
     let of = searched(&study, &search, &search.variables);
     let look = || {
-        let (height, _) = of.look(at, most);
-        if height.broken > 0.0 { f64::MAX } else { height.worst }
+        let (height, _) = of.height_and_runs(at, most);
+        if height.violation > 0.0 { f64::MAX } else { height.worst }
     };
     let Under { damper, sweep, bound } = under;
     let value =

@@ -108,7 +108,7 @@ impl Fronts {
         Some(Candidate {
             damper,
             at,
-            e1_max: found.energy,
+            e1_max: found.value,
             checked: None,
             stroke,
             force,
@@ -146,7 +146,7 @@ impl Fronts {
         if checked.is_none() {
             let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
             let seen =
-                study.and_then(|study| look(&study)).map_or(f64::INFINITY, |found| found.energy.max(*e1_max));
+                study.and_then(|study| look(&study)).map_or(f64::INFINITY, |found| found.value.max(*e1_max));
             return Ok(Candidate { checked: Some(seen), ..design.clone() });
         }
         let study = self.bounded(under, Vec::new())?;

@@ -8,7 +8,7 @@ use super::plan::{Plan, stiffness};
 use crate::Error;
 use rayon::prelude::*;
 use retune_dynamics::Parameter;
-use retune_dynamics::periodic::branches::{Plan as BranchPlan, Watch};
+use retune_dynamics::periodic::branches::{Control, Plan as BranchPlan};
 use retune_dynamics::periodic::{Branch, Branches, End, EventKind, branches};
 use retune_dynamics::regime::periodic_label;
 
@@ -40,8 +40,9 @@ pub fn begins(plan: &Plan, families: &[Family], all: &[Motions]) -> Result<Grid,
         let range = [motions.omega[0], motions.omega[motions.omega.len() - 1]];
         let samples = SAMPLES.min(motions.omega.len());
         let asked =
-            BranchPlan { samples, starts: STARTS, looks: 1, ..BranchPlan::over(Parameter::Omega, range) };
-        branches(&plan.scenes(family.k1)?[1], asked, &plan.settings(), Watch::default()).map_err(Error::from)
+            BranchPlan { samples, starts: STARTS, passes: 1, ..BranchPlan::over(Parameter::Omega, range) };
+        branches(&plan.scenes(family.k1)?[1], asked, &plan.settings(), Control::default())
+            .map_err(Error::from)
     });
     for (family, found) in families.iter().zip(found.collect::<Vec<Result<Branches, Error>>>()) {
         let found = found?;

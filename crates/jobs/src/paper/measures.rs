@@ -46,7 +46,7 @@ pub fn over_band(samples: usize, response: Response) -> Objective {
 /// E1max of a scene by an objective; infinite where it cannot be run.
 pub fn energy(scene: &Scene, objective: &Objective, window: Window, settings: &Settings) -> f64 {
     let goal = Goal { objective: objective.clone(), ..window.into() };
-    goal.evaluate(scene, settings, f64::INFINITY).map_or(f64::INFINITY, |found| found.energy)
+    goal.evaluate(scene, settings, f64::INFINITY).map_or(f64::INFINITY, |found| found.value)
 }
 
 /// At the scene's own frequency, in the window.

@@ -186,7 +186,7 @@ fn log(rows: &[Row], found: &Minimum, name: &str, item: &mut Item) {
     let mut grid = Grid::new(&caption, &head);
     let last = rows.len().saturating_sub(1);
     for (_, row) in rows.iter().enumerate().filter(|(i, _)| *i < 6 || *i == last) {
-        let mut cells = vec![row.iteration.to_string(), row.procedure.label().to_owned()];
+        let mut cells = vec![row.iteration.to_string(), row.procedure.to_string()];
         cells.extend(design(row).map(scientific));
         cells.push(scientific(row.value));
         grid.rows.push(cells);

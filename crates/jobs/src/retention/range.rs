@@ -144,7 +144,7 @@ pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Thr
     threshold.range(Care::RESULT, |k1, cutoff| {
         let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]);
         let found = scene.ok().and_then(|scene| goal.evaluate(&scene, &settings, cutoff).ok());
-        found.map_or(f64::INFINITY, |found| found.energy)
+        found.map_or(f64::INFINITY, |found| found.value)
     })
 }
 

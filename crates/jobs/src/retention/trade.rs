@@ -190,7 +190,7 @@ impl Seen<'_> {
         let energy = |k1: f64, cutoff: f64| {
             let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
             let found = scene.and_then(|scene| self.of_ranges.evaluate(&scene, cutoff).ok());
-            found.map_or(f64::INFINITY, |found| found.energy)
+            found.map_or(f64::INFINITY, |found| found.value)
         };
         self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)
     }

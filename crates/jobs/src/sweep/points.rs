@@ -136,12 +136,12 @@ impl Sweep {
         let (goal, settings) = (self.study.goal(), self.study.solver.settings());
         let bare = Goal { limits: Limits::default(), ..goal.clone() };
         let bare = bare.evaluate(&Scene { damper: None, ..*scene }, &settings, f64::INFINITY);
-        let none = bare.map_or(f64::INFINITY, |found| found.energy);
+        let none = bare.map_or(f64::INFINITY, |found| found.value);
         match goal.evaluate(scene, &settings, f64::INFINITY) {
             Ok(found) => {
                 let omega = found.worst.scene.forcing.frequency.get();
                 // An empty sum of violations is -0.
-                (vec![found.energy, omega, found.violation + 0.0, none], None)
+                (vec![found.value, omega, found.violation + 0.0, none], None)
             }
             Err(error) => (vec![f64::INFINITY, f64::INFINITY, f64::INFINITY, none], Some(error.to_string())),
         }

@@ -37,8 +37,8 @@ fn values(objective: DesignObjective, study: Study, up_to: f64) -> Result<Source
         }
         let scene = row.design().and_then(|design| study.scene_at(&design));
         let found = scene.and_then(|scene| objective.evaluate(&scene, up_to).ok());
-        let value = found.map_or(f64::INFINITY, |found| found.value.min(up_to));
-        Some(vec![(name.to_owned(), if basin { retune_optim::energy(value) } else { value })])
+        let value = found.map_or(f64::INFINITY, |found| found.ranked.min(up_to));
+        Some(vec![(name.to_owned(), if basin { retune_optim::value_of(value) } else { value })])
     }))
 }
 
@@ -71,7 +71,7 @@ pub(super) fn optimum(place: &Path, name: &str) -> Result<Made, Error> {
     };
     let mut again = run(&study, &objective, tuned, &found)?;
     if let (Some(_), Ok(search)) = (said.get("needs"), study.search()) {
-        again["needs"] = json!(Needs::new(&study, &search, &tuned, found.energy));
+        again["needs"] = json!(Needs::new(&study, &search, &tuned, found.value));
     }
     if said.get("certificate").is_some() {
         let certificate = certify(&Study { scene: tuned, ..study })?;
@@ -91,7 +91,7 @@ fn run(
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let name = study.quantity().name();
     let mut again = json!({
-        name: found.energy,
+        name: found.value,
         format!("{name}_none"): study.energy_without_damper(),
         format!("{name}_study"): study.energy(&study.scene),
         "simulation": Summary::new(study, scene, &response) });

@@ -77,7 +77,7 @@ pub(crate) fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
 pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
     let goal = Goal { objective: term.clone(), ..study.window.window().into() };
     let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
-    value.map_or(f64::NAN, |found| found.energy)
+    value.map_or(f64::NAN, |found| found.value)
 }
 
 /// The first term of an objective.

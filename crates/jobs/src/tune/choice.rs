@@ -119,7 +119,7 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
         }
         let scene = refined.objective.scene(&minimum.x);
         let found = scene.and_then(|scene| study.goal().evaluate(&scene, &settings, f64::INFINITY));
-        found.map_or(f64::INFINITY, |found| found.value)
+        found.map_or(f64::INFINITY, |found| found.ranked)
     };
     let values: Vec<f64> = refined.runs.iter().map(value).collect();
     let mut order: Vec<usize> = (0..values.len()).collect();
@@ -150,7 +150,7 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     let passed = seen.iter().filter(smaller).map(|(number, certificate)| PassedOver {
         start: number + 1,
         design: PerVariable::of(refined.objective.variables(), &refined.runs[*number].minimum.x),
-        value: Amount::new(study.quantity(), retune_optim::energy(values[*number])),
+        value: Amount::new(study.quantity(), retune_optim::value_of(values[*number])),
         words: if rank(certificate.verdict, certificate.safe_to()) > taken {
             certificate.words.clone()
         } else {

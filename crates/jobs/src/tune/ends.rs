@@ -5,7 +5,7 @@ use super::global::{Basins, Explored, global};
 use super::refine::each;
 use crate::{Error, Observer};
 use retune_model::{Design, PerVariable};
-use retune_optim::energy;
+use retune_optim::value_of;
 use retune_store::Journal;
 use retune_study::{Search, Study};
 
@@ -44,7 +44,7 @@ pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer)
         None => refined.runs.iter().map(|run| PerVariable::of(&search.variables, &run.minimum.x)).collect(),
     };
     journal.check()?;
-    let value = energy(refined.best().minimum.value);
+    let value = value_of(refined.best().minimum.value);
     Ok(Ends { best, value, places: places.iter().filter_map(|place| whole(place, &best)).collect() })
 }
 

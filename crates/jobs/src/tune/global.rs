@@ -10,7 +10,7 @@ use crate::amount::{Amount, measured};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, PerVariable};
 use retune_optim::{
-    Basin, Counts, Descent, DesignObjective, Failures, Point, Space, basins, energy, explore,
+    Basin, Counts, Descent, DesignObjective, Failures, Point, Space, basins, explore, value_of,
 };
 use retune_report::cells;
 use retune_report::table::{Cell, Column, Table};
@@ -151,7 +151,7 @@ impl Basins {
         let notes =
             basins(value, &explored.space, &points, explored.apart).into_iter().map(|basin| BasinNote {
                 design: PerVariable::of(&search.variables, &basin.best.x),
-                found: Amount::new(quantity, energy(basin.best.value)),
+                found: Amount::new(quantity, value_of(basin.best.value)),
                 searches: basin
                     .reached_by
                     .iter()

@@ -2,7 +2,7 @@
 
 use crate::amount::measured;
 use retune_model::{Measure, Parameter};
-use retune_optim::{Row, energy};
+use retune_optim::{Row, value_of};
 use retune_study::{fields, joined};
 
 /// Columns of `fminsearch.csv`.
@@ -43,7 +43,7 @@ pub fn screen(row: &Row, values: &[f64]) -> String {
 
 /// A value of the objective in words.
 pub fn worth(value: f64, quantity: Measure) -> String {
-    let value = energy(value);
+    let value = value_of(value);
     if value.is_nan() { "no feasible design".to_owned() } else { measured(value, quantity) }
 }
 

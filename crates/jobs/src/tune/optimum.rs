@@ -16,7 +16,7 @@ use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, whose};
 use notes::{Goal, LimitNote, Met};
 use retune_model::{Parameter, PerVariable, Scene};
-use retune_optim::{Evaluation, Failures, Scaling, Stop, energy};
+use retune_optim::{Evaluation, Failures, Scaling, Stop, value_of};
 use retune_study::{Search, Study, design_cells, short};
 use run::RunNote;
 use serde::Serialize;
@@ -148,7 +148,7 @@ impl Optimum {
         Ok(Self {
             damper_type: summary.damper_type(),
             damper: TunedDamper::of(&damper, &search.variables),
-            value: Amount::new(quantity, evaluation.energy),
+            value: Amount::new(quantity, evaluation.value),
             none: Amount::of(quantity, "_none", study.energy_without_damper()),
             whose: whose(&study.scene),
             study: Amount::of(quantity, "_study", study.energy(&study.scene).unwrap_or(f64::NAN)),
@@ -159,7 +159,7 @@ impl Optimum {
             surf: surf.map(|surf| GridBest {
                 points: surf.grid.len(),
                 best: PerVariable::of(&surf.variables, &surf.point(surf.best)),
-                value: Amount::new(quantity, energy(surf.least)),
+                value: Amount::new(quantity, value_of(surf.least)),
             }),
             global: basins,
             refine: Refinement {
@@ -178,7 +178,7 @@ impl Optimum {
             passed_over,
             valleys,
             certificate,
-            needs: Needs::new(study, search, &refined.objective.scene(&best.minimum.x)?, evaluation.energy),
+            needs: Needs::new(study, search, &refined.objective.scene(&best.minimum.x)?, evaluation.value),
             of: Study { scene: Scene { damper: Some(damper), ..study.scene }, ..study.clone() },
             simulation: summary,
             made_by: MadeBy::new(study),

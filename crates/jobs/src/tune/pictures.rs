@@ -6,7 +6,7 @@ use super::surf::Surf;
 use crate::Error;
 use crate::amount;
 use crate::summary::MadeBy;
-use retune_optim::{Parameter, energy};
+use retune_optim::{Parameter, value_of};
 use retune_report::colour::BLUE;
 use retune_report::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, Width, scale_for, svg};
 use retune_store::Directory;
@@ -44,7 +44,7 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
     for (i, &value) in surf.values.iter().enumerate().filter(|(_, value)| **value < most) {
         surf.grid.steps(i, &mut steps);
         let cell = &mut least[steps[y] * columns + steps[x]];
-        *cell = cell.min(energy(value)); // NaN (an infeasible design) is never the smaller
+        *cell = cell.min(value_of(value)); // NaN (an infeasible design) is never the smaller
     }
     let best = surf.point(surf.best);
     let found = |axis: usize| {
@@ -113,7 +113,7 @@ fn convergence(search: &Search, refined: &Refined, study: &Study) -> String {
         let layers = vec![Layer::Steps { points, stroke: Stroke::solid(BLUE) }];
         Chart { title: String::new(), x: Axis::exact("iteration", Scale::Linear, x), y, layers, height }
     };
-    let energies: Vec<f64> = rows.iter().map(|row| energy(row.value)).collect();
+    let energies: Vec<f64> = rows.iter().map(|row| value_of(row.value)).collect();
     let ends = [energies.first(), energies.last()].map(|e| e.copied().unwrap_or(f64::NAN));
     let mut charts = vec![chart(amount::label(quantity), None, energies, 95.0)];
     for (i, &variable) in search.variables.iter().enumerate() {

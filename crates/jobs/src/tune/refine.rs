@@ -138,7 +138,7 @@ fn run(
     let mut whole = simplex(objective, search, start, (journal, &format!("{stage} {start:?}")), &mut tell)?;
     for round in 1..=ROUNDS {
         let from = whole.minimum.clone();
-        whole.minimum.value = objective.learn(&from.x)?.value;
+        whole.minimum.value = objective.learn(&from.x)?.ranked;
         if round == ROUNDS || whole.minimum.value <= (1.0 + SAME) * from.value {
             break;
         }

@@ -135,12 +135,12 @@ fn exact_a_search_follows_the_motions_that_it_has_learned() {
     let own = [597.2737982898645, 95.72415913882642, 0.6072128825900359, 0.03740508433492577];
     let from_rest = objective.value(&own, f64::INFINITY);
     assert!(from_rest < 226.0, "{from_rest}");
-    let all = objective.learn(&own).expect("a value").value;
+    let all = objective.learn(&own).expect("a value").ranked;
     assert!((all - 735.639).abs() < 1e-3, "{all}");
     let near = [596.0, 95.9, 0.604, 0.0374];
     let followed = objective.value(&near, f64::INFINITY);
     let whole =
         study.goal().evaluate(&objective.scene(&near).expect("a scene"), objective.settings(), f64::INFINITY);
-    let whole = whole.expect("a value").value;
+    let whole = whole.expect("a value").ranked;
     assert!(followed > 700.0 && (followed / whole - 1.0).abs() < 1e-9, "{followed} {whole}");
 }

@@ -117,7 +117,7 @@ fn reference_robust_beside_a_harder_look() {
 fn hard(study: &Study) -> f64 {
     let [samples, starts] = HARD;
     let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
-    let plan = Plan { samples, starts, looks: SPACINGS.len(), ..over };
+    let plan = Plan { samples, starts, passes: SPACINGS.len(), ..over };
     let found =
         motions(&study.scene, plan, &study.solver.settings(), &[|seen| seen.e1_max]).expect("motions");
     found.largest[0].as_ref().map_or(0.0, |largest| largest.value)

@@ -93,7 +93,7 @@ fn printed(at: &[f64; 3]) -> [f64; 3] {
 
 /// E1max of a design, J; any number above `most` once it is known to have more.
 fn worst(of: &DesignObjective, at: &[f64; 3], most: f64) -> f64 {
-    of.look(at, most).0.worst
+    of.height_and_runs(at, most).0.worst
 }
 
 /// The objective of the study on so many frequencies, over k2, c2 and D, one wall touching the damper at rest.

@@ -41,7 +41,7 @@ fn reference_worst_is_that_of_dense_sampling_refined() {
             (system.steady_e1_max(band), sampled(|omega| system.steady(omega).e1_max, band, 4001)),
             (system.steady_stroke_max(band), sampled(|omega| system.steady(omega).stroke(), band, 4001)),
             (
-                system.steady_displacement_max(band),
+                system.steady_max(Measure::Displacement, band),
                 sampled(|omega| system.steady(omega).x1.norm(), band, 4001),
             ),
             (bare.steady_e1_max(band), sampled(|omega| bare.steady(omega).e1_max, band, 4001)),
@@ -178,7 +178,7 @@ fn exact_fixed_points_of_den_hartog() {
         }
         let best = system((3.0 * mu / (8.0 * (1.0 + mu))).sqrt());
         let band = [0.5 * natural, 2.0 * natural];
-        let share = best.steady_displacement_max(band).value / height - 1.0;
+        let share = best.steady_max(Measure::Displacement, band).value / height - 1.0;
         assert!((0.0..0.1 * mu).contains(&share), "{mu} {share}");
         let share = best.steady_e1_max(band).value / (spring * squares[1].max(1.0)) - 1.0;
         assert!((0.0..mu).contains(&share), "{mu} {share}");
@@ -207,7 +207,8 @@ fn exact_displacement_at_the_optimum_of_nishihara_and_asami() {
             let (k2, c2) = (m2 * damper_frequency * damper_frequency, 2.0 * m2 * damper_frequency * zeta);
             Numbers { c1: 0.0, m2, k2, c2, ..TMD }.coupled()
         };
-        let worst = |f, zeta| system(f, zeta).steady_displacement_max([1.0, 30.0]).value * TMD.k1 / TMD.p;
+        let worst =
+            |f, zeta| system(f, zeta).steady_max(Measure::Displacement, [1.0, 30.0]).value * TMD.k1 / TMD.p;
         assert!((worst(f, zeta) / height - 1.0).abs() < 1e-9, "{mu}: {} {height}", worst(f, zeta));
         for (df, dzeta) in [(1e-4, 0.0), (-1e-4, 0.0), (0.0, 1e-3), (0.0, -1e-3)] {
             assert!(worst(f * (1.0 + df), zeta * (1.0 + dzeta)) > height, "{mu} {df} {dzeta}");
@@ -247,7 +248,7 @@ fn reference_narrow_peaks_are_those_of_mpmath() {
         let band = [0, 1].map(|end| number(&case["band"][end]));
         for (name, found) in [
             ("E1max", system.steady_e1_max(band)),
-            ("x1", system.steady_displacement_max(band)),
+            ("x1", system.steady_max(Measure::Displacement, band)),
             ("stroke", system.steady_stroke_max(band)),
         ] {
             let [least, exact, most] = [0, 1, 2].map(|i| number(&case[name][i]));

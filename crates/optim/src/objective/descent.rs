@@ -36,23 +36,24 @@ impl DesignObjective {
     pub fn descend(&self, bounds: &[Bounds], start: &[f64]) -> Foot {
         let counts = [const { Cell::new(0) }; 2];
         let from = Cell::new(f64::NAN);
-        let look = |x: &[f64], cutoff: f64| {
-            let found = self.look(x, cutoff);
+        let evaluate = |x: &[f64], cutoff: f64| {
+            let found = self.height_and_runs(x, cutoff);
             counts[0].set(counts[0].get() + 1);
-            counts[1].set(counts[1].get() + u64::from(found.0.broken > 0.0));
+            counts[1].set(counts[1].get() + u64::from(found.0.violation > 0.0));
             if from.get().is_nan() {
-                from.set(ranked(found.0.worst, found.0.broken));
+                from.set(ranked(found.0.worst, found.0.violation));
             }
             found
         };
         let gain = if self.goal().objective.is_steady() { STEADY_GAIN } else { GAIN };
-        let (mut at, mut height) = (start.to_vec(), Height { worst: f64::INFINITY, broken: f64::INFINITY });
+        let (mut at, mut height) =
+            (start.to_vec(), Height { worst: f64::INFINITY, violation: f64::INFINITY });
         for _ in 0..BOXES {
             let space = Space((0..at.len()).map(|i| self.side(i, bounds[i], at[i])).collect());
             let (end, found) = if self.goal().has_pieces() {
-                minimax(look, |x, runs| self.pieces(x, runs), &space, &at, gain)
+                minimax(evaluate, |x, runs| self.pieces(x, runs), &space, &at, gain)
             } else {
-                (at.clone(), look(&at, f64::INFINITY).0)
+                (at.clone(), evaluate(&at, f64::INFINITY).0)
             };
             let is_inside = |(i, (side, end)): (usize, (&Side, &f64))| {
                 *end < side.to || *end >= bounds[i].upper.unwrap_or(self.locked(i))
@@ -66,7 +67,7 @@ impl DesignObjective {
             }
         }
         let [evaluations, infeasible] = counts.map(Cell::into_inner);
-        let value = ranked(height.worst, height.broken);
+        let value = ranked(height.worst, height.violation);
         Foot { from: from.get(), end: Point { x: at, value }, counts: Counts { evaluations, infeasible } }
     }
 

@@ -3,9 +3,9 @@
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
 use super::motions::{Known, Sought};
+use super::runs::{FREE, Hooks, Proceed};
 use super::spec::Goal;
 use super::unusable::Unusable;
-use super::watch::{FREE, GoesOn, Hooks};
 use crate::search::minimax::{Height, Piece};
 use retune_model::{Damper, Parameter, Scene, den_hartog};
 use retune_solver::Settings;
@@ -114,16 +114,16 @@ impl DesignObjective {
         Ok(Scene { damper: Some(self.damper(design)?), ..self.scene })
     }
 
-    /// The value that searches minimise: the goal's energy of `design`, J, or a number above [`INFEASIBLE`] if it breaks a
+    /// The number that searches minimise: the goal's value of `design`, or a number above [`INFEASIBLE`] if it breaks a
     /// limit; any number above `cutoff` once the value is known to exceed it; +∞ if there is no value.
     pub fn value(&self, design: &[f64], cutoff: f64) -> f64 {
-        self.value_as(design, cutoff, |found| (found.value, found.violation > 0.0))
+        self.value_as(design, cutoff, |found| (found.ranked, found.violation > 0.0))
     }
 
     /// The same, but `most` if it is above that, whichever number it is; a design that is so is not counted as one that breaks a limit.
     pub fn value_up_to(&self, design: &[f64], most: f64) -> f64 {
         self.value_as(design, most, |found| {
-            (found.value.min(most), found.violation > 0.0 && most > INFEASIBLE)
+            (found.ranked.min(most), found.violation > 0.0 && most > INFEASIBLE)
         })
     }
 
@@ -144,21 +144,21 @@ impl DesignObjective {
     }
 
     /// What is behind [`Self::value`], with the runs that it is made of; failures are not recorded.
-    pub fn look(&self, design: &[f64], cutoff: f64) -> (Height, Vec<Run>) {
+    pub fn height_and_runs(&self, design: &[f64], cutoff: f64) -> (Height, Vec<Run>) {
         self.counts[0].fetch_add(1, Relaxed);
         let runs = Mutex::new(Vec::new());
         let keep = |run| runs.lock().unwrap_or_else(PoisonError::into_inner).push(run);
         let found =
             self.scene(design).and_then(|scene| self.goal.evaluate_and(&scene, &self.settings, cutoff, keep));
-        let height = found.map_or(Height { worst: f64::INFINITY, broken: 0.0 }, |found| Height {
-            worst: found.energy,
-            broken: found.violation,
+        let height = found.map_or(Height { worst: f64::INFINITY, violation: 0.0 }, |found| Height {
+            worst: found.value,
+            violation: found.violation,
         });
-        self.counts[1].fetch_add(u64::from(height.broken > 0.0), Relaxed);
+        self.counts[1].fetch_add(u64::from(height.violation > 0.0), Relaxed);
         (height, runs.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// The peaks of the `runs` of [`Self::look`], with their derivatives.
+    /// The peaks of the `runs` of [`Self::height_and_runs`], with their derivatives.
     pub fn pieces(&self, design: &[f64], runs: &[Run]) -> Vec<Piece> {
         let scene = self.scene(design).ok();
         scene.map_or_else(Vec::new, |scene| self.goal.pieces(&scene, &self.settings, runs, &self.variables))
@@ -202,7 +202,7 @@ impl DesignObjective {
         self.goal.evaluate_with(scene, &self.settings, cutoff, Hooks { sought: self.sought(), ..FREE })
     }
 
-    /// The same as long as `goes_on` says so; see [`Goal::evaluate_while`].
+    /// The same as long as `proceed` says so; see [`Goal::evaluate_while`].
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
@@ -210,13 +210,13 @@ impl DesignObjective {
         &self,
         scene: &Scene,
         cutoff: f64,
-        goes_on: GoesOn<'_>,
+        proceed: Proceed<'_>,
     ) -> Result<Evaluation, Unusable> {
         self.goal.evaluate_with(
             scene,
             &self.settings,
             cutoff,
-            Hooks { goes_on, sought: self.sought(), ..FREE },
+            Hooks { proceed, sought: self.sought(), ..FREE },
         )
     }
 

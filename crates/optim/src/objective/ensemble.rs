@@ -113,18 +113,18 @@ impl Ensemble {
                 failed(results)
                     || match self.statistic {
                         Statistic::Mean => known(results).iter().sum::<f64>() > most,
-                        _ => known(results).iter().filter(|e| **e > cutoff).count() > count - rank,
+                        _ => known(results).iter().filter(|value| **value > cutoff).count() > count - rank,
                     }
             },
         );
-        let mut energies = results.into_iter().collect::<Result<Vec<f64>, E>>()?;
+        let mut values = results.into_iter().collect::<Result<Vec<f64>, E>>()?;
         if self.statistic == Statistic::Mean {
-            return Ok(energies.iter().sum::<f64>() / count as f64);
+            return Ok(values.iter().sum::<f64>() / count as f64);
         }
-        energies.sort_by(f64::total_cmp);
+        values.sort_by(f64::total_cmp);
         // Of a group that ended early the largest is above the cutoff.
-        let place = if energies.len() < count { energies.len() } else { rank };
-        Ok(energies[place - 1])
+        let place = if values.len() < count { values.len() } else { rank };
+        Ok(values[place - 1])
     }
 }
 

@@ -9,9 +9,9 @@ use super::ensemble::SLACK;
 use super::evaluation::{Evaluation, Place, Run};
 use super::limits::{INFEASIBLE, Limits, PerLimit, ranked};
 use super::motions::{Known, Sought};
+use super::runs::{FREE, Hooks, Largest, Numbered, Observed, Proceed, Runs, Seen};
 use super::spec::{Goal, Response, Stiffnesses};
 use super::unusable::Unusable;
-use super::watch::{FREE, GoesOn, Hooks, Largest, Numbered, Seen, Watch, Watched};
 use crate::chunks::in_groups;
 use retune_model::{NonNegative, PerMeasure, Scene};
 use retune_solver::Settings;
@@ -40,7 +40,7 @@ impl Goal {
         self.evaluate_with(scene, settings, cutoff, Hooks { keep: &keep, ..FREE })
     }
 
-    /// The same as long as `goes_on` says so, which is asked before each run in time.
+    /// The same as long as `proceed` says so, which is asked before each run in time.
     ///
     /// # Errors
     /// As [`Self::evaluate`], and [`Unusable::Stopped`].
@@ -49,9 +49,9 @@ impl Goal {
         scene: &Scene,
         settings: &Settings,
         cutoff: f64,
-        goes_on: GoesOn<'_>,
+        proceed: Proceed<'_>,
     ) -> Result<Evaluation, Unusable> {
-        self.evaluate_with(scene, settings, cutoff, Hooks { goes_on, ..FREE })
+        self.evaluate_with(scene, settings, cutoff, Hooks { proceed, ..FREE })
     }
 
     /// The same, with the motions that runs from rest lead to and those that are known, where it asks for all.
@@ -94,31 +94,23 @@ impl Goal {
         hooks: Hooks<'_>,
     ) -> Result<Evaluation, Unusable> {
         let cavity = scene.damper.map_or(0.0, |damper| damper.rest_distance.get() + damper.clearance.get());
-        let watch = Watch::new(self, scene, settings, Watched::limits(&self.limits), hooks);
+        let runs = Runs::new(self, scene, settings, Observed::limits(&self.limits), hooks);
         let with_cavity = |PerMeasure(reached): PerMeasure<f64>| {
             PerLimit(std::array::from_fn(|i| reached.get(i).copied().unwrap_or(cavity)))
         };
         // A cavity above its limit makes the design infeasible without any run.
         let too_wide = self.limits.violation(&with_cavity(PerMeasure::default())) > 0.0;
-        let energy = if cutoff < INFEASIBLE && too_wide {
+        let value = if cutoff < INFEASIBLE && too_wide {
             f64::INFINITY
         } else {
             let cutoff = if cutoff < INFEASIBLE { cutoff } else { f64::INFINITY };
-            self.energy(scene, cutoff, &watch)?
+            self.sum(scene, cutoff, &runs)?
         };
         let Seen { reached, worst, runs, unsettled } =
-            watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
+            runs.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
         let reached = with_cavity(reached);
         let violation = self.limits.violation(&reached);
-        Ok(Evaluation {
-            value: ranked(energy, violation),
-            energy,
-            violation,
-            reached,
-            worst,
-            runs,
-            unsettled,
-        })
+        Ok(Evaluation { ranked: ranked(value, violation), value, violation, reached, worst, runs, unsettled })
     }
 
     /// The worst run of a term at a phase of the force (rad), without limits.
@@ -128,24 +120,24 @@ impl Goal {
         phase: f64,
         term: Numbered,
         settings: &Settings,
-        goes_on: GoesOn<'_>,
+        proceed: Proceed<'_>,
     ) -> Result<Place, Unusable> {
         let free = Self { limits: Limits::default(), ..self.clone() };
-        let watched = Watched::limits(&free.limits);
-        let watch = Watch::new(&free, scene, settings, watched, Hooks { goes_on, ..FREE });
-        watch.over_k1(scene, phase, term, f64::INFINITY)?;
-        Ok(watch.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
+        let observed = Observed::limits(&free.limits);
+        let runs = Runs::new(&free, scene, settings, observed, Hooks { proceed, ..FREE });
+        runs.over_k1(scene, phase, term, f64::INFINITY)?;
+        Ok(runs.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
     }
 
     /// The weighted sum, in the unit of the quantity.
-    pub(super) fn energy(&self, scene: &Scene, cutoff: f64, watch: &Watch) -> Result<f64, Unusable> {
+    pub(super) fn sum(&self, scene: &Scene, cutoff: f64, runs: &Runs) -> Result<f64, Unusable> {
         if self.objective.sum.is_empty() {
-            return watch.term(scene, (0, &self.objective), cutoff); // the common case, without an allocation
+            return runs.term(scene, (0, &self.objective), cutoff); // the common case, without an allocation
         }
         let terms = self.objective.terms();
         let (mut sum, most) = (0.0, cutoff * SLACK);
         for (i, (weight, term)) in terms.into_iter().enumerate() {
-            sum += weight * watch.term(scene, (i, term), (most - sum) / weight)?;
+            sum += weight * runs.term(scene, (i, term), (most - sum) / weight)?;
             if sum > most {
                 break;
             }
@@ -154,7 +146,7 @@ impl Goal {
     }
 }
 
-impl Watch<'_> {
+impl Runs<'_> {
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
         let Some(ensemble) = &term.1.ensemble else { return Ok(self.over_k1(scene, 0.0, term, cutoff)?[0]) };
         let member = |i: u32, cutoff: f64| {
@@ -214,14 +206,15 @@ impl Watch<'_> {
         }
     }
 
-    /// The largest of each over a band. Peaks of what is watched beside the quantity are searched only where they matter.
+    /// The largest of each over a band. Peaks of what is observed beside the quantity are searched only where they matter.
     fn worst_over(
         &self,
         band: &Band,
         at: impl Fn(f64) -> Result<Largest, Unusable> + Sync,
         cutoff: f64,
     ) -> Result<Largest, Unusable> {
-        let limits = std::array::from_fn(|i| i.checked_sub(1).map(|measure| self.watched.matters.0[measure]));
+        let limits =
+            std::array::from_fn(|i| i.checked_sub(1).map(|measure| self.observed.matters.0[measure]));
         Ok(all_worst_over(band, at, cutoff, limits, self.peaks)?.map(|worst| worst.value))
     }
 }

@@ -29,10 +29,10 @@ pub struct Run {
 /// The value of a design and the quantities behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
-    /// The value that searches minimise: the quantity of a feasible design, above [`INFEASIBLE`](crate::INFEASIBLE) for any other.
-    pub value: f64,
+    /// The number that searches minimise: the value of a feasible design, above [`INFEASIBLE`](crate::INFEASIBLE) for any other.
+    pub ranked: f64,
     /// The weighted sum of the terms, in the unit of the quantity.
-    pub energy: f64,
+    pub value: f64,
     /// Total violation of the limits; see [`crate::Limits::violation`].
     pub violation: f64,
     /// The largest values from [`crate::Limits::from`] on, and the cavity; those of runs are 0 if no limit needs them.

@@ -11,9 +11,9 @@
 use super::design_objective::DesignObjective;
 use super::evaluation::{Evaluation, Place};
 use super::limits::{INFEASIBLE, Limit, widens};
+use super::runs::{Numbered, Proceed};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
-use super::watch::{GoesOn, Numbered};
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene};
 use retune_solver::{Ask, Settings, Window, extremes_by, settled_by};
@@ -24,16 +24,16 @@ type Member = (Place, Vec<f64>);
 
 impl DesignObjective {
     /// What [`Self::evaluate`] finds for a design, and the derivatives of its value by the design, per SI unit of each parameter; as long
-    /// as `goes_on` says so. The derivatives of an irregular motion are those of its one run: right, large, and of no use to a search.
+    /// as `proceed` says so. The derivatives of an irregular motion are those of its one run: right, large, and of no use to a search.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`], and a value out of its parameter's range.
-    pub fn gradient(&self, design: &[f64], goes_on: GoesOn<'_>) -> Result<(Evaluation, Vec<f64>), Unusable> {
+    pub fn gradient(&self, design: &[f64], proceed: Proceed<'_>) -> Result<(Evaluation, Vec<f64>), Unusable> {
         let scene = self.scene(design)?;
         let goal = self.goal();
-        let found = goal.evaluate_while(&scene, self.settings(), f64::INFINITY, goes_on)?;
-        let slopes = Slopes { goal, scene, settings: self.settings(), variables: self.variables(), goes_on };
-        let by = if found.violation > 0.0 { slopes.violation(&found)? } else { slopes.energy(&found)? };
+        let found = goal.evaluate_while(&scene, self.settings(), f64::INFINITY, proceed)?;
+        let slopes = Slopes { goal, scene, settings: self.settings(), variables: self.variables(), proceed };
+        let by = if found.violation > 0.0 { slopes.violation(&found)? } else { slopes.sum(&found)? };
         Ok((found, by))
     }
 }
@@ -44,12 +44,12 @@ struct Slopes<'a> {
     scene: Scene,
     settings: &'a Settings,
     variables: &'a [Parameter],
-    goes_on: GoesOn<'a>,
+    proceed: Proceed<'a>,
 }
 
 impl Slopes<'_> {
     /// The derivatives of the weighted sum of the terms.
-    fn energy(&self, found: &Evaluation) -> Result<Vec<f64>, Unusable> {
+    fn sum(&self, found: &Evaluation) -> Result<Vec<f64>, Unusable> {
         let objective = &self.goal.objective;
         if objective.sum.is_empty() && objective.ensemble.is_none() {
             return self.of((found.worst, vec![1.0; self.variables.len()]), objective, self.goal.window);
@@ -113,7 +113,7 @@ impl Slopes<'_> {
 
     /// The worst run of each member of a term's ensemble.
     fn members(&self, goal: &Goal, term: Numbered<'_>) -> Result<Vec<Member>, Unusable> {
-        let worst = |scene: &Scene, phase| goal.worst(scene, phase, term, self.settings, self.goes_on);
+        let worst = |scene: &Scene, phase| goal.worst(scene, phase, term, self.settings, self.proceed);
         let Some(ensemble) = &term.1.ensemble else {
             return Ok(vec![(worst(&self.scene, 0.0)?, vec![1.0; self.variables.len()])]);
         };

@@ -110,7 +110,7 @@ pub struct Limits {
     pub from: Option<NonNegative>,
 }
 
-/// Values of [`ranked`] from here on are of designs that break a limit. No E1max comes near.
+/// Values of [`ranked`] from here on are of designs that break a limit. No value comes near.
 pub const INFEASIBLE: f64 = 1e100;
 
 /// A reached value within this share of its limit makes the limit active.
@@ -178,14 +178,15 @@ impl Limits {
     }
 }
 
-/// The number that searches make small: the energy (J) of a feasible design, above [`INFEASIBLE`] that of any other.
-pub fn ranked(energy: f64, violation: f64) -> f64 {
-    if violation > 0.0 { INFEASIBLE * (1.0 + violation) } else { energy }
+/// The number that searches make small: the objective's value of a feasible design, in the unit of its quantity; above [`INFEASIBLE`] that of
+/// any other.
+pub fn ranked(value: f64, violation: f64) -> f64 {
+    if violation > 0.0 { INFEASIBLE * (1.0 + violation) } else { value }
 }
 
-/// The energy of a value made by [`ranked`]; NaN of one that is infeasible or has none.
-pub fn energy(value: f64) -> f64 {
-    if value < INFEASIBLE { value } else { f64::NAN }
+/// The objective's value of a number made by [`ranked`]; NaN of one that is infeasible or has none.
+pub fn value_of(ranked: f64) -> f64 {
+    if ranked < INFEASIBLE { ranked } else { f64::NAN }
 }
 
 /// The derivative of the cavity D + C by a parameter.

@@ -2,7 +2,7 @@
 
 use super::spec::{Objective, STARTS};
 use super::unusable::Unusable;
-use retune_dynamics::periodic::branches::{Plan, Watch, branches};
+use retune_dynamics::periodic::branches::{Control, Plan, branches};
 use retune_dynamics::periodic::worst::{Motions, quantity};
 use retune_dynamics::periodic::{Seed, from_rest_and};
 use retune_model::{Measure, Parameter, PerMeasure, Scene, Worst};
@@ -10,7 +10,7 @@ use retune_solver::Settings;
 use std::sync::{Mutex, PoisonError};
 
 /// What was found.
-pub(super) struct Found {
+pub(super) struct Outcome {
     /// The largest value of the quantity, and where, rad/s.
     pub largest: Worst,
     /// Those of the measures that were asked for beside it.
@@ -51,9 +51,9 @@ pub(super) fn largest_motion(
     term: &Objective,
     (also, sought): (PerMeasure<bool>, Sought<'_>),
     settings: &Settings,
-) -> Result<Found, Unusable> {
+) -> Result<Outcome, Unusable> {
     let starts = term.starts.unwrap_or(STARTS);
-    let plan = Plan { samples, starts, looks: 1, ..Plan::over(Parameter::Omega, [from, to]) };
+    let plan = Plan { samples, starts, passes: 1, ..Plan::over(Parameter::Omega, [from, to]) };
     let measures: Vec<Measure> = [term.quantity].into_iter().chain(also.chosen()).collect();
     let kinds: Vec<_> = measures.iter().map(|measure| quantity(*measure)).collect();
     let found = if let Sought::Followed(known) = sought
@@ -61,7 +61,7 @@ pub(super) fn largest_motion(
     {
         from_rest_and(known.of(scene, term.quantity), scene, (plan, term.quantity), settings)?
     } else {
-        let found = branches(scene, plan, settings, Watch::default())?;
+        let found = branches(scene, plan, settings, Control::default())?;
         if let Sought::Kept(known) = sought
             && from < to
         {
@@ -77,5 +77,5 @@ pub(super) fn largest_motion(
     });
     let largest = worst.next().unwrap_or(Worst { value: 0.0, frequency: from });
     let also = measures.into_iter().skip(1).zip(worst).collect();
-    Ok(Found { largest, also, settled: found.irregular.is_empty() })
+    Ok(Outcome { largest, also, settled: found.irregular.is_empty() })
 }

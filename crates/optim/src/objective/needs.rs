@@ -4,9 +4,9 @@ use super::band::Band;
 use super::design_objective::DesignObjective;
 use super::evaluation::Run;
 use super::limits::Limits;
+use super::runs::{FREE, Hooks, Observed, Proceed, Runs};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
-use super::watch::{FREE, GoesOn, Hooks, Watch, Watched};
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
 use retune_model::{Damper, Measure, NonNegative, Parameter, PerMeasure, Scene, Source, den_hartog};
 use retune_solver::{Also, Settings};
@@ -40,14 +40,14 @@ const PER_WIDTH: f64 = 8.0;
 const MOST: f64 = 1601.0;
 
 impl Goal {
-    /// What a scene needs by this goal, regardless of its limits, as long as `goes_on` says so. Peaks between samples are searched, as those
+    /// What a scene needs by this goal, regardless of its limits, as long as `proceed` says so. Peaks between samples are searched, as those
     /// of the quantity are.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
-    pub fn needs(&self, scene: &Scene, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Needs, Unusable> {
+    pub fn needs(&self, scene: &Scene, settings: &Settings, proceed: Proceed<'_>) -> Result<Needs, Unusable> {
         let goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
-        let own = goal.largest(scene, settings, None, goes_on)?;
+        let own = goal.largest(scene, settings, None, proceed)?;
         let (mut whole, end) = (goal, self.window.to);
         whole.window.from = 0.0;
         whole.objective.for_each_term(&mut |term| {
@@ -59,7 +59,7 @@ impl Goal {
                 band.samples = samples.max(wanted as usize);
             }
         });
-        let mut all = whole.largest(scene, settings, Some(0.0), goes_on)?;
+        let mut all = whole.largest(scene, settings, Some(0.0), proceed)?;
         all.0.iter_mut().zip(own.0).for_each(|(all, own)| {
             if own.value > all.value {
                 *all = own;
@@ -74,7 +74,7 @@ impl Goal {
         scene: &Scene,
         settings: &Settings,
         from: Option<f64>,
-        goes_on: GoesOn<'_>,
+        proceed: Proceed<'_>,
     ) -> Result<PerMeasure<Need>, Unusable> {
         let largest = Mutex::new(PerMeasure([Need { value: f64::NEG_INFINITY, ..Need::default() }; 7]));
         let keep = |run: Run| {
@@ -91,9 +91,9 @@ impl Goal {
             }
         };
         let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
-        let watched = Watched { also, own: from.is_none(), matters: PerMeasure([f64::NEG_INFINITY; 7]) };
-        let watch = Watch::new(self, scene, settings, watched, Hooks { keep: &keep, goes_on, ..FREE });
-        self.energy(scene, f64::INFINITY, &watch)?;
+        let observed = Observed { also, own: from.is_none(), matters: PerMeasure([f64::NEG_INFINITY; 7]) };
+        let runs = Runs::new(self, scene, settings, observed, Hooks { keep: &keep, proceed, ..FREE });
+        self.sum(scene, f64::INFINITY, &runs)?;
         Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 

@@ -111,15 +111,15 @@ pub fn explore(
     };
     let samples = global.samples as usize;
     let in_full = samples / 4;
-    let looks = |range: Range<usize>, cutoff: f64| -> Vec<f64> {
-        let look = |i: usize| value(&place(i), cutoff);
-        range.into_par_iter().map(look).inspect(|_| progress()).collect()
+    let sampled = |range: Range<usize>, cutoff: f64| -> Vec<f64> {
+        let evaluate = |i: usize| value(&place(i), cutoff);
+        range.into_par_iter().map(evaluate).inspect(|_| progress()).collect()
     };
-    let mut values = looks(0..in_full, f64::INFINITY);
+    let mut values = sampled(0..in_full, f64::INFINITY);
     let mut ranked = values.clone();
     ranked.sort_by(f64::total_cmp);
     let cutoff = ranked.get(global.searches.max(1) - 1).copied().unwrap_or(f64::INFINITY);
-    values.extend(looks(in_full..samples, cutoff));
+    values.extend(sampled(in_full..samples, cutoff));
     let known = (0..samples).map(|i| i < in_full || values[i] <= cutoff).collect();
     let apart = |i: usize, j: usize| space.distance(&place(i), &place(j)) >= global.apart;
     let again = |i: usize| value(&place(i), f64::INFINITY);

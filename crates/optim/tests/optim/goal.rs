@@ -32,7 +32,7 @@ fn evaluate(objective: Objective, scene: &Scene, cutoff: f64) -> Evaluation {
 }
 
 fn value(objective: &Objective, scene: &Scene) -> f64 {
-    evaluate(objective.clone(), scene, f64::INFINITY).value
+    evaluate(objective.clone(), scene, f64::INFINITY).ranked
 }
 
 fn ensemble(statistic: Statistic) -> Ensemble {
@@ -47,7 +47,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
     let found = evaluate(Objective { k1: set(&stiffnesses), ..term.clone() }, &SSVI.scene(), f64::INFINITY);
     let worst = each.iter().copied().fold(0.0, f64::max);
     assert!(
-        found.value == worst && each[1] == worst,
+        found.ranked == worst && each[1] == worst,
         "the worst is neither the first nor the last: {each:?}"
     );
     let k1 = found.worst.scene.primary.stiffness.get();
@@ -61,7 +61,7 @@ fn exact_the_worst_over_stiffnesses_is_the_worst_of_its_bands() {
         f64::INFINITY,
     );
     let near = 0.5 * (TMD.p / (TMD.c1 * 6.0)).powi(2) * 3.6e4;
-    assert!((found.value / near - 1.0).abs() < 0.01 && found.value >= near, "{} {near}", found.value);
+    assert!((found.ranked / near - 1.0).abs() < 0.01 && found.ranked >= near, "{} {near}", found.ranked);
     assert!((found.worst.scene.primary.stiffness.get() / 3.6e4 - 1.0).abs() < 0.02);
 }
 
@@ -147,7 +147,7 @@ fn contract_a_sum_is_weighted_and_exact_below_a_cutoff() {
     ]
     .map(|objective| goal(objective, WINDOW));
     let of =
-        |goal: &Goal, cutoff| goal.evaluate(&scene, &Settings::default(), cutoff).expect("a value").value;
+        |goal: &Goal, cutoff| goal.evaluate(&scene, &Settings::default(), cutoff).expect("a value").ranked;
     assert!((of(&goals[0], f64::INFINITY) / (0.25 * a + 2.0 * b) - 1.0).abs() < 1e-14);
     for goal in &goals {
         let full = of(goal, f64::INFINITY);
@@ -174,7 +174,7 @@ fn exact_settled_is_steady_where_nothing_touches() {
     let found = settled(Settle::default())(&TMD.scene());
     let steady = Objective { omega: band(), response: Response::Steady, ..Objective::default() };
     let steady = value(&steady, &TMD.scene());
-    assert!((found.value / steady - 1.0).abs() < 1e-7 && found.unsettled == 0);
+    assert!((found.ranked / steady - 1.0).abs() < 1e-7 && found.unsettled == 0);
     let never = Settle { tolerance: 1e-300, ..Settle::default() };
     let found = settled(never)(&SSVI.scene());
     assert!(found.unsettled == found.runs && found.runs >= 4, "{found:?}");

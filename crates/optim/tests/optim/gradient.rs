@@ -51,8 +51,8 @@ fn both(objective: &DesignObjective, share: f64) -> [Vec<f64>; 2] {
         let [ab, bc] = [(4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0];
         (16.0 * bc - ab) / 15.0
     };
-    let expected = (0..design.len()).map(|i| richardson(i) / found.value).collect();
-    [by.iter().zip(&design).map(|(by, x)| by * x / found.value).collect(), expected]
+    let expected = (0..design.len()).map(|i| richardson(i) / found.ranked).collect();
+    [by.iter().zip(&design).map(|(by, x)| by * x / found.ranked).collect(), expected]
 }
 
 fn agree(objective: &DesignObjective, share: f64, tolerance: f64) {
@@ -160,7 +160,7 @@ fn invariant_a_kink_has_a_subgradient() {
     let objective = problem(Numbers { c2: 60.0, ..TUNED }.open_scene(), &[Parameter::K2], goal(objective));
     let at = |k2: f64| {
         let (found, by) = objective.gradient(&[k2], &|| true).expect("a value");
-        (found.worst.scene.forcing.frequency.get(), by[0], found.value)
+        (found.worst.scene.forcing.frequency.get(), by[0], found.ranked)
     };
     let (mut low, mut high) = (1500.0, 3000.0);
     for _ in 0..60 {

@@ -3,7 +3,7 @@
 use retune_model::{Measure, NonNegative, Positive, Scene};
 use retune_optim::{
     Bounds, DesignObjective, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, Parameter,
-    Response, energy, minimize, ranked,
+    Response, minimize, ranked, value_of,
 };
 use retune_solver::{Settings, Window, simulate};
 use retune_testkit::scenes::{Numbers, SSVI, TMD};
@@ -45,7 +45,7 @@ fn contract_any_feasible_design_is_better_than_any_infeasible_one() {
     assert_eq!(ranked(1e90, 0.0), 1e90);
     assert!(ranked(1e90, 0.0) < ranked(0.0, 1e-15));
     assert!(ranked(900.0, 0.2) < ranked(1.0, 0.2 + 1e-12), "the energy does not matter, the violation does");
-    assert!(energy(ranked(5.0, 0.1)).is_nan() && energy(5.0) == 5.0 && energy(f64::INFINITY).is_nan());
+    assert!(value_of(ranked(5.0, 0.1)).is_nan() && value_of(5.0) == 5.0 && value_of(f64::INFINITY).is_nan());
 }
 
 /// The limits apply to the values of a run, and the violation is the sum of the relative excesses.
@@ -55,14 +55,14 @@ fn exact_violations_are_shares_of_the_limits() {
     let run = simulate(&scene, WINDOW, &Settings::default()).expect("a run");
     let force = run.force_max[0].max(run.force_max[1]);
     let free = evaluate(&goal(Some(1e3), Some(1e9), None), &scene, f64::INFINITY);
-    assert_eq!((free.value, free.violation), (run.e1_max.value, 0.0));
+    assert_eq!((free.ranked, free.violation), (run.e1_max.value, 0.0));
     assert_eq!(free.reached.get(Limit::Of(Measure::ContactForce)), force);
     let stroke = free.reached.get(Limit::Of(Measure::Stroke));
     assert!(stroke > 0.05 && stroke < 0.5, "{stroke}");
     let broken =
         evaluate(&goal(Some(stroke / 2.0), Some(force / 1.5), Some(0.42 / 1.25)), &scene, f64::INFINITY);
     assert!((broken.violation - 1.75).abs() < 1e-12, "{}", broken.violation);
-    assert_eq!(broken.value, INFEASIBLE * (1.0 + broken.violation));
+    assert_eq!(broken.ranked, INFEASIBLE * (1.0 + broken.violation));
     let limits = limits(Some(stroke * 1.005), Some(force * 1.5), None);
     assert_eq!(limits.active(&free.reached), [Limit::Of(Measure::Stroke)]);
     // Quantities without a limit are not observed.
@@ -120,12 +120,12 @@ fn invariant_values_below_a_cutoff_are_exact() {
     for goal in
         [goal(Some(stroke), None, Some(0.3)), goal(Some(stroke), None, None), goal(None, Some(30.0), None)]
     {
-        let full = designs.map(|scene| evaluate(&goal, &scene, f64::INFINITY).value);
+        let full = designs.map(|scene| evaluate(&goal, &scene, f64::INFINITY).ranked);
         for cutoff in
             full.iter().flat_map(|v| [v * (1.0 - 1e-9), *v, v * (1.0 + 1e-9)]).chain([0.0, 1.0, INFEASIBLE])
         {
             for (scene, full) in designs.iter().zip(full) {
-                let cut = evaluate(&goal, scene, cutoff).value;
+                let cut = evaluate(&goal, scene, cutoff).ranked;
                 assert!(cut == full || (cut > cutoff && full > cutoff), "{cut} {full} {cutoff}");
             }
         }
@@ -177,7 +177,7 @@ fn contract_limits_hold_over_the_whole_run_or_from_when_they_say() {
         let from = NonNegative::new(from).ok();
         let goal = Goal { limits: limits(Some(1.0), Some(1e9), None).since(from), ..window.into() };
         let found = evaluate(&goal, &scene, f64::INFINITY);
-        assert_eq!(found.value, run(4.0).e1_max.value);
+        assert_eq!(found.ranked, run(4.0).e1_max.value);
         [found.reached.get(Limit::Of(Measure::Stroke)), found.reached.get(Limit::Of(Measure::ContactForce))]
     };
     for from in [0.0, 2.0, 4.0, 6.0] {

@@ -1,6 +1,5 @@
 //! Searches and what they search, from outside of the crate.
 
-mod argmin;
 mod band;
 mod fminsearch;
 mod global;
@@ -9,6 +8,7 @@ mod gradient;
 mod grid;
 mod interrupted;
 mod limits;
+mod minimax;
 mod needs;
 mod objective;
 mod paper;

@@ -120,7 +120,7 @@ fn exact_no_neighbour_of_the_best_linear_damper_is_better() {
         let damper = scene.damper.as_mut().expect("a damper");
         damper.stiffness = NonNegative::new(k2 * damper.stiffness.get()).expect("a stiffness");
         damper.damping = NonNegative::new(c2 * damper.damping.get()).expect("a damping");
-        goal.evaluate(&scene, &Settings::default(), f64::INFINITY).expect("a value").value
+        goal.evaluate(&scene, &Settings::default(), f64::INFINITY).expect("a value").ranked
     };
     let own = value(1.0, 1.0);
     for (k2, c2) in [(1.01, 1.0), (0.99, 1.0), (1.0, 1.05), (1.0, 0.95), (1.01, 1.05), (0.99, 0.95)] {

@@ -30,12 +30,12 @@ fn reference_slopes_are_differences_of_the_objective() {
     let limits = Limits::default().with(Limit::Of(Measure::Stroke), positive(0.3));
     let limits = limits.since(NonNegative::new(50.0).ok());
     let of = objective(limits);
-    let look = |x: &[f64]| {
-        let (height, runs) = of.look(x, f64::INFINITY);
+    let evaluate = |x: &[f64]| {
+        let (height, runs) = of.height_and_runs(x, f64::INFINITY);
         let stroke = runs.iter().map(|run| run.reached.get(Measure::Stroke)).fold(0.0, f64::max);
         ([height.worst, stroke / 0.3 - 1.0], runs)
     };
-    let (values, runs) = look(&STRIKES);
+    let (values, runs) = evaluate(&STRIKES);
     let pieces = of.pieces(&STRIKES, &runs);
     for (is_limit, value, number) in [(false, values[0], 0), (true, values[1], 1)] {
         let all = pieces.iter().filter(|piece| piece.is_limit == is_limit);
@@ -46,7 +46,7 @@ fn reference_slopes_are_differences_of_the_objective() {
             let beside = |sign: f64| {
                 let mut x = STRIKES;
                 x[i] += sign * step;
-                look(&x).0[number]
+                evaluate(&x).0[number]
             };
             let difference = (beside(1.0) - beside(-1.0)) / (2.0 * step);
             let error = (piece.slope[i] - difference).abs() * at / (1.0 + value.abs());
@@ -62,7 +62,8 @@ fn regress_a_descent_ends_in_the_kink() {
     let side = |from, to| Side { from, to, scale: Scale::Linear };
     let space = Space(vec![side(10.0, 400.0), side(1.0, 1000.0), side(0.0, 1.0), side(0.0, 2.0)]);
     let start = [360.0, 165.0, 0.0, 1.1];
-    let (x, found) = minimax(|x, most| of.look(x, most), |x, runs| of.pieces(x, runs), &space, &start, 1e-8);
+    let (x, found) =
+        minimax(|x, most| of.height_and_runs(x, most), |x, runs| of.pieces(x, runs), &space, &start, 1e-8);
     assert!(found.worst < 434.97, "{found:?} at {x:?}");
     assert_eq!(x[0], 400.0);
 }
@@ -78,7 +79,7 @@ fn exact_steady_slopes_are_differences_of_the_closed_form() {
     let of = DesignObjective::new(TMD.scene(), TMD.damper(), variables, goal, Settings::default());
     let at = [2083.0, 100.0];
     let sorted = |x: &[f64]| {
-        let (_, runs) = of.look(x, f64::INFINITY);
+        let (_, runs) = of.height_and_runs(x, f64::INFINITY);
         let mut pieces = of.pieces(x, &runs);
         pieces.sort_by(|a, b| a.is_limit.cmp(&b.is_limit).then(b.value.total_cmp(&a.value)));
         pieces

@@ -1,4 +1,4 @@
-//! A look ahead: where a run will be when the window begins, told from afar by the periodic motion that it converges to.
+//! Extrapolation: where a run will be when the window begins, told from afar by the periodic motion that it converges to.
 
 use super::limit::{Limit, NEGLECTED, Question, limit};
 use super::test::{Recurrence, Settle};
@@ -8,22 +8,22 @@ use crate::settings::{Settings, Window};
 use retune_model::Coupled;
 use std::f64::consts::TAU;
 
-/// Share of a state by which it differs from an earlier one at most for a first look, and the factor to that for the next one.
+/// Share of a state by which it differs from an earlier one at most at the first attempt, and the factor to that for the next one.
 const CLOSE: f64 = 1e-3;
 const CLOSER: f64 = 0.1;
-/// The longest motion that is looked for, in periods of the force. A look takes seven or eight such motions.
+/// The longest motion that is sought, in periods of the force. An attempt takes seven or eight such motions.
 const PERIODS: usize = 2;
 /// The number of these motions that must be left before the window so that it pays.
 const WORTH: u32 = 12;
 /// The loosest tolerance at which it does.
 const LOOSEST: f64 = 1e-7;
 
-/// Looks ahead to the start of a window.
-pub struct LookAhead<'a> {
+/// Tells where a run will be at the start of a window.
+pub struct Extrapolation<'a> {
     system: &'a Coupled,
     window: Window,
     settings: Settings,
-    /// Share of a state by which it differs from an earlier one at most for the next look.
+    /// Share of a state by which it differs from an earlier one at most for the next attempt.
     pub close: f64,
 }
 
@@ -36,7 +36,7 @@ pub struct Converging {
     pub repeats: f64,
 }
 
-impl<'a> LookAhead<'a> {
+impl<'a> Extrapolation<'a> {
     /// For a run to a window; `None` if its tolerance is so loose that it is less work to wait.
     pub fn new(system: &'a Coupled, window: Window, settings: &Settings) -> Option<Self> {
         (settings.rtol <= LOOSEST).then_some(Self { system, window, settings: *settings, close: CLOSE })
@@ -44,7 +44,7 @@ impl<'a> LookAhead<'a> {
 
     /// Where a run will be that has these states at whole periods of the force, the last at `t` (s), and returns closely after some periods;
     /// `None` if that cannot be told, or if it is not worth the work.
-    pub fn look(&mut self, t: f64, states: &[[f64; 4]], periods: usize) -> Option<Converging> {
+    pub fn converges(&mut self, t: f64, states: &[[f64; 4]], periods: usize) -> Option<Converging> {
         let Self { system, window, ref settings, .. } = *self;
         let omega = system.bare().frequency();
         let span = periods as f64 * TAU / omega;

@@ -5,6 +5,10 @@
 //! what is left now, and `M`, from differences, is known to about the root of the tolerance only. Neither is taken on trust: the iteration
 //! goes on, with the same matrix, until the state stands still; a period that was followed shows what linear prediction misses; and where the
 //! power of `M` does not shrink every difference, the motion may not be a stable one.
+//!
+//! `retune-dynamics` solves the same equation for orbits that may be unstable, along a parameter, with exact derivatives over several
+//! segments (`periodic::shooting`). Inside a run that costs more than it saves: here one matrix serves all iterations, and none is made where
+//! the motion is not stable.
 
 use nalgebra::{Matrix4, Vector4};
 

@@ -5,7 +5,7 @@
 //! finds differs from what the whole run finds by no more than that tolerance allows the run itself (`just lab hunt-repeats` measures it).
 //! One that converges to such a motion need not be followed to it (`ahead`).
 
-use super::ahead::{Converging, LookAhead};
+use super::ahead::{Converging, Extrapolation};
 use super::section::Periods;
 use super::test::{Recurrence, Settle};
 use crate::error::SolverError;
@@ -44,22 +44,22 @@ struct Repeats<'a> {
     /// The latest states at whole periods, and how many there are. (A run allocates nothing.)
     states: [[f64; 4]; BLOCKS * LONGEST],
     held: usize,
-    /// Whether the motion is far from repeating. Then only the state after every so many periods is worth a look.
+    /// Whether the motion is far from repeating. Then only the state after every so many periods is compared.
     far: bool,
-    /// The look ahead, if what is left before the window may be passed over.
-    ahead: Option<LookAhead<'a>>,
+    /// The extrapolation, if what is left before the window may be passed over.
+    ahead: Option<Extrapolation<'a>>,
     known: Option<Known>,
 }
 
 impl<'a> Repeats<'a> {
-    fn new(system: &'a Coupled, settings: &Settings, ahead: Option<LookAhead<'a>>) -> Self {
+    fn new(system: &'a Coupled, settings: &Settings, ahead: Option<Extrapolation<'a>>) -> Self {
         let passing = Periods::of(TAU / system.bare().frequency());
         let (tolerance, states) = (settings.rtol.min(LOOSEST), [[0.0; 4]; BLOCKS * LONGEST]);
         Self { system, tolerance, passing, states, held: 0, far: true, ahead, known: None }
     }
 
-    /// Keeps a state at a time, s, and looks whether it is one of a motion that repeats.
-    fn look(&mut self, t: f64, state: [f64; 4]) {
+    /// Keeps a state at a time, s, and tells whether it is one of a motion that repeats.
+    fn keep(&mut self, t: f64, state: [f64; 4]) {
         if self.held == self.states.len() {
             self.states.rotate_left(1);
             self.held -= 1;
@@ -76,7 +76,7 @@ impl<'a> Repeats<'a> {
             self.far = !near;
             self.states[0] = state;
             self.held = 1;
-        } else if let Some(motion) = close.filter(|_| !self.far).and_then(|back| self.look_ahead(t, back + 1))
+        } else if let Some(motion) = close.filter(|_| !self.far).and_then(|back| self.converges(t, back + 1))
         {
             self.known = Some(Known::Converges(motion));
         } else if let Some(back) = back.filter(|_| !self.far) {
@@ -99,13 +99,13 @@ fn is_near(a: &[f64; 4], b: &[f64; 4], omega: f64, share: f64) -> bool {
 }
 
 impl Repeats<'_> {
-    /// Looks ahead from the latest state, at `t` (s), that returns closely after some periods.
+    /// Extrapolates from the latest state, at `t` (s), that returns closely after some periods.
     #[inline(never)]
-    fn look_ahead(&mut self, t: f64, periods: usize) -> Option<Converging> {
-        self.ahead.as_mut()?.look(t, &self.states[..self.held], periods)
+    fn converges(&mut self, t: f64, periods: usize) -> Option<Converging> {
+        self.ahead.as_mut()?.converges(t, &self.states[..self.held], periods)
     }
 
-    /// Looks at the states among some steps.
+    /// Keeps the states among some steps.
     #[inline(never)]
     fn among(&mut self, steps: &Steps<'_, 4>) {
         for number in 0..steps.count() {
@@ -121,7 +121,7 @@ impl Observer<4> for Repeats<'_> {
         let mut latest = None;
         let t = self.passing.states(segment, |state| latest = Some(state));
         if let Some(state) = latest.filter(|_| self.known.is_none()) {
-            self.look(t, state);
+            self.keep(t, state);
         }
     }
     /// A moment within a contact of some milliseconds is put off to its end, period after period: it would cost more to look inside.
@@ -158,7 +158,7 @@ pub fn follow_until_it_repeats(
     let from = window.from.max(late);
     let mut hybrid = Hybrid::new(system, settings.rtol, window.to, settings.max_steps);
     // Nothing before the window is passed over if it is observed, too.
-    let ahead = if late == window.from { LookAhead::new(system, window, settings) } else { None };
+    let ahead = if late == window.from { Extrapolation::new(system, window, settings) } else { None };
     let mut repeats = Repeats::new(system, settings, ahead);
     let mut now = Motion::start(system);
     if window.from > 0.0 {

@@ -38,7 +38,13 @@ impl Default for Settle {
 /// Returns over which a change is summed at most.
 const SLOWEST: f64 = 1e3;
 
-/// The test whether states return.
+/// The test whether states return: the one by which a run may stop.
+///
+/// It is a proof. What is left of a run is not made, so all changes to come must be small, extrapolated from how they fall. Runs that end when
+/// they repeat and settled responses ask it. `retune-dynamics` asks something else of motions that have been followed: of what kind one is
+/// (`regime`), whether two are one (`attractor`), which orbit Newton's iteration is to begin from (`periodic::settle`). That is a
+/// classification: a motion that still drifts towards its orbit is of that orbit's kind, the least number of periods matters, and distances
+/// weigh both bodies by their energy (`record::coordinates`). A limit that suits the one is wrong for the other, so that there are two.
 pub struct Recurrence<'a> {
     system: &'a Coupled,
     settle: Settle,

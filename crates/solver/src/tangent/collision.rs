@@ -7,8 +7,7 @@
 //! transposed equations give them for any number of changes.
 
 use super::flight::Flight;
-use super::rows::{Along, Row, applied, identity};
-use super::series::{BRIEF, Moment};
+use super::series::{Along, BRIEF, Moment, Row, applied, identity};
 use crate::motion::linearised::{LinearContact, MOMENTS};
 use nalgebra::DMatrix;
 use retune_model::{Coupled, Parameter, Side};

@@ -1,7 +1,6 @@
 //! Derivatives in flight: Taylor series over whole steps, kept as matrices, and over the rest of the flight.
 
-use super::rows::{Along, Row, applied, identity};
-use super::series::{BRIEF, Moment, Series, dot, sum};
+use super::series::{Along, BRIEF, Moment, Row, Series, applied, dot, identity, sum};
 use retune_model::{Coupled, Excitation, Parameter};
 use wide::f64x4;
 

@@ -12,7 +12,6 @@ mod contact;
 mod flight;
 mod gradient;
 mod observer;
-mod rows;
 mod series;
 
 pub(crate) use gradient::gradient_at;

@@ -4,7 +4,7 @@ use super::super::refine::{Descended, Run};
 use crate::amount::Amount;
 use retune_model::Measure;
 use retune_model::PerVariable;
-use retune_optim::{Minimum, Stop, energy};
+use retune_optim::{Minimum, Stop, value_of};
 use serde::Serialize;
 
 #[derive(Clone, Debug, Serialize)]
@@ -34,7 +34,7 @@ impl RunNote {
     pub(super) fn new(run: &Run, quantity: Measure, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
         let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
         let (start, at_start) = match run.rows.first() {
-            Some(row) => (over(&row.best), energy(row.value)),
+            Some(row) => (over(&row.best), value_of(row.value)),
             None => (PerVariable::default(), f64::NAN),
         };
         let (iterations, func_count) = (*iterations, *func_count);
@@ -42,12 +42,12 @@ impl RunNote {
             start,
             at_start: Amount::of(quantity, "_start", at_start),
             found: over(x),
-            value: Amount::new(quantity, energy(*value)),
+            value: Amount::new(quantity, value_of(*value)),
             iterations,
             func_count,
             stop: *stop,
             descent: run.descent.map(|Descended { from, evaluations }| DescentNote {
-                from: Amount::of(quantity, "_before", energy(from)),
+                from: Amount::of(quantity, "_before", value_of(from)),
                 evaluations,
             }),
         }

@@ -14,7 +14,7 @@ use retune_study::over;
 /// The answer in a line.
 pub fn title(findings: &Findings) -> String {
     let (kind, quantity) = (findings.optimum.damper_type, findings.quantity());
-    let (name, value) = (quantity.name(), amount(findings.evaluation.energy, quantity));
+    let (name, value) = (quantity.name(), amount(findings.evaluation.value, quantity));
     if findings.evaluation.violation > 0.0 {
         return format!("none found that keeps the limits; the nearest, a {kind}, has {name} {value}");
     }
@@ -55,7 +55,7 @@ pub fn objective(findings: &Findings) -> String {
 }
 
 fn lead(findings: &Findings) -> Markup {
-    let (Evaluation { energy, .. }, quantity) = (findings.evaluation, findings.quantity());
+    let (Evaluation { value: energy, .. }, quantity) = (findings.evaluation, findings.quantity());
     let touches = match findings.response.force_max.map(|force| force > 0.0) {
         [true, true] => "strikes both walls of its cavity",
         [true, false] => "strikes the structure, not the obstacle",
@@ -73,15 +73,15 @@ fn lead(findings: &Findings) -> Markup {
 }
 
 fn facts(findings: &Findings, beside: &Compared) -> Markup {
-    let (energy, quantity) = (findings.evaluation.energy, findings.quantity());
+    let (energy, quantity) = (findings.evaluation.value, findings.quantity());
     let against = |other: &Result<Evaluation, Unusable>| match other {
         Ok(other) => {
-            let words = compared(energy, other.energy).unwrap_or_else(|| "–".to_owned());
+            let words = compared(energy, other.value).unwrap_or_else(|| "–".to_owned());
             (
                 words,
                 format!(
                     "{}, worst at {}",
-                    amount(other.energy, quantity),
+                    amount(other.value, quantity),
                     frequency(other.worst.scene.forcing.frequency.get())
                 ),
             )

@@ -7,7 +7,7 @@ use crate::tune::log::worth;
 use crate::tune::optimum::stop_words;
 use crate::tune::refine::Descended;
 use maud::html;
-use retune_optim::energy;
+use retune_optim::value_of;
 use retune_report::html::{Section, Table, figure, link};
 use retune_store::Directory;
 use retune_study::counted;
@@ -87,13 +87,13 @@ fn starts(findings: &Findings) -> Table {
     let mut table = Table { head, ..Table::new("Refinements", &[]) };
     for (i, run) in findings.refined.runs.iter().enumerate() {
         let minimum = &run.minimum;
-        let start = run.rows.first().map_or(f64::NAN, |row| energy(row.value));
+        let start = run.rows.first().map_or(f64::NAN, |row| value_of(row.value));
         let best = if i == findings.refined.winner { " (best)" } else { "" };
         let mut cells = vec![
             format!("{}{best}", i + 1),
             findings.origin(i).to_owned(),
             four(start),
-            four(energy(minimum.value)),
+            four(value_of(minimum.value)),
             minimum.iterations.to_string(),
             minimum.func_count.to_string(),
             if run.descent.is_some() { "descent".to_owned() } else { stop_words(minimum.stop).to_owned() },

@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use super::numbers::{amount, digits, four};
 use maud::{Markup, html};
-use retune_optim::{Bounds, energy};
+use retune_optim::{Bounds, value_of};
 use retune_report::html::{Section, Table, figure, link};
 use retune_store::Directory;
 
@@ -34,11 +34,11 @@ pub fn section(findings: &Findings, files: &[String], results: &Directory) -> Se
 
 fn words(findings: &Findings) -> Markup {
     let quantity = findings.quantity();
-    let found = amount(findings.evaluation.energy, quantity);
+    let found = amount(findings.evaluation.value, quantity);
     match findings.surf {
         None => html! { p { "This search had no grid." } },
         Some(surf) => html! { p {
-            "The best of " (surf.grid.len()) " points of the grid has " (amount(energy(surf.least), quantity)) "; the design that was found has "
+            "The best of " (surf.grid.len()) " points of the grid has " (amount(value_of(surf.least), quantity)) "; the design that was found has "
             (found) "."
         } },
     }

@@ -82,13 +82,13 @@ pub fn section(findings: &Findings, compared: &Compared) -> Section {
 fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
     let quantity = findings.quantity();
     let worst = |of: &Result<retune_optim::Evaluation, retune_optim::Unusable>| {
-        of.as_ref().map_or_else(|_| "none".to_owned(), |of| amount(of.energy, quantity))
+        of.as_ref().map_or_else(|_| "none".to_owned(), |of| amount(of.value, quantity))
     };
     let omega = findings.worst_omega();
     if curves.is_objective {
         return html! { p {
             "The objective is the worst over this band: " (worst(&compared.none)) " without a damper, " (worst(&compared.study))
-            " with " (whose(&findings.study.scene)) ", " (amount(findings.evaluation.energy, quantity)) " with the tuned one, at " (frequency(omega)) "."
+            " with " (whose(&findings.study.scene)) ", " (amount(findings.evaluation.value, quantity)) " with the tuned one, at " (frequency(omega)) "."
         } };
     }
     let top = curves.value.each_ref().map(|curve| Curves::largest(curve));

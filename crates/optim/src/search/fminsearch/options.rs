@@ -1,22 +1,12 @@
 //! The options of a run of [`fminsearch`](super), and their errors.
 
-use serde::{Deserialize, Serialize};
-
 /// Why a run cannot start. Coordinates are counted from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// The start has no coordinate.
     #[error("the start has no coordinate")]
     EmptyStart,
-    /// A coordinate of the start is NaN or infinite.
-    #[error("coordinate {index} of the start is {value}: it must be finite")]
-    StartNotFinite {
-        /// Index of the coordinate.
-        index: usize,
-        /// Its value.
-        value: f64,
-    },
-    /// The start lies outside the box.
+    /// A coordinate of the start is outside the box, NaN or infinite.
     #[error("coordinate {index} of the start is {value}, outside its bounds {bounds}")]
     StartOutside {
         /// Index of the coordinate.
@@ -56,14 +46,10 @@ pub enum Error {
         /// The tolerance.
         value: f64,
     },
-    /// Any other failure of argmin's executor.
-    #[error("argmin: {0}")]
-    Executor(String),
 }
 
 /// The range a coordinate may take, both ends included; `None` means no bound.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Smallest value allowed.
     pub lower: Option<f64>,
@@ -72,22 +58,11 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The closed range from `lower` to `upper`.
-    pub fn between(lower: f64, upper: f64) -> Self {
-        Self { lower: Some(lower), upper: Some(upper) }
-    }
-
     /// Whether `x` is a finite number within the bounds.
     pub fn contain(&self, x: f64) -> bool {
         x.is_finite()
             && self.lower.is_none_or(|lower| lower <= x)
             && self.upper.is_none_or(|upper| x <= upper)
-    }
-
-    fn have_room(&self) -> bool {
-        let finite = [self.lower, self.upper].into_iter().flatten().all(f64::is_finite);
-        let ordered = self.lower.zip(self.upper).is_none_or(|(lower, upper)| lower < upper);
-        finite && ordered
     }
 }
 
@@ -103,8 +78,7 @@ impl std::fmt::Display for Bounds {
 }
 
 /// The coordinates in which the simplex moves and [`Options::tol_x`] is measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scaling {
     /// The parameters as given, as in MATLAB: one absolute `tol_x` for all of them, regardless of their magnitudes.
     #[default]
@@ -114,8 +88,7 @@ pub enum Scaling {
 }
 
 /// Settings of a run; the default is MATLAB's.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// TolX: largest distance of a vertex from the best one, along any coordinate, at which a run may stop.
     pub tol_x: f64,
@@ -123,8 +96,7 @@ pub struct Options {
     pub tol_fun: f64,
     /// MaxIter: iterations after which a run stops; `None` means 200 for each coordinate.
     pub max_iter: Option<u64>,
-    /// MaxFunEvals: evaluations after which a run stops, at the end of the iteration that reaches them; `None` means
-    /// 200 for each coordinate.
+    /// MaxFunEvals: evaluations after which a run stops, at the end of the iteration that reaches them; `None` means as many.
     pub max_fun_evals: Option<u64>,
     /// The box to stay in: bounds for each coordinate, or empty for none.
     pub bounds: Vec<Bounds>,
@@ -147,9 +119,6 @@ impl Default for Options {
 
 impl Options {
     /// Checks these options and `start` against each other.
-    ///
-    /// # Errors
-    /// Every variant of [`Error`] but [`Error::StartValue`] and [`Error::Executor`].
     pub(super) fn check(&self, start: &[f64]) -> Result<(), Error> {
         if start.is_empty() {
             return Err(Error::EmptyStart);
@@ -163,11 +132,10 @@ impl Options {
             return Err(Error::BoundsCount { expected: start.len(), given: self.bounds.len() });
         }
         for (index, &value) in start.iter().enumerate() {
-            if !value.is_finite() {
-                return Err(Error::StartNotFinite { index, value });
-            }
             let bounds = self.bounds_of(index);
-            if !bounds.have_room() {
+            let finite = [bounds.lower, bounds.upper].into_iter().flatten().all(f64::is_finite);
+            let ordered = bounds.lower.zip(bounds.upper).is_none_or(|(lower, upper)| lower < upper);
+            if !(finite && ordered) {
                 return Err(Error::EmptyBounds { index, bounds });
             }
             if !bounds.contain(value) {

@@ -148,17 +148,17 @@ impl Reached {
 ///
 /// # Errors
 /// A scene cannot be run.
-pub(super) fn look(
+pub(super) fn attractors_at(
     shooting: &Shooting,
     value: f64,
     (starts, count): (&Starts, usize),
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Result<Reached, Error> {
     let system = shooting.system(value)?;
     let all = [system.rest()].into_iter().chain((0..count).map(|number| starts.state(number, &system)));
     let mut seen = Reached::nothing(value, None);
     for (number, y) in all.enumerate() {
-        if !goes_on() {
+        if !proceed() {
             break;
         }
         seen.follow(shooting, y, number == 0)?;
@@ -170,15 +170,15 @@ pub(super) fn look(
 ///
 /// # Errors
 /// A scene cannot be run.
-pub(super) fn look_from(
+pub(super) fn attractors_from(
     shooting: &Shooting,
     starts: &Starts,
     number: usize,
-    goes_on: &dyn Fn() -> bool,
+    proceed: &dyn Fn() -> bool,
 ) -> Result<Reached, Error> {
     let value = starts.value(number);
     let mut seen = Reached::nothing(value, Some(number));
-    if goes_on() {
+    if proceed() {
         seen.follow(shooting, starts.state(number, &shooting.system(value)?), false)?;
     }
     Ok(seen)

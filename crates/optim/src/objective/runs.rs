@@ -2,26 +2,26 @@
 
 use super::evaluation::{Place, Run};
 use super::limits::{Limit, Limits};
-use super::motions::{Found, Sought, largest_motion};
+use super::motions::{Outcome, Sought, largest_motion};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use retune_model::{Bare, Coupled, Measure, NonNegative, PerMeasure, Scene, Worst};
 use retune_solver::{Also, Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
-/// Whether an evaluation goes on.
-pub type GoesOn<'a> = &'a (dyn Fn() -> bool + Sync);
+/// Whether an evaluation may go on; once it says no, the evaluation is cancelled.
+pub type Proceed<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// What is asked before each run of an evaluation in time, and what is given each run.
 #[derive(Clone, Copy)]
 pub(super) struct Hooks<'a> {
-    pub goes_on: GoesOn<'a>,
+    pub proceed: Proceed<'a>,
     pub keep: &'a (dyn Fn(Run) + Sync),
     pub sought: Sought<'a>,
 }
 
 /// No questions, and nothing kept.
-pub(super) const FREE: Hooks<'static> = Hooks { goes_on: &|| true, keep: &|_| (), sought: Sought::All };
+pub(super) const FREE: Hooks<'static> = Hooks { proceed: &|| true, keep: &|_| (), sought: Sought::All };
 
 /// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 pub(super) struct Seen {
@@ -31,16 +31,16 @@ pub(super) struct Seen {
     pub unsettled: u64,
 }
 
-/// What runs are watched for beside the quantity, and of each measure the value from which on its peaks between samples matter.
+/// What is observed of runs beside the quantity, and of each measure the value from which on its peaks between samples matter.
 #[derive(Clone, Copy)]
-pub(super) struct Watched {
+pub(super) struct Observed {
     pub also: Option<Also>,
-    /// Whether they are watched for it in the part of the response alone that the objective looks at.
+    /// Whether it is observed in the part of the response alone that the objective looks at.
     pub own: bool,
     pub matters: PerMeasure<f64>,
 }
 
-impl Watched {
+impl Observed {
     /// What limits need.
     pub(super) fn limits(limits: &Limits) -> Self {
         let matters = Measure::ALL.map(|measure| limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY));
@@ -49,10 +49,10 @@ impl Watched {
 }
 
 /// The settings of a goal's runs, and the values that are kept of them.
-pub(super) struct Watch<'a> {
+pub(super) struct Runs<'a> {
     pub settings: &'a Settings,
     window: Window,
-    pub watched: Watched,
+    pub observed: Observed,
     pub peaks: bool,
     hooks: Hooks<'a>,
     pub seen: Mutex<Seen>,
@@ -61,24 +61,24 @@ pub(super) struct Watch<'a> {
 /// A term with its number.
 pub(super) type Numbered<'a> = (usize, &'a Objective);
 
-/// The largest quantity of some runs, and their largest value of each measure; 0 of those that they are not watched for.
+/// The largest quantity of some runs, and their largest value of each measure; 0 of those that are not observed.
 pub(super) type Largest = [f64; 8];
 
 fn largest_of(quantity: f64, PerMeasure(reached): PerMeasure<f64>) -> Largest {
     std::array::from_fn(|i| if i == 0 { quantity } else { reached[i - 1] })
 }
 
-impl<'a> Watch<'a> {
+impl<'a> Runs<'a> {
     pub(super) fn new(
         goal: &'a Goal,
         scene: &Scene,
         settings: &'a Settings,
-        watched: Watched,
+        observed: Observed,
         hooks: Hooks<'a>,
     ) -> Self {
         let worst = Place { largest: f64::NEG_INFINITY, scene: *scene, phase: 0.0, term: 0 };
         let seen = Mutex::new(Seen { reached: PerMeasure::default(), worst, runs: 0, unsettled: 0 });
-        Self { settings, window: goal.window, watched, peaks: goal.peaks, hooks, seen }
+        Self { settings, window: goal.window, observed, peaks: goal.peaks, hooks, seen }
     }
 
     pub(super) fn run(
@@ -91,12 +91,12 @@ impl<'a> Watch<'a> {
     ) -> Result<Largest, Unusable> {
         let mut scene = *scene;
         scene.forcing.frequency = NonNegative::new(omega).map_err(Unusable::Frequency)?;
-        if !(self.hooks.goes_on)() {
+        if !(self.hooks.proceed)() {
             return Err(Unusable::Stopped);
         }
         let own_from = if term.response == Response::Settled { f64::INFINITY } else { self.window.from };
-        let from = |also: Also| if self.watched.own { own_from } else { also.from };
-        let also = self.watched.also.map(|also| Also { from: from(also), ..also });
+        let from = |also: Also| if self.observed.own { own_from } else { also.from };
+        let also = self.observed.also.map(|also| Also { from: from(also), ..also });
         let ask = Ask { measure: term.quantity, phase, also, cutoff };
         let found = match term.response {
             Response::Settled => settled(&scene, self.window, term.settle, self.settings, ask)?,
@@ -109,9 +109,9 @@ impl<'a> Watch<'a> {
         Ok(largest_of(largest, found.reached))
     }
 
-    /// The measures that runs are watched for.
+    /// The measures that are observed.
     fn measures(&self) -> PerMeasure<bool> {
-        self.watched.also.map(|also| also.measures).unwrap_or_default()
+        self.observed.also.map(|also| also.measures).unwrap_or_default()
     }
 
     /// The largest over all motions in a band of so many samples. The place is that of the largest, which may not be of a run from rest.
@@ -124,7 +124,7 @@ impl<'a> Watch<'a> {
         if scene.damper.is_none() {
             return self.steady(scene, [from, to], (number, term));
         }
-        let Found { largest, also, settled } = largest_motion(
+        let Outcome { largest, also, settled } = largest_motion(
             scene,
             (from, to, samples),
             term,
