@@ -7,6 +7,7 @@
 //! - A run stops once the simplex is small in *both* x and value, or at MaxIter or MaxFunEvals iterations and evaluations. As in MATLAB the
 //!   limits are checked between iterations, so the last one may exceed MaxFunEvals.
 
+mod driver;
 mod options;
 
 pub use options::{Bounds, Error, Options, Scaling};
@@ -182,28 +183,34 @@ impl Fminsearch {
     pub fn run(
         &mut self,
         objective: impl Fn(&[f64], f64) -> f64,
-        mut log: impl FnMut(&Row) -> ControlFlow<()>,
+        log: impl FnMut(&Row) -> ControlFlow<()>,
     ) -> Result<Minimum, Error> {
-        let mut flow = ControlFlow::Continue(());
-        if self.func_count == 0 {
-            let value = objective(&self.parameters(&self.simplex[0].x), f64::INFINITY);
-            if !value.is_finite() {
-                return Err(Error::StartValue { value });
-            }
-            (self.simplex[0].value, self.func_count) = (value, 1);
-            flow = log(&self.row());
-        }
-        while self.stop().is_none() && flow.is_continue() {
-            let complete = self.simplex.len() > self.scale.len();
-            self.procedure = if complete { self.step(&objective) } else { self.make_simplex(&objective) };
-            // Equal values keep their order, so a new vertex comes after the one it ties with.
-            self.simplex.sort_by(|a, b| a.value.partial_cmp(&b.value).unwrap_or(Ordering::Equal));
-            self.iteration += 1;
-            flow = log(&self.row());
-        }
+        driver::drive(self, objective, log)?;
         let Row { iteration: iterations, func_count, best: x, value, .. } = self.row();
         let stop = self.stop().unwrap_or(Stop::Interrupted);
         Ok(Minimum { x, value, iterations, func_count, stop, scaling: self.options.scaling })
+    }
+
+    /// Iteration 0: evaluates the start, unless this run has begun already. Returns whether there is a new row.
+    fn begin(&mut self, objective: &impl Fn(&[f64], f64) -> f64) -> Result<bool, Error> {
+        if self.func_count > 0 {
+            return Ok(false);
+        }
+        let value = objective(&self.parameters(&self.simplex[0].x), f64::INFINITY);
+        if !value.is_finite() {
+            return Err(Error::StartValue { value });
+        }
+        (self.simplex[0].value, self.func_count) = (value, 1);
+        Ok(true)
+    }
+
+    /// One iteration.
+    fn iterate(&mut self, objective: &impl Fn(&[f64], f64) -> f64) {
+        let complete = self.simplex.len() > self.scale.len();
+        self.procedure = if complete { self.step(objective) } else { self.make_simplex(objective) };
+        // Equal values keep their order, so a new vertex comes after the one it ties with.
+        self.simplex.sort_by(|a, b| a.value.partial_cmp(&b.value).unwrap_or(Ordering::Equal));
+        self.iteration += 1;
     }
 
     /// The last row of the log.

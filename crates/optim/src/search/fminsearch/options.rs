@@ -46,6 +46,9 @@ pub enum Error {
         /// The tolerance.
         value: f64,
     },
+    /// Any other failure of argmin's executor.
+    #[error("argmin: {0}")]
+    Executor(String),
 }
 
 /// The range a coordinate may take, both ends included; `None` means no bound.

@@ -1,0 +1,81 @@
+//! `fminsearch` as a solver of argmin, whose executor drives it.
+
+use super::{Error, Fminsearch, Row, Stop};
+use argmin::core::{
+    Error as ArgminError, Executor, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus,
+};
+use std::ops::ControlFlow;
+
+type State = IterState<Vec<f64>, (), (), (), (), f64>;
+
+/// Runs until a stop test holds or `log`, which receives each new row, breaks.
+///
+/// # Errors
+/// [`Error::StartValue`].
+pub(super) fn drive<O: Fn(&[f64], f64) -> f64>(
+    run: &mut Fminsearch,
+    objective: O,
+    log: impl FnMut(&Row) -> ControlFlow<()>,
+) -> Result<(), Error> {
+    let solver = Logged { run, log, interrupted: false };
+    let done = Executor::new(objective, solver).ctrlc(false).run();
+    done.map(drop)
+        .map_err(|error| error.downcast().unwrap_or_else(|other| Error::Executor(other.to_string())))
+}
+
+/// A run whose rows are logged.
+struct Logged<'a, L> {
+    run: &'a mut Fminsearch,
+    log: L,
+    interrupted: bool,
+}
+
+impl<L: FnMut(&Row) -> ControlFlow<()>> Logged<'_, L> {
+    /// Logs the last row, and passes it on as argmin's state.
+    fn report(&mut self, is_new: bool, state: State) -> (State, Option<KV>) {
+        let row = self.run.row();
+        if is_new {
+            self.interrupted = (self.log)(&row).is_break();
+        }
+        (state.param(row.best).cost(row.value), None)
+    }
+}
+
+impl<O, L> Solver<O, State> for Logged<'_, L>
+where
+    O: Fn(&[f64], f64) -> f64,
+    L: FnMut(&Row) -> ControlFlow<()>,
+{
+    fn name(&self) -> &str {
+        "fminsearch"
+    }
+
+    fn init(&mut self, problem: &mut Problem<O>, state: State) -> Result<(State, Option<KV>), ArgminError> {
+        let is_new = problem.problem("iterations", |objective| Ok(self.run.begin(objective)?))?;
+        Ok(self.report(is_new, state))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<O>,
+        state: State,
+    ) -> Result<(State, Option<KV>), ArgminError> {
+        problem.problem("iterations", |objective| {
+            self.run.iterate(objective);
+            Ok(())
+        })?;
+        Ok(self.report(true, state))
+    }
+
+    fn terminate(&mut self, _state: &State) -> TerminationStatus {
+        let stop = if self.interrupted { Some(Stop::Interrupted) } else { self.run.stop() };
+        stop.map_or(TerminationStatus::NotTerminated, |stop| {
+            TerminationStatus::Terminated(match stop {
+                Stop::Converged => TerminationReason::SolverConverged,
+                Stop::MaxIter => TerminationReason::MaxItersReached,
+                Stop::MaxFunEvals => TerminationReason::SolverExit("MaxFunEvals".to_owned()),
+                Stop::Interrupted => TerminationReason::Interrupt,
+            })
+        })
+    }
+}
