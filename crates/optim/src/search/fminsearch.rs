@@ -175,22 +175,6 @@ impl Fminsearch {
         Ok(Self { options, scale, simplex, iteration: 0, func_count: 0, procedure: Procedure::Start })
     }
 
-    /// Runs, or continues, until a stop test holds or `log` breaks; see [`minimize`] for both closures. After an interruption it can be
-    /// run again to continue with the next row; the rows are those of an uninterrupted run.
-    ///
-    /// # Errors
-    /// [`Error::StartValue`] where the objective is not finite at the start; the run is then unchanged.
-    pub fn run(
-        &mut self,
-        objective: impl Fn(&[f64], f64) -> f64,
-        log: impl FnMut(&Row) -> ControlFlow<()>,
-    ) -> Result<Minimum, Error> {
-        driver::drive(self, objective, log)?;
-        let Row { iteration: iterations, func_count, best: x, value, .. } = self.row();
-        let stop = self.stop().unwrap_or(Stop::Interrupted);
-        Ok(Minimum { x, value, iterations, func_count, stop, scaling: self.options.scaling })
-    }
-
     /// Iteration 0: evaluates the start, unless this run has begun already. Returns whether there is a new row.
     fn begin(&mut self, objective: &impl Fn(&[f64], f64) -> f64) -> Result<bool, Error> {
         if self.func_count > 0 {

@@ -1,6 +1,6 @@
 //! `fminsearch` as a solver of argmin, whose executor drives it.
 
-use super::{Error, Fminsearch, Row, Stop};
+use super::{Error, Fminsearch, Minimum, Row, Stop};
 use argmin::core::{
     Error as ArgminError, Executor, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus,
 };
@@ -8,19 +8,26 @@ use std::ops::ControlFlow;
 
 type State = IterState<Vec<f64>, (), (), (), (), f64>;
 
-/// Runs until a stop test holds or `log`, which receives each new row, breaks.
-///
-/// # Errors
-/// [`Error::StartValue`].
-pub(super) fn drive<O: Fn(&[f64], f64) -> f64>(
-    run: &mut Fminsearch,
-    objective: O,
-    log: impl FnMut(&Row) -> ControlFlow<()>,
-) -> Result<(), Error> {
-    let solver = Logged { run, log, interrupted: false };
-    let done = Executor::new(objective, solver).ctrlc(false).run();
-    done.map(drop)
-        .map_err(|error| error.downcast().unwrap_or_else(|other| Error::Executor(other.to_string())))
+impl Fminsearch {
+    /// Runs, or continues, until a stop test holds or `log` breaks; see [`minimize`](super::minimize) for both closures. After an interruption it can be
+    /// run again to continue with the next row; the rows are those of an uninterrupted run.
+    ///
+    /// # Errors
+    /// [`Error::StartValue`] where the objective is not finite at the start; the run is then unchanged.
+    pub fn run(
+        &mut self,
+        objective: impl Fn(&[f64], f64) -> f64,
+        log: impl FnMut(&Row) -> ControlFlow<()>,
+    ) -> Result<Minimum, Error> {
+        let solver = Logged { run: self, log, interrupted: false };
+        Executor::new(objective, solver)
+            .ctrlc(false)
+            .run()
+            .map_err(|error| error.downcast().unwrap_or_else(|other| Error::Executor(other.to_string())))?;
+        let Row { iteration: iterations, func_count, best: x, value, .. } = self.row();
+        let stop = self.stop().unwrap_or(Stop::Interrupted);
+        Ok(Minimum { x, value, iterations, func_count, stop, scaling: self.options.scaling })
+    }
 }
 
 /// A run whose rows are logged.
