@@ -32,7 +32,7 @@ BELOW = {
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches explore paper",
     "testkit": "model solver workbench",
     "python": "model solver optim dynamics study sweep store workbench tradeoff branches paper",
-    "bench": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper testkit",
+    "lab": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper testkit",
 }
 
 MOST_LINES = 400

@@ -2,13 +2,13 @@
 //! manifest.
 #![allow(clippy::print_stderr)]
 
-use retune_bench::chart::{self, Cost};
-use retune_bench::reading::Measure;
-use retune_bench::record::{Found, Row, csv, errors, parse};
-use retune_bench::reference::{REFERENCE, Reference};
-use retune_bench::savings::savings;
-use retune_bench::scenes::{Case, cases};
-use retune_bench::{external, own, peers, sealed, statistics, text};
+use retune_lab::chart::{self, Cost};
+use retune_lab::reading::Measure;
+use retune_lab::record::{Found, Row, csv, errors, parse};
+use retune_lab::reference::{REFERENCE, Reference};
+use retune_lab::savings::savings;
+use retune_lab::scenes::{Case, cases};
+use retune_lab::{external, own, peers, sealed, statistics, text};
 use retune_model::{Coupled, Side};
 use retune_solver::{Contacts, Method};
 use retune_workbench::verify::methods;

@@ -1,10 +1,10 @@
 //! The scenes of the comparison: their references, the default tolerance, the smallest models, the tables of other programs.
 
-use retune_bench::record::errors;
-use retune_bench::reference::Reference;
-use retune_bench::savings::savings;
-use retune_bench::scenes::cases;
-use retune_bench::{external, own, statistics};
+use retune_lab::record::errors;
+use retune_lab::reference::Reference;
+use retune_lab::savings::savings;
+use retune_lab::scenes::cases;
+use retune_lab::{external, own, statistics};
 use retune_solver::{Contacts, Method, Settings};
 use std::path::Path;
 

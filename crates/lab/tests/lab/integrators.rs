@@ -1,10 +1,10 @@
 //! The wrapped integrators of others find the motion: differences on the chart are theirs, not the wrapper's.
 #![cfg(feature = "integrators")]
 
-use retune_bench::own;
-use retune_bench::peers::{PEERS, run};
-use retune_bench::record::errors;
-use retune_bench::scenes::cases;
+use retune_lab::own;
+use retune_lab::peers::{PEERS, run};
+use retune_lab::record::errors;
+use retune_lab::scenes::cases;
 use retune_solver::{Contacts, Method};
 
 #[test]

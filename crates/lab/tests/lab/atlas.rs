@@ -1,9 +1,9 @@
 //! The atlas of failures: its references against another method, the hybrid's cells, and every committed cell.
 
-use retune_bench::atlas::difficulties::all;
-use retune_bench::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
-use retune_bench::own;
-use retune_bench::record::errors;
+use retune_lab::atlas::difficulties::all;
+use retune_lab::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
+use retune_lab::own;
+use retune_lab::record::errors;
 use retune_solver::{Contacts, Method};
 use std::path::Path;
 

@@ -122,7 +122,7 @@ impl Equations {
 }
 
 /// The largest E1 and the touch-downs of a motion that is given point by point.
-pub struct Retention {
+pub struct Track {
     spacing: f64,
     last: Option<(f64, [f64; 3])>,
     pressed: [bool; 2],
@@ -132,7 +132,7 @@ pub struct Retention {
     pub touches: Vec<f64>,
 }
 
-impl Retention {
+impl Track {
     /// A track that samples the interior of steps every `spacing` seconds.
     pub fn new(spacing: f64) -> Self {
         Self { spacing, last: None, pressed: [false; 2], e1_max: 0.0, touches: Vec::new() }

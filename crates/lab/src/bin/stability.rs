@@ -1,12 +1,12 @@
 //! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability manifest` writes only its manifest.
 
 use rayon::prelude::*;
-use retune_bench::atlas::draw::{Row, VERDICTS};
-use retune_bench::atlas::{
+use retune_lab::atlas::draw::{Row, VERDICTS};
+use retune_lab::atlas::{
     MOST_STEPS, REFERENCE, Verdict, WAYS, cell, difficulties, draw, energy, energy_cell, missed, objective,
     rigid, stable, truth,
 };
-use retune_bench::sealed;
+use retune_lab::sealed;
 use retune_workbench::verify::methods;
 use std::error::Error;
 use std::fmt::Write;
@@ -96,8 +96,8 @@ fn heading(rows: &[Row]) -> Result<String, std::fmt::Error> {
          rtol 1e-12, which DOP853 confirms (a test). *Works*: at most {:e}, every impact counted. *Miscounts*: the motion is as right, but shallow impacts are missed or counted twice. *Inaccurate*: at most {:e}, and at most one impact, or one in ten, miscounted. \
          *Says it fails*: an error is returned. *Fails silently*: anything else.\n\n![atlas](atlas.svg)\n\n\
          | method | works | miscounts | inaccurate | says it fails | fails silently |\n| --- | --- | --- | --- | --- | --- |\n",
-        retune_bench::atlas::WORKS,
-        retune_bench::atlas::INACCURATE
+        retune_lab::atlas::WORKS,
+        retune_lab::atlas::INACCURATE
     );
     for (j, way) in WAYS.iter().enumerate() {
         let counts = VERDICTS.map(|verdict| count(j, verdict).to_string());
