@@ -30,7 +30,7 @@ BELOW = {
     "paper": "model solver optim dynamics study sweep store figures workbench tradeoff",
     "explore": "model solver optim dynamics study figures workbench",
     "retune": "model solver optim dynamics study sweep store figures workbench tradeoff branches explore paper",
-    "testkit": "model solver workbench",
+    "testkit": "model solver dynamics optim workbench",
     "python": "model solver optim dynamics study sweep store workbench tradeoff branches paper",
     "lab": "model solver optim dynamics study sweep store figures workbench tradeoff branches paper testkit",
 }

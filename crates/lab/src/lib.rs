@@ -6,6 +6,7 @@
 pub mod atlas;
 pub mod chart;
 pub mod external;
+pub mod hunts;
 pub mod motion;
 pub mod own;
 pub mod panel;

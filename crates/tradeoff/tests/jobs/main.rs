@@ -3,7 +3,6 @@
 mod fronts;
 mod retention;
 mod verify;
-mod walk;
 
 use retune_store::Begin;
 use retune_testkit::desk::Desk;

@@ -13,7 +13,6 @@ mod motions;
 mod quantity;
 mod replaced;
 mod report;
-mod robust;
 mod scenes;
 mod shards;
 mod simulate;

@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use retune_model::{Parameter, PerVariable};
 use retune_optim::DesignObjective;
 use retune_study::{Study, read};
+use retune_testkit::hunt::Hunt;
 use retune_workbench::tune::objective::objective;
+use std::error::Error;
 use std::path::Path;
 
 /// The bound on k2, N/m.
@@ -29,12 +31,12 @@ const FEW: usize = 41;
 /// Where motions are irregular E1max jumps from one design to the next, and no slope leads down. A walk that takes every step down comes below
 /// where the descents of `retune fronts` end, on 601 frequencies; the frequencies between them then have more: it has fitted its design to
 /// the samples. From there a walk on 5000 finds designs that have less on both.
-#[test]
-#[ignore = "minutes: `just lab hunt-walk`"]
-fn invariant_a_walk_fits_its_design_to_its_samples_unless_they_are_fine() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/fronts-ssvi.json");
-    let study = read(&path).expect("the study of fronts");
-    let [few, fine, finer, finest] = [FEW, 601, 1201, 5000].map(|samples| over(&study, samples));
+///
+/// Of every walk only a share of its steps, where it is below 1: to see that the program works.
+pub fn walk(share: f64) -> Result<Hunt, Box<dyn Error>> {
+    let study = read(Path::new("studies/fronts-ssvi.json"))?;
+    let of = |samples| over(&study, samples);
+    let (few, fine, finer, finest) = (of(FEW)?, of(601)?, of(1201)?, of(5000)?);
     // Where descents end, without walks: k2, N/m; c2, N s/m; D, m.
     let descended = [300.0, 216.26883973710628, 0.43798840045928955];
     // The largest over some samples, each with the room that it has to have, J; none where that is not below `most`, or a screen is not.
@@ -50,7 +52,7 @@ fn invariant_a_walk_fits_its_design_to_its_samples_unless_they_are_fine() {
     let walk = |number: u32, start: [f64; 3], walk: Walk, on: [On; 2]| {
         let mut best = start;
         let mut least = height(&start, on, f64::INFINITY).expect("finite");
-        for i in 0..walk.steps {
+        for i in 0..(share * f64::from(walk.steps)) as u32 {
             let next = step(&best, number, i, walk);
             if let Some(lower) = height(&next, on, least) {
                 (best, least) = (next, lower);
@@ -64,25 +66,28 @@ fn invariant_a_walk_fits_its_design_to_its_samples_unless_they_are_fine() {
         [first, walk(1, printed(&first), SECOND, [&screens, &[(&fine, ROOM), (&finest, 0.0)]])]
     };
     let ends: Vec<[[f64; 3]; 2]> = (1..=2).into_par_iter().map(both).collect();
-    println!(
-        "\n## Walks under k2 <= {MOST} N/m, C = 0: {} steps on 601 frequencies, then {} on 5000",
-        FIRST.steps, SECOND.steps
-    );
-    println!("| walk | k2, N/m | c2, N·s/m | D, m | E1max on 601 frequencies, J | on 5000 |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: |");
-    let row = |name: &str, at: &[f64; 3]| {
+    let mut hunt = Hunt::default();
+    let mut row = |name: &str, at: &[f64; 3]| {
         let [coarse, whole] = [&fine, &finest].map(|of| worst(of, at, f64::INFINITY));
-        println!("| {name} | {} | {} | {} | {coarse:.2} | {whole:.2} |", at[0], at[1], at[2]);
+        hunt.row(format!("| {name} | {} | {} | {} | {coarse:.2} | {whole:.2} |", at[0], at[1], at[2]));
         [coarse, whole]
     };
     let [coarse, whole] = row("begins", &descended);
+    let mut rows = Vec::new();
     for (number, [first, second]) in ends.iter().enumerate() {
-        let [fitted, seen] = row(&format!("{}, on 601", number + 1), first);
-        assert!(first[0] <= MOST && fitted < coarse, "{fitted} J after a walk from {coarse} J");
-        assert!(seen - fitted > whole - coarse, "{seen} J on 5000 frequencies beside {fitted} J");
-        let [known, lower] = row(&format!("{}, then on 5000", number + 1), second);
-        assert!(second[0] <= MOST && known <= KNOWN && lower < whole, "{lower} J on 5000, {known} J on 601");
+        let fitted = row(&format!("{}, on 601", number + 1), first);
+        let lower = row(&format!("{}, then on 5000", number + 1), second);
+        rows.push(([first[0], second[0]], fitted, lower));
     }
+    for (k2, [fitted, seen], [known, lower]) in rows {
+        hunt.check(k2.iter().all(|k2| *k2 <= MOST), || format!("k2 = {k2:?} N/m"));
+        hunt.check(fitted < coarse, || format!("{fitted} J after a walk from {coarse} J"));
+        hunt.check(seen - fitted > whole - coarse, || {
+            format!("{seen} J on 5000 frequencies beside {fitted} J")
+        });
+        hunt.check(known <= KNOWN && lower < whole, || format!("{lower} J on 5000, {known} J on 601"));
+    }
+    Ok(hunt)
 }
 
 /// A design in few digits.
@@ -97,15 +102,15 @@ fn worst(of: &DesignObjective, at: &[f64; 3], most: f64) -> f64 {
 }
 
 /// The objective of the study on so many frequencies, over k2, c2 and D, one wall touching the damper at rest.
-fn over(study: &Study, samples: usize) -> DesignObjective {
+fn over(study: &Study, samples: usize) -> Result<DesignObjective, Box<dyn Error>> {
     let mut study = study.clone();
-    let optimize = study.optimize.as_mut().expect("a search");
-    optimize.objective.omega.as_mut().expect("a band").samples = samples;
+    let optimize = study.optimize.as_mut().ok_or("no search")?;
+    optimize.objective.omega.as_mut().ok_or("no band")?.samples = samples;
     optimize.global = None;
     optimize.starts = vec![PerVariable::of(&Parameter::PAPER, &[300.0, 200.0, 0.4, 0.0])];
-    let mut search = study.search().expect("a search");
-    Parameter::C.set_damper(&mut search.damper, 0.0).expect("in range");
-    objective(&study, &search, &[Parameter::K2, Parameter::C2, Parameter::D])
+    let mut search = study.search()?;
+    Parameter::C.set_damper(&mut search.damper, 0.0)?;
+    Ok(objective(&study, &search, &[Parameter::K2, Parameter::C2, Parameter::D]))
 }
 
 /// A random step from a design within the bound.

@@ -1,11 +1,13 @@
 //! Verdicts "robust" beside a look from many more starts: perturbed designs of `results`, gaps drawn anew, other structures with scaled designs.
-//! `just lab hunt-robust` runs it.
 
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::motions;
 use retune_model::{Parameter, PerVariable};
 use retune_study::{Setting, Study};
+use retune_testkit::hunt::Hunt;
 use retune_workbench::certify::judge;
+use std::error::Error;
+use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
@@ -61,15 +63,9 @@ fn structure(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     ]
 }
 
-#[test]
-#[ignore = "minutes: `just lab hunt-robust`"]
-fn reference_robust_beside_a_harder_look() {
-    // So many draws, or those from a first to before a last one: "100..200".
-    let draws = std::env::var("RETUNE_ROBUST").unwrap_or("2".to_owned());
-    let (first, last) = draws.split_once("..").unwrap_or(("0", &draws));
-    let [first, last]: [u32; 2] = [first, last].map(|number| number.parse().expect("a number"));
-    let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/ssvi-isola.json");
-    let mut study = retune_study::read(&studies).expect("a study");
+/// Certifies designs of each family, by their numbers.
+pub fn robust(designs: Range<u32>) -> Result<Hunt, Box<dyn Error>> {
+    let mut study = retune_study::read(Path::new("studies/ssvi-isola.json"))?;
     // Draws lie beyond the bounds of the search.
     study.optimize.iter_mut().for_each(|optimize| optimize.bounds = PerVariable::default());
     let families: [(&str, Draw); 3] = [
@@ -77,12 +73,11 @@ fn reference_robust_beside_a_harder_look() {
         ("the wider gap anywhere", far_gap),
         ("other structures", structure),
     ];
-    println!("| family | designs | robust | edge | from rest only | other | false | median time, s |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    let mut hunt = Hunt::default();
     for (family, (name, draw)) in families.into_iter().enumerate() {
         let mut times = Vec::new();
         let mut counts = [0; 5];
-        for number in first..last {
+        for number in designs.clone() {
             let mut dimension = 0;
             let mut u = || {
                 dimension += 1;
@@ -100,25 +95,29 @@ fn reference_robust_beside_a_harder_look() {
                 _ => 3,
             };
             counts[place] += 1;
-            let own = study.energy(&study.scene).expect("a value");
-            if place == 0 && hard(&study) > 1.05 * own {
+            let own = study.energy(&study.scene).ok_or("no value")?;
+            let most = if place == 0 { hard(&study)? } else { 0.0 };
+            if most > 1.05 * own {
                 counts[4] += 1;
-                println!("# {name}, draw {number}: {} J for {own} J", hard(&study));
+                hunt.faults.push(format!("{name}, draw {number}: {most} J for {own} J"));
             }
         }
         times.sort_by(f64::total_cmp);
         let [robust, edge, rest, other, wrong] = counts;
         let median = times.get(times.len() / 2).copied().unwrap_or(f64::NAN);
-        println!("| {name} | {draws} | {robust} | {edge} | {rest} | {other} | {wrong} | {median:.1} |");
+        let count = designs.len();
+        hunt.row(format!(
+            "| {name} | {count} | {robust} | {edge} | {rest} | {other} | {wrong} | {median:.1} |"
+        ));
     }
+    Ok(hunt)
 }
 
 /// The largest energy of all motions that the harder look finds.
-fn hard(study: &Study) -> f64 {
+fn hard(study: &Study) -> Result<f64, Box<dyn Error>> {
     let [samples, starts] = HARD;
     let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
     let plan = Plan { samples, starts, looks: SPACINGS.len(), ..over };
-    let found =
-        motions(&study.scene, plan, &study.solver.settings(), &[|seen| seen.e1_max]).expect("motions");
-    found.largest[0].as_ref().map_or(0.0, |largest| largest.value)
+    let found = motions(&study.scene, plan, &study.solver.settings(), &[|seen| seen.e1_max])?;
+    Ok(found.largest[0].as_ref().map_or(0.0, |largest| largest.value))
 }
