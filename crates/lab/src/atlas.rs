@@ -8,9 +8,9 @@ pub mod objective;
 pub mod rigid;
 pub mod stable;
 
-use crate::own;
-use crate::record::{Found, errors};
-use crate::scenes::{Case, system};
+use crate::runs::{self, Found, errors};
+use crate::scenes::Case;
+use crate::system;
 use difficulties::Difficulty;
 use retune_model::Side;
 use retune_solver::observe::{Observer, Segment};
@@ -37,7 +37,6 @@ pub const WORKS: f64 = 1e-3;
 pub const INACCURATE: f64 = 5e-2;
 
 impl Verdict {
-    /// Its name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Verdict::Works => "works",
@@ -63,11 +62,8 @@ impl Verdict {
 /// A column of the atlas: a method as a user would run it.
 #[derive(Clone, Copy)]
 pub struct Way {
-    /// Its name.
     pub name: &'static str,
-    /// The method.
     pub method: Method,
-    /// How it treats contacts.
     pub contacts: Contacts,
     /// Relative tolerance, or step (s).
     pub setting: f64,
@@ -81,7 +77,7 @@ pub const REFERENCE: f64 = 1e-12;
 impl Way {
     /// As settings, with a bound on the work.
     pub fn settings(&self) -> Settings {
-        Settings { max_steps: MOST_STEPS, ..own::settings(self.method, self.contacts, self.setting) }
+        Settings { max_steps: MOST_STEPS, ..runs::settings(self.method, self.contacts, self.setting) }
     }
 }
 
@@ -105,15 +101,12 @@ pub const WAYS: [Way; 10] = {
     ]
 };
 
-/// One cell.
 pub struct Cell {
-    /// The method's result.
     pub verdict: Verdict,
     /// The larger of the relative errors of E1max and of the final state; in the energy row, the error of the energy.
     pub error: f64,
     /// Impacts found and expected.
     pub impacts: [usize; 2],
-    /// Evaluations.
     pub evaluations: u64,
     /// Its error message, or the cause of its failure; empty if it works.
     pub cause: String,
@@ -158,24 +151,21 @@ impl Observer<4> for Durations {
 }
 
 /// The reference of a difficulty.
-///
-/// # Errors
-/// The reason why it could not be run.
 pub fn truth(difficulty: &Difficulty) -> Result<Truth, String> {
-    let settings = own::settings(Method::Hybrid, Contacts::Located, REFERENCE);
+    let settings = runs::settings(Method::Hybrid, Contacts::Located, REFERENCE);
     let case = &difficulty.case;
     let mut durations = Durations::default();
     if let Some(system) = system(&case.scene) {
-        own::follow(&system, system.rest(), case.to, &settings, &mut durations)
+        runs::follow(&system, system.rest(), case.to, &settings, &mut durations)
             .map_err(|error| error.to_string())?;
     }
-    Ok(Truth { found: own::run(case, &settings, false)?, shortest_contact: durations.shortest })
+    Ok(Truth { found: runs::run(case, &settings, false)?, shortest_contact: durations.shortest })
 }
 
 /// One cell of the atlas.
 pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
     let expected = truth.found.impacts;
-    let found = match own::run(case, &way.settings(), false) {
+    let found = match runs::run(case, &way.settings(), false) {
         Ok(found) => found,
         Err(said) => {
             let cause = format!("it says \"{said}\": {}", why(way, truth));
@@ -188,7 +178,7 @@ pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
             };
         }
     };
-    let [e1, state, _] = errors(&found, &truth.found, case.scene.forcing.frequency.get());
+    let [e1, state, _] = errors(&found, &truth.found, case.omega());
     let error = e1.max(state);
     let impacts = [found.impacts, expected];
     let verdict = Verdict::of(error, impacts);
@@ -233,17 +223,14 @@ fn why(way: &Way, truth: &Truth) -> String {
 }
 
 /// The row of the energy over 1,000 lossless impacts.
-///
-/// # Errors
-/// A value out of range.
-pub fn energy_cell(way: &Way) -> Result<Cell, Box<dyn std::error::Error>> {
-    let drift = energy::drift(way.method, way.contacts, way.setting)?;
+pub fn energy_cell(way: &Way) -> Cell {
+    let drift = energy::drift(way.method, way.contacts, way.setting);
     let impacts = [drift.impacts as usize, energy::IMPACTS as usize];
-    let (verdict, error, cause) = match &drift.change {
-        Err(said) => (Verdict::Says, f64::NAN, said.clone()),
+    let (verdict, error, cause) = match drift.change {
+        Err(said) => (Verdict::Says, f64::NAN, said),
         Ok(change) => {
             let verdict = Verdict::of(change.abs(), impacts);
-            let sign = if *change < 0.0 { "lost" } else { "gained" };
+            let sign = if change < 0.0 { "lost" } else { "gained" };
             let cause = format!(
                 "{sign} {:.1e} of the energy: what each contact leaves has one sign and adds up over {} impacts",
                 change.abs(),
@@ -252,5 +239,5 @@ pub fn energy_cell(way: &Way) -> Result<Cell, Box<dyn std::error::Error>> {
             (verdict, change.abs(), if verdict == Verdict::Works { String::new() } else { cause })
         }
     };
-    Ok(Cell { verdict, error, impacts, evaluations: 0, cause })
+    Cell { verdict, error, impacts, evaluations: 0, cause }
 }

@@ -1,19 +1,22 @@
-//! Evaluation of a table of runs: curves of error against cost, and the cost of a level of accuracy.
+//! Curves of error against cost of a table of runs, the cost of a level of accuracy, and their charts.
 
-use crate::record::Row;
+use crate::Any;
+use crate::panel::{Line, WIDTHS, look, panel, sheet};
+use crate::runs::Row;
 use crate::scenes::Case;
+use retune_figures::colour::{Colour, GREEN, GREY, ORANGE, PURPLE};
+use retune_figures::{Axis, Shape};
+use retune_solver::Method;
+use std::path::Path;
 
 /// The error that is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// Of E1max.
     E1max,
-    /// Of the state at the end.
     State,
 }
 
 impl Measure {
-    /// Its name on a chart.
     pub const fn name(self) -> &'static str {
         match self {
             Measure::E1max => "E1max",
@@ -27,7 +30,6 @@ impl Measure {
 pub struct Curve<'a> {
     /// Name of the method, with its program unless it is Retune's.
     pub name: String,
-    /// Its treatment of contacts.
     pub contacts: &'static str,
     /// Error, and the run.
     pub points: Vec<(f64, &'a Row)>,
@@ -36,7 +38,6 @@ pub struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// The name of its program.
     pub fn program(&self) -> &str {
         self.name.split_once(' ').map_or("retune", |(program, _)| program)
     }
@@ -104,10 +105,94 @@ pub fn curves<'a>(rows: &'a [Row], case: &Case, measure: Measure) -> Vec<Curve<'
     names.iter().filter_map(best).collect()
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    Time,
+    Evaluations,
+}
+
+/// Colour by program and mark by method; the hybrid and the paper's method are emphasised.
+fn style(name: &str) -> (Colour, f64, Shape) {
+    let thin = |colour, shape| (colour, WIDTHS[0], shape);
+    match name {
+        "rk4" => thin(GREEN, Shape::Disc),
+        "euler" => thin(GREEN, Shape::Square),
+        "Octave ode23s" => (ORANGE, WIDTHS[1], Shape::Disc),
+        _ if name.starts_with("differential-equations") => thin(PURPLE, Shape::Disc),
+        _ if name.starts_with("ivp") => thin(PURPLE, Shape::Square),
+        _ if name.starts_with("diffsol") => thin(PURPLE, Shape::Triangle),
+        _ if name.starts_with("Octave") => thin(ORANGE, Shape::Square),
+        _ if name.starts_with("SUNDIALS") => thin(GREY, Shape::Square),
+        _ => Method::ALL
+            .into_iter()
+            .find(|method| method.name() == name)
+            .map_or_else(|| thin(GREY, Shape::Disc), look),
+    }
+}
+
+/// Retune's methods, both of Octave's, and of every other program the best one for the scene.
+fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
+    let mut kept: Vec<Curve<'a>> = Vec::new();
+    for curve in all {
+        let program = curve.program();
+        let rival = kept.iter().position(|k| k.program() == program);
+        match rival {
+            Some(i) if program != "retune" && program != "Octave" => {
+                if rank(&curve) < rank(&kept[i]) {
+                    kept[i] = curve;
+                }
+            }
+            _ => kept.push(curve),
+        }
+    }
+    // The most important lines are drawn last, on top.
+    kept.sort_by(|a, b| style(&a.name).1.total_cmp(&style(&b.name).1));
+    kept
+}
+
+fn line(curve: &Curve<'_>, cost: Cost) -> Line {
+    let way = if curve.contacts == "stepped" { ", stepped" } else { "" };
+    let failed = if curve.failed > 0 { format!(" ({} failed)", curve.failed) } else { String::new() };
+    let name = format!("{}{way}{failed}", curve.name.replace("differential-equations", "diff-eq"));
+    let scale = if cost == Cost::Time { 1e3 } else { 1.0 };
+    let points = curve
+        .points
+        .iter()
+        .filter_map(|(error, row)| Some((*error, row.cost(cost == Cost::Time)? * scale)))
+        .filter(|p| p.1 > 0.0)
+        .collect();
+    Line::new(&name, points, style(&curve.name))
+}
+
+/// One panel for each scene: error on the horizontal axis, cost on the vertical axis.
+pub fn work_precision(path: &Path, cases: &[Case], rows: &[Row], measure: Measure, cost: Cost) -> Any<()> {
+    let (what, unit, range) = match cost {
+        Cost::Time => ("time of a run", ", ms", (1e-2, 1e5)),
+        Cost::Evaluations => ("evaluations of the right-hand side", "", (1e1, 1e7)),
+    };
+    let error = measure.name();
+    let panels = cases.iter().map(|case| {
+        let lines = shown(curves(rows, case, measure)).iter().map(|c| line(c, cost)).collect();
+        panel(
+            &format!("{} (T = {} s)", case.label, case.to),
+            Axis::log(format!("relative error of {error}"), (1e-15, 1e1)),
+            Axis::log(format!("{what}{unit}"), range),
+            lines,
+            180.0,
+        )
+    });
+    let title = format!("Error of {error} against {what}: lower left is better");
+    let key = "Vermilion: Retune's hybrid. Black: the paper's ode23s. Blue, green: Retune's other methods, adaptive and of fixed step. \
+               Purple: Rust crates. Orange: GNU Octave. Grey: SciPy, SUNDIALS.";
+    let note = "Of every other program the method that served the scene best; contacts located unless it says stepped. \
+                Points beyond the axes lie on their ends. All runs, failures with their reason: runs.csv.";
+    sheet(path, &title, &[key, note], 2, panels.collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Found;
+    use crate::runs::Found;
 
     fn row(setting: f64, seconds: f64, error: f64) -> Row {
         let found =

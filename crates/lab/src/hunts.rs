@@ -1,4 +1,5 @@
-//! Hunts of which `cargo test` runs none: the least of them takes minutes.
+//! What hunts need that no test does: those that take minutes at least, and draws.
 
 pub mod robust;
+pub mod scenes;
 pub mod walk;

@@ -42,9 +42,6 @@ impl Equations {
     }
 
     /// `y'`.
-    ///
-    /// # Panics
-    /// After [`MOST_EVALUATIONS`]: there is no other way to stop an integrator that does not return.
     pub fn derivative(&self, t: f64, y: &[f64; 4]) -> [f64; 4] {
         self.evaluations.set(self.evaluations.get() + 1);
         assert!(

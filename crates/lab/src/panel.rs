@@ -1,14 +1,11 @@
 //! Panels of lines, each with its name beside the frame, as charts of `retune_figures`.
 
+use crate::Any;
 use retune_figures::colour::{BLACK, BLUE, Colour, GREEN, VERMILION};
 use retune_figures::{Axis, Chart, Dash, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
 use retune_solver::Method;
-use std::error::Error;
 use std::fs;
 use std::path::Path;
-
-/// The result of drawing.
-pub type Drawn = Result<(), Box<dyn Error>>;
 
 /// Widths of lines, pt, from the least important to the most important.
 pub const WIDTHS: [f64; 4] = [0.5, 0.8, 1.1, 1.5];
@@ -32,11 +29,9 @@ pub struct Line {
     pub name: String,
     /// Its points. Those beyond the axes are drawn on their ends.
     pub points: Vec<(f64, f64)>,
-    /// Its colour.
     pub colour: Colour,
     /// Its width, pt; zero draws points alone.
     pub width: f64,
-    /// Its points' shape.
     pub shape: Option<Shape>,
 }
 
@@ -78,10 +73,7 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
 }
 
 /// Writes a figure of panels with notes below them.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn sheet(path: &Path, title: &str, notes: &[&str], columns: usize, panels: Vec<Chart>) -> Drawn {
+pub fn sheet(path: &Path, title: &str, notes: &[&str], columns: usize, panels: Vec<Chart>) -> Any<()> {
     let width = if columns == 1 { Width::Column } else { Width::Page };
     let caption: Vec<String> =
         std::iter::once(format!("{title}.")).chain(notes.iter().map(|&note| note.to_owned())).collect();

@@ -5,8 +5,7 @@ mod with_diffsol;
 mod with_ivp;
 
 use crate::motion::{Equations, Track};
-use crate::own::shortest_of;
-use crate::record::Found;
+use crate::runs::{Found, shortest_of};
 use crate::scenes::Case;
 use std::panic::{self, AssertUnwindSafe};
 
@@ -17,9 +16,8 @@ pub type Piece =
 
 /// An integrator of another program.
 pub struct Peer {
-    /// Program and version.
+    /// With its version.
     pub program: &'static str,
-    /// Method.
     pub method: &'static str,
     /// Integrates one phase.
     pub piece: Piece,
@@ -27,33 +25,22 @@ pub struct Peer {
     pub tightest: f64,
 }
 
-/// The peers.
-pub const PEERS: [Peer; 9] = [
-    Peer {
-        program: "differential-equations 0.7",
-        method: "DOP853",
-        piece: with_diffeq::dop853,
-        tightest: 1e-12,
-    },
-    Peer {
-        program: "differential-equations 0.7",
-        method: "Radau5",
-        piece: with_diffeq::radau5,
-        tightest: 1e-10,
-    },
-    Peer {
-        program: "differential-equations 0.7",
-        method: "Kvaerno745",
-        piece: with_diffeq::kvaerno745,
-        tightest: 1e-9,
-    },
-    Peer { program: "ivp 0.6", method: "DOP853", piece: with_ivp::dop853, tightest: 1e-12 },
-    Peer { program: "ivp 0.6", method: "RK23", piece: with_ivp::rk23, tightest: 1e-8 },
-    Peer { program: "ivp 0.6", method: "LSODA", piece: with_ivp::lsoda, tightest: 1e-11 },
-    Peer { program: "ivp 0.6", method: "BDF", piece: with_ivp::bdf, tightest: 1e-9 },
-    Peer { program: "diffsol 0.18", method: "BDF", piece: with_diffsol::bdf, tightest: 1e-9 },
-    Peer { program: "diffsol 0.18", method: "TR-BDF2", piece: with_diffsol::tr_bdf2, tightest: 1e-7 },
-];
+pub const PEERS: [Peer; 9] = {
+    const fn peer(program: &'static str, method: &'static str, piece: Piece, tightest: f64) -> Peer {
+        Peer { program, method, piece, tightest }
+    }
+    [
+        peer("differential-equations 0.7", "DOP853", with_diffeq::dop853, 1e-12),
+        peer("differential-equations 0.7", "Radau5", with_diffeq::radau5, 1e-10),
+        peer("differential-equations 0.7", "Kvaerno745", with_diffeq::kvaerno745, 1e-9),
+        peer("ivp 0.6", "DOP853", with_ivp::dop853, 1e-12),
+        peer("ivp 0.6", "RK23", with_ivp::rk23, 1e-8),
+        peer("ivp 0.6", "LSODA", with_ivp::lsoda, 1e-11),
+        peer("ivp 0.6", "BDF", with_ivp::bdf, 1e-9),
+        peer("diffsol 0.18", "BDF", with_diffsol::bdf, 1e-9),
+        peer("diffsol 0.18", "TR-BDF2", with_diffsol::tr_bdf2, 1e-7),
+    ]
+};
 
 /// Most events of a run.
 const MOST_EVENTS: usize = 10_000;
@@ -99,9 +86,6 @@ fn follow(
 }
 
 /// A run of a peer. The time is that of the motion alone: unlike Retune's, it does not contain the search for E1max.
-///
-/// # Errors
-/// The reason why the run failed.
 pub fn run(peer: &Peer, case: &Case, located: bool, rtol: f64) -> Result<Found, String> {
     let spacing = if case.name == "near-rigid" { 2e-5 } else { 2e-4 };
     let mut track = Track::new(spacing);

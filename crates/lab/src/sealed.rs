@@ -1,5 +1,6 @@
 //! The manifest of results, with their scenes beside it, from which `retune verify` runs their rows again.
 
+use crate::Any;
 use crate::scenes::Case;
 use retune_model::{NonNegative, Positive};
 use retune_store::identity::Identity;
@@ -10,23 +11,12 @@ use retune_workbench::artefact::Kind;
 use retune_workbench::resolved::{Resolved, SEVERAL};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::error::Error;
 use std::fs;
 use std::path::Path;
 
 /// Writes both into a directory, for the files that stand there.
-///
-/// # Errors
-/// A file cannot be read or written.
-pub fn seal<'a>(
-    folder: &Path,
-    kind: &Kind,
-    plan: Value,
-    cases: impl Iterator<Item = &'a Case>,
-) -> Result<(), Box<dyn Error>> {
-    let study = |case: &Case| -> Result<(String, Study), Box<dyn Error>> {
-        let window = Span { t0: NonNegative::new(0.0)?, end: Positive::new(case.to)? };
-        let solver = Solver::default();
+pub fn seal<'a>(folder: &Path, kind: &Kind, plan: Value, cases: impl Iterator<Item = &'a Case>) -> Any<()> {
+    let study = |case: &Case| -> Any<(String, Study)> {
         let study = Study {
             certificate: Default::default(),
             schema: None,
@@ -34,8 +24,8 @@ pub fn seal<'a>(
             retune: None,
             name: None,
             scene: case.scene,
-            window,
-            solver,
+            window: Span { t0: NonNegative::default(), end: Positive::new(case.to)? },
+            solver: Solver::default(),
             optimize: None,
         };
         Ok((case.name.replace(',', ";"), study))

@@ -1,18 +1,9 @@
 //! Beyond the predictable horizon: a chaotic motion, where only statistics can be compared.
 
-use crate::own;
-use crate::scenes::{ROW1, scene};
-use retune_model::Scene;
+use crate::Any;
+use crate::runs::settings as with;
+use crate::scenes::ROW1;
 use retune_solver::{Contacts, Method, Rows, Settings, Window, simulate, trajectory};
-use std::error::Error;
-
-/// Table 1's row 1, whose largest Lyapunov exponent is about +0.9 1/s.
-///
-/// # Errors
-/// A value out of range.
-pub fn chaotic() -> Result<Scene, Box<dyn Error>> {
-    Ok(scene(ROW1)?)
-}
 
 /// From t = 100 s for 2,000 s: some 2,000 periods and 1,800 Lyapunov times.
 pub const WINDOW: Window = Window { from: 100.0, to: 2100.0 };
@@ -23,7 +14,6 @@ const BLOCKS: usize = 20;
 
 /// Long-run statistics of the motion by one method.
 pub struct Statistics {
-    /// The method and its settings.
     pub settings: Settings,
     /// Mean of E1 over time, J.
     pub mean: f64,
@@ -31,16 +21,13 @@ pub struct Statistics {
     pub error: f64,
     /// The value that E1 exceeds 1 % of the time, J.
     pub exceeded: f64,
-    /// Impacts per second.
+    /// A second.
     pub impacts: f64,
 }
 
-/// Runs the chaotic motion and collects its statistics.
-///
-/// # Errors
-/// A run that failed.
-pub fn of(settings: Settings) -> Result<Statistics, Box<dyn Error>> {
-    let scene = chaotic()?;
+/// Runs Table 1's row 1, whose largest Lyapunov exponent is about +0.9 1/s.
+pub fn of(settings: Settings) -> Any<Statistics> {
+    let scene = ROW1.scene();
     let mut samples = Vec::new();
     trajectory(&scene, WINDOW, &settings, Rows::every(INTERVAL), &mut |sample| samples.push(sample.e1))?;
     let average = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
@@ -55,23 +42,19 @@ pub fn of(settings: Settings) -> Result<Statistics, Box<dyn Error>> {
 }
 
 /// The methods compared.
-///
-/// # Errors
-/// A run that failed.
-pub fn all() -> Result<Vec<Statistics>, Box<dyn Error>> {
-    let located = |rtol| own::settings(Method::Hybrid, Contacts::Located, rtol);
-    let stepped = |method, rtol| own::settings(method, Contacts::Stepped, rtol);
+pub fn all() -> Any<Vec<Statistics>> {
+    use Contacts::{Located, Stepped};
     [
-        located(1e-4),
-        located(1e-6),
-        located(1e-10),
-        own::settings(Method::Dop853, Contacts::Located, 1e-8),
-        stepped(Method::Ode45, 1e-6),
-        stepped(Method::Ode23s, 1e-3),
-        stepped(Method::Ode23s, 1e-5),
-        stepped(Method::Euler, 1e-3),
+        (Method::Hybrid, Located, 1e-4),
+        (Method::Hybrid, Located, 1e-6),
+        (Method::Hybrid, Located, 1e-10),
+        (Method::Dop853, Located, 1e-8),
+        (Method::Ode45, Stepped, 1e-6),
+        (Method::Ode23s, Stepped, 1e-3),
+        (Method::Ode23s, Stepped, 1e-5),
+        (Method::Euler, Stepped, 1e-3),
     ]
     .into_iter()
-    .map(of)
+    .map(|(method, contacts, setting)| of(with(method, contacts, setting)))
     .collect()
 }

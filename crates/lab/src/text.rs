@@ -1,8 +1,8 @@
 //! The results of the charts in words and numbers: `results/accuracy/README.md`.
 
-use crate::reading::{Curve, Measure, curves};
-use crate::record::Row;
+use crate::curves::{Curve, Measure, curves};
 use crate::reference::Reference;
+use crate::runs::{Row, way};
 use crate::savings::Saving;
 use crate::scenes::Case;
 use crate::statistics::Statistics;
@@ -121,7 +121,7 @@ fn loosest(cases: &[Case], rows: &[Row], level: f64) -> (f64, f64) {
 fn time_at(cases: &[Case], rows: &[Row], rtol: f64) -> f64 {
     rows.iter()
         .filter(|r| r.name() == "hybrid" && cases.iter().any(|c| c.name == r.scene))
-        .filter(|r| (r.setting / rtol).ln().abs() < 0.1)
+        .filter(|r| r.is_at(rtol))
         .filter_map(|r| r.cost(true))
         .fold(0.0, f64::max)
 }
@@ -150,18 +150,15 @@ fn paper_defaults(out: &mut String, cases: &[Case], rows: &[Row]) {
         | scene | ode23s | GNU Octave's ode23s | hybrid at rtol 1e-3 |\n| --- | --- | --- | --- |\n";
     for case in cases {
         let cell = |name: &str, contacts: &str| {
-            let at = |r: &&Row| {
-                r.scene == case.name
-                    && r.name() == name
-                    && r.contacts == contacts
-                    && (r.setting / 1e-3).ln().abs() < 0.1
-            };
-            rows.iter().find(at).map_or(String::from("not run"), |r| match &r.found {
-                Ok(f) => format!(
-                    "{:.0e}, {:.0e}, {} of {}",
-                    r.errors[0], r.errors[1], f.impacts, r.expected_impacts
-                ),
-                Err(why) => why.clone(),
+            let own = |r: &&Row| r.scene == case.name && r.name() == name && r.contacts == contacts;
+            rows.iter().filter(own).find(|r| r.is_at(1e-3)).map_or(String::from("not run"), |r| {
+                match &r.found {
+                    Ok(f) => format!(
+                        "{:.0e}, {:.0e}, {} of {}",
+                        r.errors[0], r.errors[1], f.impacts, r.expected_impacts
+                    ),
+                    Err(why) => why.clone(),
+                }
             })
         };
         let _ = writeln!(
@@ -187,7 +184,7 @@ fn reference(out: &mut String, cases: &[Case], references: &[Reference]) {
         let run = r.parting.map_or(String::from("-"), |rate| format!("{rate:+.3}"));
         let lyapunov = r.lyapunov_time().map_or(String::from("none: motions meet"), |t| format!("{t:.1}"));
         let horizon = if r.horizon().is_finite() { format!("{:.0}", r.horizon()) } else { "any".into() };
-        let [a, b, c] = r.uncertainty();
+        let [a, b, c] = r.uncertainty;
         let _ = writeln!(
             out,
             "| {} | {} | {:.9} | {} | {settled}, {run} | {lyapunov} | {horizon} | {a:.0e} | {b:.0e} | {c:.0e} |",
@@ -206,7 +203,7 @@ fn beyond(out: &mut String, chaos: &[Statistics]) {
             out,
             "| {}, {} | {setting:.0e} | {:.1} ± {:.1} | {:.0} | {:.3} |",
             s.settings.method.name(),
-            crate::own::way(&s.settings),
+            way(&s.settings),
             s.mean,
             s.error,
             s.exceeded,

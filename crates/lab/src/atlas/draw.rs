@@ -1,7 +1,7 @@
 //! The atlas as one picture: a method in each column, a difficulty in each row.
 
 use super::{Cell, Verdict, WAYS};
-use crate::panel::Drawn;
+use crate::Any;
 use retune_figures::colour::{Colour, GREEN, ORANGE, SKY, VERMILION, YELLOW};
 use retune_figures::{Axis, Chart, Key, Layer, Sheet, Stand, Width, svg, ten_to};
 use std::fs;
@@ -45,10 +45,7 @@ fn figure(error: f64) -> String {
 }
 
 /// Draws the matrix.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn matrix(path: &Path, rows: &[Row]) -> Drawn {
+pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
     let mut layers = Vec::new();
     let (mut names, mut y, mut group) = (Vec::new(), 0.0, rows.first().map_or("", |row| row.0));
     for (of, name, cells) in rows {

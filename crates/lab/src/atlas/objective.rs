@@ -1,16 +1,15 @@
 //! The objective: how E1max, and the optimum that fminsearch reports, change with the tolerance and with ±0.1 % of the
 //! parameters about Table 2's SSVI.
 
-use crate::own;
-use crate::panel::{Drawn, Line, WIDTHS, panel, sheet};
-use crate::scenes::{Numbers, SSVI, scene};
+use crate::panel::{Line, WIDTHS, panel, sheet};
+use crate::runs::settings;
+use crate::scenes::{Numbers, SSVI};
+use crate::{Any, decades};
 use rayon::prelude::*;
 use retune_figures::colour::{BLACK, BLUE, VERMILION};
 use retune_figures::{Axis, Shape};
-use retune_model::OutOfRange;
 use retune_optim::{DesignObjective, Minimum, Options, Parameter, minimize};
 use retune_solver::{Contacts, Method, Settings, Window, e1_max};
-use std::error::Error;
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,35 +19,26 @@ const WINDOW: Window = Window { from: 50.0, to: 100.0 };
 /// Table 2's design: k2, c2, D, C.
 const DESIGN: [f64; 4] = [SSVI.k2, SSVI.c2, SSVI.d, SSVI.c];
 
-fn objective(settings: Settings) -> Result<DesignObjective, Box<dyn Error>> {
-    let scene = scene(SSVI)?;
-    let damper = scene.damper.ok_or("no damper")?;
-    Ok(DesignObjective::new(scene, damper, Parameter::PAPER.to_vec(), WINDOW, settings))
-}
-
 fn located(method: Method, rtol: f64) -> Settings {
-    own::settings(method, Contacts::Located, rtol)
+    settings(method, Contacts::Located, rtol)
 }
 
 fn stepped(method: Method, rtol: f64) -> Settings {
-    own::settings(method, Contacts::Stepped, rtol)
+    settings(method, Contacts::Stepped, rtol)
 }
 
 /// The optimum that fminsearch finds under some settings, from a start.
-///
-/// # Errors
-/// A start that cannot be evaluated.
-pub fn optimum(settings: Settings, start: &[f64; 4]) -> Result<Minimum, Box<dyn Error>> {
-    let objective = objective(settings)?;
+fn optimum(settings: Settings, start: &[f64; 4]) -> Any<Minimum> {
+    let varied = Parameter::PAPER.to_vec();
+    let objective = DesignObjective::new(SSVI.scene(), SSVI.damper(), varied, WINDOW, settings);
     let value = |x: &[f64], cutoff: f64| objective.value(x, cutoff);
     Ok(minimize(value, start, Options::default(), |_| ControlFlow::Continue(()))?)
 }
 
 /// E1max over the whole run (0 to 100 s) and over the window (50 to 100 s), J.
-fn both(numbers: Numbers, settings: &Settings) -> Result<[f64; 2], Box<dyn Error>> {
-    let scene = scene(numbers)?;
+fn both(numbers: Numbers, settings: &Settings) -> Any<[f64; 2]> {
     let whole = Window { from: 0.0, ..WINDOW };
-    let of = |window| e1_max(&scene, window, settings, f64::INFINITY);
+    let of = |window| e1_max(&numbers.scene(), window, settings, f64::INFINITY);
     Ok([of(whole)?.value, of(WINDOW)?.value])
 }
 
@@ -60,24 +50,15 @@ fn changed(factors: [f64; 4]) -> Numbers {
 
 /// Settings that are compared, loosest first.
 fn compared() -> Vec<(String, Settings)> {
-    let mut all = Vec::new();
-    for rtol in (2..=12).map(|k| 10f64.powi(-k)) {
-        all.push((format!("hybrid,{rtol:e}"), located(Method::Hybrid, rtol)));
-    }
-    for rtol in (3..=10).map(|k| 10f64.powi(-k)) {
-        all.push((format!("ode45 stepped,{rtol:e}"), stepped(Method::Ode45, rtol)));
-    }
-    for rtol in (3..=7).map(|k| 10f64.powi(-k)) {
-        all.push((format!("ode23s stepped,{rtol:e}"), stepped(Method::Ode23s, rtol)));
-    }
-    all
+    let hybrid = |rtol: f64| (format!("hybrid,{rtol:e}"), located(Method::Hybrid, rtol));
+    let ode45 = |rtol: f64| (format!("ode45 stepped,{rtol:e}"), stepped(Method::Ode45, rtol));
+    let ode23s = |rtol: f64| (format!("ode23s stepped,{rtol:e}"), stepped(Method::Ode23s, rtol));
+    let (a, b, c) = (decades(2, 12), decades(3, 10), decades(3, 7));
+    a.into_iter().map(hybrid).chain(b.into_iter().map(ode45)).chain(c.into_iter().map(ode23s)).collect()
 }
 
 /// The table of E1max, that of optima, and the chart.
-///
-/// # Errors
-/// A run that failed, or a file that cannot be written.
-pub fn tables(chart: &Path) -> Result<[String; 2], Box<dyn Error>> {
+pub fn tables(chart: &Path) -> Any<[String; 2]> {
     let mut values = String::from("what,rtol,E1max_0_100_s_J,E1max_50_100_s_J\n");
     let mut lines: [Vec<(f64, f64)>; 3] = Default::default();
     let [truth, _] = both(SSVI, &located(Method::Hybrid, 1e-13))?;
@@ -112,7 +93,7 @@ pub fn tables(chart: &Path) -> Result<[String; 2], Box<dyn Error>> {
 }
 
 /// The optima that fminsearch reports, and their energies under the tightest settings.
-fn optima() -> Result<String, Box<dyn Error>> {
+fn optima() -> Any<String> {
     let mut runs: Vec<(String, Settings, [f64; 4])> = Vec::new();
     for rtol in [1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12] {
         runs.push((format!("hybrid {rtol:e}"), located(Method::Hybrid, rtol), DESIGN));
@@ -145,21 +126,21 @@ fn optima() -> Result<String, Box<dyn Error>> {
 }
 
 /// E1max along a line of k2 within ±0.1 %, J.
-fn scan(settings: &Settings) -> Result<Vec<(f64, f64)>, OutOfRange> {
+fn scan(settings: &Settings) -> Vec<(f64, f64)> {
     let points: Vec<f64> = (-100..=100).map(|k| 1e-3 * f64::from(k)).collect();
     let value = |&percent: &f64| {
-        let scene = scene(changed([1.0 + 1e-2 * percent, 1.0, 1.0, 1.0]))?;
+        let scene = changed([1.0 + 1e-2 * percent, 1.0, 1.0, 1.0]).scene();
         let found = e1_max(&scene, Window { from: 0.0, ..WINDOW }, settings, f64::INFINITY);
-        Ok((percent, found.map_or(f64::NAN, |peak| peak.value)))
+        (percent, found.map_or(f64::NAN, |peak| peak.value))
     };
     points.par_iter().map(value).collect()
 }
 
-fn draw(path: &Path, [ode45, ode23s, hybrid]: [Vec<(f64, f64)>; 3]) -> Drawn {
+fn draw(path: &Path, [ode45, ode23s, hybrid]: [Vec<(f64, f64)>; 3]) -> Any<()> {
     let [thin, normal, bold, boldest] = WIDTHS;
     let exact = Line {
         name: "hybrid, rtol 1e-10".to_owned(),
-        points: scan(&located(Method::Hybrid, 1e-10))?,
+        points: scan(&located(Method::Hybrid, 1e-10)),
         colour: VERMILION,
         width: bold,
         shape: None,
@@ -183,12 +164,12 @@ fn draw(path: &Path, [ode45, ode23s, hybrid]: [Vec<(f64, f64)>; 3]) -> Drawn {
             vec![
                 Line::new(
                     "ode23s, rtol 1e-3",
-                    scan(&stepped(Method::Ode23s, 1e-3))?,
+                    scan(&stepped(Method::Ode23s, 1e-3)),
                     (BLACK, thin, Shape::Cross),
                 ),
                 Line::new(
                     "hybrid, rtol 1e-6",
-                    scan(&located(Method::Hybrid, 1e-6))?,
+                    scan(&located(Method::Hybrid, 1e-6)),
                     (BLUE, thin, Shape::Square),
                 ),
                 exact,

@@ -4,28 +4,17 @@
 //! must converge to the rigid one at that rate.
 
 use super::{WAYS, Way};
-use crate::own;
-use crate::panel::{Drawn, Line, WIDTHS, panel, sheet};
-use crate::scenes::{Case, Numbers, SSVI, scene, system};
+use crate::panel::{Line, WIDTHS, panel, sheet};
+use crate::runs::{Found, errors, run, settings};
+use crate::scenes::{Case, SSVI, stiffer};
+use crate::{Any, decades};
 use retune_figures::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_figures::{Axis, Shape};
-use retune_model::{Coupled, Scene, Side};
+use retune_model::Side;
 use retune_solver::observe::{Observer, PrimaryEnergy, RunningMaximum, Segment};
-use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError};
-use std::error::Error;
+use retune_solver::{Contacts, Hybrid, Method, Motion, Phase};
 use std::fmt::Write;
 use std::path::Path;
-
-/// The motion between rigid walls.
-#[derive(Clone, Copy, Debug)]
-pub struct Rigid {
-    /// Largest E1, J.
-    pub e1_max: f64,
-    /// State at the end.
-    pub state: [f64; 4],
-    /// Impacts.
-    pub impacts: usize,
-}
 
 /// Flight up to a touch-down; the rest is ignored.
 struct Flight<'a> {
@@ -58,112 +47,78 @@ fn bounce([m1, m2]: [f64; 2], y: &mut [f64; 4]) {
     y[3] -= 2.0 * m1 / (m1 + m2) * closing;
 }
 
-/// Runs a scene from rest to `to` (s): exact flight, instantaneous elastic impacts.
-///
-/// # Errors
-/// No damper; a run that failed; more than 10,000 impacts.
-pub fn rigid(scene: &Scene, to: f64) -> Result<Rigid, Box<dyn Error>> {
-    let system: Coupled = system(scene).ok_or("no damper")?;
-    let masses = [scene.primary.mass.get(), scene.damper.ok_or("no damper")?.mass.get()];
+/// Largest E1 (J) and final state of the two-sided SSVI between rigid walls from rest to `to` (s): exact flight, instantaneous elastic impacts.
+fn rigid(to: f64) -> Any<(f64, [f64; 4])> {
+    let system = SSVI.coupled();
     let peak = RunningMaximum::new(PrimaryEnergy::new(&system), f64::INFINITY);
     let mut watch = Flight { peak, last: None, touched: None };
     let mut hybrid = Hybrid::new(&system, 1e-10, to, 10_000_000);
     let mut now = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
-    for impacts in 0..10_000 {
+    for _ in 0..10_000 {
         let end = hybrid.propagate(now, to, &mut watch)?;
         let (Some(side), Some((t, mut y))) = (watch.touched.take(), watch.last) else {
-            return Ok(Rigid { e1_max: watch.peak.record().value, state: end.y, impacts });
+            return Ok((watch.peak.record().value, end.y));
         };
         y[2] = y[0] + system.wall(side);
-        bounce(masses, &mut y);
+        bounce([SSVI.m1, SSVI.m2], &mut y);
         now = Motion { t, y, phase: Phase::Leaving(side) };
     }
-    Err(Box::new(SolverError::TooManySteps { t: now.t, limit: 10_000, evaluations: None }))
+    Err("more than 10000 impacts".into())
 }
 
 /// The two-sided SSVI with its contacts 10^n times as stiff, 10 s.
-///
-/// # Errors
-/// A value out of range.
-pub fn case(n: i32) -> Result<Case, Box<dyn Error>> {
-    let numbers = Numbers { stiffer: 10f64.powi(n), ..SSVI };
-    Ok(Case { name: "stiff", label: "", scene: scene(numbers)?, to: 10.0 })
+fn case(n: i32) -> Case {
+    Case { name: "stiff", label: "", scene: stiffer(10f64.powi(n)).scene(), to: 10.0 }
 }
 
-/// Exponents of the stiffness.
-const EXPONENTS: std::ops::RangeInclusive<i32> = -2..=8;
-
 /// Distance of the Hertzian motion at K × 10^n from the rigid one: E1max and final state, relative.
-///
-/// # Errors
-/// A run that failed.
-pub fn distance(n: i32) -> Result<[f64; 2], Box<dyn Error>> {
-    let case = case(n)?;
-    let limit = rigid(&case.scene, case.to)?;
-    let found = own::run(&case, &own::settings(Method::Hybrid, Contacts::Located, 1e-11), false)?;
-    let as_found = crate::record::Found { e1_max: limit.e1_max, final_state: limit.state, ..found.clone() };
-    let [e1, state, _] = crate::record::errors(&found, &as_found, case.scene.forcing.frequency.get());
+pub fn distance(n: i32) -> Any<[f64; 2]> {
+    let case = case(n);
+    let (e1_max, final_state) = rigid(case.to)?;
+    let found = run(&case, &settings(Method::Hybrid, Contacts::Located, 1e-11), false)?;
+    let limit = Found { e1_max, final_state, ..found.clone() };
+    let [e1, state, _] = errors(&found, &limit, case.omega());
     Ok([e1, state])
 }
 
+/// A line of the chart: a method, and its value at each stiffness.
+type Of = (Way, Vec<(f64, f64)>);
+
 /// The table, and its chart.
-///
-/// # Errors
-/// A run of the hybrid that failed, or a file that cannot be written.
-pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
+pub fn table(chart: &Path) -> Any<String> {
     let mut text = String::from(
         "stiffness_factor,method,setting,E1max_error,final_state_error,impacts,expected_impacts,evaluations,time_s,E1max_from_rigid,final_state_from_rigid,failure\n",
     );
-    let mut errors: Vec<(Way, Vec<(f64, f64)>)> = WAYS.iter().map(|w| (*w, Vec::new())).collect();
-    let mut costs: Vec<(Way, Vec<(f64, f64)>)> = WAYS.iter().map(|w| (*w, Vec::new())).collect();
+    let mut apart: Vec<Of> = WAYS.iter().map(|way| (*way, Vec::new())).collect();
+    let mut costs = apart.clone();
     let mut limit: [Vec<(f64, f64)>; 2] = Default::default();
-    for n in EXPONENTS {
-        let (case, factor) = (case(n)?, 10f64.powi(n));
-        let reference = own::run(&case, &own::settings(Method::Hybrid, Contacts::Located, 1e-12), false)?;
-        let apart = distance(n)?;
-        (0..2).for_each(|i| limit[i].push((factor, apart[i])));
+    for n in -2..=8 {
+        let (case, factor) = (case(n), 10f64.powi(n));
+        let reference = run(&case, &settings(Method::Hybrid, Contacts::Located, 1e-12), false)?;
+        let expected = reference.impacts;
+        let from_rigid = distance(n)?;
+        (0..2).for_each(|i| limit[i].push((factor, from_rigid[i])));
+        let from_rigid = format!("{:.2e},{:.2e}", from_rigid[0], from_rigid[1]);
         for (i, way) in WAYS.iter().enumerate() {
-            let settings =
-                Settings { max_steps: 400_000, ..own::settings(way.method, way.contacts, way.setting) };
             write!(text, "1e{n},{},{:e},", way.name, way.setting)?;
-            match own::run(&case, &settings, true) {
+            match run(&case, &way.settings(), true) {
                 Ok(found) => {
-                    let [e1, state, _] =
-                        crate::record::errors(&found, &reference, case.scene.forcing.frequency.get());
-                    writeln!(
-                        text,
-                        "{e1:.2e},{state:.2e},{},{},{},{:.3e},{:.2e},{:.2e},",
-                        found.impacts,
-                        reference.impacts,
-                        found.evaluations,
-                        found.seconds,
-                        apart[0],
-                        apart[1]
-                    )?;
-                    errors[i].1.push((factor, state));
-                    costs[i].1.push((factor, found.evaluations as f64));
+                    let [e1, state, _] = errors(&found, &reference, case.omega());
+                    let Found { impacts, evaluations, seconds, .. } = found;
+                    write!(text, "{e1:.2e},{state:.2e},{impacts},{expected},{evaluations},{seconds:.3e},")?;
+                    writeln!(text, "{from_rigid},")?;
+                    apart[i].1.push((factor, state));
+                    costs[i].1.push((factor, evaluations as f64));
                 }
-                Err(said) => writeln!(
-                    text,
-                    ",,,{},,,{:.2e},{:.2e},{}",
-                    reference.impacts,
-                    apart[0],
-                    apart[1],
-                    said.replace(',', ";")
-                )?,
+                Err(said) => writeln!(text, ",,,{expected},,,{from_rigid},{}", said.replace(',', ";"))?,
             }
         }
     }
-    draw(chart, errors, costs, limit)?;
+    draw(chart, apart, costs, limit)?;
     Ok(text)
 }
 
-fn draw(
-    path: &Path,
-    errors: Vec<(Way, Vec<(f64, f64)>)>,
-    costs: Vec<(Way, Vec<(f64, f64)>)>,
-    limit: [Vec<(f64, f64)>; 2],
-) -> Drawn {
+fn draw(path: &Path, errors: Vec<Of>, costs: Vec<Of>, limit: [Vec<(f64, f64)>; 2]) -> Any<()> {
     let [thin, normal, bold, boldest] = WIDTHS;
     let look = |way: &Way| match (way.method, way.contacts) {
         (Method::Hybrid, _) => (VERMILION, boldest, Shape::Disc),
@@ -176,14 +131,14 @@ fn draw(
         (_, Contacts::Located) => (BLUE, normal, Shape::Triangle),
         _ => (BLUE, thin, Shape::Square),
     };
-    let lines = |of: Vec<(Way, Vec<(f64, f64)>)>| {
-        let line = |(way, points): (Way, Vec<(f64, f64)>)| Line::new(way.name, points, look(&way));
+    let lines = |of: Vec<Of>| {
+        let line = |(way, points): Of| Line::new(way.name, points, look(&way));
         of.into_iter().rev().map(line).collect::<Vec<_>>()
     };
     let x = || Axis::log("stiffness of the contact, times that of the SSVI", (1e-2, 1e8));
     let [e1, state] = limit;
     let (first, at) = state.last().map_or((1.0, 1.0), |p| *p);
-    let slope = EXPONENTS.map(|n| 10f64.powi(n)).map(|f| (f, at * (f / first).powf(-0.4))).collect();
+    let slope = decades(-8, 2).into_iter().rev().map(|f| (f, at * (f / first).powf(-0.4))).collect();
     let panels = vec![
         panel(
             "Error of the final state",

@@ -1,16 +1,16 @@
 //! The largest stable step on the scenes' own eigenvalues, measured on each method's own step and predicted by its stability
 //! function (E. Hairer & G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. 1996, IV.2 and IV.7).
 
-use crate::own;
-use crate::panel::{Drawn, Line, WIDTHS, look, panel, sheet};
-use crate::scenes::{Case, cases, system};
+use crate::panel::{Line, WIDTHS, look, panel, sheet};
+use crate::runs::settings;
+use crate::scenes::{Case, cases};
+use crate::{Any, system};
 use nalgebra::{Complex, SMatrix};
 use retune_figures::colour::BLACK;
 use retune_figures::{Axis, Shape};
 use retune_model::{Bare, Side};
 use retune_solver::methods::{Dop853, Euler, Ode23, Ode23s, Ode45, OneStep, Rk4};
 use retune_solver::{Contacts, Method, System, Window, simulate};
-use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -108,9 +108,7 @@ fn grows_in_theory(method: Method, lambda: Complex<f64>, h: f64) -> bool {
 
 /// A scene linearised at a moment.
 pub struct Moment {
-    /// Its name.
     pub name: String,
-    /// Its matrix.
     pub matrix: Matrix,
 }
 
@@ -122,12 +120,9 @@ impl Moment {
 }
 
 /// The flight of each scene, and the contacts of two of them at their largest indentation.
-///
-/// # Errors
-/// A scene that cannot be run.
-pub fn moments() -> Result<Vec<Moment>, Box<dyn Error>> {
+pub fn moments() -> Any<Vec<Moment>> {
     let mut all = Vec::new();
-    for case in &cases()? {
+    for case in &cases() {
         let Some(system) = system(&case.scene) else {
             let (a, _) = Bare::new(&case.scene.primary, &case.scene.forcing).linear_part();
             // Twice the same oscillator: the methods here take four components.
@@ -147,9 +142,9 @@ pub fn moments() -> Result<Vec<Moment>, Box<dyn Error>> {
 }
 
 /// The contact with the structure at its largest force.
-fn deepest(case: &Case, system: &retune_model::Coupled) -> Result<Moment, Box<dyn Error>> {
-    let settings = own::settings(Method::Hybrid, Contacts::Located, 1e-10);
-    let force = simulate(&case.scene, Window { from: 0.0, to: case.to }, &settings)?.force_max[0];
+fn deepest(case: &Case, system: &retune_model::Coupled) -> Any<Moment> {
+    let tight = settings(Method::Hybrid, Contacts::Located, 1e-10);
+    let force = simulate(&case.scene, Window { from: 0.0, to: case.to }, &tight)?.force_max[0];
     let depth = (force / system.hertz(Side::Primary)).powf(2.0 / 3.0);
     let matrix = system.jacobian(&[0.0, 0.0, -depth, 0.0]);
     Ok(Moment { name: format!("{}, contact {:.1e} m deep", case.label, depth), matrix })
@@ -157,7 +152,6 @@ fn deepest(case: &Case, system: &retune_model::Coupled) -> Result<Moment, Box<dy
 
 /// A largest stable step.
 pub struct Stable {
-    /// The method.
     pub method: Method,
     /// Measured on the method's own step, s.
     pub measured: f64,
@@ -189,10 +183,7 @@ pub fn stable(moment: &Moment) -> Vec<Stable> {
 }
 
 /// The table, and its chart.
-///
-/// # Errors
-/// A scene that cannot be run, or a file that cannot be written.
-pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
+pub fn table(chart: &Path) -> Any<String> {
     let mut text = String::from("moment,fastest_rate_rad_per_s,method,measured_s,theory_s\n");
     let moments = moments()?;
     let steps: Vec<(f64, Vec<Stable>)> = moments.iter().map(|m| (m.rate(), stable(m))).collect();
@@ -206,7 +197,7 @@ pub fn table(chart: &Path) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
-fn draw(path: &Path, steps: &[(f64, Vec<Stable>)]) -> Drawn {
+fn draw(path: &Path, steps: &[(f64, Vec<Stable>)]) -> Any<()> {
     let mut lines = Vec::new();
     for method in [Method::Ode45, Method::Ode23, Method::Dop853, Method::Rk4, Method::Euler] {
         let of = |pick: fn(&Stable) -> f64| -> Vec<(f64, f64)> {

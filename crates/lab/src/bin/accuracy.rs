@@ -2,17 +2,14 @@
 //! manifest.
 #![allow(clippy::print_stderr)]
 
-use retune_lab::chart::{self, Cost};
-use retune_lab::reading::Measure;
-use retune_lab::record::{Found, Row, csv, errors, parse};
+use retune_lab::curves::{Cost, Measure, work_precision};
 use retune_lab::reference::{REFERENCE, Reference};
-use retune_lab::savings::savings;
+use retune_lab::runs::{self, Found, Row, csv, errors, parse};
 use retune_lab::scenes::{Case, cases};
-use retune_lab::{external, own, peers, sealed, statistics, text};
-use retune_model::{Coupled, Side};
-use retune_solver::{Contacts, Method};
+use retune_lab::{Any, decades, peers, savings, sealed, statistics, system, text};
+use retune_model::Side;
+use retune_solver::Method;
 use retune_workbench::verify::methods;
-use std::error::Error;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -20,12 +17,12 @@ use std::time::{Duration, Instant};
 /// A method's series of settings ends with the first whose runs together take longer than this.
 const PATIENCE: Duration = Duration::from_millis(2000);
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Any<()> {
     let folder = Path::new("results/accuracy");
     fs::create_dir_all(folder)?;
-    let cases = cases()?;
+    let cases = cases();
     let seal = || {
-        let plan = methods::plan(REFERENCE, own::MOST_STEPS, std::iter::empty());
+        let plan = methods::plan(REFERENCE, runs::MOST_STEPS, std::iter::empty());
         sealed::seal(folder, &methods::ACCURACY, plan, cases.iter())
     };
     if std::env::args().nth(1).as_deref() == Some("manifest") {
@@ -48,10 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect()
     };
     for (case, reference) in cases.iter().zip(&references) {
-        rows.extend(external::rows(Path::new("."), case, &reference.found)?);
+        rows.extend(runs::external(Path::new("."), case, &reference.found)?);
     }
     fs::write(table, csv(&rows))?;
-    let savings = savings(&cases)?;
+    let savings = savings::savings(&cases)?;
     fs::write(
         folder.join("README.md"),
         text::text(&cases, &references, &rows, &savings, &statistics::all()?),
@@ -61,9 +58,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("evaluations", Measure::E1max, Cost::Evaluations),
         ("state", Measure::State, Cost::Time),
     ] {
-        chart::work_precision(&folder.join(format!("{name}.svg")), &cases, &rows, measure, cost)?;
+        work_precision(&folder.join(format!("{name}.svg")), &cases, &rows, measure, cost)?;
     }
-    chart::savings(&folder.join("models.svg"), &savings)?;
+    savings::chart(&folder.join("models.svg"), &savings)?;
     seal()
 }
 
@@ -76,8 +73,7 @@ fn row(
     setting: f64,
     found: Result<Found, String>,
 ) -> Row {
-    let omega = case.scene.forcing.frequency.get();
-    let errors = found.as_ref().map_or([f64::NAN; 3], |f| errors(f, reference, omega));
+    let errors = found.as_ref().map_or([f64::NAN; 3], |f| errors(f, reference, case.omega()));
     Row {
         scene: case.name,
         program: program.to_string(),
@@ -91,24 +87,19 @@ fn row(
 }
 
 fn own_rows(case: &Case, reference: &Found) -> Vec<Row> {
-    let decades = |tightest: i32| (2..=tightest).map(|k| 10f64.powi(-k)).collect::<Vec<_>>();
     let steps: Vec<f64> = (3..=10).map(|k| 10f64.powf(-f64::from(k) / 2.0)).collect();
     let mut rows = Vec::new();
     for method in Method::ALL {
         let values = match method {
-            Method::Hybrid | Method::Dop853 => decades(12),
-            Method::Ode45 => decades(11),
-            Method::Ode23 | Method::Ode23s => decades(8),
+            Method::Hybrid | Method::Dop853 => decades(2, 12),
+            Method::Ode45 => decades(2, 11),
+            Method::Ode23 | Method::Ode23s => decades(2, 8),
             Method::Rk4 | Method::Euler => steps.clone(),
         };
-        let ways: &[(Contacts, &'static str)] = match method {
-            Method::Hybrid => &[(Contacts::Located, "exact")],
-            _ => &[(Contacts::Located, "located"), (Contacts::Stepped, "stepped")],
-        };
-        for &(contacts, way) in ways {
+        for &(contacts, way) in runs::ways(method) {
             for &value in &values {
                 let begun = Instant::now();
-                let found = own::run(case, &own::settings(method, contacts, value), true);
+                let found = runs::run(case, &runs::settings(method, contacts, value), true);
                 rows.push(row(case, reference, "retune", method.name(), way, value, found));
                 if begun.elapsed() > PATIENCE {
                     break;
@@ -150,16 +141,13 @@ fn scenes_json(cases: &[Case]) -> Result<String, serde_json::Error> {
                 "m1": p.mass.get(), "c1": p.damping.get(), "k1": p.stiffness.get(),
                 "P": f.amplitude().map_or(0.0, |(_, amplitude)| amplitude.get()), "omega": f.frequency.get(),
             });
-            let numbers = match &case.scene.damper {
+            let numbers = match case.scene.damper.zip(system(&case.scene)) {
                 None => serde_json::json!({"m2": 1.0, "k2": 0.0, "c2": 0.0, "D": 1e6, "C": 1e6, "K1": 0.0, "K3": 0.0}),
-                Some(d) => {
-                    let system = Coupled::new(p, f, d);
-                    serde_json::json!({
-                        "m2": d.mass.get(), "k2": d.stiffness.get(), "c2": d.damping.get(),
-                        "D": d.rest_distance.get(), "C": d.clearance.get(),
-                        "K1": system.hertz(Side::Primary), "K3": system.hertz(Side::Obstacle),
-                    })
-                }
+                Some((d, system)) => serde_json::json!({
+                    "m2": d.mass.get(), "k2": d.stiffness.get(), "c2": d.damping.get(),
+                    "D": d.rest_distance.get(), "C": d.clearance.get(),
+                    "K1": system.hertz(Side::Primary), "K3": system.hertz(Side::Obstacle),
+                }),
             };
             if let (Some(all), serde_json::Value::Object(more)) = (object.as_object_mut(), numbers) {
                 all.extend(more);

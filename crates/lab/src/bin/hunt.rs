@@ -2,18 +2,17 @@
 //! the standard error, what must not be; then it ends with 1.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-use retune_lab::hunts::{robust, walk};
-use retune_testkit::hunt::{
-    Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, scenes, settled,
-};
-use std::error::Error;
+use retune_lab::Any;
+use retune_lab::hunts::{robust, scenes, walk};
+use retune_testkit::hunt as hunts;
+use retune_testkit::hunt::{Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, settled};
 use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "hunt NAME [DRAWS]: largest, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
                      steps), scenes, settled, bands, kills";
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
+fn main() -> Any<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (name, draws) = match &arguments[..] {
         [name] => (name.as_str(), None),
@@ -55,7 +54,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         }
         "dampers" => show(include_str!("../hunts/dampers.md"), dampers::dampers(many(7)?, 500)),
         "walk" => show(WALK, walk::walk(draws.map_or(Ok(1.0), str::parse)?)?),
-        "scenes" => show("", scenes::scenes(many(30_000)?)),
+        "scenes" => show("", hunts::scenes::scenes(&scenes::drawn(many(30_000)?))),
         "settled" => show("", settled::settled_stays(many(4000)?)),
         "bands" => show("", bands::bands(number(1_000_000)?.into())),
         "kills" => show(KILLS, kills::kills(&Path::new("target/release/retune").canonicalize()?, many(240)?)),

@@ -1,12 +1,12 @@
 //! Verdicts "robust" beside a look from many more starts: perturbed designs of `results`, gaps drawn anew, other structures with scaled designs.
 
+use crate::Any;
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::motions;
 use retune_model::{Parameter, PerVariable};
 use retune_study::{Setting, Study};
 use retune_testkit::hunt::Hunt;
 use retune_workbench::certify::judge;
-use std::error::Error;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
@@ -64,7 +64,7 @@ fn structure(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
 }
 
 /// Certifies designs of each family, by their numbers.
-pub fn robust(designs: Range<u32>) -> Result<Hunt, Box<dyn Error>> {
+pub fn robust(designs: Range<u32>) -> Any<Hunt> {
     let mut study = retune_study::read(Path::new("studies/ssvi-isola.json"))?;
     // Draws lie beyond the bounds of the search.
     study.optimize.iter_mut().for_each(|optimize| optimize.bounds = PerVariable::default());
@@ -114,7 +114,7 @@ pub fn robust(designs: Range<u32>) -> Result<Hunt, Box<dyn Error>> {
 }
 
 /// The largest energy of all motions that the harder look finds.
-fn hard(study: &Study) -> Result<f64, Box<dyn Error>> {
+fn hard(study: &Study) -> Any<f64> {
     let [samples, starts] = HARD;
     let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
     let plan = Plan { samples, starts, looks: SPACINGS.len(), ..over };

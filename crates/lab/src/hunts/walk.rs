@@ -1,13 +1,13 @@
 //! Walks under k2 <= 300 N/m: one that looks at 601 frequencies alone fits its design to them; one on 5000 goes on from there to a design that is
 //! good on both.
 
+use crate::Any;
 use rayon::prelude::*;
 use retune_model::{Parameter, PerVariable};
 use retune_optim::DesignObjective;
 use retune_study::{Study, read};
 use retune_testkit::hunt::Hunt;
 use retune_workbench::tune::objective::objective;
-use std::error::Error;
 use std::path::Path;
 
 /// The bound on k2, N/m.
@@ -33,7 +33,7 @@ const FEW: usize = 41;
 /// the samples. From there a walk on 5000 finds designs that have less on both.
 ///
 /// Of every walk only a share of its steps, where it is below 1: to see that the program works.
-pub fn walk(share: f64) -> Result<Hunt, Box<dyn Error>> {
+pub fn walk(share: f64) -> Any<Hunt> {
     let study = read(Path::new("studies/fronts-ssvi.json"))?;
     let of = |samples| over(&study, samples);
     let (few, fine, finer, finest) = (of(FEW)?, of(601)?, of(1201)?, of(5000)?);
@@ -102,7 +102,7 @@ fn worst(of: &DesignObjective, at: &[f64; 3], most: f64) -> f64 {
 }
 
 /// The objective of the study on so many frequencies, over k2, c2 and D, one wall touching the damper at rest.
-fn over(study: &Study, samples: usize) -> Result<DesignObjective, Box<dyn Error>> {
+fn over(study: &Study, samples: usize) -> Any<DesignObjective> {
     let mut study = study.clone();
     let optimize = study.optimize.as_mut().ok_or("no search")?;
     optimize.objective.omega.as_mut().ok_or("no band")?.samples = samples;

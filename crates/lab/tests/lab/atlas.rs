@@ -2,27 +2,25 @@
 
 use retune_lab::atlas::difficulties::all;
 use retune_lab::atlas::{Verdict, WAYS, cell, energy, energy_cell, missed, rigid, stable, truth};
-use retune_lab::own;
-use retune_lab::record::errors;
+use retune_lab::runs::{errors, run, settings};
 use retune_solver::{Contacts, Method};
 use std::path::Path;
 
 /// Errors of another method with located contacts, DOP853 at rtol 1e-12, against the reference.
 #[test]
 fn reference_of_every_difficulty_is_confirmed_by_another_method() {
-    for difficulty in all().expect("valid numbers") {
+    for difficulty in all().expect("runs") {
         let case = &difficulty.case;
         let truth = truth(&difficulty).expect("runs");
-        let settings = own::settings(Method::Dop853, Contacts::Located, 1e-12);
-        let other = own::run(case, &settings, false).expect("runs");
-        let [e1, state, _] = errors(&other, &truth.found, case.scene.forcing.frequency.get());
+        let other = run(case, &settings(Method::Dop853, Contacts::Located, 1e-12), false).expect("runs");
+        let [e1, state, _] = errors(&other, &truth.found, case.omega());
         assert!(e1 < 1e-6 && state < 1e-5, "{}: {e1:e} {state:e}", case.name);
     }
 }
 
 #[test]
 fn reference_the_hybrid_works_on_every_difficulty() {
-    for difficulty in all().expect("valid numbers") {
+    for difficulty in all().expect("runs") {
         let truth = truth(&difficulty).expect("runs");
         let found = cell(&WAYS[0], &difficulty.case, &truth);
         assert_eq!(found.verdict, Verdict::Works, "{}: {:e}", difficulty.case.name, found.error);
@@ -33,7 +31,7 @@ fn reference_the_hybrid_works_on_every_difficulty() {
 #[test]
 fn invariant_energy_of_the_hybrid_drifts_by_less_than_rtol_an_impact() {
     for rtol in [1e-4, 1e-6, 1e-8, 1e-10] {
-        let drift = energy::drift(Method::Hybrid, Contacts::Located, rtol).expect("runs");
+        let drift = energy::drift(Method::Hybrid, Contacts::Located, rtol);
         assert_eq!(drift.impacts, energy::IMPACTS);
         let change = drift.change.expect("ends").abs();
         assert!(change < energy::IMPACTS as f64 * rtol, "{rtol:e}: {change:e}");
@@ -64,7 +62,7 @@ fn order_of_the_approach_to_rigid_walls_is_two_fifths() {
 
 #[test]
 fn contract_the_hybrid_misses_no_contact() {
-    for case in &missed::subjects().expect("valid numbers") {
+    for case in &missed::subjects() {
         for step in [1e-3, 1.0] {
             let found = missed::missed(case, Method::Hybrid, Contacts::Located, step).expect("runs");
             assert_eq!((found.jumped, found.said), (0, None), "{}", case.name);
@@ -86,14 +84,14 @@ fn regress_every_cell_is_as_committed() {
     let check = |name: &str, way: usize, verdict: Verdict| {
         assert_eq!(committed(name, WAYS[way].name), verdict.name(), "{name}, {}", WAYS[way].name);
     };
-    for difficulty in all().expect("valid numbers") {
+    for difficulty in all().expect("runs") {
         let truth = truth(&difficulty).expect("runs");
         for (j, way) in WAYS.iter().enumerate() {
             check(difficulty.case.name, j, cell(way, &difficulty.case, &truth).verdict);
         }
     }
     for (j, way) in WAYS.iter().enumerate() {
-        check("1,000 lossless impacts: the energy", j, energy_cell(way).expect("runs").verdict);
+        check("1,000 lossless impacts: the energy", j, energy_cell(way).verdict);
     }
 }
 

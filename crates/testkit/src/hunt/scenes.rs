@@ -1,8 +1,6 @@
 //! Scenes over fifteen orders of magnitude that touch a wall a few times, beside DOP853.
 
 use super::Hunt;
-use crate::anything::{Anything, DRAWS};
-use crate::scenes::Spread;
 use rayon::prelude::*;
 use retune_model::Scene;
 use retune_solver::{Method, Response, SceneKind, Settings, SolverError, Window, simulate};
@@ -21,19 +19,8 @@ pub fn apart(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())
 }
 
-/// Numbers of a scene with a damper; its own about the paper's, the way that it is run as it comes.
-fn drawn(spread: &mut Spread, width: f64) -> Scene {
-    let mut draws: [f64; DRAWS] = std::array::from_fn(|_| spread.unit());
-    draws[..16].iter_mut().for_each(|draw| *draw = 0.5 + width * (*draw - 0.5));
-    draws[26] = 0.9; // with a damper
-    Anything::new(&draws).scene
-}
-
-/// Scenes of all kinds that touch a wall a few times, before small differences can grow.
-pub fn scenes(count: usize) -> Hunt {
-    let mut spread = Spread::new(7);
-    let widths = [0.4, 0.7, 1.0].into_iter().flat_map(|width| std::iter::repeat_n(width, count / 3));
-    let scenes: Vec<Scene> = widths.map(|width| drawn(&mut spread, width)).collect();
+/// Those scenes that touch a wall a few times, before small differences can grow.
+pub fn scenes(scenes: &[Scene]) -> Hunt {
     // Whether a scene is one that counts, and what is wrong with it.
     let look = |scene: &Scene| -> (bool, Option<String>) {
         let [own, other] = both(scene, 1.0, 1e-9, 3_000);
@@ -54,6 +41,7 @@ pub fn scenes(count: usize) -> Hunt {
     };
     let looked: Vec<_> = scenes.par_iter().map(look).collect();
     let seen = looked.iter().filter(|(counts, _)| *counts).count();
+    let count = scenes.len();
     let faults: Vec<String> = looked.into_iter().filter_map(|(_, fault)| fault).collect();
     let mut hunt = Hunt { faults, ..Hunt::default() };
     hunt.row(format!(
