@@ -118,8 +118,8 @@ test *OPTIONS:
 # Test the comparison with other methods; `just test-peers --features integrators` with other Rust integrators
 [group('develop')]
 test-peers *OPTIONS:
-    cargo clippy -p retune-bench --all-targets "$@" -- -D warnings
-    cargo test -p retune-bench "$@"
+    cargo clippy -p retune-lab --all-targets "$@" -- -D warnings
+    cargo test -p retune-lab "$@"
 
 # Install the Python package in a fresh environment and test it, e.g. `just test-python -k dask`
 [group('develop')]
@@ -174,4 +174,4 @@ package:
     # cargo unpacks each package in target/packing and builds it there, as a registry would serve it: a file outside its crate is missing.
     # An earlier packing of the same version would be reused, so it is removed first.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
-    cargo package --target-dir target/packing --workspace --exclude retune-bench --exclude retune-python --exclude retune-testkit --allow-dirty
+    cargo package --target-dir target/packing --workspace --exclude retune-lab --exclude retune-python --exclude retune-testkit --allow-dirty

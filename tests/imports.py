@@ -26,9 +26,9 @@ BELOW = {
     "jobs": "model solver optim dynamics study store report",
     "explore": "model solver optim dynamics study report jobs",
     "retune": "model solver optim dynamics study store report jobs explore",
-    "testkit": "model solver jobs",
+    "testkit": "model solver dynamics optim jobs",
     "python": "model solver optim dynamics study store jobs",
-    "bench": "model solver optim dynamics study store report jobs testkit",
+    "lab": "model solver optim dynamics study store report jobs testkit",
 }
 
 MOST_LINES = 400

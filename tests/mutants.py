@@ -23,8 +23,6 @@ CRATES = {
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
     "retune-store": (["crates/store/src/*"], ["--tests", "@retune-jobs --tests", "@retune --tests"]),
 }
-# How much is drawn at random in the slowest tests.
-SMALL = {"RETUNE_SCENES": "150", "RETUNE_HUNT": "300", "RETUNE_BANDS": "300", "RETUNE_KILLS": "4"}
 HOME = pathlib.Path("target/mutants")
 REASONS = pathlib.Path("tests/mutants.json")
 TABLE = pathlib.Path("results/robustness/mutants.md")
@@ -92,7 +90,7 @@ def tried(package, names, tests, timeout):
     choices = [f"--cargo-arg={choice}" for choice in tests.split()] + [f"--cargo-test-arg={word}" for word in (dashes + words).split()]
     command = ["cargo", "mutants", "--no-config", "--in-place", "--dir", str(home / "tree"), "--output", str(home), "--package", package, "--test-package", other,
                "--profile", "mutants", *limit, "--build-timeout", "600", "--no-times", "--jobserver=false", "--iterate", *choices]
-    environment = {**os.environ, **SMALL, "CARGO_TARGET_DIR": str((home / "build").absolute())}
+    environment = {**os.environ, "CARGO_TARGET_DIR": str((home / "build").absolute())}
     status = subprocess.run(command, env=environment).returncode
     if status not in (0, 2, 3):
         sys.exit(f"cargo mutants ended with {status}: do the tests pass without a mutant?")

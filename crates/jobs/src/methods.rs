@@ -1,4 +1,4 @@
-//! The runs of methods on scenes, which the comparison of methods leaves (`crates/bench`), computed again: of each row what does not depend on
+//! The runs of methods on scenes, which the comparison of methods leaves (`crates/lab`), computed again: of each row what does not depend on
 //! the machine's speed. The plan beside them holds the tolerance of the reference, the bound on steps, and the settings behind names.
 
 use crate::Error;

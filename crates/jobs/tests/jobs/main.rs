@@ -17,7 +17,6 @@ mod quantity;
 mod replaced;
 mod report;
 mod retention;
-mod robust;
 mod scenes;
 mod shards;
 mod simulate;
@@ -27,7 +26,6 @@ mod table2;
 mod tune;
 mod verify;
 mod verify_fronts;
-mod walk;
 
 use retune_jobs::Done;
 use retune_jobs::tune::{Optimum, tune};

@@ -3,10 +3,10 @@
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
-use rayon::prelude::*;
 use retune_model::{NonNegative, Scene};
-use retune_solver::{Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
+use retune_solver::{Method, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 use retune_testkit::anything::{Anything, DRAWS};
+use retune_testkit::hunt::scenes::{apart, both, scenes};
 use retune_testkit::scenes::{Numbers, SSVI};
 
 /// The same draws on every machine: a test that fails by luck is none.
@@ -65,19 +65,6 @@ fn invariant_the_fuzzers_corpus_holds() {
         seen += 1;
     }
     assert!(seen > 50, "{seen}");
-}
-
-/// The run with one of the exact method and one of DOP853, which meets a contact in time and by its own error estimate.
-fn both(scene: &Scene, to: f64, rtol: f64, most_steps: u64) -> [Result<Response, SolverError>; 2] {
-    let window = Window { from: 0.0, to };
-    [(Method::Hybrid, rtol, 15_000), (Method::Dop853, 1e-12, most_steps)].map(|(method, rtol, max_steps)| {
-        let settings = Settings { method, rtol, atol: 1e-300, max_steps, ..Settings::default() };
-        simulate(scene, window, &settings)
-    })
-}
-
-fn apart(a: f64, b: f64) -> f64 {
-    (a - b).abs() / a.abs().max(b.abs())
 }
 
 /// Contacts that springs, dashpots and the force rule, not Hertz's law: their motion was lost at the end of the contact, and only
@@ -154,37 +141,16 @@ fn reference_contacts_that_other_forces_rule_agree_with_dop853() {
     }
 }
 
-/// Scenes of all kinds that touch a wall a few times, before small differences can grow. RETUNE_SCENES sets how many are drawn.
 #[test]
 fn reference_any_scene_that_touches_a_wall_agrees_with_dop853() {
-    let drawn = std::env::var("RETUNE_SCENES").map_or(300, |count| count.parse().expect("a number"));
     let mut runner = TestRunner::new(config(1));
     let mut drawn_scene = |width: f64| {
         let mut draws = draws(width).new_tree(&mut runner).expect("draws").current();
         draws[26] = 0.9; // with a damper
         Anything::new(&draws).scene
     };
-    let widths = [0.4, 0.7, 1.0].into_iter().flat_map(|width| std::iter::repeat_n(width, drawn / 3));
-    let scenes: Vec<Scene> = widths.map(&mut drawn_scene).collect();
-    let touches = |scene: &&Scene| {
-        let [own, other] = both(scene, 1.0, 1e-9, 3_000);
-        let Ok(other) = other else { return false };
-        let own = match own {
-            Err(SolverError::TooManySteps { .. } | SolverError::TooSlow { .. }) => return false,
-            own => own.unwrap_or_else(|error| panic!("{error}, where DOP853 has {other:?}, {scene:?}")),
-        };
-        if other.scene != SceneKind::Contact || other.impacts[0] + other.impacts[1] > 4 {
-            return false;
-        }
-        let force = |found: &Response| found.force_max[0].max(found.force_max[1]);
-        let energy = apart(own.e1_max.value, other.e1_max.value);
-        let force = apart(force(&own), force(&other));
-        assert!(energy < 1e-6 && force < 1e-3, "{energy:e} {force:e}, {own:?}, {other:?}, {scene:?}");
-        true
-    };
-    let seen = scenes.par_iter().filter(touches).count();
-    assert!(seen > drawn / 50, "{seen}");
-    eprintln!("{seen} of {drawn} scenes touched a wall a few times, and agree with DOP853");
+    let widths = [0.4, 0.7, 1.0].into_iter().flat_map(|width| std::iter::repeat_n(width, 100));
+    scenes(&widths.map(&mut drawn_scene).collect::<Vec<_>>()).passes();
 }
 
 /// Found by the fuzzer: a contact that begins at rest and is hardly felt was followed past the end of the run.

@@ -1,0 +1,105 @@
+//! The atlas as one picture: a method in each column, a difficulty in each row.
+
+use super::{Cell, Verdict, WAYS};
+use crate::Any;
+use retune_report::colour::{Colour, GREEN, ORANGE, SKY, VERMILION, YELLOW};
+use retune_report::{Axis, Chart, Key, Layer, Sheet, Stand, Width, svg, ten_to};
+use std::fs;
+use std::path::Path;
+
+/// Space between two groups of rows, in rows.
+const GAP: f64 = 0.4;
+/// Height of a row, pt.
+const ROW: f64 = 11.5;
+/// All verdicts, the best first.
+pub const VERDICTS: [Verdict; 5] =
+    [Verdict::Works, Verdict::Miscounts, Verdict::Inaccurate, Verdict::Says, Verdict::Silent];
+
+/// A row: group, difficulty, cells.
+pub type Row = (&'static str, &'static str, Vec<Cell>);
+
+/// Sign, colour and its opacity.
+const fn look(verdict: Verdict) -> (&'static str, Colour, f64) {
+    match verdict {
+        Verdict::Works => ("✓", GREEN, 0.16),
+        Verdict::Miscounts => ("±", YELLOW, 0.4),
+        Verdict::Inaccurate => ("≈", ORANGE, 0.4),
+        Verdict::Says => ("!", SKY, 0.4),
+        Verdict::Silent => ("✗", VERMILION, 0.85),
+    }
+}
+
+/// `3·10⁻⁵`, or `< 10⁻¹²`.
+fn figure(error: f64) -> String {
+    if error < 1e-12 {
+        return format!("< {}", ten_to(-12));
+    }
+    let k = error.log10().floor();
+    let lead = (error / 10f64.powf(k)).round();
+    match (lead, k as i32) {
+        (_, k) if k >= -1 => format!("{error:.1}"),
+        (10.0, k) => ten_to(k + 1),
+        (1.0, k) => ten_to(k),
+        (lead, k) => format!("{lead:.0}·{}", ten_to(k)),
+    }
+}
+
+/// Draws the matrix.
+pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
+    let mut layers = Vec::new();
+    let (mut names, mut y, mut group) = (Vec::new(), 0.0, rows.first().map_or("", |row| row.0));
+    for (of, name, cells) in rows {
+        if *of != group {
+            y -= GAP;
+            group = of;
+        }
+        names.push((y, (*name).to_owned()));
+        for (x, cell) in cells.iter().enumerate().map(|(j, cell)| (j as f64, cell)) {
+            let (sign, colour, opacity) = look(cell.verdict);
+            layers.push(Layer::Band { x: (x - 0.48, x + 0.48), y: (y - 0.46, y + 0.46), colour, opacity });
+            let said = if cell.verdict == Verdict::Says { "stops".into() } else { figure(cell.error) };
+            layers.push(Layer::Text { at: (x, y), text: format!("{sign} {said}"), stand: Stand::Cell });
+        }
+        y -= 1.0;
+    }
+    let totals = |j: usize, verdict| rows.iter().filter(|row| row.2[j].verdict == verdict).count();
+    y -= GAP;
+    names.push((y, format!("works, of {}; fails silently", rows.len())));
+    for j in 0..WAYS.len() {
+        let text = format!("{}; {}", totals(j, Verdict::Works), totals(j, Verdict::Silent));
+        layers.push(Layer::Text { at: (j as f64, y), text, stand: Stand::Over });
+    }
+    let ways = WAYS.iter().enumerate().map(|(j, way)| (j as f64, way.name.replacen(' ', "\n", 1))).collect();
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::of_names((-0.55, WAYS.len() as f64 - 0.45), ways),
+        y: Axis::of_names((y - 0.6, 0.6), names),
+        layers,
+        height: ROW * (1.2 - y) + 30.0,
+    };
+    let key = |verdict: Verdict| {
+        let (sign, colour, opacity) = look(verdict);
+        (Key::Area(colour, opacity), format!("{sign} {}", verdict.name()))
+    };
+    let count = |verdict| (0..WAYS.len()).map(|j| totals(j, verdict)).sum::<usize>();
+    let counts = VERDICTS.map(|verdict| format!("{} {}", count(verdict), verdict.name()));
+    fs::write(
+        path,
+        svg(&Sheet {
+            title: "Where methods fail".to_owned(),
+            description: format!(
+                "A table of {} difficulties and {} methods. Of its cells: {}.",
+                rows.len(),
+                WAYS.len(),
+                counts.join(", ")
+            ),
+            width: Width::Page,
+            charts: vec![chart],
+            columns: 1,
+            stacked: false,
+            legend: VERDICTS.map(key).to_vec(),
+            caption: vec!["In each cell: the larger relative error of E1max and final state.".to_owned()],
+        }),
+    )?;
+    Ok(())
+}

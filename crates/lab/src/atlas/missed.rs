@@ -1,0 +1,143 @@
+//! Missed contacts: steps that begin and end in flight although the exact motion from their beginning touches a wall and
+//! leaves it again before they end.
+
+use crate::panel::{Line, look, panel, sheet};
+use crate::runs::{Touches, follow, ways};
+use crate::scenes::{Case, Numbers, TMD, cases};
+use crate::{Any, system};
+use retune_model::{Coupled, Side};
+use retune_report::Axis;
+use retune_solver::observe::{Observer, Segment};
+use retune_solver::{Contacts, Hybrid, Method, Motion, Phase, Settings};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Counts contacts found and jumped over.
+struct Count<'a> {
+    system: &'a Coupled,
+    exact: Hybrid<'a>,
+    seen: u64,
+    jumped: u64,
+}
+
+impl Observer<4> for Count<'_> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let [from, to] = segment.ends();
+        let open = |y: &[f64; 4]| self.system.indentation(y).iter().all(|z| *z <= 1e-12);
+        if from.clock != [1.0, 0.0] || !open(&from.y) || !open(&to.y) {
+            return;
+        }
+        let mut touches = Touches { count: 0, enough: u64::MAX };
+        let begin = Motion { t: from.t, y: from.y, phase: Phase::Flight };
+        // A step that ends at a located touch-down has not missed it.
+        let until = to.t - 1e-6 * (to.t - from.t);
+        if let Ok(end) = self.exact.propagate(begin, until, &mut touches) {
+            let unfinished = matches!(end.phase, Phase::InContact(_));
+            self.jumped += touches.count - u64::from(unfinished).min(touches.count);
+        }
+    }
+    fn touch_down(&mut self, _t: f64, _side: Side) {
+        self.seen += 1;
+    }
+}
+
+/// The impacts of a run with a given longest step.
+pub struct Missed {
+    pub seen: u64,
+    pub jumped: u64,
+    /// The error of the method, if any.
+    pub said: Option<String>,
+}
+
+impl Missed {
+    /// Of all impacts.
+    fn share(&self) -> f64 {
+        self.jumped as f64 / (self.jumped + self.seen).max(1) as f64
+    }
+}
+
+/// Runs a scene with a damper from rest at MATLAB's default tolerance with steps no longer than `step` (s).
+pub fn missed(case: &Case, method: Method, contacts: Contacts, step: f64) -> Any<Missed> {
+    let system = system(&case.scene).ok_or("no damper")?;
+    let settings =
+        Settings { method, contacts, rtol: 1e-3, atol: 1e-6, step: Some(step), max_steps: 1_000_000 };
+    let exact = Hybrid::new(&system, 1e-9, case.to, u64::MAX);
+    let mut count = Count { system: &system, exact, seen: 0, jumped: 0 };
+    let said = follow(&system, system.rest(), case.to, &settings, &mut count).err();
+    Ok(Missed { seen: count.seen, jumped: count.jumped, said: said.map(|error| error.to_string()) })
+}
+
+/// The SSVI, the same with stiffer contacts, and the TMD with a wall at a share of its steady stroke without walls.
+pub fn subjects() -> Vec<Case> {
+    let free = TMD.coupled();
+    let swing = free.steady(free.bare().frequency()).stroke();
+    let grazing = [("grazing 1 %", 0.99), ("grazing 0.1 %", 0.999)].map(|(name, share)| {
+        let scene = Numbers { d: share * swing, c: 5.0, ..TMD }.scene();
+        Case { name, label: name, scene, to: 100.0 }
+    });
+    let struck = cases().into_iter().filter(|c| ["two-sided", "near-rigid"].contains(&c.name));
+    struck.chain(grazing).collect()
+}
+
+/// Longest steps, s.
+const STEPS: [f64; 8] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0];
+
+/// A line of the chart: scene, method, way, and the share missed at each step (NaN where the method said that it failed).
+type Shares = (&'static str, Method, Contacts, Vec<(f64, f64)>);
+
+/// The table, and its chart.
+pub fn table(chart: &Path) -> Any<String> {
+    let mut text =
+        String::from("scene,method,contacts,longest_step_s,seen,jumped_over,missed_share,noticed\n");
+    let mut shares: Vec<Shares> = Vec::new();
+    for case in &subjects() {
+        for method in Method::ALL {
+            for &(contacts, way) in ways(method) {
+                let mut points = Vec::new();
+                for step in STEPS {
+                    let found = missed(case, method, contacts, step)?;
+                    let noticed = match (&found.said, found.jumped) {
+                        (Some(said), _) => said.replace(',', ";"),
+                        (None, 0) => "nothing missed".into(),
+                        (None, _) => "no".into(),
+                    };
+                    let (scene, method, share) = (case.name, method.name(), found.share());
+                    let Missed { seen, jumped, said } = found;
+                    writeln!(text, "{scene},{method},{way},{step:e},{seen},{jumped},{share:.3},{noticed}")?;
+                    points.push((step, if said.is_some() { f64::NAN } else { share }));
+                }
+                shares.push((case.name, method, contacts, points));
+            }
+        }
+    }
+    draw(chart, &shares)?;
+    Ok(text)
+}
+
+fn draw(path: &Path, shares: &[Shares]) -> Any<()> {
+    let one = |scene: &str, contacts: Contacts, title: &str| {
+        let own = shares.iter().filter(|s| s.0 == scene && (s.2 == contacts || s.1 == Method::Hybrid));
+        let line = |(_, method, _, points): &Shares| {
+            let failed = points.iter().any(|p| p.1.is_nan());
+            let name = format!("{}{}", method.name(), if failed { ", then blows up" } else { "" });
+            Line::new(&name, points.iter().map(|p| (p.0, 100.0 * p.1)).collect(), look(*method))
+        };
+        let x = Axis::log("longest step allowed, s", (2e-4, 1.5));
+        panel(
+            title,
+            x,
+            Axis::linear("jumped over, per cent", (-3.0, 103.0)),
+            own.map(line).rev().collect(),
+            150.0,
+        )
+    };
+    let panels = vec![
+        one("grazing 1 %", Contacts::Located, "wall at 99 % of the swing, located"),
+        one("grazing 1 %", Contacts::Stepped, "wall at 99 % of the swing, stepped over"),
+        one("grazing 0.1 %", Contacts::Located, "wall at 99.9 % of the swing, located"),
+        one("grazing 0.1 %", Contacts::Stepped, "wall at 99.9 % of the swing, stepped over"),
+    ];
+    let note = "A TMD that grazes its wall, 100 s, at MATLAB's default tolerance 1e-3.";
+    let more = "Nobody noticed: where a line is above zero the run ended without a word. Lines end where the motion blew up.";
+    sheet(path, "Contacts that steps jump over", &[note, more], 2, panels)
+}

@@ -1,0 +1,89 @@
+//! `just lab hunt…`: many draws of what `cargo test` checks with few. Prints the table that stands in `results/robustness`, and after it, on
+//! the standard error, what must not be; then it ends with 1.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use retune_lab::Any;
+use retune_lab::hunts::{robust, scenes, walk};
+use retune_testkit::hunt as hunts;
+use retune_testkit::hunt::{Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, settled};
+use std::path::Path;
+use std::process::ExitCode;
+
+const USAGE: &str = "hunt NAME [DRAWS]: largest, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
+                     steps), scenes, settled, bands, kills";
+
+fn main() -> Any<ExitCode> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (name, draws) = match &arguments[..] {
+        [name] => (name.as_str(), None),
+        [name, draws] => (name.as_str(), Some(draws.as_str())),
+        _ => return Err(USAGE.into()),
+    };
+    let number = |usual: u32| draws.map_or(Ok(usual), str::parse);
+    let many = |usual: u32| number(usual).map(|count| count as usize);
+    let mut well = true;
+    let mut show = |heading: &str, hunt: Hunt| {
+        print!("{heading}");
+        hunt.rows.iter().for_each(|row| println!("{row}"));
+        hunt.faults.iter().for_each(|fault| eprintln!("fault: {fault}"));
+        well &= hunt.faults.is_empty();
+    };
+    match name {
+        "largest" => {
+            let count = number(150_000)?.into();
+            show(include_str!("../hunts/hunt.md"), largest::beside_everywhere(false, count));
+            show("", largest::beside_everywhere(true, count));
+            show("", largest::beside_dop853(count));
+        }
+        "repeats" => show(include_str!("../hunts/repeats.md"), repeats::repeats(number(42_000)?.into())),
+        "peaks" => show(include_str!("../hunts/peaks.md"), peaks::peaks(number(3000)?)),
+        "needs" => {
+            // A scan may lie nearer to a peak than the search of it ends.
+            let hunt = needs::needs(number(50)?.into(), 100.0, 2001, 1e-5);
+            show(include_str!("../hunts/needs.md"), hunt);
+        }
+        "robust" => {
+            let (first, last) =
+                draws.unwrap_or("100").split_once("..").unwrap_or(("0", draws.unwrap_or("100")));
+            show(include_str!("../hunts/robust.md"), robust::robust(first.parse()?..last.parse()?)?);
+        }
+        "branches" => {
+            let stiffnesses = [2e4, 2.5e4, 3e4, 3.5e4, 4.5e4, 5e4, 5.5e4, 6e4];
+            show(PERIODS, branches::periods(&stiffnesses));
+            show(FROM_REST, branches::from_rest(many(3001)?));
+        }
+        "dampers" => show(include_str!("../hunts/dampers.md"), dampers::dampers(many(7)?, 500)),
+        "walk" => show(WALK, walk::walk(draws.map_or(Ok(1.0), str::parse)?)?),
+        "scenes" => show("", hunts::scenes::scenes(&scenes::drawn(many(30_000)?))),
+        "settled" => show("", settled::settled_stays(many(4000)?)),
+        "bands" => show("", bands::bands(number(1_000_000)?.into())),
+        "kills" => show(KILLS, kills::kills(&Path::new("target/release/retune").canonicalize()?, many(240)?)),
+        _ => return Err(USAGE.into()),
+    }
+    Ok(if well { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+const PERIODS: &str = "
+## Branches of Table 2's damper at eight stiffnesses
+
+| k1, N/m | branches | motions | of a shorter period | ends where no motion is found ahead |
+| ---: | ---: | ---: | ---: | ---: |
+";
+
+const FROM_REST: &str = "
+## Runs from rest at many frequencies of four dampers, and between them
+
+| k2, N/m | c2, N·s/m | D, m | C, m | branches | frequencies | on a branch | irregular | largest exponents of these, 1/s | between them, on no branch |
+| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- | ---: |
+";
+
+const WALK: &str = "
+## Walks under k2 <= 300 N/m, C = 0: 10000 steps on 601 frequencies, then 3200 on 5000
+
+| walk | k2, N/m | c2, N·s/m | D, m | E1max on 601 frequencies, J | on 5000 |
+| --- | ---: | ---: | ---: | ---: | ---: |
+";
+
+const KILLS: &str = "| command | stage | kills |
+| --- | --- | ---: |
+";

@@ -1,0 +1,5 @@
+//! What hunts need that no test does: those that take minutes at least, and draws.
+
+pub mod robust;
+pub mod scenes;
+pub mod walk;

@@ -1,0 +1,33 @@
+//! Retune's methods and other people's integrators on the same scenes: speed against accuracy, and where methods fail. And hunts for errors.
+//!
+//! No crate imports this one, and it is not built with the program (`just lab` lists what builds it). Other people's integrators come with the
+//! feature `integrators`. To read: `scenes`, `runs`, `reference`, then `text` (`just lab accuracy`) or `atlas` (`just lab stability`).
+#![allow(missing_docs, reason = "its own programs and tests use it: what a name says is not said again")]
+
+pub mod atlas;
+pub mod curves;
+pub mod hunts;
+pub mod motion;
+pub mod panel;
+#[cfg(feature = "integrators")]
+pub mod peers;
+pub mod reference;
+pub mod runs;
+pub mod savings;
+pub mod scenes;
+pub mod sealed;
+pub mod statistics;
+pub mod text;
+
+/// A result, or any error.
+pub type Any<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// The structure and the damper of a scene that has one, as one system.
+pub fn system(scene: &retune_model::Scene) -> Option<retune_model::Coupled> {
+    scene.damper.as_ref().map(|damper| retune_model::Coupled::new(&scene.primary, &scene.forcing, damper))
+}
+
+/// Powers of ten from `10^-from` down to `10^-to`.
+pub fn decades(from: i32, to: i32) -> Vec<f64> {
+    (from..=to).map(|k| 10f64.powi(-k)).collect()
+}

@@ -1,0 +1,263 @@
+//! The results of the charts in words and numbers: `results/accuracy/README.md`.
+
+use crate::curves::{Curve, Measure, curves};
+use crate::reference::Reference;
+use crate::runs::{Row, way};
+use crate::savings::Saving;
+use crate::scenes::Case;
+use crate::statistics::Statistics;
+use retune_solver::Settings;
+use std::fmt::Write;
+
+/// A time, s, with a readable unit.
+fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.3} ms", s * 1e3),
+        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
+        s => format!("{s:.1} s"),
+    }
+}
+
+/// A factor, to two digits.
+fn factor(f: f64) -> String {
+    match f {
+        f if f < 10.0 => format!("{f:.1}"),
+        f if f < 100.0 => format!("{f:.0}"),
+        f => {
+            let unit = 10f64.powf(f.log10().floor() - 1.0);
+            let digits = format!("{:.0}", (f / unit).round() * unit);
+            let grouped: Vec<&str> =
+                digits.as_bytes().rchunks(3).rev().filter_map(|c| std::str::from_utf8(c).ok()).collect();
+            grouped.join(",")
+        }
+    }
+}
+
+/// The whole text.
+pub fn text(
+    cases: &[Case],
+    references: &[Reference],
+    rows: &[Row],
+    savings: &[Saving],
+    chaos: &[Statistics],
+) -> String {
+    let mut out = String::from(
+        "# Speed against accuracy\n\nWritten by `just lab accuracy` from `runs.csv`, where every run stands, failures with their reason.\n\n\
+         ![error of E1max against time](time.svg)\n",
+    );
+    in_short(&mut out, cases, rows);
+    defaults(&mut out, cases, rows);
+    paper_defaults(&mut out, cases, rows);
+    out += "\n## How to read the charts\n\nAn error counts only if no tighter setting of the same method exceeds it: a lucky run does not. Each \
+        method is shown with the way to meet contacts, located or stepped over, that serves it better. A run's time is the least \
+        of several. Retune's contains the search for E1max, that of the Rust crates does not. Evaluations are of right-hand sides \
+        and Jacobians; the hybrid's exact flight steps count as one each. GNU Octave, SciPy and SUNDIALS ran out of process (`just lab accuracy-external`); \
+        their time contains that of their interpreted right-hand sides. Where a program has no dense output (Octave, CVODE), E1 between its \
+        steps is that of the quintic that meets position, velocity and acceleration; from SciPy's dense output E1max is read to about 1e-8.\n\n\
+        ![error of E1max against evaluations](evaluations.svg)\n![error of the final state against time](state.svg)\n";
+    reference(&mut out, cases, references);
+    beyond(&mut out, chaos);
+    for level in [1e-3, 1e-6, 1e-9] {
+        cheapest(&mut out, cases, rows, level);
+    }
+    models(&mut out, savings);
+    out
+}
+
+/// The costs of the best curves at a level.
+fn costs<'a>(curves: &'a [Curve<'a>], level: f64, in_time: bool) -> Vec<(f64, &'a Curve<'a>)> {
+    let mut costs: Vec<_> = curves.iter().filter_map(|c| Some((c.cost_at(level, in_time)?.0, c))).collect();
+    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    costs
+}
+
+fn in_short(out: &mut String, cases: &[Case], rows: &[Row]) {
+    *out += "\n## In short\n\n";
+    for level in [1e-3, 1e-6, 1e-9] {
+        let (mut wins, mut next, mut paper, mut never) = (0, Vec::new(), Vec::new(), 0);
+        for case in cases {
+            let curves = curves(rows, case, Measure::E1max);
+            let costs = costs(&curves, level, true);
+            let Some(&(hybrid, _)) = costs.iter().find(|c| c.1.name == "hybrid") else { continue };
+            wins += usize::from(costs[0].1.name == "hybrid");
+            next.extend(costs.iter().find(|c| c.1.name != "hybrid").map(|c| c.0 / hybrid));
+            match costs.iter().find(|c| c.1.name == "ode23s") {
+                Some(c) => paper.push(c.0 / hybrid),
+                None => never += 1,
+            }
+        }
+        let span = |of: &[f64]| {
+            let (least, most) =
+                (of.iter().copied().fold(f64::INFINITY, f64::min), of.iter().copied().fold(0.0, f64::max));
+            format!("{} to {} times", factor(least), factor(most))
+        };
+        let paper = match (paper.is_empty(), never) {
+            (true, _) => String::from("the paper's ode23s does not get there on any, as far as it was run"),
+            (_, 0) => format!("the paper's ode23s takes {}", span(&paper)),
+            (_, never) => {
+                format!("the paper's ode23s takes {}, and on {never} does not get there", span(&paper))
+            }
+        };
+        let _ = writeln!(
+            out,
+            "- To a relative error of E1max of {level:.0e} the hybrid is the fastest on {wins} of {} scenes. The next best method takes {} its time, {paper}.",
+            cases.len(),
+            span(&next),
+        );
+    }
+}
+
+/// Loosest decade of the hybrid's rtol whose error of E1max stays below a level on all scenes; the longest run there, s.
+fn loosest(cases: &[Case], rows: &[Row], level: f64) -> (f64, f64) {
+    let all: Vec<_> = cases.iter().map(|case| curves(rows, case, Measure::E1max)).collect();
+    let hybrids = || all.iter().flatten().filter(|c| c.name == "hybrid");
+    let rtol = hybrids()
+        .map(|c| c.points.iter().filter(|p| p.0 <= level).map(|p| p.1.setting).fold(0.0, f64::max))
+        .fold(1.0, f64::min);
+    (rtol, time_at(cases, rows, rtol))
+}
+
+/// The hybrid's longest run at a tolerance, s.
+fn time_at(cases: &[Case], rows: &[Row], rtol: f64) -> f64 {
+    rows.iter()
+        .filter(|r| r.name() == "hybrid" && cases.iter().any(|c| c.name == r.scene))
+        .filter(|r| r.is_at(rtol))
+        .filter_map(|r| r.cost(true))
+        .fold(0.0, f64::max)
+}
+
+fn defaults(out: &mut String, cases: &[Case], rows: &[Row]) {
+    *out += "\n## Which tolerance follows\n\nThe loosest decade of the hybrid's rtol whose error of E1max stays below the level on all scenes.\n\n\
+        | stage | error of E1max allowed | rtol | longest run of the scenes |\n| --- | --- | --- | --- |\n";
+    for (stage, level) in [("grid", 1e-4), ("refinement", 1e-6), ("certificate", 1e-9)] {
+        let (rtol, longest) = loosest(cases, rows, level);
+        let _ = writeln!(out, "| {stage} | {level:.0e} | {rtol:.0e} | {} |", time(longest));
+    }
+    let default = Settings::default().rtol;
+    let (grid, at_grid) = loosest(cases, rows, 1e-4);
+    let (certificate, _) = loosest(cases, rows, 1e-9);
+    let verdict = if default <= certificate { "covers" } else { "does not cover" };
+    let _ = writeln!(
+        out,
+        "\nThe code's one default, rtol {default:.0e}, {verdict} the certificate, whose {certificate:.0e} it is compared with. A run at it takes {} times as long as one at \
+         {grid:.0e}, the loosest that serves a grid: the price of values that need no second look, and of one number instead of three.",
+        factor(time_at(cases, rows, default) / at_grid)
+    );
+}
+
+fn paper_defaults(out: &mut String, cases: &[Case], rows: &[Row]) {
+    *out += "\n## What ode23s gives at its default tolerance\n\nRelTol 1e-3, forces stepped over, as in the paper: relative errors of E1max and of the final state, and impacts found.\n\n\
+        | scene | ode23s | GNU Octave's ode23s | hybrid at rtol 1e-3 |\n| --- | --- | --- | --- |\n";
+    for case in cases {
+        let cell = |name: &str, contacts: &str| {
+            let own = |r: &&Row| r.scene == case.name && r.name() == name && r.contacts == contacts;
+            rows.iter().filter(own).find(|r| r.is_at(1e-3)).map_or(String::from("not run"), |r| {
+                match &r.found {
+                    Ok(f) => format!(
+                        "{:.0e}, {:.0e}, {} of {}",
+                        r.errors[0], r.errors[1], f.impacts, r.expected_impacts
+                    ),
+                    Err(why) => why.clone(),
+                }
+            })
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} |",
+            case.label,
+            cell("ode23s", "stepped"),
+            cell("Octave ode23s", "stepped"),
+            cell("hybrid", "exact")
+        );
+    }
+}
+
+fn reference(out: &mut String, cases: &[Case], references: &[Reference]) {
+    *out += "\n## The reference and its own uncertainty\n\nThe hybrid at rtol 1e-13, from t = 0 to T. Its uncertainty is the larger of two distances: from the hybrid at 1e-12, and from \
+        another method, DOP853 with located contacts at 1e-13. Smaller errors than that mean nothing. The Lyapunov time is that in which neighbouring motions part by a factor e, by the larger of two rates: \
+        the largest Lyapunov exponent of the settled motion (200 periods) and the mean rate over the run itself; rates below zero mean that they meet. \
+        The predictable horizon is that of an error of 1e-6 in double precision, ln 10¹⁰ Lyapunov times. Every run ends inside it.\n\n\
+        | scene | T, s | E1max, J | impacts | rate: settled, run, 1/s | Lyapunov time, s | horizon, s | uncertainty of E1max | of the final state | of the impact times, s |\n\
+        | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    for (case, r) in cases.iter().zip(references) {
+        let settled = r.exponent.map_or(String::from("-"), |e| format!("{:+.3} ± {:.3}", e.value, e.error));
+        let run = r.parting.map_or(String::from("-"), |rate| format!("{rate:+.3}"));
+        let lyapunov = r.lyapunov_time().map_or(String::from("none: motions meet"), |t| format!("{t:.1}"));
+        let horizon = if r.horizon().is_finite() { format!("{:.0}", r.horizon()) } else { "any".into() };
+        let [a, b, c] = r.uncertainty;
+        let _ = writeln!(
+            out,
+            "| {} | {} | {:.9} | {} | {settled}, {run} | {lyapunov} | {horizon} | {a:.0e} | {b:.0e} | {c:.0e} |",
+            case.label, case.to, r.found.e1_max, r.found.impacts
+        );
+    }
+}
+
+fn beyond(out: &mut String, chaos: &[Statistics]) {
+    *out += "\n## Beyond the horizon\n\nTable 1's row 1 is chaotic (largest Lyapunov exponent about +0.9 1/s): after some 40 s no run in double precision is that of \
+        its start, and only statistics can be compared. From 100 to 2,100 s:\n\n\
+        | method | rtol, or step in s | mean of E1, J | exceeded 1 % of the time, J | impacts per second |\n| --- | --- | --- | --- | --- |\n";
+    for s in chaos {
+        let setting = s.settings.step.unwrap_or(s.settings.rtol);
+        let _ = writeln!(
+            out,
+            "| {}, {} | {setting:.0e} | {:.1} ± {:.1} | {:.0} | {:.3} |",
+            s.settings.method.name(),
+            way(&s.settings),
+            s.mean,
+            s.error,
+            s.exceeded,
+            s.impacts
+        );
+    }
+}
+
+fn cheapest(out: &mut String, cases: &[Case], rows: &[Row], level: f64) {
+    let _ = writeln!(
+        out,
+        "\n## Who reaches a relative error of E1max of {level:.0e}, and for what\n\nTime, with the factor over the hybrid's: the five fastest, then the paper's method and the best of each other program.\n"
+    );
+    for case in cases {
+        let curves = curves(rows, case, Measure::E1max);
+        let costs = costs(&curves, level, true);
+        let Some(&(hybrid, _)) = costs.iter().find(|c| c.1.name == "hybrid") else { continue };
+        let show = |(cost, c): &(f64, &Curve<'_>)| {
+            format!("{} {} ({} ×)", c.name, time(*cost), factor(cost / hybrid))
+        };
+        let mut list: Vec<String> = costs.iter().take(5).map(show).collect();
+        let rest = &costs[costs.len().min(5)..];
+        for wanted in ["ode23s", "Octave ode23s", "Octave", "SciPy", "SUNDIALS"] {
+            let is = |c: &Curve<'_>| c.name == wanted || (c.name != "ode23s" && c.program() == wanted);
+            match rest.iter().find(|c| is(c.1)) {
+                Some(found) if !list.contains(&show(found)) => list.push(show(found)),
+                Some(_) => {}
+                None if costs.iter().any(|c| is(c.1)) || !curves.iter().any(is) => {}
+                None => list.push(format!("{wanted} not, as far as it was run")),
+            }
+        }
+        let _ = writeln!(out, "- {}: {}.", case.label, list.join(", "));
+    }
+}
+
+fn models(out: &mut String, savings: &[Saving]) {
+    let default = Settings::default().rtol;
+    let _ = write!(
+        out,
+        "\n## No more model than a scene needs\n\nE1max at rtol {default:.0e} under the smallest model that is exact for the scene, which Retune picks by itself, and under the full contact model. \
+         A scene whose damper touches needs the full model and saves nothing; a linear scene saves most where the maximum is taken after the transient, which the closed form skips.\n\n![models](models.svg)\n\n\
+         | scene | smallest exact model | its time | full contact model | saving | difference of E1max |\n| --- | --- | --- | --- | --- | --- |\n"
+    );
+    for s in savings {
+        let [small, full] = s.seconds;
+        let difference = (s.e1_max[0] / s.e1_max[1] - 1.0).abs();
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {:.1} × | {difference:.0e} |",
+            s.label,
+            s.model,
+            time(small),
+            time(full),
+            full / small
+        );
+    }
+}

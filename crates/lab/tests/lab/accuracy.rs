@@ -1,0 +1,74 @@
+//! The scenes of the comparison: their references, the default tolerance, the smallest models, the tables of other programs.
+
+use retune_lab::reference::Reference;
+use retune_lab::runs::{errors, external, run, settings};
+use retune_lab::savings::savings;
+use retune_lab::scenes::cases;
+use retune_lab::statistics;
+use retune_solver::{Contacts, Method, Settings};
+use std::path::Path;
+
+/// DOP853 with located contacts gives the same motion, and every run ends within the predictable horizon.
+#[test]
+fn reference_of_every_scene_is_confirmed_and_predictable() {
+    for case in cases() {
+        let reference = Reference::of(&case).expect("runs");
+        let [e1, state, times] = reference.uncertainty;
+        assert!(e1 < 1e-11 && state < 1e-9 && times < 1e-10, "{}: {e1:e} {state:e} {times:e}", case.name);
+        assert!(case.to < reference.horizon(), "{}", case.name);
+    }
+}
+
+/// The certificate asks for E1max to 1e-9.
+#[test]
+fn reference_the_default_tolerance_suffices_for_a_certificate() {
+    for case in cases() {
+        let reference = Reference::of(&case).expect("runs").found;
+        let found = run(&case, &Settings::default(), false).expect("runs");
+        let [e1, ..] = errors(&found, &reference, case.omega());
+        assert!(e1 < 1e-9, "{}: {e1:e}", case.name);
+        assert_eq!(found.impacts, reference.impacts, "{}", case.name);
+    }
+}
+
+#[test]
+fn invariant_the_smallest_model_and_the_full_one_agree() {
+    for saving in savings(&cases()).expect("runs") {
+        let [small, full] = saving.e1_max;
+        assert!((small / full - 1.0).abs() < 1e-11, "{}: {small} {full}", saving.label);
+    }
+}
+
+/// The committed tables of GNU Octave, SciPy and SUNDIALS contain runs of every scene, and their best runs agree with the
+/// reference.
+#[test]
+fn reference_other_programs_come_to_the_same_motion() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for case in cases() {
+        let reference = Reference::of(&case).expect("runs").found;
+        let rows = external(&root, &case, &reference).expect("tables");
+        for (program, level) in [("Octave", 1e-6), ("SciPy", 1e-6), ("SUNDIALS", 1e-5)] {
+            let best = rows
+                .iter()
+                .filter(|r| r.program.starts_with(program) && r.found.is_ok())
+                .map(|r| r.errors[0])
+                .fold(f64::INFINITY, f64::min);
+            assert!(best < level, "{program} on {}: {best:e}", case.name);
+        }
+    }
+}
+
+/// Where no run can be predicted, the long-run statistics of two methods still agree.
+#[test]
+fn reference_statistics_of_a_chaotic_motion_do_not_depend_on_the_method() {
+    let of = |method, rtol| statistics::of(settings(method, Contacts::Located, rtol)).expect("runs");
+    let (a, b) = (of(Method::Hybrid, 1e-8), of(Method::Dop853, 1e-8));
+    let error = a.error.hypot(b.error);
+    assert!(
+        error < 0.05 * a.mean && (a.mean - b.mean).abs() < 4.0 * error,
+        "{} {} ± {error}",
+        a.mean,
+        b.mean
+    );
+    assert!((a.impacts / b.impacts - 1.0).abs() < 0.05, "{} {}", a.impacts, b.impacts);
+}

@@ -1,0 +1,55 @@
+//! Hunts for errors: many scenes are drawn, and what must hold of every one of them is checked. `cargo test` draws few; the programs of
+//! `retune-lab` draw as many as they are told to and write the tables of `results/robustness`.
+
+pub mod bands;
+#[cfg(feature = "dynamics")]
+pub mod branches;
+#[cfg(feature = "dynamics")]
+pub mod dampers;
+#[cfg(feature = "desk")]
+pub mod kills;
+#[cfg(feature = "anything")]
+pub mod largest;
+#[cfg(feature = "optim")]
+pub mod needs;
+#[cfg(feature = "optim")]
+pub mod peaks;
+#[cfg(feature = "anything")]
+pub mod repeats;
+#[cfg(feature = "anything")]
+pub mod scenes;
+#[cfg(feature = "anything")]
+pub mod settled;
+mod twofold;
+
+/// What a hunt found.
+#[derive(Clone, Debug, Default)]
+pub struct Hunt {
+    /// Its table, line by line.
+    pub rows: Vec<String>,
+    /// What must not be, each in a line; nothing where all is well.
+    pub faults: Vec<String>,
+}
+
+impl Hunt {
+    /// Adds a line to the table.
+    pub fn row(&mut self, line: String) {
+        self.rows.push(line);
+    }
+
+    /// Notes a fault where something does not hold.
+    pub fn check(&mut self, holds: bool, fault: impl FnOnce() -> String) {
+        if !holds {
+            self.faults.push(fault());
+        }
+    }
+
+    /// Fails with every fault.
+    ///
+    /// # Panics
+    /// At any fault.
+    #[track_caller]
+    pub fn passes(&self) {
+        assert!(self.faults.is_empty(), "{}\n{}", self.rows.join("\n"), self.faults.join("\n"));
+    }
+}

@@ -1,0 +1,142 @@
+//! Runs from rest at many frequencies: what settles lies on a branch that was found.
+
+use super::Hunt;
+use crate::scenes::{Numbers, SSVI};
+use rayon::prelude::*;
+use retune_dynamics::parameter::evenly;
+use retune_dynamics::periodic::branches::{Control, Plan, equations};
+use retune_dynamics::periodic::settle::{Settled, settle};
+use retune_dynamics::periodic::{Branch, End, Orbit, branches};
+use retune_dynamics::{Parameter, Stretch, follow};
+use retune_solver::Settings;
+
+/// The paper's damper, both tuned ones, and one whose motions coexist.
+pub const DAMPERS: [Numbers; 4] = [
+    SSVI,
+    Numbers { k2: 583.9159, c2: 94.97076, d: 0.02885, c: 1.1045, ..SSVI },
+    Numbers { k2: 599.9, c2: 95.7, d: 1.0, c: 0.039, ..SSVI },
+    Numbers {
+        k2: 597.2737982898645,
+        c2: 95.72415913882642,
+        d: 0.6072128825900359,
+        c: 0.03740508433492577,
+        ..SSVI
+    },
+];
+
+/// As near as this to a period doubling, rad/s, halves may be nearer than a millionth of a motion's size.
+const BESIDE: f64 = 1e-7;
+
+/// Runs from rest at `count` frequencies of four dampers are followed in the search. What settles there on no known branch is a fault; and of as
+/// many runs between them hardly one may.
+pub fn from_rest(count: usize) -> Hunt {
+    let mut hunt = Hunt::default();
+    let (mut lost, mut between) = (Vec::new(), Vec::new());
+    for numbers in DAMPERS {
+        let settings = Settings::default();
+        let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
+        let plan = Plan { samples: 31, starts: 8, fine: count, passes: 2, ..over };
+        let found = branches(&numbers.scene(), plan, &settings, Control::default()).expect("branches");
+        let shooting = equations(&numbers.scene(), &plan, &settings).expect("equations");
+        let [low, high] = plan.range;
+        let half = 0.5 * (high - low) / (count - 1) as f64;
+        let settled = |omega: f64| {
+            let system = shooting.system(omega).expect("a system");
+            match settle(&shooting, omega, system.rest()).expect("a run") {
+                Settled::Irregular(_) => None,
+                Settled::On(periods, motion) => {
+                    Some(found.holds(&shooting.of_periods(periods), &motion).is_some())
+                }
+            }
+        };
+        let runs = |values: Vec<f64>| -> Vec<(f64, Option<bool>)> {
+            values.into_par_iter().map(|omega| (omega, settled(omega))).collect()
+        };
+        let seen = runs(evenly(low, high, count));
+        let none = |seen: &[(f64, Option<bool>)]| -> Vec<(f64, f64)> {
+            let none = seen.iter().filter(|(_, on)| *on == Some(false));
+            none.map(|(omega, _)| (numbers.k2, *omega)).collect()
+        };
+        lost.extend(none(&seen));
+        let missed = none(&runs(evenly(low + half, high - half, count - 1)));
+        let irregular: Vec<f64> =
+            seen.iter().filter(|(_, on)| on.is_none()).map(|(omega, _)| *omega).collect();
+        let exponent = |omega: &f64| {
+            let scene = shooting.scene_at(*omega).expect("a scene");
+            let stretch = Stretch { settle: 300, observe: 200 };
+            follow(&scene, None, stretch, &settings).expect("a motion").exponent().value
+        };
+        let mut exponents: Vec<f64> = irregular.par_iter().map(exponent).collect();
+        exponents.sort_by(|a, b| b.total_cmp(a));
+        let positive = exponents.iter().filter(|exponent| **exponent > 0.0).count();
+        let Numbers { k2, c2, d, c, .. } = numbers;
+        let on = seen.iter().filter(|(_, on)| *on == Some(true)).count();
+        hunt.row(format!(
+            "| {k2} | {c2} | {d} | {c} | {} | {count} | {on} | {} | {:.3?}; {positive} above 0 | {} |",
+            found.branches.len(),
+            irregular.len(),
+            &exponents[..exponents.len().min(3)],
+            missed.len()
+        ));
+        between.extend(missed);
+        hunt.check(on > count / 2, || format!("k2 = {k2}: hardly a run settles"));
+        for (number, branch) in found.branches.iter().enumerate() {
+            let Some(middle) = branch.points.get(branch.points.len() / 2) else { continue };
+            let own = &branch.shooting;
+            let motion = own.correct_at_value(&own.unknowns(&middle.states, middle.value));
+            let first = motion.and_then(|motion| found.holds(own, &motion));
+            hunt.check(first.is_none_or(|first| first == number), || {
+                format!("{k2}: branch {number} is branch {first:?}")
+            });
+        }
+    }
+    hunt.row(format!(
+        "\n{} settled on no branch that is known (k2 in N/m, omega in rad/s): {lost:?}",
+        lost.len()
+    ));
+    hunt.row(format!("\n{} of those between them: {between:?}", between.len()));
+    hunt.check(lost.is_empty(), || format!("on no known branch: {lost:?}"));
+    // Stable windows inside chaos narrower than the search's frequencies are apart.
+    hunt.check(between.len() <= 2 + count / 500, || format!("between the frequencies: {between:?}"));
+    hunt
+}
+
+/// Branches of several periods come close to those of one where walls are nearly hard and a motion grazes. None goes over to a motion of a shorter
+/// period, followed several times over.
+pub fn periods(stiffnesses: &[f64]) -> Hunt {
+    let mut hunt = Hunt::default();
+    for &k1 in stiffnesses {
+        let range = [0.8, 1.25].map(|share| share * f64::sqrt(k1 / 1000.0));
+        let plan = Plan { samples: 31, starts: 16, passes: 2, ..Plan::over(Parameter::Omega, range) };
+        let scene = Numbers { k1, ..SSVI }.scene();
+        let found = branches(&scene, plan, &Settings::default(), Control::default()).expect("branches");
+        let repeated: Vec<bool> = found.branches.iter().flat_map(of_a_shorter_period).collect();
+        let shorter = repeated.iter().filter(|sooner| **sooner).count();
+        let lost =
+            found.branches.iter().flat_map(|branch| branch.ends).filter(|end| *end == End::Lost).count();
+        hunt.row(format!("| {k1} | {} | {} | {shorter} | {lost} |", found.branches.len(), repeated.len()));
+        hunt.check(shorter == 0, || format!("k1 = {k1}: {shorter} motions of a shorter period"));
+    }
+    hunt
+}
+
+/// Which motions of a branch repeat after fewer periods than they count. Those beside a period doubling at which it begins or ends nearly do, since the
+/// parameter goes with the square of their halves' difference.
+fn of_a_shorter_period(branch: &Branch) -> impl Iterator<Item = bool> {
+    let ends = [branch.points.first(), branch.points.last()];
+    let joined = branch.ends.iter().zip(ends).filter(|(end, _)| **end == End::Halved);
+    let joined: Vec<f64> = joined.filter_map(|(_, orbit)| Some(orbit?.value)).collect();
+    let is_beside = move |orbit: &Orbit| joined.iter().any(|value| (orbit.value - value).abs() < BESIDE);
+    branch.points.iter().map(move |orbit| repeats_sooner(orbit) && !is_beside(orbit))
+}
+
+/// Whether a motion repeats after fewer periods than it counts, to a millionth of its size.
+fn repeats_sooner(Orbit { states, .. }: &Orbit) -> bool {
+    let n = states.len();
+    let size = states.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));
+    let gap = |m: usize| {
+        let pairs = states.iter().zip(states.iter().cycle().skip(m));
+        pairs.flat_map(|(a, b)| a.iter().zip(b)).fold(0.0_f64, |gap, (a, b)| gap.max((a - b).abs()))
+    };
+    (1..n).filter(|m| n.is_multiple_of(*m)).any(|m| gap(m) < 1e-6 * size)
+}

@@ -1,0 +1,303 @@
+//! A hunt for a largest value that is missed, over the ranges that an engineer uses: the search with its bounds beside a look at
+//! everything in the same motion, and the hybrid beside DOP853.
+
+use super::Hunt;
+use crate::scenes::{Numbers, SSVI, Spread};
+use rayon::prelude::*;
+use retune_model::Coupled;
+use retune_solver::observe::{
+    DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum,
+    Segment, StructureMotion, Unobserved,
+};
+use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
+
+/// A scene of an engineer's: every number within its range, some of them at its ends.
+fn anywhere(draw: &mut Spread) -> Numbers {
+    let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
+    let mut numbers = Numbers {
+        m2: 0.0,
+        k1: within(1e4, 1e5),
+        k2: within(0.0, 3500.0),
+        c2: within(0.0, 400.0),
+        d: within(0.0, 0.2),
+        c: within(0.0, 0.7),
+        r: within(0.2, 5.0),
+        omega: within(3.0, 10.0),
+        ..SSVI
+    };
+    numbers.m2 = draw.logarithmic(1.0, 3000.0);
+    // Designs end on their bounds: no gap, no spring, no dashpot.
+    for value in [&mut numbers.d, &mut numbers.c, &mut numbers.k2, &mut numbers.c2] {
+        if draw.unit() < 0.05 {
+            *value = 0.0;
+        }
+    }
+    if draw.unit() < 0.3 {
+        numbers.c2 = draw.logarithmic(0.1, 400.0);
+    }
+    numbers
+}
+
+/// Where two maxima in one step are common.
+fn dense(draw: &mut Spread) -> Numbers {
+    let mut about = |value: f64| value * (1.0 + 0.15 * draw.signed());
+    Numbers { k1: about(6e4), k2: about(2500.0), c2: about(20.0), omega: about(7.6), ..anywhere_masses(draw) }
+}
+
+fn anywhere_masses(draw: &mut Spread) -> Numbers {
+    let numbers = anywhere(draw);
+    Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
+}
+
+/// The largest value by looking everywhere: many moments in each piece, and every sign change of the slope between them.
+struct Everywhere<Q> {
+    quantity: Q,
+    passes: usize,
+    largest: f64,
+}
+
+impl<Q: Quantity<4>> Everywhere<Q> {
+    fn new(quantity: Q) -> Self {
+        Self { quantity, passes: 24, largest: f64::NEG_INFINITY }
+    }
+    fn slope(&mut self, knot: &Knot<4>) -> f64 {
+        let [value, slope, _] = self.quantity.rates(knot.excitation, &knot.y);
+        self.largest = self.largest.max(value);
+        slope
+    }
+}
+
+impl<Q: Quantity<4>> Observer<4> for Everywhere<Q> {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        let (h, [first, last]) = (segment.length(), segment.ends());
+        // Contact pieces are a ninth of a contact, or less.
+        let passes = if first.clock == [1.0, 0.0] { self.passes } else { self.passes / 3 };
+        let mut before = (0.0, self.slope(first));
+        for look in 1..=passes {
+            let theta = h * look as f64 / passes as f64;
+            let slope = if look == passes { self.slope(last) } else { self.slope(&segment.at(theta)) };
+            if before.1 > 0.0 && slope < 0.0 {
+                let (mut low, mut high) = (before.0, theta);
+                for _ in 0..30 {
+                    let middle = 0.5 * (low + high);
+                    if self.slope(&segment.at(middle)) > 0.0 { low = middle } else { high = middle }
+                }
+            }
+            before = (theta, slope);
+        }
+    }
+}
+
+/// The most that a search may miss, relative to the largest value: the error of the contacts in a run at rtol 1e-6.
+const ALLOWED: f64 = 1e-9;
+
+/// A fast search and a slow one, side by side.
+type Pair<Q> = (RunningMaximum<Q>, Everywhere<Q>);
+
+fn pair<Q: Quantity<4>>(quantity: impl Fn() -> Q) -> Pair<Q> {
+    (RunningMaximum::new(quantity(), f64::INFINITY), Everywhere::new(quantity()))
+}
+
+/// The gain that the search missed, relative to the largest value; infinite if the search could not prove its record.
+fn missed<Q: Quantity<4>>((search, everywhere): &Pair<Q>, size: f64) -> f64 {
+    relative(everywhere.largest - search.record().value, search.doubt(), size)
+}
+
+/// The largest motions of the structure: a fast search for either sign, and a slow one for each.
+type Sizes<'a> =
+    (Magnitude<StructureMotion<'a, Coupled, 4>>, [Everywhere<StructureMotion<'a, Coupled, 4>>; 2]);
+
+fn sizes<'a>(
+    system: &'a Coupled,
+    quantity: fn(&'a Coupled, f64) -> StructureMotion<'a, Coupled, 4>,
+) -> Sizes<'a> {
+    let quantity = |sign: f64| quantity(system, sign);
+    (Magnitude::new(quantity, f64::INFINITY), [1.0, -1.0].map(|sign| Everywhere::new(quantity(sign))))
+}
+
+fn missed_size((search, everywhere): &Sizes<'_>) -> f64 {
+    let largest = everywhere[0].largest.max(everywhere[1].largest);
+    relative(largest - search.record().value, search.doubt(), largest)
+}
+
+fn relative(missed: f64, doubt: f64, size: f64) -> f64 {
+    if doubt > ALLOWED * size {
+        f64::INFINITY
+    } else if missed <= 0.0 {
+        0.0
+    } else {
+        missed / size
+    }
+}
+
+/// Counts the pieces of contacts.
+#[derive(Default)]
+struct ContactPieces(u64);
+
+impl Observer<4> for ContactPieces {
+    fn segment(&mut self, segment: &impl Segment<4>) {
+        self.0 += u64::from(segment.ends()[0].clock != [1.0, 0.0]);
+    }
+}
+
+/// The gains that the search missed in a scene, of E1, E2, both ends of the relative displacement, and the sizes of x1, v1, a1 and the
+/// force on the ground; and the number of contact pieces.
+fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 8], u64), SolverError> {
+    let system = numbers.coupled();
+    let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
+    let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
+    let structure = [
+        sizes(&system, StructureMotion::displacement),
+        sizes(&system, StructureMotion::velocity),
+        sizes(&system, StructureMotion::acceleration),
+        sizes(&system, StructureMotion::ground_force),
+    ];
+    let mut all = (energies, (sides, (ContactPieces::default(), structure)));
+    let mut hybrid = Hybrid::new(&system, rtol, 20.0, 20_000_000);
+    let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
+    let middle = if from > 0.0 { hybrid.propagate(rest, from, &mut Unobserved)? } else { rest };
+    hybrid.propagate(middle, 20.0, &mut all)?;
+    let ((e1, e2), ([far, near], (ContactPieces(pieces), structure))) = all;
+    let reach = far.1.largest.abs().max(near.1.largest.abs());
+    let [x1, v1, a1, ground] = structure.each_ref().map(missed_size);
+    let [e1, e2] = [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest)];
+    Ok(([e1, e2, missed(&far, reach), missed(&near, reach), x1, v1, a1, ground], pieces))
+}
+
+/// A difference relative to a size; infinite for what is no number.
+fn apart(a: f64, b: f64, size: f64) -> f64 {
+    let difference = ((a - b) / size).abs();
+    if a == b {
+        0.0
+    } else if difference.is_nan() {
+        f64::INFINITY
+    } else {
+        difference
+    }
+}
+
+/// What a method makes of a scene at a relative tolerance.
+fn run(numbers: &Numbers, window: Window, method: Method, rtol: f64) -> Result<Response, SolverError> {
+    let settings = Settings { method, rtol, atol: 1e-3 * rtol, max_steps: 20_000_000, ..Settings::default() };
+    simulate(&numbers.scene(), window, &settings)
+}
+
+/// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where their final states part, so that the
+/// motion cannot be predicted so far, or where DOP853 gives up. Where they differ DOP853 runs again, a hundred times as exact: after
+/// tens of contacts its own error may show.
+fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 11], Response)> {
+    let window = Window { from, to: 20.0 };
+    let hybrid =
+        run(numbers, window, Method::Hybrid, 1e-12).unwrap_or_else(|error| panic!("{error}: {numbers:?}"));
+    let reference = |rtol| run(numbers, window, Method::Dop853, rtol).ok();
+    let first = reference(1e-12)?;
+    let apart = |i: usize| apart(hybrid.final_state[i], first.final_state[i], 1.0);
+    if (0..4).any(|i| apart(i) > 1e-10) {
+        return None;
+    }
+    let mut found = differences(&hybrid, &first);
+    if found.iter().any(|d| *d > ALIKE) {
+        found = differences(&hybrid, &reference(1e-14)?);
+    }
+    Some((found, hybrid))
+}
+
+/// By how much the hybrid and DOP853 may differ.
+const ALIKE: f64 = 1e-8;
+
+fn differences(a: &Response, b: &Response) -> [f64; 11] {
+    let force = b.force_max[0].max(b.force_max[1]).max(1.0);
+    let stroke = b.spring_deflection_max;
+    let late = apart(a.e1_max.time, b.e1_max.time, 1.0);
+    // Where two maxima are equally high, or one is flat, its time says nothing.
+    let structure =
+        |i: usize| apart(a.structure.all()[i].value, b.structure.all()[i].value, b.structure.all()[i].value);
+    let told_by_height = apart(a.e1_max.value, b.e1_max.value, b.e1_max.value) < 1e-13 || late < 1e-4;
+    [
+        apart(a.e1_max.value, b.e1_max.value, b.e1_max.value),
+        apart(a.e2_max.value, b.e2_max.value, b.e2_max.value),
+        apart(a.relative_displacement_max, b.relative_displacement_max, stroke),
+        apart(a.spring_deflection_max, b.spring_deflection_max, stroke),
+        apart(a.force_max[0], b.force_max[0], force).max(apart(a.force_max[1], b.force_max[1], force)),
+        f64::from(u8::from(a.impacts != b.impacts)),
+        if told_by_height { 0.0 } else { late },
+        structure(0),
+        structure(1),
+        structure(2),
+        structure(3),
+    ]
+}
+
+/// A scene, the beginning of its window and its tolerance, by number.
+fn drawn(number: u64, scene: fn(&mut Spread) -> Numbers) -> (Numbers, f64, f64) {
+    let mut draw = Spread::new(number + 1);
+    let numbers = scene(&mut draw);
+    let from = if draw.unit() < 0.5 { 0.0 } else { 15.0 * draw.unit() };
+    (numbers, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
+}
+
+/// The search beside a look everywhere on `count` scenes: any, or such as often have two maxima in one step.
+pub fn beside_everywhere(two_maxima: bool, count: u64) -> Hunt {
+    let (what, scene): (_, fn(&mut Spread) -> Numbers) = if two_maxima {
+        ("the same where two maxima in a step are common", dense)
+    } else {
+        ("search beside a look everywhere, any scene", anywhere)
+    };
+    let looked: Vec<_> = (0..count)
+        .into_par_iter()
+        .map(|number| {
+            let (numbers, from, rtol) = drawn(number, scene);
+            (number, search(&numbers, from, rtol))
+        })
+        .collect();
+    let (mut pieces, mut contact_scenes, mut faults) = (0, 0, Vec::new());
+    for (number, found) in looked {
+        let (missed, seen) = found.unwrap_or_else(|error| panic!("{what} {number}: {error}"));
+        pieces += seen;
+        contact_scenes += u64::from(seen > 0);
+        if missed.iter().any(|m| m.is_nan() || *m > ALLOWED) {
+            faults.push(format!("{number} {missed:?} {:?}", drawn(number, scene)));
+        }
+    }
+    let mut hunt = Hunt::default();
+    hunt.row(format!(
+        "| {what} | {count} | {contact_scenes} | {pieces} pieces of contacts | 1e-9 | {} |",
+        faults.len()
+    ));
+    hunt.faults = faults;
+    hunt.check(contact_scenes > count / 4, || format!("{contact_scenes} of {count} scenes have contacts"));
+    hunt
+}
+
+/// The hybrid beside DOP853 on `count` scenes.
+pub fn beside_dop853(count: u64) -> Hunt {
+    let compared: Vec<_> = (0..count)
+        .into_par_iter()
+        .filter_map(|number| {
+            // Two in three are anywhere, one where two maxima in a step are common.
+            let (numbers, from, _) = drawn(number, if number % 3 == 0 { dense } else { anywhere });
+            let (differences, run) = compare(&numbers, from)?;
+            Some((number, differences, run.impacts[0] + run.impacts[1]))
+        })
+        .collect();
+    let contact_scenes = compared.iter().filter(|(_, _, impacts)| *impacts > 0).count();
+    let impacts: u64 = compared.iter().map(|(_, _, impacts)| impacts).sum();
+    let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > ALIKE)).collect();
+    let mut hunt = Hunt::default();
+    hunt.row(format!(
+        "| hybrid beside DOP853, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
+        compared.len(),
+        faults.len()
+    ));
+    hunt.faults = faults.iter().map(|(number, differences, _)| format!("{number} {differences:?}")).collect();
+    hunt.check(contact_scenes as u64 > count / 5, || {
+        format!("{contact_scenes} of {count} scenes have contacts")
+    });
+    hunt
+}
+
+/// The gains that the search missed in scene `number` of those drawn anywhere, and the most that is allowed.
+pub fn missed_in(number: u64) -> ([f64; 8], f64) {
+    let (numbers, from, rtol) = drawn(number, anywhere);
+    (search(&numbers, from, rtol).expect("a run").0, ALLOWED)
+}
