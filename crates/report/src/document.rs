@@ -33,6 +33,17 @@ pub struct Document {
 }
 
 impl Document {
+    /// Its files, each with its name: both forms and all figures.
+    pub fn files(&self) -> Vec<(&'static str, String)> {
+        let blocks = self.opening.iter().chain(self.sections.iter().flat_map(|(.., blocks)| blocks));
+        let figure = |block: &Block| match block {
+            Block::Figure(file, drawing, _) => Some((*file, drawing.wide.clone())),
+            _ => None,
+        };
+        let pages = [("README.md", self.markdown()), ("report.html", self.html())];
+        blocks.filter_map(figure).chain(pages).collect()
+    }
+
     /// As Markdown.
     pub fn markdown(&self) -> String {
         let mut text = format!("# {}\n\n", self.title);
@@ -123,13 +134,17 @@ mod tests {
                         vec!["damper".to_owned(), "E1max, J".to_owned()],
                         rows,
                     ),
+                    Block::Figure("a.svg", "<svg/>".to_owned().into(), "Fig".to_owned()),
                     Block::Files(vec!["a.csv".to_owned()]),
                 ],
             )],
         };
         let table = "Designs\n\n| damper | E1max, J |\n| --- | --- |\n| TMD | 660.4 |\n\n";
-        let markdown = format!("# T < U\n\nFirst.\n\n## One\n\n- a\n\n{table}[a.csv](a.csv)\n");
+        let markdown =
+            format!("# T < U\n\nFirst.\n\n## One\n\n- a\n\n{table}![Fig](a.svg)\n\n[a.csv](a.csv)\n");
         assert_eq!(document.markdown(), markdown);
+        let names: Vec<&str> = document.files().iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["a.svg", "README.md", "report.html"]);
         let page = document.html();
         for part in [
             "T &lt; U",
