@@ -3,7 +3,7 @@
 use super::anew::label;
 use super::curves::{ANEW, BANDS};
 use super::force::under;
-use super::range::{Still, Threshold, range};
+use super::range::{Criterion, range};
 use super::tuned::{CURVES, DESIGNS, FORCES, Tuning, bare, energy, on_samples, over, still};
 use crate::Error;
 use crate::again::{Numbers, Row, Source, each_row};
@@ -21,7 +21,7 @@ struct Results {
     /// By the names of a damper and of its tuning.
     designs: BTreeMap<(String, String), Option<Design>>,
     /// By the name of a damper, what counts as half of its work; of the ranges alone.
-    thresholds: BTreeMap<String, (Threshold, Option<Still>)>,
+    criteria: BTreeMap<String, Criterion>,
 }
 
 /// A row of one of the tables.
@@ -32,13 +32,12 @@ pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
     let studies = resolved.studies()?;
-    let threshold =
-        |(damper, study): &(String, Study)| Ok((damper.clone(), (Threshold::of(study)?, Still::of(study)?)));
-    let (row, thresholds): (fn(&Results, Row) -> Option<Numbers>, _) = match name {
+    let criterion = |(damper, study): &(String, Study)| Ok((damper.clone(), Criterion::of(study)?));
+    let (row, criteria): (fn(&Results, Row) -> Option<Numbers>, _) = match name {
         DESIGNS => (Results::design, BTreeMap::new()),
         CURVES => (Results::point, BTreeMap::new()),
         FORCES => (Results::forced, BTreeMap::new()),
-        _ => (Results::range, studies.iter().map(threshold).collect::<Result<_, Error>>()?),
+        _ => (Results::range, studies.iter().map(criterion).collect::<Result<_, Error>>()?),
     };
     let mut designs = BTreeMap::new();
     each_row(&place.join(DESIGNS), |_, row| {
@@ -46,7 +45,7 @@ pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
         designs.entry(own).or_insert_with(|| row.design());
     })?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
-    let results = Results { thresholds, studies, samples, k1: k1.unwrap_or_default(), designs };
+    let results = Results { criteria, studies, samples, k1: k1.unwrap_or_default(), designs };
     Ok(Source::new(move |of| row(&results, of)))
 }
 
@@ -114,7 +113,7 @@ impl Results {
     fn range(&self, row: Row) -> Option<Numbers> {
         let (study, at) = (self.study(row)?, row.design()?);
         let own = study.scene.primary.stiffness.get();
-        let (threshold, still) = self.thresholds.get(row.text("damper"))?;
+        let Criterion { threshold, still } = self.criteria.get(row.text("damper"))?;
         on_samples(study, self.samples, &at)?;
         let found = range(study, self.samples, &at, threshold);
         let kept = still.as_ref().and_then(|of| range(&of.study, self.samples, &at, &of.threshold));
