@@ -17,12 +17,12 @@ mod retained;
 mod trade;
 mod tuned;
 
-pub use anew::label;
 pub use curves::Curve;
 pub use force::Forced;
 pub use range::{Criterion, Range, Threshold, best_tmd};
 pub use retained::Retained;
 pub use trade::Point;
+pub use tuned::label;
 pub use tuned::{Kept, Tuned, Tuning};
 
 use crate::artefact::{Content, Kind, artefact};
@@ -112,12 +112,10 @@ pub fn retention(
     })
 }
 
-/// A row with the energies on the common samples, so that designs are compared on the same frequencies.
+/// A row with E1max on the common samples, so that designs are compared on the same frequencies.
 fn on_common_samples(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
     let at = row.found.design_of(tuned.study.varied());
-    let of = if row.label == Tuning::Robust.name() { tuned.over(k1) } else { tuned.study.clone() };
-    let own = k1.iter().copied().find(|k1| label(*k1) == row.label).unwrap_or(tuned.nominal());
-    let e1_max = tuned::energy(&of, tuned.samples, &at, own).unwrap_or(f64::NAN);
+    let e1_max = tuned.energy_as_tuned(&row.label, &at, k1).unwrap_or(f64::NAN);
     Row { e1_max, ..row }
 }
 

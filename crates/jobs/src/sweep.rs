@@ -26,12 +26,10 @@
 pub mod draw;
 pub mod plan;
 pub mod points;
-mod quantity;
 pub mod words;
 
-pub use plan::{Options, Plan};
+pub use plan::{Options, Plan, Quantity};
 pub use points::Sweep;
-pub use quantity::Quantity;
 
 use crate::again::{Row, Source, broken};
 use crate::artefact::{Content, Kind, artefact};

@@ -1,6 +1,6 @@
 //! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
-use super::tuned::{Kept, Tuned, Tuning, energy, over};
+use super::tuned::{Kept, Tuned, Tuning, energy, label, over};
 use crate::designs::Row;
 use crate::fronts::SAME;
 use crate::pages::over as over_band;
@@ -9,11 +9,6 @@ use crate::tune::{Found, Optimum};
 use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
-
-/// The label of a design that is tuned for a stiffness, N/m.
-pub fn label(k1: f64) -> String {
-    format!("k1 = {k1}")
-}
 
 /// Tunes one damper for the stiffness of its study, then for each of `others`, upwards from there, then downwards, and last for the worst
 /// over all of them. The rows say what each search found.

@@ -117,7 +117,7 @@ pub(super) fn path(retained: &Retained) -> Drawing {
         };
         let mut layers = Vec::new();
         for (number, damper) in dampers() {
-            let (stroke, mark) = looks(number);
+            let (stroke, mark) = style(number);
             // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
             if !variable.is_gap() {
                 layers.push(Layer::Line { points: points(damper), stroke });
@@ -129,7 +129,7 @@ pub(super) fn path(retained: &Retained) -> Drawing {
         Chart::of(along_k1(all().map(|(k1, _)| k1)), y, layers, 120.0)
     };
     let key = |(number, damper): (usize, &Tuned)| {
-        let (stroke, mark) = looks(number);
+        let (stroke, mark) = style(number);
         (Key::Marked(stroke, mark), damper.name.clone())
     };
     let names = symbols(&parameters);
@@ -162,7 +162,7 @@ pub(super) fn range(retained: &Retained) -> Drawing {
     let mut layers = vec![Layer::Marks { points: dominated, mark: DOMINATED }];
     let mut legend = Vec::new();
     for (damper, front) in fronts.iter().filter(|(_, front)| !front.is_empty()) {
-        let (stroke, mark) = looks(*damper);
+        let (stroke, mark) = style(*damper);
         let points: Vec<(f64, f64)> = front.iter().map(|point| at(point)).collect();
         layers.push(Layer::Line { points: points.clone(), stroke });
         let small = Mark { size: 3.0, ..mark };
@@ -209,7 +209,7 @@ pub(super) fn force(retained: &Retained) -> Drawing {
         (0..of.points.len()).map(|step| (of.points[step].0, of.share(step))).collect()
     };
     let stroke = |of: &Forced| {
-        let (stroke, _) = looks(of.damper);
+        let (stroke, _) = style(of.damper);
         if of.proportional { Stroke { dash: Dash::Short, ..stroke } } else { stroke }
     };
     let top = all().flat_map(points).map(|(_, share)| share).fold(0.0, f64::max);
@@ -229,7 +229,7 @@ pub(super) fn force(retained: &Retained) -> Drawing {
 }
 
 /// The line and the mark of a damper.
-fn looks(damper: usize) -> (Stroke, Mark) {
+fn style(damper: usize) -> (Stroke, Mark) {
     let (colour, shape) = DAMPERS[damper % DAMPERS.len()];
     (Stroke::solid(colour), Mark::new(shape, colour, 4.0))
 }
