@@ -80,6 +80,30 @@ impl Document {
 }
 
 impl Block {
+    /// A paragraph.
+    pub fn words(words: impl Into<String>) -> Self {
+        Self::Words(words.into())
+    }
+
+    /// A table: its caption, its head, its rows.
+    pub fn table<T: Into<String>>(
+        caption: impl Into<String>,
+        head: impl IntoIterator<Item = T>,
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        Self::Table(caption.into(), head.into_iter().map(Into::into).collect(), rows)
+    }
+
+    /// A figure: its file, the drawing, its caption.
+    pub fn figure(file: &'static str, drawing: impl Into<Drawing>, caption: impl Into<String>) -> Self {
+        Self::Figure(file, drawing.into(), caption.into())
+    }
+
+    /// Links to files beside the page.
+    pub fn files(files: &[&str]) -> Self {
+        Self::Files(files.iter().map(|file| (*file).to_owned()).collect())
+    }
+
     fn markdown(&self) -> String {
         match self {
             Self::Words(words) => format!("{words}\n\n"),
@@ -123,19 +147,15 @@ mod tests {
         let document = Document {
             title: "T < U".to_owned(),
             command: "retune retention",
-            opening: vec![Block::Words("First.".to_owned())],
+            opening: vec![Block::words("First.")],
             sections: vec![(
                 "one",
                 "One",
                 vec![
                     Block::List(vec!["a".to_owned()]),
-                    Block::Table(
-                        "Designs".to_owned(),
-                        vec!["damper".to_owned(), "E1max, J".to_owned()],
-                        rows,
-                    ),
-                    Block::Figure("a.svg", "<svg/>".to_owned().into(), "Fig".to_owned()),
-                    Block::Files(vec!["a.csv".to_owned()]),
+                    Block::table("Designs", ["damper", "E1max, J"], rows),
+                    Block::figure("a.svg", "<svg/>".to_owned(), "Fig"),
+                    Block::files(&["a.csv"]),
                 ],
             )],
         };

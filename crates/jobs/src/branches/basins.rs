@@ -26,9 +26,9 @@ pub fn blocks(motions: &Motions, basins: &Basins) -> Vec<Block> {
     let said = format!("Where the starts of the plane end; {STARTS} has each.");
     let caption = format!("E1max of the motion on which each start ends, at {place}");
     vec![
-        Block::Words(words),
-        Block::Figure("basins.svg", draw(motions, basins).into(), caption),
-        Block::Table(said, head.map(str::to_owned).to_vec(), rows),
+        Block::words(words),
+        Block::figure("basins.svg", draw(motions, basins), caption),
+        Block::table(said, head, rows),
     ]
 }
 

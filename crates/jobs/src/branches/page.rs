@@ -25,14 +25,14 @@ const MOST: usize = 40;
 pub fn write(motions: &Motions, directory: &Directory) -> Result<(), Error> {
     let symbol = motions.over().symbol();
     let caption = format!("E1max and stroke of the periodic motions against {symbol}");
-    let figure = Block::Figure("branches.svg", draw(motions), caption);
+    let figure = Block::figure("branches.svg", draw(motions), caption);
     let files =
         [BRANCHES, BIFURCATIONS, ATTRACTORS, STATES, "branches.json", "resolved.json", "manifest.json"];
     let mut sections = vec![
         ("motions", "Periodic motions", vec![figure, branches(motions)]),
-        ("bifurcations", "Where they begin and end", vec![Block::Words(EVENTS.to_owned()), events(motions)]),
-        ("coexisting", "What runs settle on", vec![Block::Words(starts(motions)), attractors(motions)]),
-        ("data", "Data", vec![Block::Files(files.map(str::to_owned).to_vec())]),
+        ("bifurcations", "Where they begin and end", vec![Block::words(EVENTS), events(motions)]),
+        ("coexisting", "What runs settle on", vec![Block::words(starts(motions)), attractors(motions)]),
+        ("data", "Data", vec![Block::files(&files)]),
     ];
     if let Some(own) = &motions.basins {
         sections.insert(3, ("basins", "Where starts end", basins::blocks(motions, own)));
@@ -40,7 +40,7 @@ pub fn write(motions: &Motions, directory: &Directory) -> Result<(), Error> {
     let page = Document {
         title: format!("{}: periodic motions along {symbol}", motions.study.name()),
         command: "retune branches",
-        opening: vec![Block::Words(plan_words(motions)), Block::List(answer(motions))],
+        opening: vec![Block::words(plan_words(motions)), Block::List(answer(motions))],
         sections,
     };
     pages::write(&page, directory)
@@ -196,8 +196,8 @@ fn branches(motions: &Motions) -> Block {
         "impacts there",
         "ends",
     ];
-    let words = "The branches. Impacts: S on the structure, O on the obstacle, in their order.".to_owned();
-    Block::Table(words, head.map(str::to_owned).to_vec(), rows.collect())
+    let words = "The branches. Impacts: S on the structure, O on the obstacle, in their order.";
+    Block::table(words, head, rows.collect())
 }
 
 /// The events, those of stable motions first.
@@ -226,7 +226,7 @@ fn events(motions: &Motions) -> Block {
         table.show(Measure::Energy.name(), joule),
     ];
     let (head, rows) = table.shown(&columns);
-    Block::Table(words, head, rows)
+    Block::table(words, head, rows)
 }
 
 fn starts(motions: &Motions) -> String {
@@ -272,5 +272,5 @@ fn attractors(motions: &Motions) -> Block {
             "Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all."
         )
     };
-    Block::Table(words, head.map(str::to_owned).to_vec(), rows)
+    Block::table(words, head, rows)
 }

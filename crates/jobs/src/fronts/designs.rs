@@ -16,6 +16,7 @@ use retune_model::{Design, Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
 use retune_study::{FrontsPlan, Study, Sweep};
+use std::fmt::Display;
 use std::path::Path;
 
 /// The verdict of a damper that no search found.
@@ -213,6 +214,11 @@ impl Fronts {
         }
         table
     }
+}
+
+/// A bound in words: `k2 at most 400 N/m`.
+pub(super) fn at_most(sweep: Sweep, bound: impl Display) -> String {
+    format!("{} at most {bound} {}", sweep.name(), sweep.unit())
 }
 
 /// The certificate of a design, made again.

@@ -1,7 +1,7 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
 use super::candidate::{Candidate, SAME};
-use super::designs::{Certified, Fronts, NEEDS, Row};
+use super::designs::{Certified, Fronts, NEEDS, Row, at_most};
 use super::draw;
 use crate::{Error, pages};
 use retune_model::{Design, Measure, Parameter};
@@ -24,19 +24,18 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
             Sweep::ContactForce => ("contact_force.svg", "contact-force", "Contact force at most"),
         };
         let caption = format!("The least E1max: {}", title.to_lowercase());
-        let figure = Block::Figure(file, draw::sweep(fronts, sweep), caption);
+        let figure = Block::figure(file, draw::sweep(fronts, sweep), caption);
         let blocks = [figure, table(fronts, sweep), needs(fronts, sweep)];
         sections.push((id, title, blocks.into_iter().chain(reasons(fronts, sweep)).collect()));
     }
     let words = "Every design that was found. A line is the front of a damper in the two quantities of its chart: what lies above it is \
                  dominated. `front.csv` has the designs that no other dominates in all of E1max, stroke, contact force and k2.";
-    let caption = "E1max against stroke, contact force and k2".to_owned();
-    let figure = Block::Figure("front.svg", draw::front(fronts), caption);
-    sections.push(("trade", "The trade", vec![Block::Words(words.to_owned()), figure]));
+    let caption = "E1max against stroke, contact force and k2";
+    let figure = Block::figure("front.svg", draw::front(fronts), caption);
+    sections.push(("trade", "The trade", vec![Block::words(words), figure]));
     let certified: Vec<String> = fronts.certified.iter().map(|one| certificate(fronts, one)).collect();
     let certified = if certified.is_empty() {
-        let none = "No design that strikes a wall is better than the first damper under the same bound.";
-        Block::Words(none.to_owned())
+        Block::words("No design that strikes a wall is better than the first damper under the same bound.")
     } else {
         Block::List(certified)
     };
@@ -45,7 +44,7 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
     let page = Document {
         title: format!("What the {} is good for", names.last().unwrap_or(&"")),
         command: "retune fronts",
-        opening: vec![Block::Words(made(fronts, &names)), Block::List(answer(fronts))],
+        opening: vec![Block::words(made(fronts, &names)), Block::List(answer(fronts))],
         sections,
     };
     pages::write(&page, directory)
@@ -117,7 +116,7 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
             Some(_) => {}
         }
     }
-    Block::Table(format!("The best design of each damper with {} at most a bound.", sweep.name()), head, rows)
+    Block::table(format!("The best design of each damper with {} at most a bound.", sweep.name()), head, rows)
 }
 
 /// What the designs of [`table`] need, beside no damper.
@@ -135,13 +134,11 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
         cells.extend(NEEDS.map(|measure| four(none.value(measure))));
         rows.push(cells);
     }
-    let caption = "What they need and what the structure does: the largest from rest on.";
-    Block::Table(caption.to_owned(), head, rows)
+    Block::table("What they need and what the structure does: the largest from rest on.", head, rows)
 }
 
 /// The reasons of verdicts other than robust in [`table`], each once.
 fn reasons(fronts: &Fronts, sweep: Sweep) -> Option<Block> {
-    let (name, unit) = (sweep.name(), sweep.unit());
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     for Row { bound, damper, design, .. } in fronts.rows(sweep) {
         let Some(design) = design.filter(|design| !design.reason.is_empty() && !design.is_robust()) else {
@@ -153,9 +150,8 @@ fn reasons(fronts: &Fronts, sweep: Sweep) -> Option<Block> {
             None => said.push((reason, vec![bound.to_string()])),
         }
     }
-    let line = |(reason, bounds): (String, Vec<String>)| {
-        format!("{name} at most {} {unit}, {reason}.", bounds.join(", "))
-    };
+    let line =
+        |(reason, bounds): (String, Vec<String>)| format!("{}, {reason}.", at_most(sweep, bounds.join(", ")));
     (!said.is_empty()).then(|| Block::List(said.into_iter().map(line).collect()))
 }
 
@@ -182,7 +178,7 @@ pub(super) fn answer(fronts: &Fronts) -> Vec<String> {
 /// A damper beside the first along a bound.
 fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
     let (name, first) = (fronts.name(damper), fronts.name(0));
-    let (what, unit) = (sweep.name(), sweep.unit());
+    let what = sweep.name();
     let rows: Vec<Row> = fronts.rows(sweep).into_iter().filter(|row| row.damper == damper).collect();
     let share = |row: &Row| Some(row.design?.e1_max / fronts.reference(row)?);
     let best = rows
@@ -196,11 +192,11 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
     let of = |which: fn(&Candidate) -> bool| bounds(&|row| row.design.is_some_and(which));
     let mut words = match best {
         Some((gain, Row { bound, design: Some(design), .. })) if gain < 1.0 - SAME => format!(
-            "{what} at most {bound} {unit}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by \
-             more than 1 % for {what} at most {} {unit}.",
+            "{}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by more than 1 % for {}.",
+            at_most(sweep, bound),
             joule(design.e1_max),
             joule(design.e1_max / gain),
-            bounds(&|row| share(row).is_some_and(|share| share < 1.0 - SAME))
+            at_most(sweep, bounds(&|row| share(row).is_some_and(|share| share < 1.0 - SAME)))
         ),
         _ => format!("{what}: under no bound is the {name} better than the {first} by more than 1 %."),
     };
@@ -228,7 +224,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         ),
     ];
     for (bounds, before, after) in remarks.into_iter().filter(|(bounds, ..)| !bounds.is_empty()) {
-        words += &format!(" {before} {what} at most {bounds} {unit}{after}");
+        words += &format!(" {before} {}{after}", at_most(sweep, bounds));
     }
     words
 }
@@ -240,10 +236,9 @@ fn certificate(fronts: &Fronts, one: &Certified) -> String {
     let lines: Vec<String> =
         certificate.short().to_string().lines().map(|line| line.trim().to_owned()).collect();
     format!(
-        "{}, {} at most {bound} {}: {} with {} J (best {} under the same bound: {reference}). {}",
+        "{}, {}: {} with {} J (best {} under the same bound: {reference}). {}",
         fronts.name(design.damper),
-        sweep.name(),
-        sweep.unit(),
+        at_most(*sweep, bound),
         words(fronts, design),
         joule(design.e1_max),
         fronts.name(0),

@@ -4,7 +4,7 @@
 
 use super::candidate::{CONTINUED, Candidate};
 use super::descents::Task;
-use super::designs::{Fronts, GIVEN};
+use super::designs::{Fronts, GIVEN, at_most};
 use super::refinement::Under;
 use crate::certify::judge;
 use crate::look::{finer, look};
@@ -66,8 +66,7 @@ impl Fronts {
             let Under { sweep, bound, .. } = under;
             let found =
                 if value.is_nan() { "nothing that keeps it".to_owned() } else { format!("{value:.2} J") };
-            let (name, unit) = (self.name(damper), sweep.unit());
-            watch.log(&format!("{name}, {} at most {bound} {unit}: {found}", sweep.name()))?;
+            watch.log(&format!("{}, {}: {found}", self.name(damper), at_most(sweep, bound)))?;
             self.designs.extend(self.candidate(damper, best, CONTINUED));
             if self.is_steady(damper) {
                 continue;

@@ -20,39 +20,38 @@ use retune_study::{SpringBounds, design_words, rounded, short};
 /// # Errors
 /// A file cannot be written.
 pub(super) fn write(retained: &Retained, directory: &Directory) -> Result<(), Error> {
-    let figure = |name, drawing, words: &str| Block::Figure(name, drawing, words.to_owned());
     let words = "E1max, worst over each structure's own band, against its stiffness";
     let mut energy = vec![
-        figure("retention.svg", draw::retention(retained, false), words),
+        Block::figure("retention.svg", draw::retention(retained, false), words),
         worst(retained),
         cliffs(retained),
     ];
     if retained.curves.iter().any(|curve| curve.still) {
         let words = "The same with the band of frequencies where it is at the nominal k1";
-        energy.push(figure("still.svg", draw::retention(retained, true), words));
+        energy.push(Block::figure("still.svg", draw::retention(retained, true), words));
     }
     let words = "The least E1max at the nominal k1 against the retention range";
     let range = vec![
-        figure("range.svg", draw::range(retained), words),
-        Block::Words(RULE.to_owned()),
+        Block::figure("range.svg", draw::range(retained), words),
+        Block::words(RULE.to_owned() + if retained.varies_mass() { MASS } else { "" }),
         ranges(retained),
         Block::List(retained.shown().into_iter().map(|damper| traded(retained, damper)).collect()),
     ];
     let words = "E1max of the nominal designs as a share of that without a damper";
-    let force = vec![figure("force.svg", draw::force(retained), words), forces(retained)];
+    let force = vec![Block::figure("force.svg", draw::force(retained), words), forces(retained)];
     let words = "The re-tuned designs against k1";
-    let designs = vec![designs(retained), figure("path.svg", draw::path(retained), words)];
+    let designs = vec![designs(retained), Block::figure("path.svg", draw::path(retained), words)];
     let files = [DESIGNS, CURVES, "range.csv", FORCES, "resolved.json", "manifest.json"];
     let page = Document {
         title: "How long a tuning lasts".to_owned(),
         command: "retune retention",
-        opening: vec![Block::List(answer(retained)), Block::Words(compared(retained))],
+        opening: vec![Block::List(answer(retained)), Block::words(compared(retained))],
         sections: vec![
             ("range", "Retention range", range),
             ("force", "A smaller force", force),
             ("energy", "E1max along k1", energy),
             ("designs", "Designs", designs),
-            ("data", "Data", vec![Block::Files(files.map(str::to_owned).to_vec())]),
+            ("data", "Data", vec![Block::files(&files)]),
         ],
     };
     pages::write(&page, directory)
@@ -62,6 +61,9 @@ const RULE: &str = "A damper does its work at a stiffness k1 if its reduction, 1
     best TMD of the same mass for that k1, with k2 and c2 free. It keeps its work over its retention range, the interval about the nominal k1 in \
     which it does. The range is looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. It is \
     counted by the factor by which k1 may rise and fall, the smaller of its two sides.";
+
+/// What is to be added where the dampers do not all have one mass.
+const MASS: &str = " Where m2 is varied, this TMD has the mass of the damper in the study.";
 
 /// What was compared.
 fn compared(Retained { dampers, bounds, .. }: &Retained) -> String {
@@ -99,8 +101,7 @@ fn worst(retained: &Retained) -> Block {
     let k1 = retained.dampers.iter().take(1).flat_map(|damper| damper.anew.iter().map(|(k1, _)| short(*k1)));
     let k1: Vec<String> = k1.collect();
     let caption = format!("E1max, J, at k1 = {} N/m.", k1.join(", "));
-    let head = ["damper", "tuning"].into_iter().map(str::to_owned).chain(k1);
-    Block::Table(caption, head.collect(), rows)
+    Block::table(caption, ["damper", "tuning"].into_iter().map(str::to_owned).chain(k1), rows)
 }
 
 /// The cliffs of the curves.
@@ -123,7 +124,7 @@ fn cliffs(retained: &Retained) -> Block {
             ));
         }
     }
-    if lines.is_empty() { Block::Words("No cliffs.".to_owned()) } else { Block::List(lines) }
+    if lines.is_empty() { Block::words("No cliffs.") } else { Block::List(lines) }
 }
 
 /// The ranges of each design that is kept.
@@ -151,7 +152,7 @@ fn ranges(retained: &Retained) -> Block {
     }
     let caption = "The retention range of the designs that are kept; on the right with the band of frequencies where it is at the nominal k1.";
     let rows = retained.shown_kept().into_iter().map(row).collect();
-    Block::Table(caption.to_owned(), head.into_iter().map(str::to_owned).collect(), rows)
+    Block::table(caption, head, rows)
 }
 
 /// The shares of the nominal designs under forces that halve.
@@ -170,7 +171,7 @@ fn forces(retained: &Retained) -> Block {
     let caption =
         "E1max of the nominal designs at the nominal k1 as a share of that without a damper, by the force.";
     let rows = retained.forced.iter().filter(|of| shown.contains(&of.damper)).map(row).collect();
-    Block::Table(caption.to_owned(), head, rows)
+    Block::table(caption, head, rows)
 }
 
 /// The trade of one damper in words.
@@ -203,7 +204,7 @@ fn designs(retained: &Retained) -> Block {
     };
     let table = retained.table.table().only(retained.table.rows.iter().map(is_shown));
     let mut parameters = retained.table.parameters();
-    if retained.dampers.iter().any(|damper| damper.study.varied().contains(&Parameter::M2)) {
+    if retained.varies_mass() {
         parameters.push(Parameter::M2);
     }
     let mut columns = ["damper", "tuning"].map(|name| table.exact(name)).to_vec();
@@ -213,5 +214,5 @@ fn designs(retained: &Retained) -> Block {
     let (head, rows) = table.shown(&columns);
     let caption =
         "All designs, each with its E1max for what it was tuned for (the paper's: for the nominal k1).";
-    Block::Table(caption.to_owned(), head, rows)
+    Block::table(caption, head, rows)
 }

@@ -1,8 +1,8 @@
 //! The retention range: the stiffnesses k1 about the nominal one at which a design still does half of what tuning anew would do.
 //!
 //! The reduction of a damper is counted in decibels, `10 lg(E1max without / E1max with)`, each the worst over the structure's own band. A
-//! design does its work at a k1 if its reduction is at least half of that of the best TMD of the same mass for that k1, with k2 and c2
-//! free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
+//! design does its work at a k1 if its reduction is at least half of that of the best TMD for that k1, with the mass of the damper in the
+//! study, k2 and c2 free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
 
 use super::tuned::{on_samples, still as still_band};
 use crate::Error;

@@ -6,6 +6,7 @@ use super::range::Criterion;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
 use crate::designs::Designs;
+use retune_model::Parameter;
 use retune_study::{SpringBounds, Study};
 
 /// Dampers are one if E1max of all their tunings differs by no more than this share.
@@ -41,6 +42,11 @@ impl Retained {
     /// The study of the first damper, which figures name.
     pub(super) fn study(&self) -> Option<&Study> {
         self.dampers.first().map(|damper| &damper.study)
+    }
+
+    /// Whether the mass of a damper is varied.
+    pub(super) fn varies_mass(&self) -> bool {
+        self.dampers.iter().any(|damper| damper.study.varied().contains(&Parameter::M2))
     }
 
     /// The designs of a damper that no other dominates, the least E1max first.

@@ -55,6 +55,7 @@ fn contract_tables_have_a_column_for_whatever_is_varied() {
     columns("retune/range.csv", "60");
     let page = desk.read("retune/README.md");
     assert!(page.contains(" | R, m | m2, kg | E1max, J | verdict |"), "{page}");
+    assert!(page.contains("this TMD has the mass of the damper in the study"), "{page}");
     assert!(desk.read("retune/path.svg").contains("k2, c2, D, C, m2 and R of each damper, tuned anew"));
     good(fronts(&request(&desk, "fronts.json", "fronts"), &Silent));
     a_changed_digit_is_found(&desk, "fronts", &["k2.csv", "stroke.csv", "front.csv"]);
