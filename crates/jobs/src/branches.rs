@@ -24,8 +24,7 @@ use options::plan_json;
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::basins::SIDE;
 use retune_dynamics::periodic::branches::{Watch, branches as follow};
-use retune_study::{found_in, read};
-use std::path::Path;
+use retune_study::read;
 
 /// The files of `branches`.
 pub static KIND: Kind = Kind {
@@ -53,11 +52,7 @@ pub static KIND: Kind = Kind {
 pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> Result<Done<Motions>, Error> {
     let study = read(&request.study)?;
     let (plan, basins_at) = options.plan(&study)?;
-    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
-    let out = request.out.clone().unwrap_or_else(|| {
-        Path::new("results").join(format!("branches-{}{tuned}-{}", study.name(), plan.parameter.symbol()))
-    });
-    let request = Request { out: Some(out), ..request.clone() };
+    let request = request.placed(KIND.command, &study, plan.parameter.symbol())?;
     let studies = [(study.name(), &study)];
     let mut said = plan_json(&plan);
     if options.margin {

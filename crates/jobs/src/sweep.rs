@@ -41,10 +41,10 @@ use rayon::prelude::*;
 use retune_report::table::Table;
 use retune_store::identity::VERSION;
 use retune_store::{Directory, Journal};
-use retune_study::{found_in, read};
+use retune_study::read;
 use serde_json::{Value, json};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The file with all points.
 pub const FILE: &str = "sweep.csv";
@@ -98,14 +98,16 @@ pub fn sweep(
     watch: &dyn Observer,
 ) -> Result<Option<String>, Error> {
     let sweep = Sweep::new(Plan::read(options)?, read(&request.study)?)?;
-    let out = out(request, &sweep)?;
-    let request = Request { out: Some(out.clone()), ..request.clone() };
+    let objective = if sweep.plan().objective { "-objective" } else { "" };
+    let rest = format!("{}{objective}", sweep.plan().over.symbol());
+    let request = request.placed(KIND.command, sweep.study(), &rest)?;
     let plan = json!(sweep.plan());
     let studies = [(sweep.study().name(), sweep.study())];
     let job = Job::of_studies(&KIND, &request, plan, studies.into_iter())?;
     if let Points::Share(shard) = points {
         let (len, width) = (sweep.len(), sweep.width());
-        let work = Work { shard: *shard, len, width, identity: job.identity(), out: &out, order: &job.order };
+        let work =
+            Work { shard: *shard, len, width, identity: job.identity(), out: &job.out, order: &job.order };
         request.on_threads(|| {
             work.make(watch, |journal, points, bar| numbers(&sweep, journal, points, bar).0)
         })?;
@@ -117,22 +119,10 @@ pub fn sweep(
         }
         Ok(Made { answer: (), report: write(&sweep, results, watch)?, parts: Vec::new() })
     })?;
-    let path = out.join(JSON);
+    let path = job.out.join(JSON);
     let text =
         std::fs::read_to_string(&path).map_err(|source| retune_store::Error::Input { path, source })?;
     Ok(Some(text))
-}
-
-/// The directory of the results: by default `results/sweep-<study>-<parameter>`, of a design that a search found
-/// `results/sweep-<study>-tuned-<parameter>`; sweeps of the objective have names of their own.
-fn out(request: &Request, sweep: &Sweep) -> Result<PathBuf, Error> {
-    if let Some(out) = &request.out {
-        return Ok(out.clone());
-    }
-    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
-    let objective = if sweep.plan().objective { "-objective" } else { "" };
-    let (study, over) = (sweep.study().name(), sweep.plan().over.symbol());
-    Ok(Path::new("results").join(format!("sweep-{study}{tuned}-{over}{objective}")))
 }
 
 /// Takes the numbers of all points from parts.

@@ -79,61 +79,56 @@ fn plan_words(motions: &Motions) -> String {
 
 /// The answer: one line for each thing to know.
 pub fn answer(motions: &Motions) -> Vec<String> {
-    let plan = &motions.branches.plan;
-    let (symbol, unit) = (plan.parameter.symbol(), plan.parameter.unit());
-    let [stable, irregular] = motions.branches.stable_and_irregular();
+    let (all, [from, to]) = (&motions.branches, motions.branches.plan.range);
+    let (symbol, unit) = (motions.over().symbol(), motions.over().unit());
+    let [stable, irregular] = all.stable_and_irregular();
     let covered: f64 = stable.iter().map(|[from, to]| to - from).sum();
-    let share = 100.0 * covered / (plan.range[1] - plan.range[0]);
+    let share = 100.0 * covered / (to - from);
     let mut words = Vec::new();
-    let all = motions.largest.iter().enumerate();
-    let mut most: Vec<(usize, &Orbit)> = all.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
+    let largest = motions.largest.iter().enumerate();
+    let mut most: Vec<(usize, &Orbit)> =
+        largest.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
     most.sort_by(|a, b| b.1.seen.e1_max.total_cmp(&a.1.seen.e1_max));
-    if let Some((number, orbit)) = most.first() {
-        words.push(format!(
-            "The largest E1max of all stable motions: {} J at {}, on branch {number} ({}).",
-            joule(orbit.seen.e1_max),
-            motions.at(orbit.value, 6),
-            kind(orbit)
-        ));
-        if !motions.branches.is_reached_from_rest(*number) {
-            let ways = remedies(&motions.branches.branches[*number], orbit);
-            let reached = most.iter().find(|(other, _)| motions.branches.is_reached_from_rest(*other));
-            words.extend(reached.map(|(other, orbit)| {
+    let reached = |(number, orbit): &(usize, &Orbit)| {
+        let place = motions.at(orbit.value, 6);
+        format!("{} J at {place}, on branch {number} ({})", joule(orbit.seen.e1_max), kind(orbit))
+    };
+    if let Some(first) = most.first() {
+        words.push(format!("The largest E1max of all stable motions: {}.", reached(first)));
+        if !all.is_reached_from_rest(first.0) {
+            let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other));
+            words.extend(usual.map(|usual| {
                 format!(
-                    "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {} J at {}, on branch \
-                     {other} ({}).",
-                    joule(orbit.seen.e1_max),
-                    motions.at(orbit.value, 6),
-                    kind(orbit)
+                    "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {}.",
+                    reached(usual)
                 )
             }));
+            let ways: Vec<String> =
+                remedies(&all.branches[first.0], first.1).iter().map(Remedy::words).collect();
             if !ways.is_empty() {
-                let ways: Vec<String> = ways.iter().map(Remedy::words).collect();
                 words.push(format!(
                     "What removes that motion, at {} and all else as it is: {}.",
-                    motions.at(orbit.value, 6),
+                    motions.at(first.1.value, 6),
                     ways.join("; ")
                 ));
             }
         }
     }
-    words.extend(
-        motions.branches.branches.iter().enumerate().filter_map(|(i, branch)| isola(motions, i, branch)),
-    );
+    words.extend(all.branches.iter().enumerate().filter_map(|(i, branch)| isola(motions, i, branch)));
     words.extend(motions.margin.as_ref().map(Margin::words));
     words.push(format!(
         "Stable periodic motions, of {}, cover {} % of the range.",
-        counted(motions.branches.branches.len() as u64, "branch"),
+        counted(all.branches.len() as u64, "branch"),
         rounded(share, 4)
     ));
-    if motions.branches.ended {
-        let count = motions.branches.branches.len();
+    if all.ended {
+        let count = all.branches.len();
         words.push(format!("The search ended after {count} branches: there may be more, and the largest of all may be on one of them."));
     }
-    for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * (plan.range[1] - plan.range[0]))
-    {
+    let width = to - from;
+    for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * width) {
         let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
-        let most = motions.branches.samples.iter().filter(within).map(most_irregular).fold(0.0, f64::max);
+        let most = all.samples.iter().filter(within).map(most_irregular).fold(0.0, f64::max);
         let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
         words.push(format!(
             "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",

@@ -3,6 +3,7 @@
 use super::candidate::{Candidate, SAME};
 use super::designs::{Certified, Fronts, NEEDS, Row, at_most};
 use super::draw;
+use crate::certify::Verdict;
 use crate::{Error, pages};
 use retune_model::{Design, Measure, Parameter};
 use retune_report::document::{Block, Document};
@@ -200,32 +201,20 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         ),
         _ => format!("{what}: under no bound is the {name} better than the {first} by more than 1 %."),
     };
-    let remarks = [
-        (
-            bounds(&|row| row.design.is_some() && fronts.reference(row).is_none()),
-            format!("Only the {name} keeps"),
-            ".".to_owned(),
-        ),
-        (
-            of(|design| design.verdict == "single chaotic realisation"),
-            "For".to_owned(),
-            " it is a single chaotic realisation: practically equal designs have much more or less.".to_owned(),
-        ),
-        (
-            of(Candidate::is_unsafe),
-            "For".to_owned(),
-            " other starts than rest lead it to much more, and no design as good was found that is free of this."
-                .to_owned(),
-        ),
-        (
-            of(|design| design.force == 0.0),
-            "For".to_owned(),
-            format!(" the best {name} touches nothing: it has become a TMD."),
-        ),
-    ];
-    for (bounds, before, after) in remarks.into_iter().filter(|(bounds, ..)| !bounds.is_empty()) {
-        words += &format!(" {before} {}{after}", at_most(sweep, bounds));
-    }
+    let mut remark = |bounds: String, before: &str, after: &str| {
+        if !bounds.is_empty() {
+            words += &format!(" {before} {}{after}", at_most(sweep, bounds));
+        }
+    };
+    let alone = bounds(&|row| row.design.is_some() && fronts.reference(row).is_none());
+    remark(alone, &format!("Only the {name} keeps"), ".");
+    let after = " it is a single chaotic realisation: practically equal designs have much more or less.";
+    remark(of(|design| design.verdict == Verdict::SingleChaoticRealisation.name()), "For", after);
+    let after =
+        " other starts than rest lead it to much more, and no design as good was found that is free of this.";
+    remark(of(Candidate::is_unsafe), "For", after);
+    let after = format!(" the best {name} touches nothing: it has become a TMD.");
+    remark(of(|design| design.force == 0.0), "For", &after);
     words
 }
 
