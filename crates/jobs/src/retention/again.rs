@@ -43,13 +43,13 @@ pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
         damper.kept.extend(kept.map(|tuning| Kept { tuning, at }));
         damper.anew.extend(k1.iter().filter(|k1| label(**k1) == tuning).map(|k1| (*k1, at)));
     })?;
-    let (row, with_criteria): (fn(&Results, Row) -> Option<Numbers>, bool) = match name {
-        DESIGNS => (Results::design, false),
-        CURVES => (Results::point, false),
-        FORCES => (Results::forced, false),
-        _ => (Results::range, true),
+    let row: fn(&Results, Row) -> Option<Numbers> = match name {
+        DESIGNS => Results::design,
+        CURVES => Results::point,
+        FORCES => Results::forced,
+        _ => Results::range,
     };
-    let of_criteria = dampers.iter().filter(|_| with_criteria);
+    let of_criteria = dampers.iter().filter(|_| ![DESIGNS, CURVES, FORCES].contains(&name));
     let criteria = of_criteria.map(|damper| Criterion::of(&damper.study)).collect::<Result<_, _>>()?;
     let results = Results { k1, dampers, criteria };
     Ok(Source::new(move |of| row(&results, of)))
