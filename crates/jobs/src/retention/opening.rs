@@ -144,22 +144,16 @@ fn one(retained: &Retained, number: usize) -> String {
         retained.curves.iter().find(own).and_then(Curve::worst)
     };
     let mut words = format!("{}: ", damper.name);
-    if let (Some((k1, kept)), Some(at)) = (worst(Some(Tuning::Nominal)), damper.of(Tuning::Nominal)) {
-        words += &format!(
-            "tuned for k1 = {} N/m it has {} J there and at worst {} J, at {} N/m",
-            short(nominal),
-            joule(damper.energy(&at, nominal)),
-            joule(kept),
-            rounded(k1, 4)
-        );
-    }
-    if let (Some((k1, robust)), Some(at)) = (worst(Some(Tuning::Robust)), damper.of(Tuning::Robust)) {
-        words += &format!(
-            "; k1-robust it has {} J there and at worst {} J, at {} N/m",
-            joule(damper.energy(&at, nominal)),
-            joule(robust),
-            rounded(k1, 4)
-        );
+    let tuned = format!("tuned for k1 = {} N/m it has", short(nominal));
+    for (tuning, begin) in [(Tuning::Nominal, tuned.as_str()), (Tuning::Robust, "; k1-robust it has")] {
+        if let (Some((k1, most)), Some(at)) = (worst(Some(tuning)), damper.of(tuning)) {
+            words += &format!(
+                "{begin} {} J there and at worst {} J, at {} N/m",
+                joule(damper.energy(&at, nominal)),
+                joule(most),
+                rounded(k1, 4)
+            );
+        }
     }
     if let Some((_, anew)) = worst(None) {
         words += &format!("; re-tuned for each k1 at most {} J", joule(anew));
