@@ -1,21 +1,19 @@
 //! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
 //! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
 //!
-//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `tables` (what is written), `draw`, `page`, `basins`, and
+//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `motions` (what is found), `tables` (what is written), `draw`, `page`, `basins`, and
 //! `again`, which computes rows of the tables again.
 
 mod again;
 mod basins;
 mod draw;
-mod found;
-mod margin;
+mod motions;
 mod options;
 mod page;
 mod remedy;
 mod tables;
-mod words;
 
-pub use found::{Found, Margin};
+pub use motions::{Margin, Motions};
 pub use options::Options;
 pub use tables::summary;
 
@@ -25,9 +23,8 @@ use crate::{Error, Observer, Request, resolved};
 use options::plan_json;
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::basins::SIDE;
-use retune_dynamics::periodic::branches::{Control, branches as motions};
-use retune_study::{found_in, read};
-use std::path::Path;
+use retune_dynamics::periodic::branches::{Control, branches as follow};
+use retune_study::read;
 
 /// The files of `branches`.
 pub static KIND: Kind = Kind {
@@ -39,7 +36,7 @@ pub static KIND: Kind = Kind {
         artefact(tables::BIFURCATIONS, Content::Rows(again::again)),
         artefact(tables::ATTRACTORS, Content::Rows(again::again)),
         artefact(tables::STATES, Content::Derived),
-        artefact(basins::STARTS, Content::Rows(again::again)),
+        artefact(tables::STARTS, Content::Rows(again::again)),
         artefact("branches.json", Content::Derived),
         artefact("branches.svg", Content::Derived),
         artefact("basins.svg", Content::Derived),
@@ -52,14 +49,10 @@ pub static KIND: Kind = Kind {
 ///
 /// # Errors
 /// The study or what is asked for is wrong, a scene in the range cannot be run, or the results cannot be written.
-pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> Result<Done<Found>, Error> {
+pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> Result<Done<Motions>, Error> {
     let study = read(&request.study)?;
     let (plan, basins_at) = options.plan(&study)?;
-    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
-    let out = request.out.clone().unwrap_or_else(|| {
-        Path::new("results").join(format!("branches-{}{tuned}-{}", study.name(), plan.parameter.symbol()))
-    });
-    let request = Request { out: Some(out), ..request.clone() };
+    let request = request.placed(KIND.command, &study, plan.parameter.symbol())?;
     let studies = [(study.name(), &study)];
     let mut said = plan_json(&plan);
     if options.margin {
@@ -71,27 +64,26 @@ pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> R
     let job = Job::of_studies(&KIND, &request, said, studies.into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
-        let branches = motions(
-            &study.scene,
-            plan,
-            &study.solver.settings(),
-            Control { done: &|| bar.inc(1), ..Control::default() },
-        )?;
+        let count = Control { done: &|| bar.inc(1), ..Control::default() };
+        let branches = follow(&study.scene, plan, &study.solver.settings(), count)?;
         bar.finish();
-        let mut found = Found::new(study.clone(), branches);
+        let mut motions = Motions::new(study.clone(), branches);
         if options.margin {
-            found.margin = margin::margin(&found)?;
+            motions.margin = motions::margin(&motions)?;
         }
         if let Some(value) = basins_at {
             let bar = watch.progress("rows of starts in a plane", SIDE as u64);
-            let known = Some(&found.branches);
+            let known = Some(&motions.branches);
             let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, known)?;
-            found.basins = Some(plane.basins(|| bar.inc(1))?);
+            motions.basins = Some(plane.basins(|| bar.inc(1))?);
             bar.finish();
         }
-        tables::write(&found, directory)?;
-        page::write(&found, directory)?;
-        let report = format!("\n{}", page::answer(&found).join("\n"));
-        Ok(Made { report, answer: found, parts: Vec::new() })
+        for (name, table) in tables::tables(&motions) {
+            directory.write(name, &table.csv())?;
+        }
+        directory.write_json("branches.json", &summary(&motions))?;
+        page::write(&motions, directory)?;
+        let report = format!("\n{}", page::answer(&motions).join("\n"));
+        Ok(Made { report, answer: motions, parts: Vec::new() })
     })
 }

@@ -1,14 +1,17 @@
-//! Tables of designs in the form of the paper's Table 2, as `table2` and `track` make them.
+//! Tables of designs in the form of the paper's Table 2, as `table2`, `retention` and `design` make them.
 
 use crate::again::Source;
+use crate::columns;
 use crate::needs::{Largest, TOLD};
 use crate::resolved::Resolved;
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, table2_header, table2_row};
 use crate::{Error, look};
-use retune_model::Measure;
+use retune_model::{Measure, Parameter};
+use retune_report::cells;
+use retune_report::table::Table;
 use retune_store::Directory;
-use retune_study::{Study, fields, short};
+use retune_study::{Study, rounded, short};
 use serde::Serialize;
 use std::path::Path;
 
@@ -81,24 +84,31 @@ impl Designs {
     /// # Errors
     /// A file cannot be written.
     pub fn write(&self, name: &str, results: &Directory) -> Result<(), Error> {
-        results.write(&format!("{name}.csv"), &self.csv())?;
+        results.write(&format!("{name}.csv"), &self.table().csv())?;
         Ok(results.write(&format!("{name}.txt"), &(self.text() + "\n"))?)
     }
 
-    /// The table as CSV.
-    pub fn csv(&self) -> String {
-        let names = TOLD.map(Measure::name).join(",");
-        let mut text =
-            format!("{},damper,m2,k2,c2,D,C,E1max,E1max_printed,E1max_none,{names},verdict\n", self.column);
+    /// The parameters that the table has columns for beside m2.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        columns::of_designs(self.rows.iter().map(|row| &row.found.design))
+    }
+
+    /// The table as data.
+    pub fn table(&self) -> Table {
+        let parameters = self.parameters();
+        let (symbols, needs) = (columns::symbols(&parameters), TOLD.map(Measure::name));
+        let energies = ["E1max", "E1max_printed", "E1max_none"];
+        let mut table = columns::table(
+            &[&[self.column, "damper", "m2"], &*symbols, &energies, &needs, &["verdict"]].concat(),
+        );
         for Row { label, damper, found, printed, e1_max, none, verdict, needs, .. } in &self.rows {
-            let need = |measure| needs.map_or(String::new(), |needs| needs.value(measure).to_string());
-            let needs = TOLD.map(need).join(",");
-            let printed = printed.map(|value| value.to_string()).unwrap_or_default();
-            let [label, damper] = [label, damper].map(|text| quoted(text));
-            let values = fields(&found.values());
-            text += &format!("{label},{damper},{values},{e1_max},{printed},{none},{needs},{verdict}\n");
+            let first = cells![label.as_str(), damper.as_str(), found.mass.get()];
+            let needs = TOLD.map(|measure| needs.map(|needs| needs.value(measure)).into());
+            let energies = cells![*e1_max, *printed, *none];
+            let design = columns::cells_of(&found.design, &parameters);
+            table.push([first, design, energies, needs.to_vec(), cells![*verdict]].concat());
         }
-        text
+        table
     }
 
     /// The table as text, without an end of line.
@@ -125,9 +135,16 @@ impl Designs {
             ));
         }
         lines.push(String::new());
-        for Row { label, damper, needs, reason, .. } in &self.rows {
+        for Row { label, damper, found, needs, reason, .. } in &self.rows {
+            // What the table above has no column for.
+            let others = self.parameters().into_iter().filter(|other| !Parameter::PAPER.contains(other));
+            let others: String = others
+                .map(|other| (other, found.design.get(other)))
+                .filter(|(_, value)| !value.is_nan())
+                .map(|(other, value)| format!("{other} = {} {}; ", rounded(value, 6), other.unit()))
+                .collect();
             let needs = needs.map_or(String::new(), |needs| format!("needs {}; ", needs.list()));
-            lines.push(format!("{damper}, {label}: {needs}{reason}"));
+            lines.push(format!("{damper}, {label}: {others}{needs}{reason}"));
         }
         lines.join("\n")
     }
@@ -138,15 +155,6 @@ impl Designs {
     /// [`Error::Infeasible`], of the first search.
     pub fn check_limits(self) -> Result<(), Error> {
         self.infeasible.map_or(Ok(()), Err)
-    }
-}
-
-/// A text as a CSV field.
-pub fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }
 

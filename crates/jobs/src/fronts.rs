@@ -1,6 +1,5 @@
 //! `fronts`: the least E1max of a damper under ever looser bounds on the spring and on the stroke, and the trade between them.
 
-mod again;
 mod candidate;
 mod descents;
 mod designs;
@@ -30,7 +29,7 @@ pub static KIND: Kind = Kind {
         artefact("stroke.csv", Content::Rows(crate::designs::again)),
         artefact("contact_force.csv", Content::Rows(crate::designs::again)),
         artefact("front.csv", Content::Rows(crate::designs::again)),
-        artefact("certificate-*.json", Content::Whole(again::again)),
+        artefact("certificate-*.json", Content::Whole(designs::again)),
         artefact("k2.svg", Content::Derived),
         artefact("stroke.svg", Content::Derived),
         artefact("contact_force.svg", Content::Derived),
@@ -52,9 +51,9 @@ pub fn fronts(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, E
         let searches = Searches::new(directory, &job.order, watch);
         let fronts = search::search(plan, &searches, watch)?;
         for sweep in fronts.plan.sweeps() {
-            directory.write(&format!("{}.csv", sweep.name()), &fronts.csv(sweep))?;
+            directory.write(&format!("{}.csv", sweep.name()), &fronts.table(sweep).csv())?;
         }
-        directory.write("front.csv", &fronts.front_csv())?;
+        directory.write("front.csv", &fronts.front_table().csv())?;
         for Certified { file, certificate, .. } in &fronts.certified {
             directory.write_json(file, certificate)?;
         }

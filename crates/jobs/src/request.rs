@@ -2,7 +2,7 @@
 
 use crate::Error;
 use retune_store::{Begin, Order};
-use retune_study::{Study, name_from};
+use retune_study::{Study, found_in, name_from};
 use std::path::{Path, PathBuf};
 
 /// The options of a job.
@@ -40,6 +40,17 @@ impl Request {
     pub fn out_of_file(&self) -> PathBuf {
         let stem = self.study.file_stem().unwrap_or_default();
         self.out.clone().unwrap_or_else(|| Path::new("results").join(name_from(&stem.to_string_lossy())))
+    }
+
+    /// The same with the directory of results along a parameter: by default `results/<kind>-<study>-<rest>`, of a design that a search found
+    /// `results/<kind>-<study>-tuned-<rest>`.
+    ///
+    /// # Errors
+    /// The study file cannot be read.
+    pub fn placed(&self, kind: &str, study: &Study, rest: &str) -> Result<Self, Error> {
+        let tuned = if found_in(&self.study)?.is_some() { "-tuned" } else { "" };
+        let out = || Path::new("results").join(format!("{kind}-{}{tuned}-{rest}", study.name()));
+        Ok(Self { out: Some(self.out.clone().unwrap_or_else(out)), ..self.clone() })
     }
 
     /// Runs `work` on the threads of the request.

@@ -10,7 +10,6 @@ mod anew;
 mod curves;
 mod draw;
 mod force;
-mod forces;
 mod opening;
 mod page;
 mod range;
@@ -18,12 +17,12 @@ mod retained;
 mod trade;
 mod tuned;
 
-pub use anew::label;
 pub use curves::Curve;
 pub use force::Forced;
-pub use range::{Range, Threshold, best_tmd};
+pub use range::{Criterion, Range, Threshold, best_tmd};
 pub use retained::Retained;
 pub use trade::Point;
+pub use tuned::label;
 pub use tuned::{Kept, Tuned, Tuning};
 
 use crate::artefact::{Content, Kind, artefact};
@@ -34,7 +33,6 @@ use crate::resolved;
 use crate::searches::Searches;
 use crate::summary::TunedDamper;
 use crate::{Error, Observer, Request};
-use range::Still;
 use retune_study::{self as study, Setting};
 use serde_json::json;
 use tuned::{CURVES, DESIGNS, FORCES};
@@ -89,42 +87,35 @@ pub fn retention(
         for row in &rows {
             let (tuned, rows) = anew::tune(row, &said, &others, &mut searches, watch)?;
             designs.extend(paper(&tuned));
-            designs.extend(rows.into_iter().map(|row| looked_at_again(&tuned, row, &k1)));
+            designs.extend(rows.into_iter().map(|row| on_common_samples(&tuned, row, &k1)));
             dampers.push(tuned);
         }
         let table = Designs { column: "tuning", rows: designs, infeasible: searches.infeasible.take() };
-        let thresholds: Vec<Threshold> =
-            dampers.iter().map(|damper| Threshold::of(&damper.study)).collect::<Result<_, _>>()?;
-        let stills: Vec<Option<Still>> =
-            dampers.iter().map(|damper| Still::of(&damper.study)).collect::<Result<_, _>>()?;
-        let curves = curves::curves(&dampers, &stills);
-        let forced = force::forced(&dampers);
+        let criteria: Vec<Criterion> =
+            dampers.iter().map(|damper| Criterion::of(&damper.study)).collect::<Result<_, _>>()?;
+        let (curves, forced) = (curves::curves(&dampers, &criteria), force::forced(&dampers));
         let (mut kept, mut points) = (Vec::new(), Vec::new());
-        for (number, (damper, threshold)) in dampers.iter().zip(&thresholds).enumerate() {
-            let still = stills[number].as_ref();
-            for one in &damper.kept {
-                kept.push((one.tuning.name(), Point::new(number, damper, one.at, threshold, still)));
-            }
-            points.extend(trade::trade(number, damper, (threshold, still), &searches, watch)?);
+        for (number, (damper, criterion)) in dampers.iter().zip(&criteria).enumerate() {
+            let point = |one: &Kept| Point::new((number, damper), Some(one.tuning), one.at, criterion);
+            kept.extend(damper.kept.iter().map(point));
+            points.extend(trade::trade(number, damper, criterion, &searches, watch)?);
         }
-        directory.write(FORCES, &force::csv(&dampers, &forced))?;
-        directory.write(CURVES, &curves::csv(&dampers, &curves))?;
-        directory.write("range.csv", &trade::csv(&dampers, &kept, &points))?;
+        directory.write(FORCES, &force::table(&dampers, &forced).csv())?;
+        directory.write(CURVES, &curves::table(&dampers, &curves).csv())?;
+        directory.write("range.csv", &trade::table(&dampers, kept.iter().chain(&points)).csv())?;
         table.write("retune", directory)?;
         let bounds = said.k2_bounds;
-        let retained = Retained { dampers, bounds, curves, thresholds, forced, kept, points, table };
+        let retained = Retained { dampers, bounds, curves, criteria, forced, kept, points, table };
         page::write(&retained, directory)?;
         let report = format!("\n{}\n\n{}", opening::answer(&retained).join("\n"), retained.table.text());
         Ok(Made { report, answer: retained, parts: searches.results })
     })
 }
 
-/// A row with the energies on the common samples, so that designs are compared on the same frequencies.
-fn looked_at_again(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
-    let at = row.found.design;
-    let of = if row.label == Tuning::Robust.name() { tuned.over(k1) } else { tuned.study.clone() };
-    let own = k1.iter().copied().find(|k1| label(*k1) == row.label).unwrap_or(tuned.nominal());
-    let e1_max = tuned::energy(&of, tuned.samples, &at, own).unwrap_or(f64::NAN);
+/// A row with E1max on the common samples, so that designs are compared on the same frequencies.
+fn on_common_samples(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
+    let at = row.found.design_of(tuned.study.varied());
+    let e1_max = tuned.energy_as_tuned(&row.label, &at, k1).unwrap_or(f64::NAN);
     Row { e1_max, ..row }
 }
 

@@ -51,12 +51,12 @@ impl<'a> Searches<'a> {
         let bar = self.watch.progress("searches", all.len() as u64);
         let quiet = Quiet(self.watch);
         let search = |(study, name): &(Study, String)| {
-            let found = ends(study, self.journal(), &format!("{name} "), &quiet);
+            let ends = ends(study, self.journal(), &format!("{name} "), &quiet);
             bar.inc(1);
-            found
+            ends
         };
-        let found: Vec<Result<Ends, Error>> = all.par_iter().map(search).collect();
+        let ends: Vec<Result<Ends, Error>> = all.par_iter().map(search).collect();
         bar.finish();
-        found.into_iter().collect()
+        ends.into_iter().collect()
     }
 }

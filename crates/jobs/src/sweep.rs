@@ -27,12 +27,10 @@
 pub mod draw;
 pub mod plan;
 pub mod points;
-mod quantity;
 pub mod words;
 
-pub use plan::{Options, Plan};
+pub use plan::{Options, Plan, Quantity};
 pub use points::Sweep;
-pub use quantity::Quantity;
 
 use crate::again::{Row, Source, broken};
 use crate::artefact::{Content, Kind, artefact};
@@ -44,9 +42,9 @@ use crate::{Error, Observer, Request};
 use retune_report::table::Table;
 use retune_store::Directory;
 use retune_store::identity::VERSION;
-use retune_study::{found_in, read};
+use retune_study::read;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The file with all points.
 pub const FILE: &str = "sweep.csv";
@@ -99,14 +97,15 @@ pub fn sweep(
     watch: &dyn Observer,
 ) -> Result<(), Error> {
     let sweep = Sweep::new(Plan::read(options)?, read(&request.study)?)?;
-    let out = out(request, &sweep)?;
-    let request = Request { out: Some(out.clone()), ..request.clone() };
+    let objective = if sweep.plan().objective { "-objective" } else { "" };
+    let rest = format!("{}{objective}", sweep.plan().over.symbol());
+    let request = request.placed(KIND.command, sweep.study(), &rest)?;
     let plan = json!(sweep.plan());
     let studies = [(sweep.study().name(), sweep.study())];
     let job = Job::of_studies(&KIND, &request, plan, studies.into_iter())?;
     let command = format!("retune sweep {} {}", request.study.display(), sweep.plan().options());
     let (rows, identity) = (&sweep, job.identity());
-    let shared = Shared { rows, identity, out: &out, order: &job.order, command };
+    let shared = Shared { rows, identity, out: &job.out, order: &job.order, command };
     if let Points::Share(shard) = points {
         return request.on_threads(|| shared.make(*shard, watch));
     }
@@ -117,18 +116,6 @@ pub fn sweep(
         Ok(Made { answer: (), report: write(&sweep, results, watch)?, parts: Vec::new() })
     })?;
     Ok(())
-}
-
-/// The directory of the results: by default `results/sweep-<study>-<parameter>`, of a design that a search found
-/// `results/sweep-<study>-tuned-<parameter>`; sweeps of the objective have names of their own.
-fn out(request: &Request, sweep: &Sweep) -> Result<PathBuf, Error> {
-    if let Some(out) = &request.out {
-        return Ok(out.clone());
-    }
-    let tuned = if found_in(&request.study)?.is_some() { "-tuned" } else { "" };
-    let objective = if sweep.plan().objective { "-objective" } else { "" };
-    let (study, over) = (sweep.study().name(), sweep.plan().over.symbol());
-    Ok(Path::new("results").join(format!("sweep-{study}{tuned}-{over}{objective}")))
 }
 
 /// Computes all points and writes them; returns the answer.

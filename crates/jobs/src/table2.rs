@@ -42,12 +42,12 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
         let mut searches = Searches::new(directory, &job.order, watch);
         let mut table = Vec::new();
         for PaperStudy { damper, study, of_paper, printed } in &rows {
-            let (label, whose) = if *of_paper {
+            let (label, start) = if *of_paper {
                 ("paper", "the paper's design")
             } else {
                 ("study", "the damper of its study")
             };
-            watch.log(&format!("\n{damper}: re-optimised from {whose}"))?;
+            watch.log(&format!("\n{damper}: re-optimised from {start}"))?;
             let optimum = searches.tune(study, "")?;
             let again = Row::of_optimum("re-optimised", damper, study, &optimum);
             let settings = study.solver.settings();

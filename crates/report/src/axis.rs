@@ -49,6 +49,20 @@ impl Axis {
         Self { label, scale, range, names: Vec::new(), second: None }
     }
 
+    /// A linear axis from 0 to a little beyond the largest of the finite `values`.
+    pub fn from_zero(label: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
+        let top = values.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
+        Self::linear(label, (0.0, if top > 0.0 { 1.06 * top } else { 1.0 }))
+    }
+
+    /// An axis of the scale that [`scale_for`] chooses: from 0, or about all values.
+    pub fn fitting(label: impl Into<String>, values: &[f64]) -> Self {
+        match scale_for(values) {
+            Scale::Log => Self::around(label, Scale::Log, values.iter().copied()),
+            Scale::Linear => Self::from_zero(label, values.iter().copied()),
+        }
+    }
+
     /// An axis from the smallest to the largest of the finite `values` (on a logarithmic scale: of those above zero).
     pub fn exact(label: impl Into<String>, scale: Scale, values: impl IntoIterator<Item = f64>) -> Self {
         Self::holding(label, scale, values, 0.0)

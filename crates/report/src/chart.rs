@@ -191,6 +191,13 @@ pub struct Chart {
     pub height: f64,
 }
 
+impl Chart {
+    /// A chart without a title.
+    pub fn of(x: Axis, y: Axis, layers: Vec<Layer>, height: f64) -> Self {
+        Self { title: String::new(), x, y, layers, height }
+    }
+}
+
 /// The symbol of an entry in a legend.
 #[derive(Clone, Copy, Debug)]
 pub enum Key {

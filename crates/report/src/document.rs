@@ -33,6 +33,17 @@ pub struct Document {
 }
 
 impl Document {
+    /// Its files, each with its name: both forms and all figures.
+    pub fn files(&self) -> Vec<(&'static str, String)> {
+        let blocks = self.opening.iter().chain(self.sections.iter().flat_map(|(.., blocks)| blocks));
+        let figure = |block: &Block| match block {
+            Block::Figure(file, drawing, _) => Some((*file, drawing.wide.clone())),
+            _ => None,
+        };
+        let pages = [("README.md", self.markdown()), ("report.html", self.html())];
+        blocks.filter_map(figure).chain(pages).collect()
+    }
+
     /// As Markdown.
     pub fn markdown(&self) -> String {
         let mut text = format!("# {}\n\n", self.title);
@@ -69,6 +80,30 @@ impl Document {
 }
 
 impl Block {
+    /// A paragraph.
+    pub fn words(words: impl Into<String>) -> Self {
+        Self::Words(words.into())
+    }
+
+    /// A table: its caption, its head, its rows.
+    pub fn table<T: Into<String>>(
+        caption: impl Into<String>,
+        head: impl IntoIterator<Item = T>,
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        Self::Table(caption.into(), head.into_iter().map(Into::into).collect(), rows)
+    }
+
+    /// A figure: its file, the drawing, its caption.
+    pub fn figure(file: &'static str, drawing: impl Into<Drawing>, caption: impl Into<String>) -> Self {
+        Self::Figure(file, drawing.into(), caption.into())
+    }
+
+    /// Links to files beside the page.
+    pub fn files(files: &[&str]) -> Self {
+        Self::Files(files.iter().map(|file| (*file).to_owned()).collect())
+    }
+
     fn markdown(&self) -> String {
         match self {
             Self::Words(words) => format!("{words}\n\n"),
@@ -112,24 +147,24 @@ mod tests {
         let document = Document {
             title: "T < U".to_owned(),
             command: "retune retention",
-            opening: vec![Block::Words("First.".to_owned())],
+            opening: vec![Block::words("First.")],
             sections: vec![(
                 "one",
                 "One",
                 vec![
                     Block::List(vec!["a".to_owned()]),
-                    Block::Table(
-                        "Designs".to_owned(),
-                        vec!["damper".to_owned(), "E1max, J".to_owned()],
-                        rows,
-                    ),
-                    Block::Files(vec!["a.csv".to_owned()]),
+                    Block::table("Designs", ["damper", "E1max, J"], rows),
+                    Block::figure("a.svg", "<svg/>".to_owned(), "Fig"),
+                    Block::files(&["a.csv"]),
                 ],
             )],
         };
         let table = "Designs\n\n| damper | E1max, J |\n| --- | --- |\n| TMD | 660.4 |\n\n";
-        let markdown = format!("# T < U\n\nFirst.\n\n## One\n\n- a\n\n{table}[a.csv](a.csv)\n");
+        let markdown =
+            format!("# T < U\n\nFirst.\n\n## One\n\n- a\n\n{table}![Fig](a.svg)\n\n[a.csv](a.csv)\n");
         assert_eq!(document.markdown(), markdown);
+        let names: Vec<&str> = document.files().iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["a.svg", "README.md", "report.html"]);
         let page = document.html();
         for part in [
             "T &lt; U",

@@ -48,6 +48,27 @@ pub struct Sheet {
     pub caption: Vec<String>,
 }
 
+impl Sheet {
+    /// A figure of charts below one another, a column wide, without words: these are set afterwards.
+    pub fn of(title: impl Into<String>, charts: Vec<Chart>) -> Self {
+        Self {
+            title: title.into(),
+            description: String::new(),
+            width: Width::Column,
+            charts,
+            columns: 1,
+            stacked: false,
+            legend: Vec::new(),
+            caption: Vec::new(),
+        }
+    }
+
+    /// The words of its legend, one after the other.
+    pub fn legend_words(&self) -> String {
+        self.legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
+    }
+}
+
 /// A figure, and a version of it for narrow screens, on which the figure itself would be too small to read.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Drawing {

@@ -16,6 +16,44 @@ impl Column {
     pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
         Self { name: name.into(), unit }
     }
+
+    /// Its heading on a page: its name with its unit.
+    pub fn heading(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{}, {}", self.name, self.unit) }
+    }
+}
+
+/// A column of a table as a page shows it.
+#[derive(Clone, Debug)]
+pub struct Shown<'a> {
+    name: &'a str,
+    heading: String,
+    number: fn(f64) -> String,
+    none: &'static str,
+}
+
+impl Shown<'_> {
+    /// The same under another heading.
+    #[must_use]
+    pub fn called(self, heading: impl Into<String>) -> Self {
+        Self { heading: heading.into(), ..self }
+    }
+
+    /// The same with these words where there is no value.
+    #[must_use]
+    pub fn or(self, none: &'static str) -> Self {
+        Self { none, ..self }
+    }
+
+    /// A cell as it is shown.
+    fn text(&self, cell: &Cell) -> String {
+        match cell {
+            Cell::Number(value) if !value.is_nan() => (self.number)(*value),
+            Cell::Number(_) | Cell::Empty => self.none.to_owned(),
+            Cell::Count(count) => count.to_string(),
+            Cell::Text(text) => text.clone(),
+        }
+    }
 }
 
 /// A cell. In files numbers have all their digits, so that they can be compared to the last bit.
@@ -143,6 +181,14 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// The same with those rows alone that are to be kept, by as many answers.
+    #[must_use]
+    pub fn only(mut self, keep: impl IntoIterator<Item = bool>) -> Self {
+        let mut keep = keep.into_iter();
+        self.rows.retain(|_| keep.next().unwrap_or_default());
+        self
+    }
+
     /// The place of a column.
     fn place(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
@@ -157,6 +203,36 @@ impl Table {
     /// The unit of a column; empty where there is no such column.
     pub fn unit(&self, name: &str) -> &'static str {
         self.place(name).map_or("", |place| self.columns[place].unit)
+    }
+
+    /// A cell; none where there is no such column.
+    pub fn cell(&self, row: usize, name: &str) -> Option<&Cell> {
+        self.rows.get(row)?.get(self.place(name)?)
+    }
+
+    /// A column for a page: under its own heading, texts and counts as they are, numbers as `number` writes them, nothing where there is no
+    /// value.
+    pub fn show<'a>(&self, name: &'a str, number: fn(f64) -> String) -> Shown<'a> {
+        let heading = self.place(name).map_or_else(String::new, |place| self.columns[place].heading());
+        Shown { name, heading, number, none: "" }
+    }
+
+    /// A column for a page with all digits.
+    pub fn exact<'a>(&self, name: &'a str) -> Shown<'a> {
+        self.show(name, |value| value.to_string())
+    }
+
+    /// Some columns for a page: their headings, and the texts of each row.
+    pub fn shown(&self, columns: &[Shown]) -> (Vec<String>, Vec<Vec<String>>) {
+        let places: Vec<Option<usize>> = columns.iter().map(|column| self.place(column.name)).collect();
+        let text = |row: &[Cell], column: &Shown, place: Option<usize>| {
+            column.text(place.map_or(&Cell::Empty, |place| &row[place]))
+        };
+        let row = |row: &Vec<Cell>| {
+            columns.iter().zip(&places).map(|(column, place)| text(row, column, *place)).collect()
+        };
+        let head = columns.iter().map(|column| column.heading.clone()).collect();
+        (head, self.rows.iter().map(row).collect())
     }
 
     /// As CSV.
@@ -211,5 +287,24 @@ mod tests {
         assert_eq!(json["units"]["D"], "m");
         assert_eq!(json["rows"][1], json!({ "damper": "", "E1max": Value::Null, "n": 1, "D": Value::Null }));
         assert_eq!(Cell::finite(f64::INFINITY), Cell::Empty);
+    }
+
+    #[test]
+    fn contract_a_page_shows_chosen_columns_with_chosen_digits() {
+        let mut table =
+            Table::new([Column::new("damper", ""), Column::new("E1max", "J"), Column::new("D", "m")]);
+        table.push(cells!["TMD", 160.64, f64::NAN]);
+        let digits = |value: f64| format!("{value:.1}");
+        let columns = [
+            table.show("D", digits).or("none"),
+            table.exact("damper").called("which"),
+            table.show("E1max", digits),
+        ];
+        let (head, rows) = table.shown(&columns);
+        assert_eq!(head, ["D, m", "which", "E1max, J"]);
+        assert_eq!(rows, [["none", "TMD", "160.6"]]);
+        assert_eq!((table.cell(0, "damper"), table.cell(1, "D")), (Some(&Cell::from("TMD")), None));
+        table.push(cells!["NES", 150.0, 0.06]);
+        assert_eq!(table.only([false, true]).column("E1max"), Some(vec![150.0]));
     }
 }

@@ -4,7 +4,7 @@ use super::built_in::read_plan_text;
 use super::file::{StudyError, expect, parse};
 use super::format::Study;
 use super::kind::Kind;
-use super::objective::check_columns;
+use super::objective::check_quantity;
 use super::read::named;
 use super::rule::Rule;
 use retune_model::{Design, Measure, PerVariable, Positive};
@@ -251,7 +251,7 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     {
         let study_file = directory.join(&study);
         let study = named(&study_file)?;
-        check_columns(&study)
+        check_quantity(&study)
             .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
         for sweep in Sweep::ALL {
             for value in plan.values(sweep) {

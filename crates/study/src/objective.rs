@@ -2,7 +2,7 @@
 
 use super::format::{Coarse, Study};
 use super::rule::Rule;
-use retune_model::{Forcing, Measure, Parameter, Scene, Source};
+use retune_model::{Forcing, Measure, Scene, Source};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limit, Limits, Objective, Part, Response, Statistic, StiffnessRange,
     Stiffnesses,
@@ -115,27 +115,18 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
     }
 }
 
-/// Refuses a study that makes another quantity than E1max small, or varies what is no column, for tables that have no place for it.
+/// Refuses a study that makes another quantity than E1max small, for tables that hold energies.
 ///
 /// # Errors
 /// [`Rule::NotAllowed`].
-pub(super) fn check_columns(study: &Study) -> Result<(), Rule> {
-    let refuse = |field: &str, value: &str, allowed| {
-        Err(Rule::NotAllowed { field: field.to_owned(), value: value.to_owned(), allowed })
-    };
-    let other = study.varied().iter().find(|parameter| !Parameter::PAPER.contains(parameter));
-    match (study.quantity(), other) {
-        (Measure::Energy, None) => Ok(()),
-        (Measure::Energy, Some(other)) => refuse(
-            "optimize.vary",
-            other.symbol(),
-            "k2, c2, D and C: the tables of this command have no column for others",
-        ),
-        (quantity, _) => refuse(
-            "optimize.objective.quantity",
-            quantity.name(),
-            "E1max: the tables of this command hold energies",
-        ),
+pub(super) fn check_quantity(study: &Study) -> Result<(), Rule> {
+    match study.quantity() {
+        Measure::Energy => Ok(()),
+        quantity => Err(Rule::NotAllowed {
+            field: "optimize.objective.quantity".to_owned(),
+            value: quantity.name().to_owned(),
+            allowed: "E1max: the tables of this command hold energies",
+        }),
     }
 }
 

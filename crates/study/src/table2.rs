@@ -5,7 +5,7 @@ use super::file::{StudyError, expect, parse};
 use super::format::Study;
 use super::fronts::MOST_SAMPLES;
 use super::kind::Kind;
-use super::objective::check_columns;
+use super::objective::check_quantity;
 use super::read::{from_text, named};
 use super::rule::Rule;
 use retune_model::{Damper, Design, Positive};
@@ -142,7 +142,7 @@ fn at_design(mut study: Study, design: Option<Design>) -> Result<Study, Rule> {
         study.scene = study.scene_at(&design).ok_or(Rule::NoDamper)?;
     }
     study.search()?;
-    check_columns(&study)?;
+    check_quantity(&study)?;
     Ok(study)
 }
 

@@ -83,7 +83,8 @@ pub fn design_cells(design: &Design, digits: usize) -> [String; 4] {
     design.values().map(|value| if value.is_nan() { "none".to_owned() } else { rounded(value, digits) })
 }
 
-/// A design in words, to some significant digits: `k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m`, or `…, no walls`.
+/// A design in words, to some significant digits: `k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m`, or `…, no walls`; then what else it
+/// has.
 pub fn design_words(design: &Design, digits: usize) -> String {
     let [k2, c2, d, c] = design_cells(design, digits);
     let walls = if design.get(Parameter::D).is_nan() {
@@ -91,7 +92,12 @@ pub fn design_words(design: &Design, digits: usize) -> String {
     } else {
         format!("D = {d} m, C = {c} m")
     };
-    format!("k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}")
+    let others = Parameter::VARIED.into_iter().filter(|other| !Parameter::PAPER.contains(other));
+    let others = others.filter(|other| !design.get(*other).is_nan());
+    let others: Vec<String> = others
+        .map(|other| format!(", {other} = {} {}", rounded(design.get(other), digits), other.unit()))
+        .collect();
+    format!("k2 = {k2} N/m, c2 = {c2} N·s/m, {walls}{}", others.concat())
 }
 
 /// An angular frequency (rad/s) in Hz and in revolutions per minute.
@@ -132,6 +138,9 @@ mod tests {
         let open = design(f64::NAN);
         assert_eq!(design_words(&open, 4), "k2 = 215 N/m, c2 = 35 N·s/m, no walls");
         assert_eq!(design_cells(&open, 4), ["215", "35", "none", "none"]);
+        let value = |parameter| if parameter == Parameter::M2 { 60.0 } else { open.get(parameter) };
+        let heavy = Design::new(value).expect("a design");
+        assert_eq!(design_words(&heavy, 4), "k2 = 215 N/m, c2 = 35 N·s/m, no walls, m2 = 60 kg");
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use crate::Error;
 use crate::again::{Row, Source, broken, each_row};
-use crate::branches::basins::STARTS;
+use crate::branches::motions::most_irregular;
 use crate::branches::options::plan_of;
-use crate::branches::tables::{ATTRACTORS, STATES};
+use crate::branches::tables::{ATTRACTORS, STARTS, STATES};
+use crate::columns::STATE;
 use crate::resolved::{Resolved, SEVERAL};
 use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::branches::{Plan, sample};
@@ -38,7 +39,7 @@ pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
     }
     let mut states: BTreeMap<Motion, Vec<[f64; 4]>> = BTreeMap::new();
     each_row(&place.join(STATES), |_, row| {
-        let state = ["x1", "v1", "x2", "v2"].map(|name| row.number(name));
+        let state = STATE.map(|(name, _)| row.number(name));
         states.entry(motion(row)).or_default().push(state);
     })?;
     Ok(Source::new(move |row| {
@@ -76,7 +77,7 @@ fn attractor(study: &Study, plan: Plan, row: Row) -> Option<f64> {
         return Some(f64::INFINITY);
     };
     if row.text("motion") != "periodic" {
-        return Some(found.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max));
+        return Some(most_irregular(&found));
     }
     let own = found.attractors.iter().find(|one| {
         one.orbit.seen.impacts == row.text("impacts")

@@ -1,27 +1,16 @@
 //! The basins at one value of the parameter: their table, figure and words.
 
-use crate::branches::found::Found;
-use crate::branches::words::{joule, kind};
+use crate::branches::motions::{Motions, joule, kind};
+use crate::branches::tables::STARTS;
 use retune_dynamics::periodic::Basins;
 use retune_model::Bare;
 use retune_report::document::Block;
-use retune_report::{Nodes, Place, Scale, Sheet, Width, heat_map, svg};
+use retune_report::{Nodes, Place, Scale, Sheet, heat_map, svg};
 use retune_study::{counted, rounded};
 
-/// A row for each start.
-pub const STARTS: &str = "starts.csv";
-
-/// The table.
-pub fn table(basins: &Basins) -> String {
-    let row = |([x1, v1], end): ([f64; 2], Option<usize>)| {
-        format!("{x1},{v1},{}\n", end.map_or_else(String::new, |number| number.to_string()))
-    };
-    "x1,v1,motion\n".to_owned() + &basins.starts().map(row).collect::<String>()
-}
-
 /// The words, the figure and the list of motions.
-pub fn blocks(found: &Found, basins: &Basins) -> Vec<Block> {
-    let place = place(found, basins);
+pub fn blocks(motions: &Motions, basins: &Basins) -> Vec<Block> {
+    let place = motions.at(basins.sample.value, 6);
     let words = format!(
         "{} at {place}: at a crest of the force the structure is displaced by x1 and has the speed v1, with the damper at rest in it. Each run is \
          followed until it is within 1e-4 of a motion on which runs from other starts settle there, for 480 periods at most. The last column is \
@@ -29,25 +18,25 @@ pub fn blocks(found: &Found, basins: &Basins) -> Vec<Block> {
         counted(basins.ends.len() as u64, "start")
     );
     let mut rows: Vec<Vec<String>> =
-        (0..basins.sample.attractors.len()).map(|number| row(found, basins, Some(number))).collect();
+        (0..basins.sample.attractors.len()).map(|number| row(motions, basins, Some(number))).collect();
     if basins.ends.contains(&None) {
-        rows.push(row(found, basins, None));
+        rows.push(row(motions, basins, None));
     }
     let head = ["motion", "branch", "what it is", "E1max, J", "starts", "least E1 of them, J"];
     let said = format!("Where the starts of the plane end; {STARTS} has each.");
     let caption = format!("E1max of the motion on which each start ends, at {place}");
     vec![
-        Block::Words(words),
-        Block::Figure("basins.svg", draw(found, basins).into(), caption),
-        Block::Table(said, head.map(str::to_owned).to_vec(), rows),
+        Block::words(words),
+        Block::figure("basins.svg", draw(motions, basins), caption),
+        Block::table(said, head, rows),
     ]
 }
 
 /// A motion in the list, or none of those that are known.
-fn row(found: &Found, basins: &Basins, motion: Option<usize>) -> Vec<String> {
+fn row(motions: &Motions, basins: &Basins, motion: Option<usize>) -> Vec<String> {
     let one = motion.map(|number| &basins.sample.attractors[number]);
     let own = || basins.starts().filter(|(_, end)| *end == motion).map(|(start, _)| start);
-    let bare = Bare::new(&found.study.scene.primary, &found.study.scene.forcing);
+    let bare = Bare::new(&motions.study.scene.primary, &motions.study.scene.forcing);
     let push = own().map(|[x1, v1]| bare.primary_energy(x1, v1)).fold(f64::INFINITY, f64::min);
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
     vec![
@@ -60,14 +49,9 @@ fn row(found: &Found, basins: &Basins, motion: Option<usize>) -> Vec<String> {
     ]
 }
 
-/// Where: "omega = 5.98 rad/s".
-fn place(found: &Found, basins: &Basins) -> String {
-    let parameter = found.branches.plan.parameter;
-    format!("{} = {} {}", parameter.symbol(), rounded(basins.sample.value, 6), parameter.unit())
-}
-
 /// The figure.
-pub fn draw(found: &Found, basins: &Basins) -> String {
+fn draw(motions: &Motions, basins: &Basins) -> String {
+    let place = motions.at(basins.sample.value, 6);
     let side = |label: &str, values: &[f64]| Nodes {
         label: label.to_owned(),
         scale: Scale::Linear,
@@ -82,16 +66,8 @@ pub fn draw(found: &Found, basins: &Basins) -> String {
     let (chart, legend) = heat_map(&sides, &energies, "E1max, J", &places);
     let irregular =
         if basins.ends.contains(&None) { "; grey: none of the motions that are known" } else { "" };
-    let what =
-        format!("E1max of the motion on which each start ends, at {}{irregular}.", place(found, basins));
-    svg(&Sheet {
-        title: format!("Basins at {}", place(found, basins)),
-        description: format!("{what} Marked: the start from rest."),
-        width: Width::Column,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
-        legend,
-        caption: vec![what, format!("{}; Retune {}", found.study.name(), env!("CARGO_PKG_VERSION"))],
-    })
+    let what = format!("E1max of the motion on which each start ends, at {place}{irregular}.");
+    let description = format!("{what} Marked: the start from rest.");
+    let sheet = Sheet::of(format!("Basins at {place}"), vec![chart]);
+    svg(&Sheet { description, legend, caption: vec![what, motions.made_by()], ..sheet })
 }

@@ -1,13 +1,12 @@
 //! The figure of `branches`: E1max of all motions along the parameter, stable and unstable, with the bifurcations; below it the stroke.
 
-use crate::branches::found::Found;
+use crate::branches::motions::Motions;
+use crate::pages::abscissa;
 use retune_dynamics::periodic::{Branch, EventKind, Orbit};
-use retune_model::Parameter;
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION};
 use retune_report::{
-    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing, scale_for,
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
 };
-use retune_study::hertz_and_rpm;
 
 const STABLE: Stroke = Stroke::new(BLUE, 1.4, Dash::Solid);
 const UNSTABLE: Stroke = Stroke::new(ORANGE, 0.9, Dash::Short);
@@ -33,7 +32,7 @@ type Drawn = (&'static str, fn(&Orbit) -> f64);
 const DRAWN: [Drawn; 2] = [("E1max, J", |orbit| orbit.seen.e1_max), ("stroke, m", |orbit| orbit.seen.stroke)];
 
 /// The figure.
-pub fn draw(found: &Found) -> Drawing {
+pub fn draw(motions: &Motions) -> Drawing {
     let mut legend = vec![
         (Key::Line(STABLE), "stable motions".to_owned()),
         (Key::Line(UNSTABLE), "unstable motions".to_owned()),
@@ -41,42 +40,38 @@ pub fn draw(found: &Found) -> Drawing {
         (Key::Mark(OTHERS), "runs from other starts".to_owned()),
     ];
     for kind in EventKind::ALL {
-        if found.branches.branches.iter().any(|branch| branch.events.iter().any(|event| event.kind == kind)) {
+        if motions.branches.branches.iter().any(|branch| branch.events.iter().any(|event| event.kind == kind))
+        {
             legend.push((Key::Mark(mark(kind)), kind.name().to_owned()));
         }
     }
-    let [_, irregular] = found.branches.stable_and_irregular();
+    let [_, irregular] = motions.branches.stable_and_irregular();
     if !irregular.is_empty() {
         legend.push((Key::Area(GREY, IRREGULAR), "no stable periodic motion known".to_owned()));
     }
-    let over = found.branches.plan.parameter;
-    let words = legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ");
-    drawing(&Sheet {
-        title: "Periodic motions".to_owned(),
-        description: format!(
-            "E1max and stroke of all periodic motions that were found, against {}: {words}.",
-            over.symbol()
-        ),
-        width: Width::Page,
-        charts: DRAWN.iter().enumerate().map(|(i, drawn)| chart(found, drawn, i == 0)).collect(),
-        columns: 1,
-        stacked: true,
-        legend,
-        caption: vec![format!("{}; Retune {}", found.study.name(), env!("CARGO_PKG_VERSION"))],
-    })
+    let charts = DRAWN.iter().enumerate().map(|(i, drawn)| chart(motions, drawn, i == 0)).collect();
+    let caption = vec![motions.made_by()];
+    let sheet =
+        Sheet { width: Width::Page, stacked: true, legend, caption, ..Sheet::of("Periodic motions", charts) };
+    let description = format!(
+        "E1max and stroke of all periodic motions that were found, against {}: {}.",
+        motions.over().symbol(),
+        sheet.legend_words()
+    );
+    drawing(&Sheet { description, ..sheet })
 }
 
-fn chart(found: &Found, (label, value): &Drawn, is_first: bool) -> Chart {
-    let plan = &found.branches.plan;
-    let [_, irregular] = found.branches.stable_and_irregular();
+fn chart(motions: &Motions, (label, value): &Drawn, is_first: bool) -> Chart {
+    let plan = &motions.branches.plan;
+    let [_, irregular] = motions.branches.stable_and_irregular();
     let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
     let mut layers: Vec<Layer> = irregular
         .iter()
         .map(|[from, to]| Layer::Band { x: (*from, *to), y: everywhere, colour: GREY, opacity: IRREGULAR })
         .collect();
-    let branches = &found.branches.branches;
+    let branches = &motions.branches.branches;
     let mut values: Vec<f64> = branches.iter().flat_map(|branch| branch.points.iter().map(value)).collect();
-    let samples = &found.branches.samples;
+    let samples = &motions.branches.samples;
     let attractors = |from_rest: bool| {
         let all = samples.iter().flat_map(|sample| &sample.attractors);
         all.filter(move |one| one.from_rest == from_rest).map(|one| (one.orbit.value, value(&one.orbit)))
@@ -102,16 +97,9 @@ fn chart(found: &Found, (label, value): &Drawn, is_first: bool) -> Chart {
             layers.push(Layer::Marks { points, mark: mark(kind) });
         }
     }
-    let high = values.iter().copied().fold(0.0, f64::max);
-    let y = match scale_for(&values) {
-        Scale::Log => Axis::around(*label, Scale::Log, values),
-        Scale::Linear => Axis::linear(*label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 })),
-    };
-    let is_omega = plan.parameter == Parameter::Omega;
-    let symbol = if is_omega { "ω" } else { plan.parameter.symbol() };
-    let x = Axis::linear(format!("{symbol}, {}", plan.parameter.unit()), (plan.range[0], plan.range[1]));
-    let x = if is_omega && is_first { x.with_second("frequency, Hz", hertz_and_rpm(1.0)[0]) } else { x };
-    Chart { title: String::new(), x, y, layers, height: if is_first { 240.0 } else { 150.0 } }
+    let (y, [from, to]) = (Axis::fitting(*label, &values), plan.range);
+    let x = abscissa(plan.parameter, Scale::Linear, (from, to), is_first);
+    Chart::of(x, y, layers, if is_first { 240.0 } else { 150.0 })
 }
 
 /// The stable or the unstable motions of a branch.

@@ -1,15 +1,16 @@
 //! The page of `branches`, and its answer in words. Every number on it is one of the tables beside it.
 
-use crate::Error;
 use crate::branches::basins;
 use crate::branches::draw::draw;
-use crate::branches::found::{Found, Margin};
+use crate::branches::motions::{Margin, Motions, joule, kind, most_irregular};
 use crate::branches::remedy::{Remedy, remedies};
-use crate::branches::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES};
-use crate::branches::words::{joule, kind};
+use crate::branches::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES, bifurcations};
+use crate::columns::column;
 use crate::summary::TunedDamper;
+use crate::{Error, pages};
 use retune_dynamics::periodic::Attractor;
 use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, Sample};
+use retune_model::Measure;
 use retune_report::document::{Block, Document};
 use retune_store::Directory;
 use retune_study::{counted, rounded, short};
@@ -21,35 +22,28 @@ const MOST: usize = 40;
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
-    let figure = draw(found);
-    directory.write("branches.svg", &figure.wide)?;
-    let symbol = found.branches.plan.parameter.symbol();
+pub fn write(motions: &Motions, directory: &Directory) -> Result<(), Error> {
+    let symbol = motions.over().symbol();
     let caption = format!("E1max and stroke of the periodic motions against {symbol}");
+    let figure = Block::figure("branches.svg", draw(motions), caption);
     let files =
         [BRANCHES, BIFURCATIONS, ATTRACTORS, STATES, "branches.json", "resolved.json", "manifest.json"];
     let mut sections = vec![
-        (
-            "motions",
-            "Periodic motions",
-            vec![Block::Figure("branches.svg", figure, caption), branches(found)],
-        ),
-        ("bifurcations", "Where they begin and end", vec![Block::Words(EVENTS.to_owned()), events(found)]),
-        ("coexisting", "What runs settle on", vec![Block::Words(starts(found)), attractors(found)]),
-        ("data", "Data", vec![Block::Files(files.map(str::to_owned).to_vec())]),
+        ("motions", "Periodic motions", vec![figure, branches(motions)]),
+        ("bifurcations", "Where they begin and end", vec![Block::words(EVENTS), events(motions)]),
+        ("coexisting", "What runs settle on", vec![Block::words(starts(motions)), attractors(motions)]),
+        ("data", "Data", vec![Block::files(&files)]),
     ];
-    if let Some(own) = &found.basins {
-        directory.write("basins.svg", &basins::draw(found, own))?;
-        sections.insert(3, ("basins", "Where starts end", basins::blocks(found, own)));
+    if let Some(own) = &motions.basins {
+        sections.insert(3, ("basins", "Where starts end", basins::blocks(motions, own)));
     }
-    let document = Document {
-        title: format!("{}: periodic motions along {symbol}", found.study.name()),
+    let page = Document {
+        title: format!("{}: periodic motions along {symbol}", motions.study.name()),
         command: "retune branches",
-        opening: vec![Block::Words(plan_words(found)), Block::List(answer(found))],
+        opening: vec![Block::words(plan_words(motions)), Block::List(answer(motions))],
         sections,
     };
-    directory.write("README.md", &document.markdown())?;
-    Ok(directory.write("report.html", &document.html())?)
+    pages::write(&page, directory)
 }
 
 const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions meet and vanish. At a branch point another branch crosses. At a \
@@ -57,14 +51,14 @@ const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions
     begins or ends, at no speed; a Hertz contact is soft enough for the branch to go on.";
 
 /// What was done.
-fn plan_words(found: &Found) -> String {
-    let plan = &found.branches.plan;
+fn plan_words(motions: &Motions) -> String {
+    let plan = &motions.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
-    let damper = found
+    let damper = motions
         .study
         .scene
         .damper
-        .map_or(String::new(), |damper| TunedDamper::of(&damper, found.study.varied()).words(|_| 5));
+        .map_or(String::new(), |damper| TunedDamper::of(&damper, motions.study.varied()).words(|_| 5));
     let more = [
         (plan.fine, "value", " A run from rest at each of # leads to the branches that this has missed."),
         (plan.apart, "run", " From # at each of the former, Newton's iteration looks for other motions."),
@@ -84,62 +78,57 @@ fn plan_words(found: &Found) -> String {
 }
 
 /// The answer: one line for each thing to know.
-pub fn answer(found: &Found) -> Vec<String> {
-    let plan = &found.branches.plan;
-    let (symbol, unit) = (plan.parameter.symbol(), plan.parameter.unit());
-    let [stable, irregular] = found.branches.stable_and_irregular();
+pub fn answer(motions: &Motions) -> Vec<String> {
+    let (all, [from, to]) = (&motions.branches, motions.branches.plan.range);
+    let (symbol, unit) = (motions.over().symbol(), motions.over().unit());
+    let [stable, irregular] = all.stable_and_irregular();
     let covered: f64 = stable.iter().map(|[from, to]| to - from).sum();
-    let share = 100.0 * covered / (plan.range[1] - plan.range[0]);
+    let share = 100.0 * covered / (to - from);
     let mut words = Vec::new();
-    let all = found.largest.iter().enumerate();
-    let mut most: Vec<(usize, &Orbit)> = all.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
+    let largest = motions.largest.iter().enumerate();
+    let mut most: Vec<(usize, &Orbit)> =
+        largest.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
     most.sort_by(|a, b| b.1.seen.e1_max.total_cmp(&a.1.seen.e1_max));
-    if let Some((number, orbit)) = most.first() {
-        words.push(format!(
-            "The largest E1max of all stable motions: {} J at {symbol} = {} {unit}, on branch {number} ({}).",
-            joule(orbit.seen.e1_max),
-            rounded(orbit.value, 6),
-            kind(orbit)
-        ));
-        if !found.branches.is_reached_from_rest(*number) {
-            let ways = remedies(&found.branches.branches[*number], orbit);
-            let reached = most.iter().find(|(other, _)| found.branches.is_reached_from_rest(*other));
-            words.extend(reached.map(|(other, orbit)| {
+    let reached = |(number, orbit): &(usize, &Orbit)| {
+        let place = motions.at(orbit.value, 6);
+        format!("{} J at {place}, on branch {number} ({})", joule(orbit.seen.e1_max), kind(orbit))
+    };
+    if let Some(first) = most.first() {
+        words.push(format!("The largest E1max of all stable motions: {}.", reached(first)));
+        if !all.is_reached_from_rest(first.0) {
+            let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other));
+            words.extend(usual.map(|usual| {
                 format!(
-                    "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {} J at {symbol} = {} \
-                     {unit}, on branch {other} ({}).",
-                    joule(orbit.seen.e1_max),
-                    rounded(orbit.value, 6),
-                    kind(orbit)
+                    "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {}.",
+                    reached(usual)
                 )
             }));
+            let ways: Vec<String> =
+                remedies(&all.branches[first.0], first.1).iter().map(Remedy::words).collect();
             if !ways.is_empty() {
-                let ways: Vec<String> = ways.iter().map(Remedy::words).collect();
                 words.push(format!(
-                    "What removes that motion, at {symbol} = {} {unit} and all else as it is: {}.",
-                    rounded(orbit.value, 6),
+                    "What removes that motion, at {} and all else as it is: {}.",
+                    motions.at(first.1.value, 6),
                     ways.join("; ")
                 ));
             }
         }
     }
-    words
-        .extend(found.branches.branches.iter().enumerate().filter_map(|(i, branch)| isola(found, i, branch)));
-    words.extend(found.margin.as_ref().map(Margin::words));
+    words.extend(all.branches.iter().enumerate().filter_map(|(i, branch)| isola(motions, i, branch)));
+    words.extend(motions.margin.as_ref().map(Margin::words));
     words.push(format!(
         "Stable periodic motions, of {}, cover {} % of the range.",
-        counted(found.branches.branches.len() as u64, "branch"),
+        counted(all.branches.len() as u64, "branch"),
         rounded(share, 4)
     ));
-    if found.branches.ended {
-        let count = found.branches.branches.len();
+    if all.ended {
+        let count = all.branches.len();
         words.push(format!("The search ended after {count} branches: there may be more, and the largest of all may be on one of them."));
     }
-    for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * (plan.range[1] - plan.range[0]))
-    {
+    let width = to - from;
+    for [from, to] in irregular.iter().filter(|[from, to]| to - from > 1e-3 * width) {
         let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
-        let energies = found.branches.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
-        let most = energies.map(|seen| seen.e1_max).fold(0.0, f64::max);
+        let most = all.samples.iter().filter(within).map(most_irregular).fold(0.0, f64::max);
         let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
         words.push(format!(
             "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",
@@ -151,21 +140,18 @@ pub fn answer(found: &Found) -> Vec<String> {
 }
 
 /// A closed branch in words.
-fn isola(found: &Found, number: usize, branch: &Branch) -> Option<String> {
+fn isola(motions: &Motions, number: usize, branch: &Branch) -> Option<String> {
     if branch.ends != [End::Closed; 2] {
         return None;
     }
-    let plan = &found.branches.plan;
-    let [low, high] = span(branch);
-    let most = found.largest[number].as_ref()?;
-    let share = found.branches.share(number);
+    let ([low, high], symbol, unit) = (span(branch), motions.over().symbol(), motions.over().unit());
+    let most = motions.largest[number].as_ref()?;
+    let share = motions.branches.share(number);
     let reached = format!("{} of {} starts there end on it", share.ends, share.starts);
     Some(format!(
-        "Branch {number} is an isola: it exists from {} = {} to {} {} only, apart from all others ({}); up to {} J; {reached}.",
-        plan.parameter.symbol(),
+        "Branch {number} is an isola: it exists from {symbol} = {} to {} {unit} only, apart from all others ({}); up to {} J; {reached}.",
         rounded(low, 8),
         rounded(high, 8),
-        plan.parameter.unit(),
         kind(most),
         joule(most.seen.e1_max)
     ))
@@ -178,11 +164,10 @@ fn span(branch: &Branch) -> [f64; 2] {
 }
 
 /// The branches.
-fn branches(found: &Found) -> Block {
-    let plan = &found.branches.plan;
-    let rows = found.branches.branches.iter().enumerate().take(MOST).map(|(number, branch)| {
+fn branches(motions: &Motions) -> Block {
+    let rows = motions.branches.branches.iter().enumerate().take(MOST).map(|(number, branch)| {
         let stable = (0..branch.points.len()).filter(|i| branch.is_stable_at(*i)).count();
-        let most = found.largest[number].as_ref();
+        let most = motions.largest[number].as_ref();
         let [low, high] = span(branch);
         let [first, last] = branch.ends.map(End::words);
         vec![
@@ -196,98 +181,85 @@ fn branches(found: &Found) -> Block {
             if first == last { first.to_owned() } else { format!("{first}; {last}") },
         ]
     });
-    let symbol = plan.parameter.symbol();
     let head = [
-        "branch".to_owned(),
-        "periods".to_owned(),
-        format!("{symbol}, {}", plan.parameter.unit()),
-        "stable motions".to_owned(),
-        "largest E1max of them, J".to_owned(),
-        format!("at {symbol}"),
-        "impacts there".to_owned(),
-        "ends".to_owned(),
+        "branch",
+        "periods",
+        &column(motions.over().symbol()).heading(),
+        "stable motions",
+        "largest E1max of them, J",
+        &format!("at {}", motions.over().symbol()),
+        "impacts there",
+        "ends",
     ];
-    let words = "The branches. Impacts: S on the structure, O on the obstacle, in their order.".to_owned();
-    Block::Table(words, head.to_vec(), rows.collect())
+    let words = "The branches. Impacts: S on the structure, O on the obstacle, in their order.";
+    Block::table(words, head, rows.collect())
 }
 
 /// The events, those of stable motions first.
-fn events(found: &Found) -> Block {
-    let plan = &found.branches.plan;
-    let mut all: Vec<(usize, &Branch, &retune_dynamics::periodic::Event)> = Vec::new();
-    for (number, branch) in found.branches.branches.iter().enumerate() {
-        all.extend(branch.events.iter().map(|event| (number, branch, event)));
-    }
+fn events(motions: &Motions) -> Block {
     let matters = |branch: &Branch, place: usize| {
         let near = [place.checked_sub(1), Some(place + 1)].into_iter().flatten();
         near.filter_map(|i| branch.points.get(i)).any(Orbit::is_stable)
     };
-    all.retain(|(_, branch, event)| event.kind == EventKind::Fold || matters(branch, event.place));
-    let rows = all.iter().take(MOST).map(|(number, _, event)| {
-        vec![
-            number.to_string(),
-            event.kind.name().to_owned(),
-            format!("{:.8}", event.orbit.value),
-            event.orbit.periods.to_string(),
-            event.orbit.seen.impacts.clone(),
-            joule(event.orbit.seen.e1_max),
-        ]
+    let shown = motions.branches.branches.iter().flat_map(|branch| {
+        branch.events.iter().map(move |event| event.kind == EventKind::Fold || matters(branch, event.place))
     });
-    let (symbol, unit) = (plan.parameter.symbol(), plan.parameter.unit());
-    let head = ["branch", "event", &format!("{symbol}, {unit}"), "periods", "impacts", "E1max, J"];
-    let words = match all.len() {
+    let mut table = bifurcations(motions).only(shown);
+    let words = match table.rows.len() {
         more if more > MOST => {
             format!("The first {MOST} of {more} events at stable motions and folds; {BIFURCATIONS} has all.")
         }
         _ => format!("Events at stable motions, and all folds; {BIFURCATIONS} has all."),
     };
-    Block::Table(words, head.map(str::to_owned).to_vec(), rows.collect())
+    table.rows.truncate(MOST);
+    let columns = [
+        table.exact("branch"),
+        table.exact("kind").called("event"),
+        table.show(motions.over().symbol(), |value| format!("{value:.8}")),
+        table.exact("periods"),
+        table.exact("impacts"),
+        table.show(Measure::Energy.name(), joule),
+    ];
+    let (head, rows) = table.shown(&columns);
+    Block::table(words, head, rows)
 }
 
-fn starts(found: &Found) -> String {
+fn starts(motions: &Motions) -> String {
     format!(
         "The starts are spread evenly over the range and the states that the force can reach somewhere in it (one Sobol sequence of {}). A run that \
          repeats to 1e-4 of its size within 480 periods settles on a periodic motion; any other is irregular.",
-        found.branches.plan.others()
+        motions.branches.plan.others()
     )
 }
 
 /// What runs settle on, where it is a motion that no run from rest leads to, or none that repeats.
-fn attractors(found: &Found) -> Block {
-    let plan = &found.branches.plan;
-    let mut rows = Vec::new();
-    for sample in &found.branches.samples {
-        let is_usual =
-            |one: &Attractor| one.branch.is_some_and(|branch| found.branches.is_reached_from_rest(branch));
-        for one in sample.attractors.iter().filter(|one| !is_usual(one)) {
-            rows.push(vec![
+fn attractors(motions: &Motions) -> Block {
+    let is_usual =
+        |one: &Attractor| one.branch.is_some_and(|branch| motions.branches.is_reached_from_rest(branch));
+    let row =
+        |sample: &Sample, branch: Option<usize>, what: String, energy: f64, starts: usize, rest: bool| {
+            vec![
                 rounded(sample.value, 6),
-                one.branch.map_or("-".to_owned(), |branch| branch.to_string()),
-                kind(&one.orbit),
-                joule(one.orbit.seen.e1_max),
-                format!("{} of {}", one.starts, sample.starts),
-                if one.from_rest { "yes" } else { "no" }.to_owned(),
-            ]);
+                branch.map_or("-".to_owned(), |branch| branch.to_string()),
+                what,
+                joule(energy),
+                format!("{starts} of {}", sample.starts),
+                if rest { "yes" } else { "no" }.to_owned(),
+            ]
+        };
+    let mut rows = Vec::new();
+    for sample in &motions.branches.samples {
+        for one in sample.attractors.iter().filter(|one| !is_usual(one)) {
+            let Attractor { branch, orbit, starts, from_rest } = one;
+            rows.push(row(sample, *branch, kind(orbit), orbit.seen.e1_max, *starts, *from_rest));
         }
         if !sample.irregular.is_empty() {
-            rows.push(vec![
-                rounded(sample.value, 6),
-                "-".to_owned(),
-                "irregular".to_owned(),
-                joule(sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max)),
-                format!("{} of {}", sample.irregular.len(), sample.starts),
-                if sample.rest_is_irregular { "yes" } else { "no" }.to_owned(),
-            ]);
+            let (starts, rest) = (sample.irregular.len(), sample.rest_is_irregular);
+            rows.push(row(sample, None, "irregular".to_owned(), most_irregular(sample), starts, rest));
         }
     }
-    let head = [
-        format!("{}, {}", plan.parameter.symbol(), plan.parameter.unit()),
-        "branch".to_owned(),
-        "motion".to_owned(),
-        "E1max, J".to_owned(),
-        "starts".to_owned(),
-        "from rest".to_owned(),
-    ];
+    let head =
+        [&*column(motions.over().symbol()).heading(), "branch", "motion", "E1max, J", "starts", "from rest"];
     let words = if rows.is_empty() {
         "All starts end on branches that runs from rest lead to.".to_owned()
     } else {
@@ -295,5 +267,5 @@ fn attractors(found: &Found) -> Block {
             "Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all."
         )
     };
-    Block::Table(words, head.to_vec(), rows)
+    Block::table(words, head, rows)
 }

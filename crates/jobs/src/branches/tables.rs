@@ -1,11 +1,11 @@
-//! The tables of `branches`.
+//! The tables of `branches`, and its answer as data.
 
-use crate::Error;
-use crate::branches::basins::STARTS;
-use crate::branches::found::Found;
-use retune_dynamics::periodic::{Onset, Orbit};
-use retune_store::Directory;
-use retune_study::joined;
+use crate::branches::motions::{Motions, most_irregular};
+use crate::columns;
+use retune_dynamics::periodic::Attractor;
+use retune_dynamics::periodic::{Basins, Onset, Orbit};
+use retune_report::cells;
+use retune_report::table::{Cell, Table};
 use serde_json::{Value, json};
 
 /// A row for each motion of each branch.
@@ -16,100 +16,109 @@ pub const BIFURCATIONS: &str = "bifurcations.csv";
 pub const ATTRACTORS: &str = "attractors.csv";
 /// The states from which the motions of the branches are followed.
 pub const STATES: &str = "states.csv";
+/// A row for each start of a plane: the number of the motion on which it ends.
+pub const STARTS: &str = "starts.csv";
 
-/// Writes them.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn write(found: &Found, directory: &Directory) -> Result<(), Error> {
-    let symbol = found.branches.plan.parameter.symbol();
-    let mut points =
-        format!("branch,place,{symbol},periods,impacts,stable,E1max,x1max,stroke,contact_force,multiplier\n");
-    let mut states = "branch,place,segment,x1,v1,x2,v2\n".to_owned();
-    let mut events =
-        format!("branch,place,kind,{symbol},periods,impacts,E1max,re1,im1,re2,im2,re3,im3,re4,im4\n");
-    for (number, branch) in found.branches.branches.iter().enumerate() {
-        for (place, orbit) in branch.points.iter().enumerate() {
-            points += &format!(
-                "{number},{place},{},{},{},{},{}\n",
-                head(orbit),
-                u8::from(orbit.is_stable()),
-                values(orbit),
-                orbit.seen.force,
-                orbit.multipliers[0].norm(),
-            );
-            for (segment, y) in orbit.states.iter().enumerate() {
-                states += &format!("{number},{place},{segment},{}\n", joined(y, ","));
-            }
-        }
-        for event in &branch.events {
-            let orbit = &event.orbit;
-            let multipliers: Vec<f64> = orbit.multipliers.iter().flat_map(|m| [m.re, m.im]).collect();
-            events += &format!(
-                "{number},{},{},{},{},{}\n",
-                event.place,
-                event.kind.name(),
-                head(orbit),
-                orbit.seen.e1_max,
-                joined(&multipliers, ",")
-            );
+/// All of them, each with the name of its file.
+pub fn tables(motions: &Motions) -> Vec<(&'static str, Table)> {
+    let mut all = vec![
+        (BRANCHES, branches(motions)),
+        (STATES, states(motions)),
+        (BIFURCATIONS, bifurcations(motions)),
+        (ATTRACTORS, attractors(motions)),
+    ];
+    all.extend(motions.basins.as_ref().map(|basins| (STARTS, starts(basins))));
+    all
+}
+
+fn branches(motions: &Motions) -> Table {
+    let over = motions.over().symbol();
+    let first = ["branch", "place", over, "periods", "impacts", "stable"];
+    let values = ["E1max", "x1max", "stroke", "contact_force", "multiplier"];
+    let mut table = columns::table(&[&first[..], &values].concat());
+    for (number, place, orbit) in points(motions) {
+        let Orbit { value, periods, seen, multipliers, .. } = orbit;
+        let first = cells![number, place, *value, *periods, seen.impacts.as_str(), orbit.is_stable()];
+        let multiplier = multipliers[0].norm();
+        let values = cells![seen.e1_max, seen.displacement, seen.stroke, seen.force, multiplier];
+        table.push([first, values].concat());
+    }
+    table
+}
+
+fn states(motions: &Motions) -> Table {
+    let mut table = columns::table(&["branch", "place", "segment", "x1", "v1", "x2", "v2"]);
+    for (number, place, orbit) in points(motions) {
+        for (segment, &[x1, v1, x2, v2]) in orbit.states.iter().enumerate() {
+            table.push(cells![number, place, segment, x1, v1, x2, v2]);
         }
     }
-    let mut attractors = format!(
-        "{symbol},start,motion,branch,periods,impacts,starts_of,starts,from_rest,E1max,x1,v1,x2,v2\n"
-    );
-    for sample in &found.branches.samples {
-        let (value, all) = (sample.value, sample.starts);
-        let number = sample.number.map(|number| number.to_string()).unwrap_or_default();
-        for one in &sample.attractors {
-            let Orbit { periods, seen, states, .. } = &one.orbit;
-            attractors += &format!(
-                "{value},{number},periodic,{},{periods},{},{all},{},{},{},{}\n",
-                one.branch.map(|branch| branch.to_string()).unwrap_or_default(),
-                seen.impacts,
-                one.starts,
-                u8::from(one.from_rest),
-                seen.e1_max,
-                joined(&states[0], ",")
-            );
+    table
+}
+
+/// The motions of the branches, each with the number of its branch and its place there.
+fn points(motions: &Motions) -> impl Iterator<Item = (usize, usize, &Orbit)> {
+    let branches = motions.branches.branches.iter().enumerate();
+    branches.flat_map(|(number, branch)| {
+        branch.points.iter().enumerate().map(move |(place, orbit)| (number, place, orbit))
+    })
+}
+
+/// A row for each event, with its multipliers.
+pub fn bifurcations(motions: &Motions) -> Table {
+    let first = ["branch", "place", "kind", motions.over().symbol(), "periods", "impacts", "E1max"];
+    let multipliers = ["re1", "im1", "re2", "im2", "re3", "im3", "re4", "im4"];
+    let mut table = columns::table(&[&first[..], &multipliers].concat());
+    for (number, branch) in motions.branches.branches.iter().enumerate() {
+        for event in &branch.events {
+            let Orbit { value, periods, seen, multipliers, .. } = &event.orbit;
+            let place = cells![number, event.place, event.kind.name(), *value, *periods];
+            let reached = cells![seen.impacts.as_str(), seen.e1_max];
+            let multipliers = multipliers.iter().flat_map(|m| cells![m.re, m.im]).collect();
+            table.push([place, reached, multipliers].concat());
+        }
+    }
+    table
+}
+
+fn attractors(motions: &Motions) -> Table {
+    let motion = ["motion", "branch", "periods", "impacts"];
+    let starts = ["starts_of", "starts", "from_rest", "E1max", "x1", "v1", "x2", "v2"];
+    let mut table = columns::table(&[&[motions.over().symbol(), "start"], &motion[..], &starts].concat());
+    for sample in &motions.branches.samples {
+        let place = cells![sample.value, sample.number];
+        for Attractor { branch, orbit, starts, from_rest } in &sample.attractors {
+            let Orbit { periods, seen, states, .. } = orbit;
+            let motion = cells!["periodic", *branch, *periods, seen.impacts.as_str()];
+            let starts = cells![sample.starts, *starts, *from_rest, seen.e1_max];
+            table.push([place.clone(), motion, starts, states[0].map(Cell::from).to_vec()].concat());
         }
         if !sample.irregular.is_empty() {
-            let most = sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max);
-            attractors += &format!(
-                "{value},{number},irregular,,,,{all},{},{},{most},,,,\n",
-                sample.irregular.len(),
-                u8::from(sample.rest_is_irregular)
-            );
+            let motion = [cells!["irregular"], vec![Cell::Empty; 3]].concat();
+            let (starts, rest) = (sample.irregular.len(), sample.rest_is_irregular);
+            let starts = cells![sample.starts, starts, rest, most_irregular(sample)];
+            table.push([place, motion, starts, vec![Cell::Empty; 4]].concat());
         }
     }
-    directory.write(BRANCHES, &points)?;
-    directory.write(STATES, &states)?;
-    directory.write(BIFURCATIONS, &events)?;
-    directory.write(ATTRACTORS, &attractors)?;
-    if let Some(basins) = &found.basins {
-        directory.write(STARTS, &crate::branches::basins::table(basins))?;
+    table
+}
+
+fn starts(basins: &Basins) -> Table {
+    let mut table = columns::table(&["x1", "v1", "motion"]);
+    for ([x1, v1], end) in basins.starts() {
+        table.push(cells![x1, v1, end]);
     }
-    Ok(directory.write_json("branches.json", &summary(found))?)
-}
-
-/// The parameter's value, the periods and the impacts.
-fn head(orbit: &Orbit) -> String {
-    format!("{},{},{}", orbit.value, orbit.periods, orbit.seen.impacts)
-}
-
-fn values(orbit: &Orbit) -> String {
-    let seen = &orbit.seen;
-    joined(&[seen.e1_max, seen.displacement, seen.stroke], ",")
+    table
 }
 
 /// The answer as data.
-pub fn summary(found: &Found) -> Value {
-    let [stable, irregular] = found.branches.stable_and_irregular();
-    let branches: Vec<Value> = found
+pub fn summary(motions: &Motions) -> Value {
+    let [stable, irregular] = motions.branches.stable_and_irregular();
+    let branches: Vec<Value> = motions
         .branches
         .branches
         .iter()
-        .zip(&found.largest)
+        .zip(&motions.largest)
         .map(|(branch, most)| {
             let events = branch.events.iter().map(|event| {
                 json!({ "kind": event.kind.name(), "value": event.orbit.value, "impacts": event.orbit.seen.impacts })
@@ -128,12 +137,12 @@ pub fn summary(found: &Found) -> Value {
         })
         .collect();
     json!({
-        "study": found.study.name(),
-        "plan": crate::branches::options::plan_json(&found.branches.plan),
+        "study": motions.study.name(),
+        "plan": crate::branches::options::plan_json(&motions.branches.plan),
         "stable": stable,
         "irregular": irregular,
         "branches": branches,
-        "margin": found.margin.as_ref().map(|margin| json!({
+        "margin": motions.margin.as_ref().map(|margin| json!({
             "P": margin.own,
             "tried": margin.tried,
             "birth": margin.birth.as_ref().map(|Onset { value, omega, orbit }| json!({

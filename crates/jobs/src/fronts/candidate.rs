@@ -1,9 +1,12 @@
 //! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
 
 use crate::certify::Verdict;
+use crate::columns;
 use crate::needs::Largest;
-use retune_model::{Design, Parameter};
-use retune_study::{Sweep, fields};
+use retune_model::{Design, Measure, Parameter};
+use retune_report::cells;
+use retune_report::table::Cell;
+use retune_study::Sweep;
 use std::cmp::Ordering;
 
 /// E1max that differs by less than this share is the same.
@@ -77,10 +80,13 @@ impl Candidate {
 
     /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
     pub fn is_nearly(&self, other: &Self) -> bool {
-        let near = |(a, b): (f64, f64)| {
-            a.is_nan() && b.is_nan() || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
+        let near = |parameter: Parameter| {
+            let [a, b] = [self, other].map(|design| design.at.get(parameter));
+            // A gap is left out where there is no wall, anything else where it is that of the study.
+            let same = if parameter.is_gap() { a.is_nan() && b.is_nan() } else { a.is_nan() || b.is_nan() };
+            same || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
         };
-        self.damper == other.damper && self.at.values().into_iter().zip(other.at.values()).all(near)
+        self.damper == other.damper && Parameter::VARIED.into_iter().all(near)
     }
 
     /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.
@@ -90,15 +96,17 @@ impl Candidate {
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
     }
 
-    /// Its fields in a table, under [`Self::COLUMNS`]; those of gaps are empty without walls.
-    pub fn fields(&self) -> String {
-        let Self { at, e1_max, checked, stroke, force, .. } = self;
-        let checked = checked.map(|value| value.to_string()).unwrap_or_default();
-        format!("{e1_max},{checked},{},{stroke},{force}", fields(&at.values()))
+    /// The names of its columns in a table with these parameters.
+    pub fn names(parameters: &[Parameter]) -> Vec<&'static str> {
+        [&["E1max", "E1max_check"], &*columns::symbols(parameters), &Measure::OF_DAMPER.map(Measure::name)]
+            .concat()
     }
 
-    /// The names of [`Self::fields`].
-    pub const COLUMNS: &str = "E1max,E1max_check,k2,c2,D,C,stroke,contact_force";
+    /// Its cells there.
+    pub fn cells(&self, parameters: &[Parameter]) -> Vec<Cell> {
+        let design = columns::cells_of(&self.at, parameters);
+        [cells![self.e1_max, self.checked], design, cells![self.stroke, self.force]].concat()
+    }
 }
 
 /// The design that keeps a bound first, then that which is beyond it by less.
@@ -110,6 +118,7 @@ pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Orde
 #[cfg(test)]
 mod tests {
     use super::*;
+    use retune_report::table::line;
 
     #[test]
     fn regress_gaps_of_a_damper_without_walls_are_empty_fields() {
@@ -130,6 +139,6 @@ mod tests {
             reason: String::new(),
             needs: None,
         };
-        assert_eq!(design.fields(), "600,,215,35,,,0.5,0");
+        assert_eq!(line(&design.cells(&Parameter::PAPER)), "600,,215,35,,,0.5,0\n");
     }
 }

@@ -101,7 +101,7 @@ impl Fronts {
                 Some(most) => screen(&study, start, most, *under, journal)?,
             };
             bar.inc(1);
-            Ok(end.and_then(|at| self.look(under.damper, at, CONTINUED)))
+            Ok(end.and_then(|at| self.candidate(under.damper, at, CONTINUED)))
         };
         let ends: Vec<Result<Option<Candidate>, Error>> = tasks.par_iter().map(end).collect();
         bar.finish();

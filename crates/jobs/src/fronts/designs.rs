@@ -3,18 +3,27 @@
 //! Every search finds a design. Afterwards all designs of a damper are evaluated on more samples of the band, and under each bound
 //! stands the best that keeps it, whichever search found it: so a looser bound is never worse.
 
-use super::again::certifiable;
 use super::candidate::{Candidate, SAME};
 use crate::Error;
+use crate::again::{Made, json};
 use crate::certify::{Certificate, certify};
-use crate::designs::quoted;
+use crate::columns;
+use crate::look::finer;
 use crate::needs::Largest;
+use crate::resolved::Resolved;
 use rayon::prelude::*;
-use retune_model::Measure;
-use retune_study::{FrontsPlan, Sweep};
+use retune_model::{Design, Measure, Parameter};
+use retune_report::cells;
+use retune_report::table::{Cell, Table};
+use retune_study::{FrontsPlan, Study, Sweep};
+use std::fmt::Display;
+use std::path::Path;
 
 /// The verdict of a damper that no search found.
 pub(super) const GIVEN: &str = "of the study";
+
+/// Most samples of a band that a certificate begins with.
+const MOST: usize = 121;
 
 /// What a table tells of the structure beside the stroke and the force of a design: the largest values from rest on.
 pub(super) const NEEDS: [Measure; 3] = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce];
@@ -120,37 +129,35 @@ impl Fronts {
 
     /// Certifies the designs that are furthest below the first damper under the same bound, each value once.
     pub(super) fn certify(&self) -> Result<Vec<Certified>, Error> {
-        let mut gains: Vec<(f64, Sweep, f64, &Candidate, Option<f64>)> = Vec::new();
-        for row in
-            self.plan.sweeps().into_iter().flat_map(|sweep| self.rows(sweep)).filter(|row| row.damper > 0)
-        {
+        let mut gains: Vec<(f64, Option<f64>, Row, &Candidate)> = Vec::new();
+        let rows = self.plan.sweeps().into_iter().flat_map(|sweep| self.rows(sweep));
+        for row in rows.filter(|row| row.damper > 0) {
+            let strikes = |design: &&Candidate| design.force > 0.0 && design.verdict != GIVEN;
+            let Some(design) = row.design.filter(strikes) else { continue };
             let reference = self.reference(&row);
-            let Some(design) = row.design.filter(|design| design.force > 0.0 && design.verdict != GIVEN)
-            else {
-                continue;
-            };
             let share = reference.map_or(0.0, |reference| design.e1_max / reference);
-            if share < 1.0 - SAME && gains.iter().all(|(.., other, _)| !other.is_like(design)) {
-                gains.push((share, row.sweep, row.bound, design, reference));
+            if share < 1.0 - SAME && gains.iter().all(|(.., other)| !other.is_like(design)) {
+                gains.push((share, reference, row, design));
             }
         }
         gains.sort_by(|a, b| a.0.total_cmp(&b.0));
         gains.truncate(self.plan.said.certificates);
-        let certified =
-            |&(_, sweep, bound, design, reference): &(f64, Sweep, f64, &Candidate, Option<f64>)| {
-                let (_, study) = &self.plan.dampers[design.damper];
-                let study = certifiable(study, self.plan.said.samples, &design.at)?;
-                let file = format!("certificate-{}-{bound}.json", sweep.name());
-                let design = design.clone();
-                Some(certify(&study).map(|certificate| Certified {
-                    sweep,
-                    bound,
-                    design,
-                    reference,
-                    file,
-                    certificate,
-                }))
-            };
+        let certified = |(_, reference, row, design): &(f64, Option<f64>, Row, &Candidate)| {
+            let (_, study) = &self.plan.dampers[design.damper];
+            let study = certifiable(study, self.plan.said.samples, &design.at)?;
+            let Row { sweep, bound, .. } = *row;
+            let (reference, design) = (*reference, Candidate::clone(design));
+            let file = format!("certificate-{}-{bound}.json", sweep.name());
+            let certificate = certify(&study);
+            Some(certificate.map(|certificate| Certified {
+                sweep,
+                bound,
+                design,
+                reference,
+                file,
+                certificate,
+            }))
+        };
         let certified: Vec<Option<Result<Certified, Error>>> = gains.par_iter().map(certified).collect();
         certified.into_iter().flatten().collect()
     }
@@ -162,26 +169,79 @@ impl Fronts {
         Some(own?.design?.e1_max)
     }
 
+    /// The parameters that tables have columns for: the paper's, what else a study varies, and what a known design has otherwise than its
+    /// study.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let studies = || self.plan.dampers.iter().map(|(_, study)| study);
+        let has = |parameter: &Parameter| {
+            let changed = |(damper, at): &(usize, Design)| {
+                let value = at.get(*parameter);
+                !value.is_nan() && parameter.of(&self.plan.dampers[*damper].1.scene) != Some(value)
+            };
+            studies().any(|study| study.varied().contains(parameter)) || self.plan.designs.iter().any(changed)
+        };
+        Parameter::columns(&Parameter::VARIED.into_iter().filter(has).collect::<Vec<_>>())
+    }
+
     /// The table along a bound: a row for each bound and damper; what no design keeps has empty fields.
-    pub fn csv(&self, sweep: Sweep) -> String {
-        let needs = NEEDS.map(Measure::name).join(",");
-        let mut text = format!("{}_most,damper,{},{needs},verdict\n", sweep.name(), Candidate::COLUMNS);
+    pub fn table(&self, sweep: Sweep) -> Table {
+        let parameters = self.parameters();
+        let (bound, designs) = (format!("{}_most", sweep.name()), Candidate::names(&parameters));
+        let needs = NEEDS.map(Measure::name);
+        let mut table = columns::table(&[&[&*bound, "damper"], &*designs, &needs, &["verdict"]].concat());
         for Row { bound, damper, design, .. } in self.rows(sweep) {
-            let fields = design.map_or(",,,,,,,".to_owned(), Candidate::fields);
-            let need = |measure| design.and_then(|design| Some(design.needs?.value(measure).to_string()));
-            let needs = NEEDS.map(|measure| need(measure).unwrap_or_default()).join(",");
-            let verdict = design.map_or("none keeps it", |design| design.verdict);
-            text += &format!("{bound},{},{fields},{needs},{verdict}\n", quoted(self.name(damper)));
+            let cells = match design {
+                None => [vec![Cell::Empty; designs.len() + needs.len()], cells!["none keeps it"]],
+                Some(design) => {
+                    let need = |measure| Cell::from(design.needs.map(|needs| needs.value(measure)));
+                    let needs = NEEDS.map(need).into_iter().chain([design.verdict.into()]);
+                    [design.cells(&parameters), needs.collect()]
+                }
+            };
+            table.push([cells![bound, self.name(damper)], cells.concat()].concat());
         }
-        text
+        table
     }
 
     /// The table of [`Self::front`].
-    pub fn front_csv(&self) -> String {
-        let rows = self
-            .front()
-            .into_iter()
-            .map(|d| format!("{},{},{}\n", quoted(self.name(d.damper)), d.fields(), d.verdict));
-        format!("damper,{},verdict\n{}", Candidate::COLUMNS, rows.collect::<String>())
+    pub fn front_table(&self) -> Table {
+        let parameters = self.parameters();
+        let mut table =
+            columns::table(&[&["damper"], &*Candidate::names(&parameters), &["verdict"]].concat());
+        for design in self.front() {
+            let name = cells![self.name(design.damper)];
+            table.push([name, design.cells(&parameters), cells![design.verdict]].concat());
+        }
+        table
     }
+}
+
+/// A bound in words: `k2 at most 400 N/m`.
+pub(super) fn at_most(sweep: Sweep, bound: impl Display) -> String {
+    format!("{} at most {bound} {}", sweep.name(), sweep.unit())
+}
+
+/// The certificate of a design, made again.
+///
+/// # Errors
+/// The file cannot be read.
+pub(super) fn again(place: &Path, name: &str) -> Result<Made, Error> {
+    let said = json(place, name)?;
+    let resolved = Resolved::read(place)?;
+    let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
+    let studies = resolved.studies()?;
+    let certified = || {
+        let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
+        certifiable(study, samples?, &crate::again::design(&said["design"])?)
+    };
+    Ok(match certified() {
+        Some(study) => crate::certify::again(&study, said),
+        None => Made::Not("is of none of the studies".to_owned()),
+    })
+}
+
+/// The study that a design is certified by: on the samples of the study of fronts, or fewer, since a certificate looks at a hundred designs
+/// and at four times the samples.
+fn certifiable(study: &Study, samples: usize, at: &Design) -> Option<Study> {
+    finer(study, samples.min(MOST), at)
 }

@@ -1,13 +1,15 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
-use super::candidate::SAME;
-use super::designs::{Certified, Fronts, NEEDS, Row};
+use super::candidate::{Candidate, SAME};
+use super::designs::{Certified, Fronts, NEEDS, Row, at_most};
 use super::draw;
-use crate::Error;
-use retune_model::Parameter;
+use crate::certify::Verdict;
+use crate::{Error, pages};
+use retune_model::{Design, Measure, Parameter};
 use retune_report::document::{Block, Document};
+use retune_report::table::{Shown, Table};
 use retune_store::Directory;
-use retune_study::{Sweep, design_cells, design_words, rounded, short};
+use retune_study::{Sweep, design_words, rounded, short};
 
 /// Writes the page in both forms, and its figures.
 ///
@@ -22,45 +24,37 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
             Sweep::Stroke => ("stroke.svg", "stroke", "Stroke at most"),
             Sweep::ContactForce => ("contact_force.svg", "contact-force", "Contact force at most"),
         };
-        let drawing = draw::sweep(fronts, sweep);
-        directory.write(file, &drawing.wide)?;
-        let figure = Block::Figure(file, drawing, format!("The least E1max: {}", title.to_lowercase()));
+        let caption = format!("The least E1max: {}", title.to_lowercase());
+        let figure = Block::figure(file, draw::sweep(fronts, sweep), caption);
         let blocks = [figure, table(fronts, sweep), needs(fronts, sweep)];
         sections.push((id, title, blocks.into_iter().chain(reasons(fronts, sweep)).collect()));
     }
-    let drawing = draw::front(fronts);
-    directory.write("front.svg", &drawing.wide)?;
     let words = "Every design that was found. A line is the front of a damper in the two quantities of its chart: what lies above it is \
                  dominated. `front.csv` has the designs that no other dominates in all of E1max, stroke, contact force and k2.";
-    let caption = "E1max against stroke, contact force and k2".to_owned();
-    let figure = Block::Figure("front.svg", drawing, caption);
-    sections.push(("trade", "The trade", vec![Block::Words(words.to_owned()), figure]));
+    let caption = "E1max against stroke, contact force and k2";
+    let figure = Block::figure("front.svg", draw::front(fronts), caption);
+    sections.push(("trade", "The trade", vec![Block::words(words), figure]));
     let certified: Vec<String> = fronts.certified.iter().map(|one| certificate(fronts, one)).collect();
     let certified = if certified.is_empty() {
-        let none = "No design that strikes a wall is better than the first damper under the same bound.";
-        Block::Words(none.to_owned())
+        Block::words("No design that strikes a wall is better than the first damper under the same bound.")
     } else {
         Block::List(certified)
     };
     let certificates = fronts.certified.iter().map(|one| one.file.clone()).collect();
     sections.push(("certified", "Certified", vec![certified, Block::Files(certificates)]));
-    let document = Document {
+    let page = Document {
         title: format!("What the {} is good for", names.last().unwrap_or(&"")),
         command: "retune fronts",
-        opening: vec![Block::Words(made(fronts, &names)), Block::List(answer(fronts))],
+        opening: vec![Block::words(made(fronts, &names)), Block::List(answer(fronts))],
         sections,
     };
-    directory.write("README.md", &document.markdown())?;
-    Ok(directory.write("report.html", &document.html())?)
+    pages::write(&page, directory)
 }
 
 /// How the designs were found and compared.
 fn made(fronts: &Fronts, names: &[&str]) -> String {
     let plan = &fronts.plan;
-    let over = plan
-        .dampers
-        .last()
-        .map(|(_, study)| retune_study::over(&study.objective(), study.scene.forcing.frequency.get()));
+    let over = plan.dampers.last().map(|(_, study)| pages::over(study));
     let mut text = format!(
         "Dampers: {}. E1max is the {}. Searches look at the samples of their studies and keep 1 % below a limit of stroke or force; from each place that \
          they come to, and from the best design under a bound under those beside it, the slope is followed down by exact derivatives, on four \
@@ -93,83 +87,72 @@ fn made(fronts: &Fronts, names: &[&str]) -> String {
     text
 }
 
+/// The first columns of a table along a bound.
+fn along(table: &Table, sweep: Sweep) -> Vec<Shown<'_>> {
+    let heading = format!("{} at most, {}", sweep.name(), sweep.unit());
+    vec![table.exact(&table.columns[0].name).called(heading), table.exact("damper")]
+}
+
 /// The table along a bound.
 fn table(fronts: &Fronts, sweep: Sweep) -> Block {
-    let (name, unit) = (sweep.name(), sweep.unit());
+    let (table, parameters) = (fronts.table(sweep), fronts.parameters());
     let is_checked = fronts.plan.check() != fronts.plan.said.samples;
-    let mut head = vec![format!("{name} at most, {unit}"), "damper".to_owned(), "E1max, J".to_owned()];
+    let mut columns = along(&table, sweep);
+    columns.push(table.show(Measure::Energy.name(), joule));
     if is_checked {
-        head.push(format!("on {} frequencies", fronts.plan.check()));
+        let heading = format!("on {} frequencies", fronts.plan.check());
+        columns.push(table.show("E1max_check", joule).called(heading));
     }
-    head.extend(["k2, N/m", "c2, N·s/m", "D, m", "C, m", "verdict"].map(str::to_owned));
-    let row = |row: Row| {
-        let mut cells = vec![row.bound.to_string(), fronts.name(row.damper).to_owned()];
+    columns.extend(parameters.iter().map(|parameter| table.show(parameter.symbol(), four).or("none")));
+    columns.push(table.exact("verdict"));
+    let (head, mut rows) = table.shown(&columns);
+    for (cells, row) in rows.iter_mut().zip(fronts.rows(sweep)) {
         match row.design {
             None => {
+                cells.truncate(2);
                 cells.push("none that was found keeps it".to_owned());
                 cells.resize(head.len(), String::new());
             }
-            Some(design) => {
-                cells.push(joule(design.e1_max));
-                if is_checked {
-                    let mark = if design.rises() { " ↑" } else { "" };
-                    cells.push(design.checked.map(|value| joule(value) + mark).unwrap_or_default());
-                }
-                cells.extend(design_cells(&design.at, 4));
-                cells.push(design.verdict.to_owned());
-            }
+            Some(design) if is_checked && design.rises() => cells[3] += " ↑",
+            Some(_) => {}
         }
-        cells
-    };
-    let rows = fronts.rows(sweep).into_iter().map(row).collect();
-    Block::Table(format!("The best design of each damper with {name} at most a bound."), head, rows)
+    }
+    Block::table(format!("The best design of each damper with {} at most a bound.", sweep.name()), head, rows)
 }
 
 /// What the designs of [`table`] need, beside no damper.
 fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
-    let (name, unit) = (sweep.name(), sweep.unit());
-    let mut head = vec![format!("{name} at most, {unit}"), "damper".to_owned()];
-    head.extend(["stroke, m".to_owned(), "contact force, N".to_owned()]);
-    head.extend(NEEDS.map(|measure| format!("{}, {}", measure.name(), measure.unit())));
-    let row = |row: Row| {
-        let design = row.design?;
-        let mut cells = vec![row.bound.to_string(), fronts.name(row.damper).to_owned()];
-        cells.extend([metre(design.stroke), format!("{:.0}", design.force)]);
-        cells.extend(
-            NEEDS.map(|measure| design.needs.map_or(String::new(), |all| rounded(all.value(measure), 4))),
-        );
-        Some(cells)
-    };
-    let mut rows: Vec<Vec<String>> = fronts.rows(sweep).into_iter().filter_map(row).collect();
+    let found = fronts.rows(sweep).into_iter().map(|row| row.design.is_some());
+    let table = fronts.table(sweep).only(found);
+    let mut columns = along(&table, sweep);
+    columns.push(table.show(Measure::Stroke.name(), metre));
+    let force = table.show(Measure::ContactForce.name(), |force| format!("{force:.0}"));
+    columns.push(force.called("contact force, N"));
+    columns.extend(NEEDS.map(|measure| table.show(measure.name(), four)));
+    let (head, mut rows) = table.shown(&columns);
     if let Some(none) = fronts.none {
         let mut cells = ["", "no damper", "", ""].map(str::to_owned).to_vec();
-        cells.extend(NEEDS.map(|measure| rounded(none.value(measure), 4)));
+        cells.extend(NEEDS.map(|measure| four(none.value(measure))));
         rows.push(cells);
     }
-    Block::Table(
-        "What they need and what the structure does: the largest from rest on.".to_owned(),
-        head,
-        rows,
-    )
+    Block::table("What they need and what the structure does: the largest from rest on.", head, rows)
 }
 
 /// The reasons of verdicts other than robust in [`table`], each once.
 fn reasons(fronts: &Fronts, sweep: Sweep) -> Option<Block> {
-    let (name, unit) = (sweep.name(), sweep.unit());
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     for Row { bound, damper, design, .. } in fronts.rows(sweep) {
         let Some(design) = design.filter(|design| !design.reason.is_empty() && !design.is_robust()) else {
             continue;
         };
-        let reason = format!("{} ({}): {}", fronts.name(damper), design_words(&design.at, 4), design.reason);
+        let reason = format!("{} ({}): {}", fronts.name(damper), words(fronts, design), design.reason);
         match said.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, bounds)) => bounds.push(bound.to_string()),
             None => said.push((reason, vec![bound.to_string()])),
         }
     }
-    let line = |(reason, bounds): (String, Vec<String>)| {
-        format!("{name} at most {} {unit}, {reason}.", bounds.join(", "))
-    };
+    let line =
+        |(reason, bounds): (String, Vec<String>)| format!("{}, {reason}.", at_most(sweep, bounds.join(", ")));
     (!said.is_empty()).then(|| Block::List(said.into_iter().map(line).collect()))
 }
 
@@ -196,64 +179,42 @@ pub(super) fn answer(fronts: &Fronts) -> Vec<String> {
 /// A damper beside the first along a bound.
 fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
     let (name, first) = (fronts.name(damper), fronts.name(0));
-    let (what, unit) = (sweep.name(), sweep.unit());
-    let rows = fronts.rows(sweep);
+    let what = sweep.name();
+    let rows: Vec<Row> = fronts.rows(sweep).into_iter().filter(|row| row.damper == damper).collect();
     let share = |row: &Row| Some(row.design?.e1_max / fronts.reference(row)?);
-    let own = || rows.iter().filter(|row| row.damper == damper);
-    let best =
-        own().filter_map(|row| Some((share(row)?, row))).min_by(|(one, _), (other, _)| one.total_cmp(other));
-    let better: Vec<String> = own()
-        .filter(|row| share(row).is_some_and(|share| share < 1.0 - SAME))
-        .map(|row| row.bound.to_string())
-        .collect();
+    let best = rows
+        .iter()
+        .filter_map(|row| Some((share(row)?, row)))
+        .min_by(|(one, _), (other, _)| one.total_cmp(other));
+    let bounds = |which: &dyn Fn(&Row) -> bool| {
+        let bounds = rows.iter().filter(|row| which(row)).map(|row| row.bound.to_string());
+        bounds.collect::<Vec<_>>().join(", ")
+    };
+    let of = |which: fn(&Candidate) -> bool| bounds(&|row| row.design.is_some_and(which));
     let mut words = match best {
         Some((gain, Row { bound, design: Some(design), .. })) if gain < 1.0 - SAME => format!(
-            "{what} at most {bound} {unit}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by \
-             more than 1 % for {what} at most {} {unit}.",
+            "{}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by more than 1 % for {}.",
+            at_most(sweep, bound),
             joule(design.e1_max),
             joule(design.e1_max / gain),
-            better.join(", ")
+            at_most(sweep, bounds(&|row| share(row).is_some_and(|share| share < 1.0 - SAME)))
         ),
         _ => format!("{what}: under no bound is the {name} better than the {first} by more than 1 %."),
     };
-    let alone: Vec<String> = own()
-        .filter(|row| row.design.is_some() && fronts.reference(row).is_none())
-        .map(|row| row.bound.to_string())
-        .collect();
-    if !alone.is_empty() {
-        words += &format!(" Only the {name} keeps {what} at most {} {unit}.", alone.join(", "));
-    }
-    let draws: Vec<String> = own()
-        .filter(|row| row.design.is_some_and(|design| design.verdict == "single chaotic realisation"))
-        .map(|row| row.bound.to_string())
-        .collect();
-    if !draws.is_empty() {
-        words += &format!(
-            " For {what} at most {} {unit} it is a single chaotic realisation: practically equal designs have much more or \
-             less.",
-            draws.join(", ")
-        );
-    }
-    let unsafe_ones: Vec<String> = own()
-        .filter(|row| row.design.is_some_and(super::Candidate::is_unsafe))
-        .map(|row| row.bound.to_string())
-        .collect();
-    if !unsafe_ones.is_empty() {
-        words += &format!(
-            " For {what} at most {} {unit} other starts than rest lead it to much more, and no design as good was found that is free of this.",
-            unsafe_ones.join(", ")
-        );
-    }
-    let idle: Vec<String> = own()
-        .filter(|row| row.design.is_some_and(|design| design.force == 0.0))
-        .map(|row| row.bound.to_string())
-        .collect();
-    if !idle.is_empty() {
-        words += &format!(
-            " For {what} at most {} {unit} the best {name} touches nothing: it has become a TMD.",
-            idle.join(", ")
-        );
-    }
+    let mut remark = |bounds: String, before: &str, after: &str| {
+        if !bounds.is_empty() {
+            words += &format!(" {before} {}{after}", at_most(sweep, bounds));
+        }
+    };
+    let alone = bounds(&|row| row.design.is_some() && fronts.reference(row).is_none());
+    remark(alone, &format!("Only the {name} keeps"), ".");
+    let after = " it is a single chaotic realisation: practically equal designs have much more or less.";
+    remark(of(|design| design.verdict == Verdict::SingleChaoticRealisation.name()), "For", after);
+    let after =
+        " other starts than rest lead it to much more, and no design as good was found that is free of this.";
+    remark(of(Candidate::is_unsafe), "For", after);
+    let after = format!(" the best {name} touches nothing: it has become a TMD.");
+    remark(of(|design| design.force == 0.0), "For", &after);
     words
 }
 
@@ -261,18 +222,27 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
     let Certified { sweep, bound, design, reference, certificate, .. } = one;
     let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
-    let words: Vec<String> =
+    let lines: Vec<String> =
         certificate.short().to_string().lines().map(|line| line.trim().to_owned()).collect();
     format!(
-        "{}, {} at most {bound} {}: {} with {} J (best {} under the same bound: {reference}). {}",
+        "{}, {}: {} with {} J (best {} under the same bound: {reference}). {}",
         fronts.name(design.damper),
-        sweep.name(),
-        sweep.unit(),
-        design_words(&design.at, 4),
+        at_most(*sweep, bound),
+        words(fronts, design),
         joule(design.e1_max),
         fronts.name(0),
-        words.join("; "),
+        lines.join("; "),
     )
+}
+
+/// A design in words, with what tables have columns for.
+fn words(fronts: &Fronts, design: &Candidate) -> String {
+    let shown = Design::try_from(design.at.only(&fronts.parameters())).unwrap_or(design.at);
+    design_words(&shown, 4)
+}
+
+fn four(value: f64) -> String {
+    rounded(value, 4)
 }
 
 fn joule(value: f64) -> String {

@@ -4,7 +4,7 @@
 
 use super::candidate::{CONTINUED, Candidate};
 use super::descents::Task;
-use super::designs::{Fronts, GIVEN};
+use super::designs::{Fronts, GIVEN, at_most};
 use super::refinement::Under;
 use crate::certify::judge;
 use crate::look::{finer, look};
@@ -31,11 +31,11 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
         let (_, study) = &fronts.plan.dampers[damper];
         if let Some(place) = study.scene.damper {
             let at = Design::of_varied(&place, study.varied());
-            fronts.given.extend(fronts.look(damper, at, GIVEN));
+            fronts.given.extend(fronts.candidate(damper, at, GIVEN));
         }
     }
     for (damper, at) in fronts.plan.designs.clone() {
-        fronts.designs.extend(fronts.look(damper, at, CONTINUED));
+        fronts.designs.extend(fronts.candidate(damper, at, CONTINUED));
     }
     for damper in 0..fronts.plan.dampers.len() {
         tasks.extend(fronts.tune(damper, searches, watch)?);
@@ -66,9 +66,8 @@ impl Fronts {
             let Under { sweep, bound, .. } = under;
             let found =
                 if value.is_nan() { "nothing that keeps it".to_owned() } else { format!("{value:.2} J") };
-            let (name, unit) = (self.name(damper), sweep.unit());
-            watch.log(&format!("{name}, {} at most {bound} {unit}: {found}", sweep.name()))?;
-            self.designs.extend(self.look(damper, best, CONTINUED));
+            watch.log(&format!("{}, {}: {found}", self.name(damper), at_most(sweep, bound)))?;
+            self.designs.extend(self.candidate(damper, best, CONTINUED));
             if self.is_steady(damper) {
                 continue;
             }
@@ -100,7 +99,7 @@ impl Fronts {
     }
 
     /// A design on the samples of the study of fronts; none where it cannot be run.
-    pub(super) fn look(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
+    pub(super) fn candidate(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
         let (_, study) = self.plan.dampers.get(damper)?;
         let found = look(&finer(study, self.plan.said.samples, &at)?)?;
         let [stroke, force] =

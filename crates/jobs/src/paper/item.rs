@@ -1,7 +1,7 @@
 //! A table or figure of the paper, reproduced: the paper's statements, our results, and a verdict on each statement.
 
-use crate::designs::quoted;
 use retune_report::Drawing;
+use retune_report::table::{Cell, line};
 use serde::{Deserialize, Serialize};
 
 /// The verdict on a statement.
@@ -83,9 +83,8 @@ impl Grid {
 
     /// The table as CSV.
     pub fn csv(&self) -> String {
-        let line =
-            |cells: &Vec<String>| cells.iter().map(|text| quoted(text)).collect::<Vec<_>>().join(",") + "\n";
-        std::iter::once(&self.head).chain(&self.rows).map(line).collect()
+        let texts = |cells: &Vec<String>| cells.iter().cloned().map(Cell::from).collect::<Vec<Cell>>();
+        std::iter::once(&self.head).chain(&self.rows).map(|cells| line(&texts(cells))).collect()
     }
 }
 

@@ -1,27 +1,24 @@
 //! The tables of `retention`, computed again: the designs, E1max along k1, the retention ranges, smaller forces.
 
-use super::anew::label;
 use super::curves::{ANEW, BANDS};
 use super::force::under;
-use super::range::{Still, Threshold, range};
-use super::tuned::{CURVES, DESIGNS, FORCES, Tuning, bare, energy, on_samples, over, still};
+use super::range::Criterion;
+use super::trade::Point;
+use super::tuned::{CURVES, DESIGNS, FORCES, Kept, Tuned, Tuning, bare, energy, label, on_samples, still};
 use crate::Error;
 use crate::again::{Numbers, Row, Source, each_row};
 use crate::resolved::Resolved;
 use retune_model::Design;
 use retune_study::Study;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The results in a directory.
 struct Results {
-    studies: Vec<(String, Study)>,
-    samples: Option<usize>,
     k1: Vec<f64>,
-    /// By the names of a damper and of its tuning.
-    designs: BTreeMap<(String, String), Option<Design>>,
-    /// By the name of a damper, what counts as half of its work; of the ranges alone.
-    thresholds: BTreeMap<String, (Threshold, Option<Still>)>,
+    /// With the designs that stand in their table.
+    dampers: Vec<Tuned>,
+    /// Of each damper what counts as half of its work; of the ranges alone.
+    criteria: Vec<Criterion>,
 }
 
 /// A row of one of the tables.
@@ -31,22 +28,30 @@ struct Results {
 pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
-    let studies = resolved.studies()?;
-    let threshold =
-        |(damper, study): &(String, Study)| Ok((damper.clone(), (Threshold::of(study)?, Still::of(study)?)));
-    let (row, thresholds): (fn(&Results, Row) -> Option<Numbers>, _) = match name {
-        DESIGNS => (Results::design, BTreeMap::new()),
-        CURVES => (Results::point, BTreeMap::new()),
-        FORCES => (Results::forced, BTreeMap::new()),
-        _ => (Results::range, studies.iter().map(threshold).collect::<Result<_, Error>>()?),
-    };
-    let mut designs = BTreeMap::new();
-    each_row(&place.join(DESIGNS), |_, row| {
-        let own = (row.text("damper").to_owned(), row.text("tuning").to_owned());
-        designs.entry(own).or_insert_with(|| row.design());
-    })?;
+    let k1: Vec<f64> = k1.unwrap_or_default();
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
-    let results = Results { thresholds, studies, samples, k1: k1.unwrap_or_default(), designs };
+    let tuned = |(name, study)| Tuned { name, study, samples, kept: Vec::new(), anew: Vec::new() };
+    let mut dampers: Vec<Tuned> = resolved.studies()?.into_iter().map(tuned).collect();
+    each_row(&place.join(DESIGNS), |_, row| {
+        let damper = dampers.iter_mut().find(|damper| damper.name == row.text("damper"));
+        let (Some(damper), Some(at)) = (damper, row.design()) else { return };
+        let (tuning, nominal) = (row.text("tuning"), damper.nominal());
+        let kept = Tuning::ALL.into_iter().find(|kept| match kept {
+            Tuning::Nominal => label(nominal) == tuning,
+            Tuning::Paper | Tuning::Robust => kept.name() == tuning,
+        });
+        damper.kept.extend(kept.map(|tuning| Kept { tuning, at }));
+        damper.anew.extend(k1.iter().filter(|k1| label(**k1) == tuning).map(|k1| (*k1, at)));
+    })?;
+    let row: fn(&Results, Row) -> Option<Numbers> = match name {
+        DESIGNS => Results::design,
+        CURVES => Results::point,
+        FORCES => Results::forced,
+        _ => Results::range,
+    };
+    let of_criteria = dampers.iter().filter(|_| ![DESIGNS, CURVES, FORCES].contains(&name));
+    let criteria = of_criteria.map(|damper| Criterion::of(&damper.study)).collect::<Result<_, _>>()?;
+    let results = Results { k1, dampers, criteria };
     Ok(Source::new(move |of| row(&results, of)))
 }
 
@@ -56,72 +61,53 @@ fn number(name: &str, found: Option<f64>) -> (String, f64) {
 }
 
 impl Results {
-    fn study(&self, row: Row) -> Option<&Study> {
-        self.studies.iter().find(|(name, _)| name == row.text("damper")).map(|(_, study)| study)
+    /// The damper of a row, with its number.
+    fn damper(&self, row: Row) -> Option<(usize, &Tuned)> {
+        self.dampers.iter().enumerate().find(|(_, damper)| damper.name == row.text("damper"))
     }
 
     /// E1max of a design for what it was tuned for.
     fn design(&self, row: Row) -> Option<Numbers> {
-        let (study, at) = (self.study(row)?, row.design()?);
-        let own = study.scene.primary.stiffness.get();
-        let tuning = row.text("tuning");
-        let found = if tuning == Tuning::Robust.name() {
-            energy(&over(study, &self.k1), self.samples, &at, own)
-        } else {
-            // The paper's design is taken at the study's own k1.
-            let k1 = self.k1.iter().copied().find(|k1| label(*k1) == tuning).unwrap_or(own);
-            energy(study, self.samples, &at, k1)
-        };
-        Some(vec![number("E1max", found)])
+        let ((_, damper), at) = (self.damper(row)?, row.design()?);
+        Some(vec![number("E1max", damper.energy_as_tuned(row.text("tuning"), &at, &self.k1))])
     }
 
     /// E1max of a point of a curve.
     fn point(&self, row: Row) -> Option<Numbers> {
-        let k1 = row.number("k1");
+        let (k1, tuning) = (row.number("k1"), row.text("tuning"));
         let banded = |study: &Study| match row.text("band") {
             band if band == BANDS[0] => Some(study.clone()),
             band if band == BANDS[1] => still(study),
             _ => None,
         };
-        let found = if row.text("tuning") == "none" {
-            bare(&banded(&self.studies.first()?.1)?, k1)
-        } else {
-            let at = self.at(row.text("damper"), row.text("tuning"), k1)?;
-            energy(&banded(self.study(row)?)?, self.samples, &at, k1)
-        };
-        Some(vec![number("E1max", found)])
-    }
-
-    /// The design of a curve at a stiffness, N/m.
-    fn at(&self, damper: &str, tuning: &str, k1: f64) -> Option<Design> {
-        let nominal = self.studies.iter().find(|(name, _)| name == damper)?.1.scene.primary.stiffness.get();
-        let tuning = match tuning {
-            ANEW => label(k1),
-            other if other == Tuning::Nominal.name() => label(nominal),
-            other => other.to_owned(),
-        };
-        *self.designs.get(&(damper.to_owned(), tuning))?
+        if tuning == "none" {
+            return Some(vec![number("E1max", bare(&banded(&self.dampers.first()?.study)?, k1))]);
+        }
+        let (_, damper) = self.damper(row)?;
+        let kept = |kept: &Kept| (kept.tuning.name() == tuning).then_some(kept.at);
+        let anew = |(own, at): &(f64, Design)| (tuning == ANEW && *own == k1).then_some(*at);
+        let at = damper.kept.iter().find_map(kept).or_else(|| damper.anew.iter().find_map(anew))?;
+        Some(vec![number("E1max", energy(&banded(&damper.study)?, damper.samples, &at, k1))])
     }
 
     /// E1max with the nominal design and without a damper under a force.
     fn forced(&self, row: Row) -> Option<Numbers> {
-        let at = self.at(row.text("damper"), Tuning::Nominal.name(), f64::NAN)?;
-        let found = under(self.study(row)?, self.samples, &at, row.text("gaps"), row.number("P"))?;
+        let (_, damper) = self.damper(row)?;
+        let at = damper.of(Tuning::Nominal)?;
+        let found = under(&damper.study, damper.samples, &at, row.text("gaps"), row.number("P"))?;
         Some(["E1max", "none"].map(str::to_owned).into_iter().zip(found).collect())
     }
 
     /// E1max and both ends of the ranges of a design, where it has one.
     fn range(&self, row: Row) -> Option<Numbers> {
-        let (study, at) = (self.study(row)?, row.design()?);
-        let own = study.scene.primary.stiffness.get();
-        let (threshold, still) = self.thresholds.get(row.text("damper"))?;
-        on_samples(study, self.samples, &at)?;
-        let found = range(study, self.samples, &at, threshold);
-        let kept = still.as_ref().and_then(|of| range(&of.study, self.samples, &at, &of.threshold));
-        let mut numbers = vec![number("E1max", energy(study, self.samples, &at, own))];
-        for (names, found) in [(["from", "to"], found), (["still_from", "still_to"], kept)] {
-            numbers.push(number(names[0], found.map(|of| of.from)));
-            numbers.push(number(names[1], found.map(|of| of.to)));
+        let (damper, at) = (self.damper(row)?, row.design()?);
+        on_samples(&damper.1.study, damper.1.samples, &at)?;
+        let point = Point::new(damper, None, at, self.criteria.get(damper.0)?);
+        let e1_max = Some(point.e1_max).filter(|value| !value.is_nan());
+        let mut numbers = vec![number("E1max", e1_max)];
+        for (names, range) in [(["from", "to"], point.range), (["still_from", "still_to"], point.still)] {
+            numbers.push(number(names[0], range.map(|of| of.from)));
+            numbers.push(number(names[1], range.map(|of| of.to)));
         }
         Some(numbers)
     }

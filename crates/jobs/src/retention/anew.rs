@@ -1,18 +1,14 @@
 //! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
-use super::tuned::{Kept, Tuned, Tuning, energy, over};
+use super::tuned::{Kept, Tuned, Tuning, energy, label, over};
 use crate::designs::Row;
 use crate::fronts::SAME;
+use crate::pages::over as over_band;
 use crate::searches::Searches;
 use crate::tune::{Found, Optimum};
 use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
-use retune_study::{self as study, PaperStudy, Setting, SpringBounds, Study, Table2, short};
-
-/// The label of a design that is tuned for a stiffness, N/m.
-pub fn label(k1: f64) -> String {
-    format!("k1 = {k1}")
-}
+use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
 
 /// Tunes one damper for the stiffness of its study, then for each of `others`, upwards from there, then downwards, and last for the worst
 /// over all of them. The rows say what each search found.
@@ -34,11 +30,11 @@ pub(super) fn tune(
         let natural = short(study.scene.primary.natural_frequency());
         watch.log(&format!(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
-            study::over(&study.objective(), study.scene.forcing.frequency.get())
+            over_band(&study)
         ))?;
         let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches, watch)?;
         rows.push((k1, Row::of_optimum(&label(k1), name, &study, &optimum)));
-        Ok(optimum.found().damper.design)
+        Ok(optimum.found().damper.design_of(study.varied()))
     };
     let first = at(nominal, None)?;
     let mut designs = vec![(nominal, first)];
@@ -64,13 +60,10 @@ pub(super) fn tune(
     kept.push(Kept { tuning: Tuning::Nominal, at: first });
     if designs.len() > 1 {
         let study = robust(study, &designs)?;
-        watch.log(&format!(
-            "\n{name} for all k1, {}",
-            study::over(&study.objective(), study.scene.forcing.frequency.get())
-        ))?;
+        watch.log(&format!("\n{name} for all k1, {}", over_band(&study)))?;
         let optimum = searched(study.clone(), said.samples, Tuning::Robust.name(), searches, watch)?;
         rows.push(Row::of_optimum(Tuning::Robust.name(), name, &study, &optimum));
-        kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design });
+        kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design_of(study.varied()) });
     }
     let tuned =
         Tuned { name: name.clone(), study: study.clone(), samples: said.samples, kept, anew: designs };
@@ -91,12 +84,13 @@ fn searched(
     let Found { damper, e1_max } = optimum.found();
     let own = study.scene.primary.stiffness.get();
     let rises = |again: f64| again > (1.0 + SAME) * e1_max;
-    if !energy(&study, samples, &damper.design, own).is_some_and(rises) {
+    let at = damper.design_of(study.varied());
+    if !energy(&study, samples, &at, own).is_some_and(rises) {
         return Ok(optimum);
     }
     if let Some(optimize) = &mut study.optimize {
         (optimize.global, optimize.surf) = (None, None);
-        optimize.starts = vec![damper.design.only(&optimize.vary)];
+        optimize.starts = vec![at.only(&optimize.vary)];
         if let Some(band) = &mut optimize.objective.omega {
             band.samples = samples.unwrap_or(band.samples);
         }

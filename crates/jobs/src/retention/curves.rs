@@ -1,8 +1,11 @@
 //! E1max along k1, with its cliffs: where neighbouring values differ, more stiffnesses are looked at between them, until a jump is narrow.
 
-use super::range::Still;
+use super::range::Criterion;
 use super::tuned::{Kept, Tuned, Tuning, bare, energy};
+use crate::columns;
 use rayon::prelude::*;
+use retune_report::cells;
+use retune_report::table::{Cell, Table};
 use retune_study::Study;
 
 /// Number of equidistant stiffnesses that are looked at first, besides those that were tuned for.
@@ -59,7 +62,7 @@ impl Curve {
 
 /// All curves: without a damper, by the study of the first; then of each damper those that are kept and that which is tuned anew; last those
 /// of the designs that are kept with bands that stay where they are.
-pub fn curves(dampers: &[Tuned], stills: &[Option<Still>]) -> Vec<Curve> {
+pub fn curves(dampers: &[Tuned], criteria: &[Criterion]) -> Vec<Curve> {
     let stops: Vec<f64> = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1)).collect();
     let mut all = Vec::new();
     let stops = &stops;
@@ -81,9 +84,10 @@ pub fn curves(dampers: &[Tuned], stills: &[Option<Still>]) -> Vec<Curve> {
         let points = damper.anew.par_iter().map(|(k1, at)| (*k1, damper.energy(at, *k1))).collect();
         all.push(Curve { damper: Some(number), tuning: None, still: false, points });
     }
-    all.extend(stills.first().and_then(Option::as_ref).map(|first| none(&first.study, true)));
-    for (number, still) in stills.iter().enumerate() {
-        all.extend(still.iter().flat_map(|still| kept(number, &still.study, true)));
+    let stills = || criteria.iter().map(|criterion| criterion.still.as_ref());
+    all.extend(stills().next().flatten().map(|first| none(&first.study, true)));
+    for (number, still) in stills().enumerate() {
+        all.extend(still.into_iter().flat_map(|still| kept(number, &still.study, true)));
     }
     all
 }
@@ -121,18 +125,16 @@ fn jump(pair: &[(f64, f64)]) -> Option<(f64, f64)> {
 }
 
 /// A row for each point of each curve; what has no value is an empty field.
-pub fn csv(dampers: &[Tuned], curves: &[Curve]) -> String {
-    let mut text = "damper,tuning,band,k1,E1max\n".to_owned();
+pub fn table(dampers: &[Tuned], curves: &[Curve]) -> Table {
+    let mut table = columns::table(&["damper", "tuning", "band", "k1", "E1max"]);
     for curve in curves {
         let name = curve.damper.and_then(|number| dampers.get(number)).map_or("none", |damper| &damper.name);
-        let name = crate::designs::quoted(name);
-        for (k1, value) in &curve.points {
-            let value = if value.is_finite() { value.to_string() } else { String::new() };
+        for &(k1, value) in &curve.points {
             let band = BANDS[usize::from(curve.still)];
-            text += &format!("{name},{},{band},{k1},{value}\n", curve.tuning_name());
+            table.push(cells![name, curve.tuning_name(), band, k1, Cell::finite(value)]);
         }
     }
-    text
+    table
 }
 
 #[cfg(test)]

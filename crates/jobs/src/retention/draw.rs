@@ -1,10 +1,12 @@
-//! The figures of `retention`: E1max along k1, the re-tuned designs, and the least E1max against the retention range.
+//! The figures of `retention`: E1max along k1, the re-tuned designs, the least E1max against the retention range, smaller forces.
 
+use super::force::Forced;
 use super::retained::Retained;
-use super::trade::{Point, front};
+use super::trade::Point;
 use super::tuned::{Tuned, Tuning};
-use crate::caption::{made_by, words};
-use retune_model::Design;
+use crate::columns::{column, of_designs, symbols};
+use crate::pages::{figure, made_by};
+use retune_model::{Design, Parameter};
 use retune_report::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILION};
 use retune_report::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
@@ -32,8 +34,8 @@ const fn line(tuning: Tuning) -> Stroke {
 }
 
 /// E1max against k1: a chart for each damper; with the band of each structure, or with that of the nominal k1.
-pub(super) fn retention(retained: &Retained, shown: &[usize], still: bool) -> Drawing {
-    let Retained { dampers, thresholds, .. } = retained;
+pub(super) fn retention(retained: &Retained, still: bool) -> Drawing {
+    let shown = retained.shown();
     let curves = || retained.curves.iter().filter(move |curve| curve.still == still);
     let values = curves().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
     let energies = Axis::around("worst E1max, J", Scale::Log, values);
@@ -42,11 +44,11 @@ pub(super) fn retention(retained: &Retained, shown: &[usize], still: bool) -> Dr
     let k1 = || none.iter().map(|(k1, _)| *k1);
     let mut above: Vec<String> = Vec::new();
     let mut chart = |&number: &usize| {
-        let damper = &dampers[number];
+        let damper = &retained.dampers[number];
         let mut layers = vec![Layer::Line { points: none.clone(), stroke: NONE }];
-        if let (Some(threshold), false) = (thresholds.get(number), still) {
-            layers
-                .push(Layer::Line { points: k1().map(|k1| (k1, threshold.at(k1))).collect(), stroke: HALF });
+        if let (Some(criterion), false) = (retained.criteria.get(number), still) {
+            let points = k1().map(|k1| (k1, criterion.threshold.at(k1))).collect();
+            layers.push(Layer::Line { points, stroke: HALF });
         }
         for curve in curves().filter(|curve| curve.damper == Some(number)) {
             let points = curve.points.clone();
@@ -61,13 +63,8 @@ pub(super) fn retention(retained: &Retained, shown: &[usize], still: bool) -> Dr
             above.push(format!("{} at {}", damper.name, k1.join(" and ")));
             layers.push(Layer::Marks { points: higher, mark: ABOVE });
         }
-        Chart {
-            title: damper.name.clone(),
-            x: Axis::linear("k1, N/m", ends(k1())),
-            y: energies.clone(),
-            layers,
-            height: 170.0,
-        }
+        let chart = Chart::of(along_k1(k1()), energies.clone(), layers, 170.0);
+        Chart { title: damper.name.clone(), ..chart }
     };
     let charts: Vec<Chart> = shown.iter().map(&mut chart).collect();
     let mut legend = vec![(Key::Line(NONE), "no damper".to_owned())];
@@ -80,10 +77,10 @@ pub(super) fn retention(retained: &Retained, shown: &[usize], still: bool) -> Dr
             legend.push((Key::Line(line(tuning)), tuning.name().to_owned()));
         }
     }
-    let mut caption = Vec::new();
     if !still {
         legend.push((Key::Mark(ANEW), "re-tuned for each k1".to_owned()));
     }
+    let mut caption = Vec::new();
     if !above.is_empty() {
         legend.push((Key::Mark(ABOVE), "re-tuned above nominal".to_owned()));
         caption.push(format!(
@@ -91,21 +88,14 @@ pub(super) fn retention(retained: &Retained, shown: &[usize], still: bool) -> Dr
             above.join("; ")
         ));
     }
-    caption.push(made_by(dampers.first().map(|damper| &damper.study)));
     let band = if still { "the band of the nominal k1" } else { "each structure's own band" };
-    drawing(&Sheet {
-        title: "How long a tuning lasts".to_owned(),
-        description: format!(
-            "E1max, worst over {band}, against the stiffness k1 of the structure, a chart for each damper: {}.",
-            words(&legend)
-        ),
-        width: if charts.len() > 1 { Width::Page } else { Width::Column },
-        columns: charts.len().min(2),
-        charts,
-        stacked: false,
-        legend,
-        caption,
-    })
+    let description = format!(
+        "E1max, worst over {band}, against the stiffness k1 of the structure, a chart for each damper"
+    );
+    let width = if charts.len() > 1 { Width::Page } else { Width::Column };
+    let columns = charts.len().min(2);
+    let sheet = Sheet::of("How long a tuning lasts", charts);
+    figure(Sheet { description, width, columns, legend, caption, ..sheet }, retained.study())
 }
 
 /// Where tuning anew gives more than the nominal design keeps, as only a bound that follows k1 can make it: k1 and E1max of the re-tuned one.
@@ -116,79 +106,68 @@ fn above_nominal(damper: &Tuned) -> Vec<(f64, f64)> {
     all.filter(|(_, anew, kept)| *anew > (1.0 + MORE) * kept).map(|(k1, anew, _)| (k1, anew)).collect()
 }
 
-/// k2, c2, D and C of the re-tuned designs against k1.
-pub(super) fn path(retained: &Retained, shown: &[usize]) -> Drawing {
-    let dampers: Vec<(usize, &Tuned)> =
-        shown.iter().map(|&number| (number, &retained.dampers[number])).collect();
-    const LABELS: [&str; 4] = ["k2, N/m", "c2, N·s/m", "D, m", "C, m"];
-    let chart = |which: usize| {
-        let value = |damper: &Tuned| -> Vec<(f64, f64)> {
-            damper.anew.iter().map(|(k1, at)| (*k1, at.values()[which])).collect()
+/// k2, c2, D, C and what else is varied of the re-tuned designs against k1.
+pub(super) fn path(retained: &Retained) -> Drawing {
+    let shown = retained.shown();
+    let dampers = || shown.iter().map(|&number| (number, &retained.dampers[number]));
+    let parameters = of_designs(dampers().flat_map(|(_, damper)| damper.anew.iter().map(|(_, at)| at)));
+    let chart = |&variable: &Parameter| {
+        let points = |damper: &Tuned| -> Vec<(f64, f64)> {
+            damper.anew.iter().map(|(k1, at)| (*k1, at.get(variable))).collect()
         };
-        let top =
-            dampers.iter().flat_map(|(_, damper)| value(damper)).map(|(_, value)| value).fold(0.0, f64::max);
-        let layers = dampers.iter().flat_map(|(i, damper)| {
-            let (stroke, mark) = looks(*i);
-            let points = value(damper);
+        let mut layers = Vec::new();
+        for (number, damper) in dampers() {
+            let (stroke, mark) = style(number);
             // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
-            let line = (which < 2).then(|| Layer::Line { points: points.clone(), stroke });
-            line.into_iter().chain([Layer::Marks { points, mark }])
-        });
-        let k1 = dampers.iter().flat_map(|(_, damper)| damper.anew.iter().map(|(k1, _)| *k1));
-        Chart {
-            title: String::new(),
-            x: Axis::linear("k1, N/m", ends(k1)),
-            y: Axis::linear(LABELS[which], (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
-            layers: layers.collect(),
-            height: 120.0,
+            if !variable.is_gap() {
+                layers.push(Layer::Line { points: points(damper), stroke });
+            }
+            layers.push(Layer::Marks { points: points(damper), mark });
         }
+        let all = || dampers().flat_map(|(_, damper)| points(damper));
+        let y = Axis::from_zero(column(variable.symbol()).heading(), all().map(|(_, value)| value));
+        Chart::of(along_k1(all().map(|(k1, _)| k1)), y, layers, 120.0)
     };
-    let key = |(i, damper): &(usize, &Tuned)| {
-        let (stroke, mark) = looks(*i);
+    let key = |(number, damper): (usize, &Tuned)| {
+        let (stroke, mark) = style(number);
         (Key::Marked(stroke, mark), damper.name.clone())
     };
-    drawing(&Sheet {
-        title: "The re-tuned designs".to_owned(),
-        description: "k2, c2, D and C of each damper, tuned anew for each stiffness k1 of the structure."
-            .to_owned(),
-        width: Width::Page,
-        charts: (0..4).map(chart).collect(),
-        columns: 2,
-        stacked: false,
-        legend: dampers.iter().map(key).collect(),
-        caption: vec![made_by(retained.dampers.first().map(|damper| &damper.study))],
-    })
+    let names = symbols(&parameters);
+    let (last, first) = names.split_last().unwrap_or((&"", &[]));
+    let description = format!(
+        "{} and {last} of each damper, tuned anew for each stiffness k1 of the structure.",
+        first.join(", ")
+    );
+    let (legend, caption) = (dampers().map(key).collect(), vec![made_by(retained.study())]);
+    let sheet = Sheet::of("The re-tuned designs", parameters.iter().map(chart).collect());
+    drawing(&Sheet { description, width: Width::Page, columns: 2, legend, caption, ..sheet })
 }
 
 /// The least E1max at the nominal stiffness against the width of the retention range: the front of each damper as a line.
-pub(super) fn range(retained: &Retained, shown: &[usize]) -> Drawing {
-    let dampers = &retained.dampers;
-    let points: Vec<&Point> = retained.points.iter().filter(|point| shown.contains(&point.damper)).collect();
-    let own = |(tuning, point): &&(&'static str, Point)| {
-        let is_paper = *tuning == Tuning::Paper.name();
-        shown.contains(&point.damper) && (!is_paper || retained.is_new(point.damper, Tuning::Paper))
-    };
-    let kept: Vec<&(&'static str, Point)> = retained.kept.iter().filter(own).collect();
+pub(super) fn range(retained: &Retained) -> Drawing {
     const DOMINATED: Mark = Mark::new(Shape::Disc, GREY, 2.5);
+    let (shown, kept) = (retained.shown(), retained.shown_kept());
+    let points: Vec<&Point> = retained.points.iter().filter(|point| shown.contains(&point.damper)).collect();
     let at = |point: &Point| (point.factor(), point.e1_max);
-    let mut layers = Vec::new();
-    let mut legend = Vec::new();
-    let fronts: Vec<Vec<&Point>> = (0..dampers.len()).map(|damper| front(&retained.points, damper)).collect();
-    let dominated =
-        points.iter().filter(|point| !fronts[point.damper].iter().any(|other| other.at == point.at));
-    let dominated: Vec<(f64, f64)> = dominated.map(|point| at(point)).collect();
+    let fronts: Vec<(usize, Vec<&Point>)> =
+        shown.iter().map(|&damper| (damper, retained.front(damper))).collect();
+    let is_front = |point: &Point| {
+        fronts
+            .iter()
+            .any(|(damper, front)| *damper == point.damper && front.iter().any(|other| other.at == point.at))
+    };
+    let dominated: Vec<(f64, f64)> =
+        points.iter().filter(|point| !is_front(point)).map(|point| at(point)).collect();
     let any_dominated = !dominated.is_empty();
-    layers.push(Layer::Marks { points: dominated, mark: DOMINATED });
-    for (i, (damper, front)) in dampers.iter().zip(&fronts).enumerate() {
-        if front.is_empty() || !shown.contains(&i) {
-            continue;
-        }
-        let (stroke, mark) = looks(i);
-        let mark = Mark { size: 3.0, ..mark };
+    let mut layers = vec![Layer::Marks { points: dominated, mark: DOMINATED }];
+    let mut legend = Vec::new();
+    for (damper, front) in fronts.iter().filter(|(_, front)| !front.is_empty()) {
+        let (stroke, mark) = style(*damper);
         let points: Vec<(f64, f64)> = front.iter().map(|point| at(point)).collect();
         layers.push(Layer::Line { points: points.clone(), stroke });
-        layers.push(Layer::Marks { points, mark });
-        legend.push((Key::Marked(stroke, mark), damper.name.clone()));
+        let small = Mark { size: 3.0, ..mark };
+        layers.push(Layer::Marks { points, mark: small });
+        legend.push((Key::Marked(stroke, small), retained.name(*damper).to_owned()));
     }
     for tuning in Tuning::ALL {
         let shape = match tuning {
@@ -197,68 +176,71 @@ pub(super) fn range(retained: &Retained, shown: &[usize]) -> Drawing {
             Tuning::Robust => Shape::Frame,
         };
         let mark = |colour| Mark { rim: true, ..Mark::new(shape, colour, 7.0) };
-        let own: Vec<&Point> = kept
-            .iter()
-            .filter(|(name, point)| *name == tuning.name() && point.range.is_some())
-            .map(|(_, point)| point)
-            .collect();
-        if !own.is_empty() {
+        let own = || kept.iter().filter(|point| point.tuning == Some(tuning) && point.range.is_some());
+        if own().next().is_some() {
             legend.push((Key::Mark(mark(BLACK)), tuning.name().to_owned()));
         }
-        for point in own {
+        layers.extend(own().map(|point| {
             let (colour, _) = DAMPERS[point.damper % DAMPERS.len()];
-            layers.push(Layer::Marks { points: vec![at(point)], mark: mark(colour) });
-        }
+            Layer::Marks { points: vec![at(point)], mark: mark(colour) }
+        }));
     }
     if any_dominated {
         legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
     }
-    let all = || {
-        points
-            .iter()
-            .copied()
-            .chain(kept.iter().map(|(_, point)| point))
-            .filter(|point| point.range.is_some())
-    };
+    let all = || points.iter().chain(&kept).filter(|point| point.range.is_some());
     let right = all().map(|point| point.factor()).fold(0.0, f64::max);
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::linear(
-            "factor by which k1 may rise and fall",
-            (1.0, if right > 1.0 { 1.0 + 1.05 * (right - 1.0) } else { 2.0 }),
-        ),
-        y: Axis::around("E1max at the nominal k1, J", Scale::Linear, all().map(|point| point.e1_max)),
-        layers,
-        height: 190.0,
+    let right = if right > 1.0 { 1.0 + 1.05 * (right - 1.0) } else { 2.0 };
+    let x = Axis::linear("factor by which k1 may rise and fall", (1.0, right));
+    let y = Axis::around("E1max at the nominal k1, J", Scale::Linear, all().map(|point| point.e1_max));
+    let description = "E1max at the nominal stiffness against the factor by which k1 may rise and fall while a design keeps half of the reduction, \
+                       in decibels, that tuning anew would give"
+        .to_owned();
+    let chart = Chart::of(x, y, layers, 190.0);
+    let sheet = Sheet::of("The least E1max against the retention range", vec![chart]);
+    figure(Sheet { description, legend, ..sheet }, retained.study())
+}
+
+/// E1max of the nominal designs as a share of that without a damper, against the force.
+pub(super) fn force(retained: &Retained) -> Drawing {
+    let shown = retained.shown();
+    let all = || retained.forced.iter().filter(|of| shown.contains(&of.damper));
+    let points = |of: &Forced| -> Vec<(f64, f64)> {
+        (0..of.points.len()).map(|step| (of.points[step].0, of.share(step))).collect()
     };
-    drawing(&Sheet {
-        title: "The least E1max against the retention range".to_owned(),
-        description: format!(
-            "E1max at the nominal stiffness against the factor by which k1 may rise and fall while a design keeps half of the reduction, \
-             in decibels, that tuning anew would give: {}.",
-            words(&legend)
-        ),
-        width: Width::Column,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
-        legend,
-        caption: vec![made_by(dampers.first().map(|damper| &damper.study))],
-    })
+    let stroke = |of: &Forced| {
+        let (stroke, _) = style(of.damper);
+        if of.proportional { Stroke { dash: Dash::Short, ..stroke } } else { stroke }
+    };
+    let top = all().flat_map(points).map(|(_, share)| share).fold(0.0, f64::max);
+    let right = all().flat_map(points).map(|(force, _)| force).fold(0.0, f64::max);
+    let key = |of: &Forced| {
+        let gaps = if of.proportional { ", D and C in proportion to P" } else { "" };
+        (Key::Line(stroke(of)), format!("{}{gaps}", retained.name(of.damper)))
+    };
+    let legend = all().map(key).collect();
+    let x = Axis::linear("P, N", (0.0, if right > 0.0 { 1.03 * right } else { 1.0 }));
+    let y = Axis::linear("E1max / without a damper", (0.0, if top > 0.0 { 1.08 * top } else { 1.0 }));
+    let layers = all().map(|of| Layer::Line { points: points(of), stroke: stroke(of) }).collect();
+    let description = "The worst E1max of the nominal designs at the nominal k1, as a share of that without a damper, against the amplitude P of the force"
+        .to_owned();
+    let sheet = Sheet::of("What a smaller force leaves of a tuning", vec![Chart::of(x, y, layers, 170.0)]);
+    figure(Sheet { description, legend, ..sheet }, retained.study())
 }
 
 /// The line and the mark of a damper.
-pub(super) fn looks(damper: usize) -> (Stroke, Mark) {
+fn style(damper: usize) -> (Stroke, Mark) {
     let (colour, shape) = DAMPERS[damper % DAMPERS.len()];
     (Stroke::solid(colour), Mark::new(shape, colour, 4.0))
 }
 
-/// The range of some stiffnesses, a little wider, so that marks at its ends are whole.
-fn ends(k1: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+/// An axis of some stiffnesses, a little wider, so that marks at its ends are whole.
+fn along_k1(k1: impl Iterator<Item = f64> + Clone) -> Axis {
     let (low, high) = (k1.clone().fold(f64::INFINITY, f64::min), k1.fold(0.0, f64::max));
-    if low < high {
+    let ends = if low < high {
         (low - 0.02 * (high - low), high + 0.02 * (high - low))
     } else {
         (0.9 * high, 1.1 * high)
-    }
+    };
+    Axis::linear("k1, N/m", ends)
 }

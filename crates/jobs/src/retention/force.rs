@@ -2,9 +2,11 @@
 //! one with gaps is tuned for a force, unless they are in proportion to it.
 
 use super::tuned::{Tuned, Tuning, bare, energy};
-use crate::designs::quoted;
+use crate::columns;
 use rayon::prelude::*;
-use retune_model::{Design, Parameter};
+use retune_model::{Design, Measure, Parameter};
+use retune_report::cells;
+use retune_report::table::{Column, Table};
 use retune_study::{Setting, Study};
 
 /// Forces below that of the study, each the fourth root of a half of the one before: down to an eighth.
@@ -76,15 +78,16 @@ pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, for
 }
 
 /// A row for each force.
-pub fn csv(dampers: &[Tuned], all: &[Forced]) -> String {
-    let mut text = "damper,gaps,P,E1max,none\n".to_owned();
+pub fn table(dampers: &[Tuned], all: &[Forced]) -> Table {
+    let mut table = columns::table(&["damper", "gaps", "P", "E1max"]);
+    table.columns.push(Column::new("none", Measure::Energy.unit()));
     for of in all {
-        let (name, gaps) = (quoted(&dampers[of.damper].name), GAPS[usize::from(of.proportional)]);
-        for (force, [with, without]) in
-            of.points.iter().filter(|(_, pair)| pair.iter().all(|e| e.is_finite()))
-        {
-            text += &format!("{name},{gaps},{force},{with},{without}\n");
+        let (name, gaps) = (dampers[of.damper].name.as_str(), GAPS[usize::from(of.proportional)]);
+        for &(force, [with, without]) in &of.points {
+            if with.is_finite() && without.is_finite() {
+                table.push(cells![name, gaps, force, with, without]);
+            }
         }
     }
-    text
+    table
 }

@@ -3,8 +3,8 @@
 
 use super::curves::Curve;
 use super::force::{Forced, HALF};
-use super::retained::Retained;
-use super::trade::{Point, front};
+use super::retained::{EQUAL, Retained};
+use super::trade::Point;
 use super::tuned::{Tuned, Tuning};
 use crate::fronts::SAME;
 use retune_model::Parameter;
@@ -12,56 +12,32 @@ use retune_study::{design_words, rounded, short};
 
 /// The answer: what the title asks first, then a line for each damper.
 pub(super) fn answer(retained: &Retained) -> Vec<String> {
-    let shown = shown(retained);
+    let shown = retained.shown();
     let first = [home(retained, &shown), robust(retained, &shown), smaller_force(retained, &shown)];
     let mut words: Vec<String> = first.into_iter().flatten().collect();
     words.extend(shown.iter().map(|&damper| one(retained, damper)));
-    words.extend(same(retained).into_iter().map(|(damper, other)| {
+    words.extend(retained.same().into_iter().map(|(damper, other)| {
         format!(
             "{}: every tuning ends at E1max of the {} within {} %, so that one stands for both on this page.",
-            retained.dampers[damper].name,
-            retained.dampers[other].name,
+            retained.name(damper),
+            retained.name(other),
             100.0 * EQUAL
         )
     }));
     words
 }
 
-/// Dampers are one if E1max of all their tunings differs by no more than this share.
-const EQUAL: f64 = 1e-3;
-
-/// The dampers whose tunings all end where those of a later one do, with it.
-fn same(retained: &Retained) -> Vec<(usize, usize)> {
-    let energies = |damper: usize| -> Vec<f64> {
-        let rows = retained.table.rows.iter().filter(|row| row.damper == retained.dampers[damper].name);
-        rows.filter(|row| row.label != Tuning::Paper.name()).map(|row| row.e1_max).collect()
-    };
-    let equal = |one: usize, other: usize| {
-        let (one, other) = (energies(one), energies(other));
-        one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a / b - 1.0).abs() <= EQUAL)
-    };
-    let count = retained.dampers.len();
-    let later = |damper: usize| (damper + 1..count).find(|other| equal(damper, *other));
-    (0..count).filter_map(|damper| Some((damper, later(damper)?))).collect()
-}
-
-/// The dampers of the page: all but those that are another one.
-pub(super) fn shown(retained: &Retained) -> Vec<usize> {
-    let same = same(retained);
-    (0..retained.dampers.len()).filter(|damper| same.iter().all(|(one, _)| one != damper)).collect()
-}
-
 /// The retention ranges at equal performance at home: that of the nominal design which has the most E1max there among those that do their
 /// work.
 fn home(retained: &Retained, shown: &[usize]) -> Option<String> {
     let nominal = |damper: &usize| {
-        let is_it = |(name, point): &&(_, Point)| point.damper == *damper && *name == Tuning::Nominal.name();
-        retained.kept.iter().find(is_it).map(|(_, point)| point).filter(|point| point.range.is_some())
+        let is_it = |point: &&Point| point.damper == *damper && point.tuning == Some(Tuning::Nominal);
+        retained.kept.iter().find(is_it).filter(|point| point.range.is_some())
     };
     let home = shown.iter().filter_map(nominal).map(|point| point.e1_max).reduce(f64::max)?;
     let widest = |damper: &usize| {
         let as_good = |point: &&Point| point.e1_max <= (1.0 + SAME) * home;
-        front(&retained.points, *damper).into_iter().rfind(as_good)
+        retained.front(*damper).into_iter().rfind(as_good)
     };
     let mut all: Vec<&Point> = shown.iter().filter_map(widest).collect();
     all.sort_by(|a, b| b.factor().total_cmp(&a.factor()));
@@ -69,7 +45,7 @@ fn home(retained: &Retained, shown: &[usize]) -> Option<String> {
     let none: Vec<&str> = shown
         .iter()
         .filter(|damper| all.iter().all(|point| point.damper != **damper))
-        .map(|damper| retained.dampers[*damper].name.as_str())
+        .map(|damper| retained.name(*damper))
         .collect();
     let none = if none.is_empty() {
         String::new()
@@ -94,7 +70,7 @@ fn keeps(retained: &Retained, point: &Point) -> String {
     format!(
         "{}: {} ({} J, {}{still})",
         rounded(point.factor(), 3),
-        retained.dampers[point.damper].name,
+        retained.name(point.damper),
         rounded(point.e1_max, 4),
         design_words(&point.at, 4)
     )
@@ -132,7 +108,7 @@ fn robust(retained: &Retained, shown: &[usize]) -> Option<String> {
 
 /// What halving the force does to the nominal designs.
 fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
-    let name = |of: &Forced| retained.dampers[of.damper].name.as_str();
+    let name = |of: &Forced| retained.name(of.damper);
     let words = retained.forced.iter().filter(|of| shown.contains(&of.damper)).map(|of| {
         if of.is_constant() {
             return format!("{} {} under any force", name(of), rounded(of.share(0), 3));
@@ -168,22 +144,16 @@ fn one(retained: &Retained, number: usize) -> String {
         retained.curves.iter().find(own).and_then(Curve::worst)
     };
     let mut words = format!("{}: ", damper.name);
-    if let (Some((k1, kept)), Some(at)) = (worst(Some(Tuning::Nominal)), damper.of(Tuning::Nominal)) {
-        words += &format!(
-            "tuned for k1 = {} N/m it has {} J there and at worst {} J, at {} N/m",
-            short(nominal),
-            joule(damper.energy(&at, nominal)),
-            joule(kept),
-            rounded(k1, 4)
-        );
-    }
-    if let (Some((k1, robust)), Some(at)) = (worst(Some(Tuning::Robust)), damper.of(Tuning::Robust)) {
-        words += &format!(
-            "; k1-robust it has {} J there and at worst {} J, at {} N/m",
-            joule(damper.energy(&at, nominal)),
-            joule(robust),
-            rounded(k1, 4)
-        );
+    let tuned = format!("tuned for k1 = {} N/m it has", short(nominal));
+    for (tuning, begin) in [(Tuning::Nominal, tuned.as_str()), (Tuning::Robust, "; k1-robust it has")] {
+        if let (Some((k1, most)), Some(at)) = (worst(Some(tuning)), damper.of(tuning)) {
+            words += &format!(
+                "{begin} {} J there and at worst {} J, at {} N/m",
+                joule(damper.energy(&at, nominal)),
+                joule(most),
+                rounded(k1, 4)
+            );
+        }
     }
     if let Some((_, anew)) = worst(None) {
         words += &format!("; re-tuned for each k1 at most {} J", joule(anew));

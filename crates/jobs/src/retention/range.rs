@@ -1,10 +1,10 @@
 //! The retention range: the stiffnesses k1 about the nominal one at which a design still does half of what tuning anew would do.
 //!
 //! The reduction of a damper is counted in decibels, `10 lg(E1max without / E1max with)`, each the worst over the structure's own band. A
-//! design does its work at a k1 if its reduction is at least half of that of the best TMD of the same mass for that k1, with k2 and c2
-//! free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
+//! design does its work at a k1 if its reduction is at least half of that of the best TMD for that k1, with the mass of the damper in the
+//! study, k2 and c2 free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
 
-use super::tuned::{on_samples, still};
+use super::tuned::{on_samples, still as still_band};
 use crate::Error;
 use rayon::prelude::*;
 use retune_model::{Bare, Coupled, Damper, Design, Parameter, Scene, den_hartog};
@@ -117,6 +117,26 @@ impl Threshold {
     }
 }
 
+/// What a design must keep to do its work, of one study.
+#[derive(Debug)]
+pub struct Criterion {
+    /// The least reduction that counts.
+    pub threshold: Threshold,
+    /// The same where the band of frequencies stays as it is at the nominal stiffness; none if the band of the study does not move with k1.
+    pub still: Option<Still>,
+}
+
+impl Criterion {
+    /// Of a study.
+    ///
+    /// # Errors
+    /// As [`Threshold::of`].
+    pub fn of(study: &Study) -> Result<Self, Error> {
+        let still = |study| Ok::<_, Error>(Still { threshold: Threshold::of(&study)?, study });
+        Ok(Self { threshold: Threshold::of(study)?, still: still_band(study).map(still).transpose()? })
+    }
+}
+
 /// A study whose band stays where the natural frequency of its own structure puts it, whatever k1 becomes, and what counts as half of the
 /// work then.
 #[derive(Debug)]
@@ -125,16 +145,6 @@ pub struct Still {
     pub study: Study,
     /// The least reduction that counts.
     pub threshold: Threshold,
-}
-
-impl Still {
-    /// Of a study; none if its band does not move with k1.
-    ///
-    /// # Errors
-    /// As [`Threshold::of`].
-    pub fn of(study: &Study) -> Result<Option<Self>, Error> {
-        still(study).map(|study| Ok(Self { threshold: Threshold::of(&study)?, study })).transpose()
-    }
 }
 
 /// The range of a design by the objective of a study, on so many samples of its band.

@@ -1,12 +1,16 @@
-//! The results of `retention`.
+//! The results of `retention`, and which of them its page shows.
 
 use super::curves::Curve;
 use super::force::Forced;
-use super::range::Threshold;
-use super::trade::Point;
+use super::range::Criterion;
+use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
 use crate::designs::Designs;
-use retune_study::SpringBounds;
+use retune_model::Parameter;
+use retune_study::{SpringBounds, Study};
+
+/// Dampers are one if E1max of all their tunings differs by no more than this share.
+pub(super) const EQUAL: f64 = 1e-3;
 
 /// Dampers tuned for several stiffnesses of the structure, and how long each tuning lasts.
 #[derive(Debug)]
@@ -18,11 +22,11 @@ pub struct Retained {
     /// E1max along k1.
     pub curves: Vec<Curve>,
     /// For each damper, what counts as half of the work.
-    pub thresholds: Vec<Threshold>,
+    pub criteria: Vec<Criterion>,
     /// E1max of the nominal designs under smaller forces.
     pub forced: Vec<Forced>,
-    /// The designs that are kept, by the name of their tuning, with their ranges.
-    pub kept: Vec<(&'static str, Point)>,
+    /// The designs that are kept, with their ranges.
+    pub kept: Vec<Point>,
     /// The designs between the nominal ones and those with the widest ranges.
     pub points: Vec<Point>,
     /// All designs as a table.
@@ -30,9 +34,57 @@ pub struct Retained {
 }
 
 impl Retained {
-    /// Whether the design of a tuning is not that of an earlier damper: the paper's may stand in several studies.
+    /// The name of a damper.
+    pub(super) fn name(&self, damper: usize) -> &str {
+        &self.dampers[damper].name
+    }
+
+    /// The study of the first damper, which figures name.
+    pub(super) fn study(&self) -> Option<&Study> {
+        self.dampers.first().map(|damper| &damper.study)
+    }
+
+    /// Whether the mass of a damper is varied.
+    pub(super) fn varies_mass(&self) -> bool {
+        self.dampers.iter().any(|damper| damper.study.varied().contains(&Parameter::M2))
+    }
+
+    /// The designs of a damper that no other dominates, the least E1max first.
+    pub(super) fn front(&self, damper: usize) -> Vec<&Point> {
+        front(&self.points, damper)
+    }
+
+    /// The dampers whose tunings all end where those of a later one do, with it.
+    pub(super) fn same(&self) -> Vec<(usize, usize)> {
+        let energies = |damper: usize| -> Vec<f64> {
+            let rows = self.table.rows.iter().filter(|row| row.damper == self.name(damper));
+            rows.filter(|row| row.label != Tuning::Paper.name()).map(|row| row.e1_max).collect()
+        };
+        let equal = |one: usize, other: usize| {
+            let (one, other) = (energies(one), energies(other));
+            one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a / b - 1.0).abs() <= EQUAL)
+        };
+        let count = self.dampers.len();
+        let later = |damper: usize| (damper + 1..count).find(|other| equal(damper, *other));
+        (0..count).filter_map(|damper| Some((damper, later(damper)?))).collect()
+    }
+
+    /// The dampers that are shown: all but those that are another one.
+    pub(super) fn shown(&self) -> Vec<usize> {
+        let same = self.same();
+        (0..self.dampers.len()).filter(|damper| same.iter().all(|(one, _)| one != damper)).collect()
+    }
+
+    /// Whether a kept design of a shown damper is shown: one of the paper may stand in several studies, and is shown with the first.
     pub(super) fn is_new(&self, damper: usize, tuning: Tuning) -> bool {
         let at = self.dampers[damper].of(tuning);
         tuning != Tuning::Paper || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
+    }
+
+    /// The kept designs that are shown.
+    pub(super) fn shown_kept(&self) -> Vec<&Point> {
+        let shown = self.shown();
+        let is_new = |point: &Point| point.tuning.is_none_or(|tuning| self.is_new(point.damper, tuning));
+        self.kept.iter().filter(|point| shown.contains(&point.damper) && is_new(point)).collect()
     }
 }

@@ -1,16 +1,19 @@
 //! The trade between the least E1max at the nominal stiffness and the retention range.
 //!
 //! For each damper the widest range is searched for (Sobol points and CMA-ES over the box of its study, if it has one, then `fminsearch`), then, for ranges between that of
-//! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design that was seen). The
-//! front is what no design that was seen dominates, looked at again on the common samples, at the tolerance of the study.
+//! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design so far). The
+//! front is what no design dominates, evaluated again on the common samples, at the tolerance of the study.
 
-use super::range::{Care, Range, Still, Threshold, range};
+use super::range::{Care, Criterion, Range, Threshold, range};
 use super::tuned::{Tuned, Tuning};
+use crate::columns;
 use crate::searches::Searches;
 use crate::tune::objective::{kept, loose};
 use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_optim::{DesignObjective, Global, explore, minimize};
+use retune_report::cells;
+use retune_report::table::{Cell, Column, Table};
 use retune_study::{Setting, Study};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -34,7 +37,7 @@ const EVALUATIONS: u64 = 60;
 /// of ranges are looked for within 1e-3 alone ([`Care::SEARCH`]).
 const RTOL: f64 = 1e-6;
 const OF_RANGES: f64 = 1e-4;
-/// About the most designs of a front that are looked at again.
+/// About the most designs of a front that are evaluated again.
 const MOST: usize = 32;
 /// A value above every E1max, J: of a design with too small a range.
 const TOO_NARROW: f64 = 1e6;
@@ -44,6 +47,8 @@ const TOO_NARROW: f64 = 1e6;
 pub struct Point {
     /// The number of its damper.
     pub damper: usize,
+    /// How it was tuned, if it is one that is kept; none of one between the nominal design and that with the widest range.
+    pub tuning: Option<Tuning>,
     /// The design.
     pub at: Design,
     /// E1max at the nominal stiffness, J.
@@ -55,17 +60,23 @@ pub struct Point {
 }
 
 impl Point {
-    /// A design of a damper, looked at on the common samples.
+    /// A design of a damper, on the common samples.
     pub fn new(
-        damper: usize,
-        tuned: &Tuned,
+        (damper, tuned): (usize, &Tuned),
+        tuning: Option<Tuning>,
         at: Design,
-        threshold: &Threshold,
-        still: Option<&Still>,
+        Criterion { threshold, still }: &Criterion,
     ) -> Self {
         let e1_max = tuned.energy(&at, tuned.nominal());
+        let still = still.as_ref();
         let still = still.and_then(|still| range(&still.study, tuned.samples, &at, &still.threshold));
-        Self { damper, at, e1_max, range: range(&tuned.study, tuned.samples, &at, threshold), still }
+        let range = range(&tuned.study, tuned.samples, &at, threshold);
+        Self { damper, tuning, at, e1_max, range, still }
+    }
+
+    /// The name of its tuning in tables.
+    pub fn tuning_name(&self) -> &'static str {
+        self.tuning.map_or(FRONT, Tuning::name)
     }
 
     /// The factor by which k1 may rise and fall; 1 without a range.
@@ -99,22 +110,22 @@ pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
 pub fn trade(
     number: usize,
     tuned: &Tuned,
-    (threshold, still): (&Threshold, Option<&Still>),
+    criterion: &Criterion,
     searches: &Searches,
     watch: &dyn Observer,
 ) -> Result<Vec<Point>, Error> {
-    let study = &tuned.study;
+    let (study, threshold) = (&tuned.study, &criterion.threshold);
     let search = study.search().map_err(Error::rule(study))?;
     let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
     let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
-    let seen =
-        Seen { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all: Mutex::default() };
-    // The designs that are kept are seen first, those within the bounds of the search.
+    let all = Mutex::default();
+    let evaluated = Evaluated { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all };
+    // The designs that are kept come first, those within the bounds of the search.
     let mut least = 0.0;
     for kept in &tuned.kept {
         let x: Vec<f64> = search.variables.iter().map(|variable| kept.at.get(*variable)).collect();
         if search.options.bounds.iter().zip(&x).all(|(bounds, value)| bounds.contain(*value)) {
-            let (_, width) = seen.look(&x);
+            let (_, width) = evaluated.evaluate(&x);
             if kept.tuning == Tuning::Nominal {
                 least = width;
             }
@@ -124,41 +135,41 @@ pub fn trade(
     let score = |(e1_max, width): (f64, f64)| {
         if width > 0.0 { -width } else { e1_max / threshold.at(tuned.nominal()) }
     };
-    let widest = |x: &[f64]| score(seen.look(x));
+    let widest = |x: &[f64]| score(evaluated.evaluate(x));
     if let Some((_, space, _)) = &search.global {
         let found = explore(|x, _| widest(x), space, &WIDEST, || ());
         found.map_err(|source| Error::Global { source, failures: of.failures() })?;
     }
     let options = || retune_optim::Options { max_fun_evals: Some(EVALUATIONS), ..search.options.clone() };
     let refuse = |source| Error::Search { source, failures: of.failures() };
-    if let Some((from, _)) = seen.best(score) {
+    if let Some((from, _)) = evaluated.best(score) {
         minimize(|x, _| widest(x), &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
     }
     searches.journal().check()?;
-    let most = seen.best(|(_, width)| -width).map_or(0.0, |(_, (_, width))| width);
+    let most = evaluated.best(|(_, width)| -width).map_or(0.0, |(_, (_, width))| width);
     let targets = if most > 0.0 { BETWEEN } else { 0 };
     for i in 1..=targets {
         let wanted = least + (most - least) * f64::from(i) / f64::from(BETWEEN);
-        let value = |x: &[f64], _cutoff: f64| match seen.look(x) {
+        let value = |x: &[f64], _cutoff: f64| match evaluated.evaluate(x) {
             (e1_max, width) if width >= wanted => e1_max,
             (_, width) => TOO_NARROW * (1.0 + wanted - width),
         };
         let keeps = |(e1_max, width): (f64, f64)| if width >= wanted { e1_max } else { f64::INFINITY };
-        let Some((from, _)) = seen.best(keeps) else { continue };
+        let Some((from, _)) = evaluated.best(keeps) else { continue };
         minimize(value, &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
         searches.journal().check()?;
     }
-    let designs = seen.front()?;
+    let designs = evaluated.front(&search.variables)?;
     watch.log(&format!(
         "{}: {} designs between the least E1max and the widest range",
         tuned.name,
         designs.len()
     ))?;
-    Ok(designs.into_iter().map(|at| Point::new(number, tuned, at, threshold, still)).collect())
+    Ok(designs.into_iter().map(|at| Point::new((number, tuned), None, at, criterion)).collect())
 }
 
-/// What was seen of a damper's designs: E1max at the nominal stiffness, J, and the factor of its range less 1.
-struct Seen<'a> {
+/// The designs of a damper that were evaluated: E1max at the nominal stiffness, J, and the factor of its range less 1.
+struct Evaluated<'a> {
     study: &'a Study,
     of: &'a DesignObjective,
     of_ranges: &'a DesignObjective,
@@ -168,9 +179,9 @@ struct Seen<'a> {
     all: Mutex<BTreeMap<Vec<u64>, (f64, f64)>>,
 }
 
-impl Seen<'_> {
-    /// Looks at a design; both numbers are kept in the journal.
-    fn look(&self, x: &[f64]) -> (f64, f64) {
+impl Evaluated<'_> {
+    /// Evaluates a design; both numbers are kept in the journal.
+    fn evaluate(&self, x: &[f64]) -> (f64, f64) {
         let journal = self.searches.journal();
         let [first, second] = &self.stages;
         let e1_max = kept(self.of, journal, first, || ())(x, f64::INFINITY);
@@ -195,21 +206,21 @@ impl Seen<'_> {
         self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)
     }
 
-    /// All designs with what was seen of them; the order does not depend on which thread was first.
+    /// All designs with both numbers; the order does not depend on which thread was first.
     fn all(&self) -> Vec<(Vec<f64>, (f64, f64))> {
         let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let design = |key: &Vec<u64>| key.iter().map(|bits| f64::from_bits(*bits)).collect();
-        all.iter().map(|(key, seen)| (design(key), *seen)).collect()
+        all.iter().map(|(key, numbers)| (design(key), *numbers)).collect()
     }
 
     /// The design with the least finite value.
     fn best(&self, value: impl Fn((f64, f64)) -> f64) -> Option<(Vec<f64>, (f64, f64))> {
-        let finite = self.all().into_iter().filter(|(_, seen)| value(*seen).is_finite());
+        let finite = self.all().into_iter().filter(|(_, numbers)| value(*numbers).is_finite());
         finite.min_by(|a, b| value(a.1).total_cmp(&value(b.1)))
     }
 
     /// The designs that no other dominates, about [`MOST`] of them at most, evenly along the front.
-    fn front(&self) -> Result<Vec<Design>, Error> {
+    fn front(&self, varied: &[Parameter]) -> Result<Vec<Design>, Error> {
         let mut all = self.all();
         all.retain(|(_, (_, width))| *width > 0.0);
         all.sort_by(|a, b| a.1.0.total_cmp(&b.1.0).then(b.1.1.total_cmp(&a.1.1)));
@@ -231,29 +242,25 @@ impl Seen<'_> {
             number += 1;
             kept
         });
-        all.iter().map(|(x, _)| Ok(Design::of(&self.of.damper(x)?))).collect()
+        all.iter().map(|(x, _)| Ok(Design::of_varied(&self.of.damper(x)?, varied))).collect()
     }
 }
 
-/// A row for each design: those that are kept, with their tuning, and those of the front.
-pub fn csv(dampers: &[Tuned], kept: &[(&'static str, Point)], points: &[Point]) -> String {
-    let mut text = "damper,tuning,k2,c2,D,C,E1max,from,to,still_from,still_to\n".to_owned();
-    let named = kept.iter().map(|(tuning, point)| (*tuning, point));
-    for (tuning, point) in named.chain(points.iter().map(|point| (FRONT, point))) {
-        let name = crate::designs::quoted(&dampers[point.damper].name);
-        let values = retune_study::fields(&point.at.values());
-        let ends = |range: Option<Range>| {
-            range.map_or(",".to_owned(), |range| format!("{},{}", range.from, range.to))
-        };
-        text += &format!(
-            "{name},{tuning},{values},{},{},{}\n",
-            point.e1_max,
-            ends(point.range),
-            ends(point.still)
-        );
+/// A row for each design.
+pub fn table<'a>(dampers: &[Tuned], points: impl Iterator<Item = &'a Point> + Clone) -> Table {
+    let parameters = columns::of_designs(points.clone().map(|point| &point.at));
+    let names = [&["damper", "tuning"], &*columns::symbols(&parameters), &["E1max"]].concat();
+    let ends = ["from", "to", "still_from", "still_to"].map(|end| Column::new(end, Parameter::K1.unit()));
+    let mut table = Table::new(names.into_iter().map(columns::column).chain(ends));
+    for point in points {
+        let first = cells![dampers[point.damper].name.as_str(), point.tuning_name()];
+        let ends = [point.range, point.still].map(|range| range.map(|range| [range.from, range.to]));
+        let ends = ends.map(|ends| ends.map_or([Cell::Empty, Cell::Empty], |ends| ends.map(Cell::from)));
+        let design = columns::cells_of(&point.at, &parameters);
+        table.push([first, design, cells![point.e1_max], ends.concat()].concat());
     }
-    text
+    table
 }
 
 /// The tuning of a design between the nominal one and that with the widest range.
-pub const FRONT: &str = "front";
+const FRONT: &str = "front";

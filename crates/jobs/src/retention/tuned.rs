@@ -67,11 +67,6 @@ impl Tuned {
         self.study.scene.primary.stiffness.get()
     }
 
-    /// Its study for the worst over some stiffnesses, N/m.
-    pub fn over(&self, k1: &[f64]) -> Study {
-        over(&self.study, k1)
-    }
-
     /// The kept design of a tuning, if it has one.
     pub fn of(&self, tuning: Tuning) -> Option<Design> {
         self.kept.iter().find(|kept| kept.tuning == tuning).map(|kept| kept.at)
@@ -81,6 +76,22 @@ impl Tuned {
     pub fn energy(&self, at: &Design, k1: f64) -> f64 {
         energy(&self.study, self.samples, at, k1).unwrap_or(f64::NAN)
     }
+
+    /// E1max of a design for what it was tuned for, J: the worst over all `k1` (N/m), that at its own, the paper's at the nominal one. None
+    /// where it cannot be run.
+    pub fn energy_as_tuned(&self, tuning: &str, at: &Design, k1: &[f64]) -> Option<f64> {
+        let own = k1.iter().copied().find(|k1| label(*k1) == tuning).unwrap_or(self.nominal());
+        if tuning == Tuning::Robust.name() {
+            energy(&over(&self.study, k1), self.samples, at, own)
+        } else {
+            energy(&self.study, self.samples, at, own)
+        }
+    }
+}
+
+/// The label of a design that is tuned for a stiffness, N/m.
+pub fn label(k1: f64) -> String {
+    format!("k1 = {k1}")
 }
 
 /// A study with its band where the natural frequency of its own structure puts it; none if it does not move with k1.

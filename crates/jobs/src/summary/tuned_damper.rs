@@ -23,6 +23,13 @@ impl TunedDamper {
         Self { mass: damper.mass, design: Design::of_varied(damper, &others) }
     }
 
+    /// The design, with the mass where that is varied.
+    pub fn design_of(&self, varied: &[Parameter]) -> Design {
+        let mass = |parameter| parameter == Parameter::M2 && varied.contains(&parameter);
+        let value = |parameter| if mass(parameter) { self.mass.get() } else { self.design.get(parameter) };
+        Design::new(value).unwrap_or(self.design)
+    }
+
     /// The numbers in words, each to its digits: `m2 = 60 kg, k2 = 215 N/m, …`.
     pub fn words(&self, digits: impl Fn(Parameter) -> usize) -> String {
         let mass = [(Parameter::M2, self.mass.get())];

@@ -1,14 +1,13 @@
 //! A sweep as a figure: a chart for each quantity, one below the other, with a damper and without.
 
+use crate::pages::abscissa;
 use crate::rows::Rows;
 use crate::sweep::points::Sweep;
 use crate::sweep::words::{each, extreme, shown, title};
 use retune_report::colour::{BLACK, VERMILION};
-use retune_report::table::Table;
-use retune_report::{
-    Axis, Chart, Dash, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, scale_for, svg,
-};
-use retune_study::{hertz_and_rpm, rounded};
+use retune_report::table::{Column, Table};
+use retune_report::{Axis, Chart, Dash, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, svg};
+use retune_study::rounded;
 
 /// The lines: with a damper, and without.
 const WITH: Stroke = Stroke::new(VERMILION, 1.3, Dash::Solid);
@@ -28,16 +27,10 @@ pub fn draw(sweep: &Sweep, table: &Table) -> String {
         legend.push((Key::Line(NONE), "no damper".to_owned()));
     }
     let peaks: Vec<String> = names.iter().filter_map(|name| peak(sweep, table, name)).collect();
-    svg(&Sheet {
-        title: title(sweep),
-        description: format!("{}, {}. {}.", title(sweep), each(sweep), peaks.join("; ")),
-        width: Width::Column,
-        charts,
-        columns: 1,
-        stacked: true,
-        legend,
-        caption: vec![format!("{}, {}; {}", title(sweep), each(sweep), made_by(sweep))],
-    })
+    let what = format!("{}, {}", title(sweep), each(sweep));
+    let description = format!("{what}. {}.", peaks.join("; "));
+    let caption = vec![format!("{what}; {}", made_by(sweep))];
+    svg(&Sheet { stacked: true, description, legend, caption, ..Sheet::of(title(sweep), charts) })
 }
 
 /// How a value is marked.
@@ -76,26 +69,13 @@ fn chart(sweep: &Sweep, table: &Table, name: &str, top: bool, count: usize) -> C
     if sweep.len() < FEW {
         layers.push(Layer::Marks { points: points(&with), mark: MARK });
     }
-    let unit = table.unit(name);
-    let label =
-        if unit.is_empty() { name.replace('_', " ") } else { format!("{}, {unit}", name.replace('_', " ")) };
+    let label = Column::new(name.replace('_', " "), table.unit(name)).heading();
     let values: Vec<f64> = with.iter().chain(&without).copied().collect();
-    let high = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
-    let y = match scale_for(&values) {
-        Scale::Log => Axis::around(label, Scale::Log, values),
-        Scale::Linear => Axis::linear(label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 })),
-    };
     let plan = sweep.plan();
     let scale = match plan.scale {
         retune_optim::Scale::Linear => Scale::Linear,
         retune_optim::Scale::Log => Scale::Log,
     };
-    let symbol = if plan.over.is_frequency() { "ω" } else { plan.over.symbol() };
-    let x = Axis::new(format!("{symbol}, {}", plan.over.unit()), scale, (plan.from, plan.to));
-    let x = if plan.over.is_frequency() && top {
-        x.with_second("frequency, Hz", hertz_and_rpm(1.0)[0])
-    } else {
-        x
-    };
-    Chart { title: String::new(), x, y, layers, height: if count == 1 { 175.0 } else { 130.0 } }
+    let x = abscissa(plan.over, scale, (plan.from, plan.to), top);
+    Chart::of(x, Axis::fitting(label, &values), layers, if count == 1 { 175.0 } else { 130.0 })
 }

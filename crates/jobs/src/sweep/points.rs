@@ -1,6 +1,7 @@
 //! The points of a sweep. Each depends on its value alone, so they can be computed in any order, by any number of machines.
 
 use crate::Error;
+use crate::columns::column;
 use crate::rows::Rows;
 use crate::sweep::plan::Plan;
 use retune_model::{Measure, Parameter, Scene};
@@ -149,31 +150,21 @@ impl Sweep {
 
     /// The columns of its table.
     pub fn columns(&self) -> Vec<Column> {
-        let mut columns = vec![Column::new(self.plan.over.symbol(), self.plan.over.unit())];
+        let mut columns = vec![column(self.plan.over.symbol())];
         if self.plan.over.is_frequency() {
             columns.extend([Column::new("f_Hz", "Hz"), Column::new("n_rpm", "rpm")]);
         }
         if self.plan.objective {
-            let (name, unit) = (self.study.quantity().name(), self.study.quantity().unit());
-            columns.extend([
-                Column::new(name, unit),
-                Column::new("omega_worst", "rad/s"),
-                Column::new("violation", ""),
-                Column::new(format!("{name}_none"), unit),
-            ]);
+            let name = self.study.quantity().name();
+            columns.extend([name, "omega_worst", "violation", &format!("{name}_none")].map(column));
             return columns;
         }
-        let structure = || {
-            let all = Measure::OF_STRUCTURE.iter().map(|measure| (measure.name(), measure.unit()));
-            all.chain([("transmissibility", "")])
-        };
-        columns.extend(structure().map(|(name, unit)| Column::new(name, unit)));
+        let structure = || Measure::OF_STRUCTURE.map(Measure::name).into_iter().chain(["transmissibility"]);
+        columns.extend(structure().map(column));
         if self.study.scene.damper.is_some() {
-            columns.extend(Measure::OF_DAMPER.map(|measure| Column::new(measure.name(), measure.unit())));
-            columns.extend(
-                ["impacts", "impacts_structure", "impacts_obstacle"].map(|name| Column::new(name, "")),
-            );
-            columns.extend(structure().map(|(name, unit)| Column::new(format!("{name}_none"), unit)));
+            columns.extend(Measure::OF_DAMPER.map(Measure::name).map(column));
+            columns.extend(["impacts", "impacts_structure", "impacts_obstacle"].map(column));
+            columns.extend(structure().map(|name| column(&format!("{name}_none"))));
         }
         columns
     }

@@ -163,14 +163,6 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     let words =
         "dampers[1].designs[1].C: -1 is not allowed here: give what the damper of the study has and may be";
     assert!(rule(&plan).to_string().ends_with(words));
-    // No column of a front would hold it.
-    let mut study = desk.read_json("tmd.json");
-    study["optimize"]["vary"] = json!(["k2", "c2", "m2"]);
-    study["optimize"]["bounds"]["m2"] = json!([10, 60]);
-    desk.write_json("heavy.json", &study);
-    let mut plan = good.clone();
-    plan["dampers"][1]["study"] = json!("heavy.json");
-    assert!(rule(&plan).to_string().contains("optimize.vary: m2 is not allowed here: give k2, c2, D and C"));
     let mut plan = good;
     plan["dampers"][1]["study"] = json!("tmd.json");
     match rule(&plan) {

@@ -1,4 +1,4 @@
-//! `track`: dampers tuned anew for other stiffnesses of the structure.
+//! `retention`: dampers tuned anew for other stiffnesses of the structure.
 
 use crate::{request, restart, resume};
 use retune_jobs::retention::{Point, retention};
@@ -145,9 +145,9 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
     );
     let done = good(retention(&request(&desk, "tmds.json", "out"), &stiffnesses(&[3e4]), &Silent));
     let Done::Made(retained) = done else { panic!("it was finished before") };
-    let (damper, threshold) = (&retained.dampers[0], &retained.thresholds[0]);
+    let (damper, threshold) = (&retained.dampers[0], &retained.criteria[0].threshold);
     let mut count = 0;
-    for point in retained.kept.iter().map(|(_, point)| point).chain(&retained.points) {
+    for point in retained.kept.iter().chain(&retained.points) {
         let range = point.range.expect("a range");
         assert!(range.from < damper.nominal() && damper.nominal() < range.to, "{range:?}");
         let share = |k1: f64| damper.energy(&point.at, k1) / threshold.at(k1);

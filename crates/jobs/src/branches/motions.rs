@@ -1,0 +1,156 @@
+//! What `branches` finds, and how much more force a damper bears before a motion appears that runs from rest do not lead to.
+//!
+//! For this margin the force is raised in steps until a branch of such motions is found. Each of them vanishes at a fold as the force falls
+//! again; the least force of these folds over ω is where the branch is born, as an isola. Just below, the motions are looked for again, for
+//! another may be born earlier.
+
+use crate::Error;
+use crate::certify::periodic;
+use retune_dynamics::periodic::branches::{Control, branches};
+use retune_dynamics::periodic::{Basins, Branch, Branches, Onset, Orbit, Sample, onset};
+use retune_model::Parameter;
+use retune_study::{Study, rounded, short};
+
+/// The forces at which motions are looked for, as multiples of the scene's own.
+const STEPS: [f64; 10] = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0];
+/// How far below a birth another is looked for, as a share of the force, and how often.
+const BELOW: f64 = 0.995;
+const ROUNDS: usize = 4;
+/// A branch counts whose largest energy is by this factor above that of all motions that runs from rest lead to.
+const NOTABLE: f64 = 1.05;
+
+/// The motions of a study along a parameter.
+#[derive(Debug)]
+pub struct Motions {
+    /// The study.
+    pub study: Study,
+    /// The motions.
+    pub branches: Branches,
+    /// The stable motion with the largest E1max of each branch; none of a branch without stable motions.
+    pub largest: Vec<Option<Orbit>>,
+    /// How much more force it bears, where that was asked for.
+    pub margin: Option<Margin>,
+    /// Where starts in a plane end, where that was asked for.
+    pub basins: Option<Basins>,
+}
+
+/// Where the first isola begins.
+#[derive(Clone, Debug)]
+pub struct Margin {
+    /// The scene's own force, N.
+    pub own: f64,
+    /// Where it is born as the force rises; none up to the largest that was tried.
+    pub birth: Option<Onset>,
+    /// The largest that was tried.
+    pub tried: f64,
+}
+
+impl Motions {
+    /// Of a study.
+    pub(crate) fn new(study: Study, branches: Branches) -> Self {
+        let largest = branches.largest_of_each(|seen| seen.e1_max);
+        Self { study, largest, branches, margin: None, basins: None }
+    }
+
+    /// The parameter that they are followed along.
+    pub(super) fn over(&self) -> Parameter {
+        self.branches.plan.parameter
+    }
+
+    /// Where, to some digits: `omega = 5.98 rad/s`.
+    pub(super) fn at(&self, value: f64, digits: usize) -> String {
+        format!("{} = {} {}", self.over().symbol(), rounded(value, digits), self.over().unit())
+    }
+
+    /// The line below a figure.
+    pub(super) fn made_by(&self) -> String {
+        format!("{}; Retune {}", self.study.name(), env!("CARGO_PKG_VERSION"))
+    }
+
+    /// The branches that no run from rest leads to, with stable motions of much more energy than any on branches that runs from rest do.
+    fn others(&self) -> impl Iterator<Item = &Branch> {
+        let energy = |i: usize| self.largest[i].as_ref().map_or(0.0, |orbit| orbit.seen.e1_max);
+        let from_rest = |i: &usize| self.branches.is_reached_from_rest(*i);
+        let usual = (0..self.largest.len()).filter(from_rest).map(energy).fold(0.0, f64::max);
+        let is_other = move |(i, _): &(usize, &Branch)| !from_rest(i) && energy(*i) > NOTABLE * usual;
+        self.branches.branches.iter().enumerate().filter(is_other).map(|(_, branch)| branch)
+    }
+}
+
+/// The largest E1max of the runs of a sample that settle on no periodic motion, J; 0 where there are none.
+pub(super) fn most_irregular(sample: &Sample) -> f64 {
+    sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max)
+}
+
+/// The periods and impacts of a motion in words.
+pub(super) fn kind(orbit: &Orbit) -> String {
+    periodic(orbit.periods, &orbit.seen.impacts)
+}
+
+/// An energy, J, to five digits.
+pub(super) fn joule(value: f64) -> String {
+    rounded(value, 5)
+}
+
+/// The margin of the force. None where the answer is not along ω, or nothing has an amplitude. Where there is such a motion already, nothing above the own force is
+/// tried.
+///
+/// # Errors
+/// A scene cannot be run.
+pub fn margin(motions: &Motions) -> Result<Option<Margin>, Error> {
+    let plan = motions.branches.plan;
+    let amplitude = motions.study.scene.forcing.amplitude().map(|(amplitude, own)| (amplitude, own.get()));
+    let amplitude = amplitude.filter(|(_, own)| *own > 0.0 && plan.parameter == Parameter::Omega);
+    let Some((amplitude, own)) = amplitude else { return Ok(None) };
+    if motions.others().next().is_some() {
+        return Ok(Some(Margin { own, birth: None, tried: own }));
+    }
+    let first_birth = |force: f64| -> Result<Option<Onset>, Error> {
+        let scene = amplitude.at(motions.study.scene, force).map_err(retune_dynamics::Error::from)?;
+        let there = branches(&scene, plan, &motions.study.solver.settings(), Control::default())?;
+        let there = Motions::new(motions.study.clone(), there);
+        let births =
+            there.others().filter_map(|branch| onset(&branch.seeds(|_| true), amplitude, own, &|_| true));
+        Ok(births.min_by(|a, b| a.value.total_cmp(&b.value)))
+    };
+    for step in STEPS {
+        let Some(mut born) = first_birth(step * own)? else { continue };
+        for _ in 0..ROUNDS {
+            let below = BELOW * born.value;
+            match if below > own { first_birth(below)? } else { None } {
+                Some(earlier) => born = earlier,
+                None => break,
+            }
+        }
+        return Ok(Some(Margin { own, birth: Some(born), tried: step * own }));
+    }
+    Ok(Some(Margin { own, birth: None, tried: STEPS[STEPS.len() - 1] * own }))
+}
+
+impl Margin {
+    /// In words.
+    pub fn words(&self) -> String {
+        let Self { own, birth, tried } = self;
+        match birth {
+            None if tried == own => {
+                "A motion that no run from rest leads to, with much more energy, is there at the scene's own force already: it has no margin."
+                    .to_owned()
+            }
+            None => format!(
+                "No isola was found up to {} times the force, {} N.",
+                short(tried / own),
+                short(*tried)
+            ),
+            Some(Onset { value, omega, orbit }) => format!(
+                "Up to {} times the force, {} N, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
+                 periods, impacts {}).",
+                rounded(value / own, 6),
+                rounded(*value, 8),
+                rounded(*omega, 6),
+                rounded(orbit.seen.e1_max, 5),
+                orbit.periods,
+                orbit.seen.impacts
+            ),
+        }
+    }
+}
