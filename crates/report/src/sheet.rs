@@ -48,6 +48,22 @@ pub struct Sheet {
     pub caption: Vec<String>,
 }
 
+impl Sheet {
+    /// A figure as wide as a page, one chart a row, without legend and caption.
+    pub fn page(title: impl Into<String>, description: impl Into<String>, charts: Vec<Chart>) -> Self {
+        Self {
+            title: title.into(),
+            description: description.into(),
+            width: Width::Page,
+            charts,
+            columns: 1,
+            stacked: false,
+            legend: Vec::new(),
+            caption: Vec::new(),
+        }
+    }
+}
+
 /// A figure, and a version of it for narrow screens, on which the figure itself would be too small to read.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Drawing {
