@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::again::{each_row, text};
-use retune_model::{Measure, Parameter};
-use retune_report::table::{Cell, Column, Table};
+use crate::columns::column;
+use retune_report::table::{Cell, Table};
 use retune_store::json_text;
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -31,7 +31,7 @@ pub fn table(file: &Path) -> Result<Table, Error> {
     let mut table = Table::default();
     each_row(file, |_, row| {
         if table.columns.is_empty() {
-            table.columns = row.names.iter().map(|name| Column::new(name, unit(name))).collect();
+            table.columns = row.names.iter().map(column).collect();
         }
         table.push(row.fields.iter().map(cell).collect());
     })?;
@@ -45,15 +45,6 @@ fn cell(field: &str) -> Cell {
         (_, _, Ok(number)) => Cell::Number(number),
         _ => Cell::from(field),
     }
-}
-
-/// The unit of a column, which is named by a parameter or a measure, and may say of what it is: `E1max_none`.
-fn unit(name: &str) -> &'static str {
-    let known = |name: &str| {
-        let measure = Measure::ALL.into_iter().find(|measure| measure.name() == name).map(Measure::unit);
-        measure.or_else(|| name.parse::<Parameter>().ok().map(Parameter::unit))
-    };
-    known(name).or_else(|| known(name.rsplit_once('_')?.0)).unwrap_or_default()
 }
 
 /// The statements on the paper in a directory, by the name of their table or figure.

@@ -49,7 +49,7 @@ mod tests {
         let names =
             ["k2", "k2_most", "E1", "E1max", "E1max_none", "contact_force", "omega_worst", "v1", "place"];
         let table = table(&names);
-        let units: Vec<&str> = table.columns.iter().map(|column| column.unit).collect();
+        let units: Vec<&str> = table.columns.iter().map(|column| &*column.unit).collect();
         assert_eq!(units, ["N/m", "N/m", "Pa", "J", "J", "N", "rad/s", "m/s", ""]);
     }
 }

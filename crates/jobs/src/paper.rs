@@ -1,54 +1,67 @@
 //! Every table and figure of the paper, reproduced beside its statements, with a verdict on each.
 
-mod again;
-mod begins;
 mod cases;
 mod curves;
-mod describe;
 mod detuning;
 mod diagrams;
 mod energies;
 mod family;
 mod item;
-mod items;
-mod judgement;
-mod kind;
-mod ladder;
 mod measures;
 mod motions;
 mod page;
 mod plan;
-mod protocols;
-mod ratios;
 mod regimes;
-mod stiff;
 mod surfaces;
 mod table1;
 mod table2;
 mod variants;
 
-pub use describe::describe;
-use items::{ITEMS, Maker, SEARCHES, statements};
+pub use plan::PaperPlan;
 
-pub use item::{Grid, Item, Picture, Statement, Verdict};
-pub use kind::KIND;
-pub use plan::{PaperPlan, Plan};
-
+use crate::again::{Made as Again, broken, design, json, text};
+use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Job, Made};
 use crate::observer::Quiet;
+use crate::resolved::{Resolved, SEVERAL};
 use crate::searches::Searches;
-use crate::{Done, Error, Observer, Request};
+use crate::tune::OPTIMUM;
+use crate::{
+    Done, Error, Observer, Request, Silent, describe as words, fronts, retention, table2 as rows, tune,
+};
+use item::Item;
+use page::{ENTRIES, Entry, page, statements};
+use plan::Plan;
 use retune_store::Directory;
+use retune_study::{self as study, Study};
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// The directory of the searches of Table 2.
+const SEARCHES: &str = "table2";
+
+/// The files of the reproduction.
+pub static KIND: Kind = Kind {
+    command: "reproduce",
+    answer: "index.html",
+    artefacts: &[
+        artefact(SEVERAL, Content::Input),
+        artefact("study.json", Content::Derived),
+        artefact("table1-statements.json", Content::Whole(again)),
+        artefact("table2-statements.json", Content::Whole(again)),
+        artefact("figure*-statements.json", Content::Whole(again)),
+        artefact("table1-*", Content::Derived),
+        artefact("table2-*", Content::Derived),
+        artefact("figure*", Content::Derived),
+        artefact("index.html", Content::Derived),
+    ],
+};
 
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
 ///
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
-pub fn reproduce(
-    request: &Request,
-    only: Option<&str>,
-    watch: &dyn Observer,
-) -> Result<Done<Vec<Item>>, Error> {
+pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) -> Result<Done<()>, Error> {
     let plan = Plan::read(&request.study, watch)?;
     let dampers = [("SSVI NES", &plan.ssvi), ("TMD", &plan.tmd)];
     let mut job = Job::of_studies(&KIND, request, serde_json::json!(plan.file), dampers.into_iter())?;
@@ -61,61 +74,116 @@ pub fn reproduce(
         let quiet = Quiet(watch); // the page has the answers of its searches, and they their own logs
         let mut searches = Searches::new(results, &job.order, &quiet);
         let mut made = Vec::new();
-        for (name, make) in ITEMS.into_iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
-            let item = kept_or_made(name, make, &plan, results, &mut searches)?;
-            write(&item, results)?;
-            watch.result(&report(&item))?;
-            made.push(item);
+        for entry in ENTRIES.iter().filter(|entry| only.is_none_or(|only| only == entry.name)) {
+            let item = kept_or_made(entry, &plan, results, &mut searches)?;
+            write(entry, &item, results)?;
+            watch.result(&report(entry, &item))?;
+            made.push((entry, item));
         }
         if only.is_none() {
-            results.write("index.html", &page::page(&made))?;
+            results.write("index.html", &page(&made))?;
         }
-        Ok(Made { answer: made, report: String::new(), parts: searches.results })
+        Ok(Made { answer: (), report: String::new(), parts: searches.results })
     })
 }
 
 /// An item kept by an interrupted run, or made now and kept in case this run is interrupted. One that makes searches is made again:
 /// they are resumed.
 fn kept_or_made(
-    name: &str,
-    make: Maker,
+    entry: &Entry,
     plan: &Plan,
     results: &Directory,
     searches: &mut Searches,
 ) -> Result<Item, Error> {
-    let (file, journal) = (format!("{name}.item"), results.journal());
-    if journal.is_marked(name) {
+    let (file, journal) = (format!("{}.item", entry.name), results.journal());
+    if journal.is_marked(entry.name) {
         let kept = results.read(&file).and_then(|text| serde_json::from_str(&text).ok());
         if let Some(item) = kept {
             return Ok(item);
         }
     }
     let before = searches.results.len();
-    let item = make(plan, &mut |study| Ok(searches.tune(study, SEARCHES)?.found().damper.design))?;
+    let item = (entry.make)(plan, &mut |study| Ok(searches.tune(study, SEARCHES)?.found().damper.design))?;
     if searches.results.len() > before {
         return Ok(item);
     }
     results.write_json(&file, &item)?;
-    journal.mark(name);
+    journal.mark(entry.name);
     journal.check()?;
     Ok(item)
 }
 
-fn write(item: &Item, results: &Directory) -> Result<(), Error> {
+fn write(entry: &Entry, item: &Item, results: &Directory) -> Result<(), Error> {
     for picture in &item.pictures {
-        results.write(&format!("{}.svg", picture.name), &picture.drawing.wide)?;
+        results.write(&picture.file, &picture.drawing.wide)?;
     }
-    for (name, text) in item.files() {
+    for (name, text) in item.files(entry.name) {
         results.write(&name, &text)?;
     }
-    Ok(results.write_json(&statements(&item.name), &item.statements)?)
+    Ok(results.write_json(&statements(entry.name), &item.statements)?)
 }
 
 /// The verdicts of an item, for the screen.
-fn report(item: &Item) -> String {
-    let lines = item.statements.iter().map(|s| {
-        let whose = if s.conjecture { "our conjecture: " } else { "" };
-        format!("\n  {:<14} {whose}{} ({})", s.verdict.words(), s.paper, s.found)
+fn report(entry: &Entry, item: &Item) -> String {
+    let lines = item.statements.iter().map(|one| {
+        let ours = if one.conjecture { "our conjecture: " } else { "" };
+        format!("\n  {:<14} {ours}{} ({})", one.verdict.words(), one.paper, one.found)
     });
-    format!("{}{}", item.title, lines.collect::<String>())
+    format!("{}{}", entry.title, lines.collect::<String>())
+}
+
+/// The statements of an item made again, from the designs that its searches came to, and with them its tables and data.
+fn again(place: &Path, name: &str) -> Result<Again, Error> {
+    let said = json(place, name)?;
+    let Some(entry) = ENTRIES.iter().find(|entry| statements(entry.name) == name) else {
+        return Ok(Again::Not("is of no item of the page".to_owned()));
+    };
+    let resolved = Resolved::read(place)?;
+    let file = serde_json::from_value::<PaperPlan>(resolved.plan.clone());
+    let studies = resolved.studies()?.into_iter().map(|(_, study)| study).collect::<Vec<Study>>();
+    let (Ok(file), Ok([ssvi, tmd])) = (file, <[Study; 2]>::try_from(studies)) else {
+        return Err(broken(place, SEVERAL, "it is no plan of the paper with its two dampers"));
+    };
+    let plan = Plan { file, ssvi, tmd, watch: &Silent, is_brief: false };
+    let item = (entry.make)(&plan, &mut |study| {
+        let place = place.join(SEARCHES).join(study.name());
+        design(&json(&place, OPTIMUM)?)
+            .ok_or_else(|| broken(&place, OPTIMUM, "it holds no design of a damper"))
+    });
+    let item = match item {
+        Ok(item) => item,
+        Err(error) => return Ok(Again::Not(format!("cannot be made again: {error}"))),
+    };
+    let (mut files, mut made) = (Map::new(), Map::new());
+    for (name, again) in item.files(entry.name) {
+        files.insert(name.clone(), text(place, &name).map_or(Value::Null, Value::from));
+        made.insert(name, again.into());
+    }
+    Ok(Again::Of {
+        what: "with its tables and data",
+        said: serde_json::json!({ "statements": said, "files": files }),
+        again: serde_json::json!({ "statements": item.statements, "files": made }),
+    })
+}
+
+/// Checks a study file of any kind: what it asks for in words, and the jobs whose files it makes.
+///
+/// # Errors
+/// It, or a file that it names, is wrong.
+pub fn describe(path: &Path) -> Result<(String, Vec<&'static Kind>), Error> {
+    Ok(match study::kind_of(path)? {
+        study::Kind::Table2 => {
+            (words::table2(&study::read_table2(path)?), vec![&rows::KIND, &retention::KIND])
+        }
+        study::Kind::Fronts => (words::fronts(&study::read_fronts(path)?), vec![&fronts::KIND]),
+        study::Kind::Paper => {
+            Plan::read(path, &Silent)?;
+            ("every table and figure of the paper".to_owned(), vec![&KIND])
+        }
+        study::Kind::Study => {
+            let study = study::read(path)?;
+            let jobs = if study.optimize.is_some() { vec![&tune::KIND] } else { Vec::new() };
+            (words::study(&study), jobs)
+        }
+    })
 }

@@ -22,7 +22,7 @@ const COLUMNS: [&str; 9] = ["t", "x1", "v1", "x2", "v2", "E1", "E2", "FconL", "F
 /// What came of a run: its rows, its events, the name of each event, and its summary as JSON.
 type Ran<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<&'static str>, String);
 /// The columns of a sweep, and the unit of each.
-type Swept<'py> = (Bound<'py, PyDict>, Vec<(String, &'static str)>);
+type Swept<'py> = (Bound<'py, PyDict>, Vec<(String, String)>);
 
 /// One run: the motion at equal intervals, its events, and its largest values.
 ///
@@ -76,7 +76,7 @@ pub fn sweep<'py>(
     let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
     let column = |i: usize| rows.iter().map(|row| finite(row[i])).collect();
     let all = table(py, columns.iter().enumerate().map(|(i, one)| (one.name.clone(), column(i))))?;
-    Ok((all, columns.into_iter().map(|column| (column.name, column.unit)).collect()))
+    Ok((all, columns.into_iter().map(|column| (column.name, column.unit.into_owned())).collect()))
 }
 
 /// A study with other numbers.

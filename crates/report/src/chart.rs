@@ -165,6 +165,13 @@ pub enum Layer {
     },
 }
 
+impl Layer {
+    /// A line through points.
+    pub fn line(points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) -> Self {
+        Self::Line { points: points.into_iter().collect(), stroke }
+    }
+}
+
 /// How a text stands at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stand {

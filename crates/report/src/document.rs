@@ -1,20 +1,109 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
-use crate::Drawing;
 use crate::html::{Section, Table, figure, head, link};
+use crate::{Drawing, table};
 use maud::{DOCTYPE, Markup, html};
+use serde::{Deserialize, Serialize};
+
+/// The verdict on a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// It holds.
+    Holds,
+    /// It holds in part, or in a sense that is not stated.
+    Partly,
+    /// It does not hold.
+    Fails,
+    /// Practically equal cases decide it differently.
+    Undecided,
+}
+
+impl Verdict {
+    /// All, the best first.
+    pub const ALL: [Self; 4] = [Self::Holds, Self::Partly, Self::Fails, Self::Undecided];
+
+    /// The verdict in words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Partly => "holds in part",
+            Self::Fails => "does not hold",
+            Self::Undecided => "cannot be decided",
+        }
+    }
+
+    /// Its colour on pages, by the name of its style.
+    const fn style(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Partly => "partly",
+            Self::Fails => "fails",
+            Self::Undecided => "undecided",
+        }
+    }
+
+    /// Holds or fails.
+    pub const fn of(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::Fails }
+    }
+
+    /// Holds if all of `parts` do, fails if none does, else holds in part.
+    pub fn of_all(parts: &[bool]) -> Self {
+        match parts.iter().filter(|&&holds| holds).count() {
+            0 => Self::Fails,
+            count if count == parts.len() => Self::Holds,
+            _ => Self::Partly,
+        }
+    }
+}
+
+/// A statement with a verdict.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Statement {
+    /// Its words: those of a paper, or nearly.
+    pub paper: String,
+    /// The criterion for the verdict and its reason: where the words give no number, this says what is measured.
+    pub rule: String,
+    /// Whether it is our conjecture about what is left open, not a statement of somebody else.
+    #[serde(default)]
+    pub conjecture: bool,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The numbers behind the verdict.
+    pub found: String,
+}
+
+/// A figure with its caption that stands in a file of its own, too.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Picture {
+    /// The name of its file.
+    pub file: String,
+    /// As SVG.
+    pub drawing: Drawing,
+    /// What it shows, and how it was made.
+    pub caption: String,
+}
 
 /// A piece of a page.
 #[derive(Debug)]
 pub enum Block {
     /// A paragraph.
     Words(String),
+    /// A paragraph that begins with its subject.
+    About(&'static str, String),
+    /// How the contents of a section were made.
+    MadeBy(String),
+    /// Statements, each with its verdict.
+    Statements(Vec<Statement>),
     /// A list of statements.
     List(Vec<String>),
     /// A table: its caption, its head, its rows.
     Table(String, Vec<String>, Vec<Vec<String>>),
     /// A figure: its file, the drawing, its caption.
     Figure(&'static str, Drawing, String),
+    /// A figure with a link to its file.
+    Picture(Picture),
     /// Links to files beside the page.
     Files(Vec<String>),
 }
@@ -68,7 +157,7 @@ impl Document {
                             @for (id, title, _) in &self.sections { li { a href={ "#" (id) } { (title) } } }
                         } }
                     }
-                    main { @for (id, title, blocks) in &self.sections {
+                    main.text { @for (id, title, blocks) in &self.sections {
                         (Section { id, title, body: html! { @for block in blocks { (block.html()) } } }.markup())
                     } }
                     footer { p { "Made by " code { (self.command) } ", Retune " (env!("CARGO_PKG_VERSION")) "." } }
@@ -76,6 +165,21 @@ impl Document {
             }
         };
         page.into_string()
+    }
+}
+
+impl Statement {
+    fn html(&self) -> Markup {
+        html! {
+            li class=(self.verdict.style()) {
+                span.says {
+                    @if self.conjecture { b { "Our conjecture: " } }
+                    (self.paper) small.rule { (self.rule) }
+                }
+                span.verdict { (self.verdict.words()) }
+                span.found { (self.found) }
+            }
+        }
     }
 }
 
@@ -104,9 +208,34 @@ impl Block {
         Self::Files(files.iter().map(|file| (*file).to_owned()).collect())
     }
 
+    /// A table as a block.
+    pub fn of_table(caption: impl Into<String>, table: &table::Table) -> Self {
+        let head = table.columns.iter().map(|column| match &*column.unit {
+            "" => column.name.clone(),
+            unit => format!("{}, {unit}", column.name),
+        });
+        let texts = |row: &Vec<table::Cell>| row.iter().map(ToString::to_string).collect();
+        Self::Table(caption.into(), head.collect(), table.rows.iter().map(texts).collect())
+    }
+
     fn markdown(&self) -> String {
         match self {
             Self::Words(words) => format!("{words}\n\n"),
+            Self::About(subject, words) => format!("**{subject}:** {words}\n\n"),
+            Self::MadeBy(words) => format!("Made by: {words}\n\n"),
+            Self::Statements(all) => {
+                let item = |one: &Statement| {
+                    let ours = if one.conjecture { "our conjecture: " } else { "" };
+                    format!(
+                        "- {ours}{} **{}** ({}) {}\n",
+                        one.paper,
+                        one.verdict.words(),
+                        one.found,
+                        one.rule
+                    )
+                };
+                all.iter().map(item).collect::<String>() + "\n"
+            }
             Self::List(all) => all.iter().map(|words| format!("- {words}\n")).collect::<String>() + "\n",
             Self::Table(caption, head, rows) => {
                 let rule = vec!["---"; head.len()].join(" | ");
@@ -114,6 +243,7 @@ impl Block {
                 format!("{caption}\n\n| {} |\n| {rule} |\n{rows}\n", head.join(" | "))
             }
             Self::Figure(file, _, caption) => format!("![{caption}]({file})\n\n"),
+            Self::Picture(Picture { file, caption, .. }) => format!("![{caption}]({file})\n\n"),
             Self::Files(files) => {
                 let links: Vec<String> = files.iter().map(|file| format!("[{file}]({file})")).collect();
                 format!("{}\n\n", links.join(", "))
@@ -124,6 +254,9 @@ impl Block {
     fn html(&self) -> Markup {
         match self {
             Self::Words(words) => html! { p { (words) } },
+            Self::About(subject, words) => html! { p { b { (subject) ": " } (words) } },
+            Self::MadeBy(words) => html! { p.made-by { b { "Made by: " } (words) } },
+            Self::Statements(all) => html! { ul.statements { @for one in all { (one.html()) } } },
             Self::List(all) => html! { ul { @for words in all { li { (words) } } } },
             Self::Table(caption, head, rows) => {
                 let head: Vec<&str> = head.iter().map(String::as_str).collect();
@@ -132,7 +265,12 @@ impl Block {
                 table.markup()
             }
             Self::Figure(_, drawing, caption) => figure(drawing, html! { (caption) }),
-            Self::Files(files) => html! { p { @for file in files { (link(file)) " " } } },
+            Self::Picture(Picture { file, drawing, caption }) => {
+                figure(drawing, html! { (caption) " " (link(file)) })
+            }
+            Self::Files(files) => {
+                html! { p.files { b { "Files: " } @for file in files { (link(file)) " " } } }
+            }
         }
     }
 }
@@ -176,5 +314,59 @@ mod tests {
         ] {
             assert!(page.contains(part), "{part}: {page}");
         }
+    }
+
+    #[test]
+    fn contract_statements_tables_and_figures_in_both_forms() {
+        let statement = Statement {
+            paper: "It holds".to_owned(),
+            rule: "Holds if so.".to_owned(),
+            conjecture: true,
+            verdict: Verdict::of_all(&[true, false]),
+            found: "1 of 2".to_owned(),
+        };
+        let mut table =
+            table::Table::new([table::Column::new("k1", "N/m"), table::Column::new("motion", "")]);
+        table.push(crate::cells![2.5, "a, b"]);
+        let drawing = Drawing::from("<svg></svg>".to_owned());
+        let picture = Picture { file: "a.svg".to_owned(), drawing, caption: "A figure.".to_owned() };
+        let document = Document {
+            title: "T".to_owned(),
+            command: "retune reproduce",
+            opening: vec![Block::About("Finest", "of many".to_owned())],
+            sections: vec![(
+                "one",
+                "One",
+                vec![
+                    Block::Statements(vec![statement]),
+                    Block::Picture(picture),
+                    Block::of_table("Motions", &table),
+                    Block::MadeBy("runs".to_owned()),
+                ],
+            )],
+        };
+        let markdown = document.markdown();
+        for part in [
+            "**Finest:** of many",
+            "- our conjecture: It holds **holds in part** (1 of 2) Holds if so.",
+            "![A figure.](a.svg)",
+            "| k1, N/m | motion |\n| --- | --- |\n| 2.5 | a, b |",
+            "Made by: runs",
+        ] {
+            assert!(markdown.contains(part), "{part}: {markdown}");
+        }
+        let page = document.html();
+        for part in [
+            "<b>Finest: </b>of many",
+            "<li class=\"partly\"><span class=\"says\"><b>Our conjecture: </b>It holds<small class=\"rule\">Holds if so.</small></span>",
+            "<span class=\"verdict\">holds in part</span><span class=\"found\">1 of 2</span>",
+            "<svg></svg></div><figcaption>A figure. <a href=\"a.svg\">a.svg</a>",
+            "<th scope=\"col\">k1, N/m</th>",
+            "<b>Made by: </b>runs",
+        ] {
+            assert!(page.contains(part), "{part}: {page}");
+        }
+        let verdicts = [&[][..], &[false], &[true, true]].map(Verdict::of_all);
+        assert_eq!(verdicts, [Verdict::Fails, Verdict::Fails, Verdict::Holds]);
     }
 }

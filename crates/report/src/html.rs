@@ -43,6 +43,9 @@ impl Section {
     }
 }
 
+/// Texts of more letters than this are long.
+const LONG: usize = 48;
+
 /// A table. The first cell of each row is the row's heading.
 pub struct Table {
     /// What it shows.
@@ -67,9 +70,14 @@ impl Table {
         Self { wraps: true, ..Self::new(caption, head) }
     }
 
-    /// Adds a row of texts.
+    /// Adds a row of texts. Long ones break into lines in any table, in a column that stays wide enough to be read.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(cells.into_iter().map(|text| html! { (text) }).collect());
+        let wraps = self.wraps;
+        let cell = |text: String| {
+            let is_long = !wraps && text.chars().count() > LONG;
+            html! { @if is_long { span.long { (text) } } @else { (text) } }
+        };
+        self.rows.push(cells.into_iter().map(cell).collect());
     }
 
     /// Its HTML: it scrolls in its own box where it is wider than the page.

@@ -63,6 +63,20 @@ impl Sheet {
         }
     }
 
+    /// A figure as wide as a page, one chart a row, without legend and caption.
+    pub fn page(title: impl Into<String>, description: impl Into<String>, charts: Vec<Chart>) -> Self {
+        Self {
+            title: title.into(),
+            description: description.into(),
+            width: Width::Page,
+            charts,
+            columns: 1,
+            stacked: false,
+            legend: Vec::new(),
+            caption: Vec::new(),
+        }
+    }
+
     /// The words of its legend, one after the other.
     pub fn legend_words(&self) -> String {
         self.legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")

@@ -1,20 +1,23 @@
 //! A table as data: named columns with units, rows of cells. Its CSV and its JSON are written here alone.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+use std::fmt;
 
 /// A column.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Column {
     /// Its name, as it stands in files.
     pub name: String,
     /// Its SI unit; empty for texts and pure numbers.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
 }
 
 impl Column {
     /// A column of a name and a unit.
-    pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
-        Self { name: name.into(), unit }
+    pub fn new(name: impl Into<String>, unit: impl Into<Cow<'static, str>>) -> Self {
+        Self { name: name.into(), unit: unit.into() }
     }
 
     /// Its heading on a page: its name with its unit.
@@ -57,7 +60,7 @@ impl Shown<'_> {
 }
 
 /// A cell. In files numbers have all their digits, so that they can be compared to the last bit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// A number; an empty field where it is NaN.
     Number(f64),
@@ -86,13 +89,7 @@ impl Cell {
 
     /// Its field in a CSV file.
     fn field(&self) -> String {
-        match self {
-            Self::Number(value) if value.is_nan() => String::new(),
-            Self::Number(value) => value.to_string(),
-            Self::Count(count) => count.to_string(),
-            Self::Text(text) => quoted(text),
-            Self::Empty => String::new(),
-        }
+        quoted(&self.to_string())
     }
 
     /// As JSON; null where it is no finite number.
@@ -102,6 +99,19 @@ impl Cell {
             Self::Count(count) => json!(count),
             Self::Text(text) => json!(text),
             Self::Empty => Value::Null,
+        }
+    }
+}
+
+/// As it stands on a page: a number with all its digits, nothing where there is no value.
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Number(value) if value.is_nan() => Ok(()),
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Count(count) => write!(f, "{count}"),
+            Self::Text(text) => f.write_str(text),
+            Self::Empty => Ok(()),
         }
     }
 }
@@ -156,7 +166,7 @@ macro_rules! cells {
 }
 
 /// A table.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Its columns.
     pub columns: Vec<Column>,
@@ -173,6 +183,18 @@ impl Table {
     /// The same, of columns whose units do not matter, as they stand in the first line of a CSV file.
     pub fn named(names: &str) -> Self {
         Self::new(names.split(',').map(|name| Column::new(name, "")))
+    }
+
+    /// The same of a table for readers, whose columns have their units in their names, as they stand in the head of a Markdown table.
+    pub fn headed(names: &str) -> Self {
+        Self::new(names.split(" | ").map(|name| Column::new(name, "")))
+    }
+
+    /// The same with further rows.
+    #[must_use]
+    pub fn with(mut self, rows: impl IntoIterator<Item = Vec<Cell>>) -> Self {
+        rows.into_iter().for_each(|row| self.push(row));
+        self
     }
 
     /// Adds a row.
@@ -201,8 +223,8 @@ impl Table {
     }
 
     /// The unit of a column; empty where there is no such column.
-    pub fn unit(&self, name: &str) -> &'static str {
-        self.place(name).map_or("", |place| self.columns[place].unit)
+    pub fn unit(&self, name: &str) -> &str {
+        self.place(name).map_or("", |place| &self.columns[place].unit)
     }
 
     /// A cell; none where there is no such column.
@@ -287,6 +309,12 @@ mod tests {
         assert_eq!(json["units"]["D"], "m");
         assert_eq!(json["rows"][1], json!({ "damper": "", "E1max": Value::Null, "n": 1, "D": Value::Null }));
         assert_eq!(Cell::finite(f64::INFINITY), Cell::Empty);
+        let heads = Table::headed("k1, N/m | R2");
+        assert_eq!((heads.columns.len(), heads.csv().as_str()), (2, "\"k1, N/m\",R2\n"));
+        let mut kept = Table::new([Column::new("t", "s")]);
+        kept.push(cells![0.1 + 0.2]);
+        let text = serde_json::to_string(&kept).expect("JSON");
+        assert_eq!(serde_json::from_str::<Table>(&text).expect("a table"), kept);
     }
 
     #[test]

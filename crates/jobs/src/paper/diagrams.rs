@@ -4,11 +4,9 @@ use super::family::Family;
 use super::motions::Motions;
 use super::plan::stiffness;
 use retune_dynamics::sweep::zones;
-use retune_dynamics::{Kind, Orbit, Zone};
+use retune_dynamics::{Kind, Orbit, Point, Zone};
 use retune_report::colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, YELLOW};
-use retune_report::{
-    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stand, Stroke, Width, drawing,
-};
+use retune_report::{Axis, Chart, Dash, Key, Layer, Mark, Shape, Sheet, Stand, Stroke};
 
 /// Height of the strip on top of the orbit diagram, as a share of the chart's.
 const STRIP: f64 = 0.05;
@@ -25,23 +23,22 @@ const DAMPER: Stroke = Stroke::solid(ORANGE);
 const NATURAL: Stroke = Stroke::new(BLACK, 0.7, Dash::Solid);
 
 /// Both charts with their legend.
-pub fn picture(family: &Family, motions: &Motions) -> Drawing {
+pub fn picture(family: &Family, motions: &Motions) -> Sheet {
     let omega = (motions.omega[0], motions.omega[motions.omega.len() - 1]);
     let k1 = stiffness(family.k1);
-    drawing(&Sheet {
-        title: format!("Impact zones and motions at k1 = {k1} N/m"),
-        description: format!(
-            "Against ω from {:.3} to {:.3} rad/s: on the left zones of impacts and the energies E1max and E2max, on the right x2 at the \
-             crests of the force, with the names of the motions.",
-            omega.0, omega.1
-        ),
-        width: Width::Page,
-        charts: vec![zone_chart(family, omega), orbit_chart(family, motions, omega)],
+    Sheet {
         columns: 2,
-        stacked: false,
         legend: legend().into_iter().map(|(key, words)| (key, words.to_owned())).collect(),
-        caption: Vec::new(),
-    })
+        ..Sheet::page(
+            format!("Impact zones and motions at k1 = {k1} N/m"),
+            format!(
+                "Against ω from {:.3} to {:.3} rad/s: on the left zones of impacts and the energies E1max and E2max, on the right x2 at the \
+                 crests of the force, with the names of the motions.",
+                omega.0, omega.1
+            ),
+            vec![zone_chart(family, omega), orbit_chart(family, motions, omega)],
+        )
+    }
 }
 
 /// The colour of a kind of motion.
@@ -92,13 +89,13 @@ fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {
         })
         .collect();
     layers.push(Layer::Upright { x: family.natural, stroke: NATURAL });
-    let curve = |scene: usize, damper: bool| {
-        family.points[scene].iter().map(|p| (p.value, if damper { p.e2_max } else { p.e1_max })).collect()
+    let curve = |scene: usize, energy: fn(&Point) -> f64, stroke| {
+        Layer::line(family.points[scene].iter().map(|p| (p.value, energy(p))), stroke)
     };
-    layers.push(Layer::Line { points: curve(0, false), stroke: NONE });
-    layers.push(Layer::Line { points: curve(2, false), stroke: TMD });
-    layers.push(Layer::Line { points: curve(1, true), stroke: DAMPER });
-    layers.push(Layer::Line { points: curve(1, false), stroke: SSVI });
+    layers.push(curve(0, |p| p.e1_max, NONE));
+    layers.push(curve(2, |p| p.e1_max, TMD));
+    layers.push(curve(1, |p| p.e2_max, DAMPER));
+    layers.push(curve(1, |p| p.e1_max, SSVI));
     let top = family.highest(0).energy.max(family.highest(1).energy);
     Chart {
         title: format!("k1 = {} N/m: impact zones, energies", stiffness(family.k1)),

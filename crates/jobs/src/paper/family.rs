@@ -1,8 +1,7 @@
 //! The responses at one stiffness of the structure, and the peaks of their curves: the data of Figures 3 to 5.
 
 use super::plan::Plan;
-use crate::Error;
-use crate::Progress;
+use crate::{Error, Progress};
 use retune_dynamics::{Parameter, Point, independent};
 use retune_model::Scene;
 
@@ -34,11 +33,11 @@ impl Family {
     pub fn compute(plan: &Plan, k1: f64, bar: &dyn Progress) -> Result<Self, Error> {
         let scenes = plan.scenes(k1)?;
         let omega = plan.file.omega.values();
-        let mut points = [Vec::new(), Vec::new(), Vec::new()];
-        for (scene, place) in scenes.iter().zip(&mut points) {
-            *place =
-                independent(scene, Parameter::Omega, &omega, plan.window(), &plan.settings(), || bar.inc(1))?;
-        }
+        let curve = |scene| -> Result<Vec<Point>, Error> {
+            let settings = plan.settings();
+            Ok(independent(scene, Parameter::Omega, &omega, plan.window(), &settings, || bar.inc(1))?)
+        };
+        let points = [curve(&scenes[0])?, curve(&scenes[1])?, curve(&scenes[2])?];
         let primary = scenes[0].primary;
         let (natural, half_width) = (primary.natural_frequency(), primary.half_power_half_width());
         Ok(Self { k1, natural, half_width, points, scenes })
@@ -58,26 +57,29 @@ impl Family {
         best.map_or(Peak { omega: f64::NAN, energy: f64::NAN }, |p| Peak { omega: p.value, energy: p.e1_max })
     }
 
+    /// Pairs of points of two curves at the frequencies within a distance of resonance, rad/s.
+    pub fn near<'a>(
+        &self,
+        one: &'a [Point],
+        other: &'a [Point],
+        within: f64,
+    ) -> impl Iterator<Item = (&'a Point, &'a Point)> {
+        let natural = self.natural;
+        one.iter().zip(other).filter(move |(point, _)| (point.value - natural).abs() <= within)
+    }
+
     /// The share of the frequencies within the width c1/m1 of resonance on which a curve is below another, and that width, rad/s.
     pub fn share_below(&self, scene: usize, other: usize) -> (f64, f64) {
-        let (mut below, mut all) = (0, 0);
-        for (one, two) in self.points[scene].iter().zip(&self.points[other]) {
-            if (one.value - self.natural).abs() <= 2.0 * self.half_width {
-                below += usize::from(one.e1_max < two.e1_max);
-                all += 1;
-            }
-        }
-        (below as f64 / all.max(1) as f64, 2.0 * self.half_width)
+        let width = 2.0 * self.half_width;
+        let pairs = self.near(&self.points[scene], &self.points[other], width);
+        (share(pairs, |one, two| one.e1_max < two.e1_max), width)
     }
 
     /// Where within the width c1/m1 of resonance a damper adds most energy: the frequency, and how many times that without it (`energy`).
     pub fn most_added(&self, scene: usize) -> Peak {
-        let near = self.points[scene]
-            .iter()
-            .zip(&self.points[0])
-            .filter(|(with, _)| (with.value - self.natural).abs() <= 2.0 * self.half_width)
-            .map(|(with, without)| Peak { omega: with.value, energy: with.e1_max / without.e1_max });
-        near.max_by(|a, b| a.energy.total_cmp(&b.energy))
+        self.near(&self.points[scene], &self.points[0], 2.0 * self.half_width)
+            .map(|(with, without)| Peak { omega: with.value, energy: with.e1_max / without.e1_max })
+            .max_by(|a, b| a.energy.total_cmp(&b.energy))
             .unwrap_or(Peak { omega: f64::NAN, energy: f64::NAN })
     }
 
@@ -115,6 +117,15 @@ impl Family {
         }
         humps
     }
+}
+
+/// The share of some pairs of points for which something holds.
+pub fn share<'a>(
+    pairs: impl Iterator<Item = (&'a Point, &'a Point)>,
+    holds: impl Fn(&Point, &Point) -> bool,
+) -> f64 {
+    let all: Vec<bool> = pairs.map(|(one, other)| holds(one, other)).collect();
+    all.iter().filter(|holds| **holds).count() as f64 / all.len().max(1) as f64
 }
 
 /// Number of frequencies in the running median of [`Family::humps`]: in the paper's study 0.09 rad/s, a fifth of the half-power

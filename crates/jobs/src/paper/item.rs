@@ -1,154 +1,55 @@
-//! A table or figure of the paper, reproduced: the paper's statements, our results, and a verdict on each statement.
+//! A table or figure of the paper, reproduced: our results, and the paper's statements with a verdict on each.
 
-use retune_report::Drawing;
-use retune_report::table::{Cell, line};
+use retune_report::document::{Picture, Statement, Verdict};
+use retune_report::table::Table;
+use retune_report::{Sheet, drawing};
 use serde::{Deserialize, Serialize};
 
-/// The verdict on a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// It holds under our settings.
-    Holds,
-    /// It holds in part, or in a sense that the paper does not state.
-    Partly,
-    /// It does not hold under our settings.
-    Fails,
-    /// Practically equal designs decide it differently.
-    Undecided,
-}
-
-impl Verdict {
-    /// The verdict in words.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::Partly => "holds in part",
-            Self::Fails => "does not hold",
-            Self::Undecided => "cannot be decided",
-        }
-    }
-
-    /// Holds or fails.
-    pub const fn of(holds: bool) -> Self {
-        if holds { Self::Holds } else { Self::Fails }
-    }
-
-    /// Holds if all of `parts` do, fails if none does, else holds in part.
-    pub fn of_all(parts: &[bool]) -> Self {
-        match parts.iter().filter(|&&holds| holds).count() {
-            0 => Self::Fails,
-            count if count == parts.len() => Self::Holds,
-            _ => Self::Partly,
-        }
-    }
-}
-
-/// A statement of the paper and our result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Statement {
-    /// The paper's words, or nearly.
-    pub paper: String,
-    /// The criterion for the verdict and its reason: where the paper is only verbal, this says what is measured.
-    pub rule: String,
-    /// Whether it is our conjecture about what the paper leaves open, not a statement of the paper: it does not count among these.
-    #[serde(default)]
-    pub conjecture: bool,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// The numbers behind the verdict.
-    pub found: String,
-}
-
-/// A table for readers.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Grid {
-    /// Its caption.
-    pub caption: String,
-    /// Names and units of its columns.
-    pub head: Vec<String>,
-    /// Its rows.
-    pub rows: Vec<Vec<String>>,
-}
-
-impl Grid {
-    /// An empty table.
-    pub fn new(caption: &str, head: &[&str]) -> Self {
-        Self {
-            caption: caption.to_owned(),
-            head: head.iter().map(|&name| name.to_owned()).collect(),
-            rows: Vec::new(),
-        }
-    }
-
-    /// The table as CSV.
-    pub fn csv(&self) -> String {
-        let texts = |cells: &Vec<String>| cells.iter().cloned().map(Cell::from).collect::<Vec<Cell>>();
-        std::iter::once(&self.head).chain(&self.rows).map(|cells| line(&texts(cells))).collect()
-    }
-}
-
-/// A picture with its caption.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Picture {
-    /// File name without its ending.
-    pub name: String,
-    /// As SVG.
-    pub drawing: Drawing,
-    /// The contents of the picture, and how it was made.
-    pub caption: String,
-}
-
 /// A table or figure of the paper, reproduced.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Item {
-    /// `table1`, `figure4`.
-    pub name: String,
-    /// "Table 1. ..."
-    pub title: String,
-    /// The content of the paper's table or figure.
-    pub paper: String,
     /// The settings of our results.
     pub made_by: String,
-    /// Ours.
+    /// Figures.
     pub pictures: Vec<Picture>,
-    /// Ours.
-    pub grids: Vec<Grid>,
+    /// Tables for readers, each with its caption.
+    pub tables: Vec<(String, Table)>,
     /// The paper's statements, one by one.
     pub statements: Vec<Statement>,
     /// Further remarks.
     pub notes: Vec<String>,
-    /// Data files: name and content.
-    pub data: Vec<(String, String)>,
+    /// Data: the name of each file and its table.
+    pub data: Vec<(String, Table)>,
 }
 
 impl Item {
     /// An item without content.
-    pub fn new(name: &str, title: &str, paper: &str, made_by: String) -> Self {
-        let [name, title, paper] = [name, title, paper].map(str::to_owned);
-        Self {
-            name,
-            title,
-            paper,
-            made_by,
-            pictures: Vec::new(),
-            grids: Vec::new(),
-            statements: Vec::new(),
-            notes: Vec::new(),
-            data: Vec::new(),
-        }
+    pub fn new(made_by: String) -> Self {
+        Self { made_by, ..Self::default() }
     }
 
     /// Its tables and its data: the name and the text of each file.
-    pub fn files(&self) -> Vec<(String, String)> {
-        let table = |(i, grid): (usize, &Grid)| (format!("{}-table-{}.csv", self.name, i + 1), grid.csv());
-        self.grids.iter().enumerate().map(table).chain(self.data.iter().cloned()).collect()
+    pub fn files(&self, item: &str) -> Vec<(String, String)> {
+        let table =
+            |(i, (_, table)): (usize, &(_, Table))| (format!("{item}-table-{}.csv", i + 1), table.csv());
+        let data = self.data.iter().map(|(name, table)| (name.clone(), table.csv()));
+        self.tables.iter().enumerate().map(table).chain(data).collect()
     }
 
-    /// Adds a picture.
-    pub fn picture(&mut self, name: &str, drawing: impl Into<Drawing>, caption: &str) {
-        let [name, caption] = [name, caption].map(str::to_owned);
-        self.pictures.push(Picture { name, drawing: drawing.into(), caption });
+    /// Adds a figure, whose file is `name.svg`.
+    pub fn picture(&mut self, name: &str, sheet: &Sheet, caption: &str) {
+        let [file, caption] = [format!("{name}.svg"), caption.to_owned()];
+        self.pictures.push(Picture { file, drawing: drawing(sheet), caption });
+    }
+
+    /// Adds a table for readers.
+    pub fn table(&mut self, caption: &str, table: Table) {
+        self.tables.push((caption.to_owned(), table));
+    }
+
+    /// Adds data, whose file is `name.csv`.
+    pub fn data(&mut self, name: &str, table: Table) {
+        self.data.push((format!("{name}.csv"), table));
     }
 
     /// Adds a statement.
@@ -159,19 +60,7 @@ impl Item {
 
     /// Adds a conjecture of ours.
     pub fn conjecture(&mut self, ours: &str, rule: &str, verdict: Verdict, found: String) {
-        self.statement(ours, rule, verdict, found);
-        if let Some(last) = self.statements.last_mut() {
-            last.conjecture = true;
-        }
+        let [paper, rule] = [ours, rule].map(str::to_owned);
+        self.statements.push(Statement { paper, rule, conjecture: true, verdict, found });
     }
-}
-
-/// Rows of numbers as CSV under `header`.
-pub fn numbers(header: &str, rows: impl IntoIterator<Item = Vec<f64>>) -> String {
-    let mut text = format!("{header}\n");
-    for row in rows {
-        text += &row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        text.push('\n');
-    }
-    text
 }

@@ -1,11 +1,17 @@
-//! What a design is worth, in J: by each of the objectives that the paper may have meant, and near it.
+//! What a design is worth, J: at one frequency, near the design, and at its worst over a band; there on ever finer frequencies, and of
+//! designs that are practically equal, which says how far a worst can be trusted.
 
-use super::plan::Plan;
+use super::plan::{Plan, damper};
 use crate::Error;
 use rayon::prelude::*;
+use retune_dynamics::Parameter;
+use retune_dynamics::parameter::evenly;
 use retune_model::{Positive, Scene};
-use retune_optim::{Ensemble, Failures, FrequencyBand, Goal, Objective, Response, Statistic};
-use retune_solver::{Settings, Window};
+use retune_optim::{Ensemble, FrequencyBand, Goal, Objective, Response, Statistic};
+use retune_report::cells;
+use retune_report::document::Verdict;
+use retune_report::table::{Cell, Column, Table};
+use retune_solver::{Rows, Sample, Settings, Window, trajectory};
 
 /// The band for which dampers are tuned, rad/s.
 pub const BAND: [f64; 2] = [5.0, 8.0];
@@ -21,19 +27,30 @@ impl Spread {
     /// Of some values; NaN of none.
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            values
-                .get((share * (values.len().max(1) - 1) as f64).round() as usize)
-                .copied()
-                .unwrap_or(f64::NAN)
-        };
+        let last = values.len().saturating_sub(1) as f64;
+        let at = |share: f64| values.get((share * last).round() as usize).copied().unwrap_or(f64::NAN);
         Self { least: at(0.0), median: at(0.5), largest: at(1.0) }
+    }
+
+    /// Whether a value lies within.
+    pub fn holds(&self, value: f64) -> bool {
+        (self.least..=self.largest).contains(&value)
     }
 
     /// Its three numbers in words.
     pub fn words(&self) -> String {
         format!("{:.0} – {:.0} (median {:.0})", self.least, self.largest, self.median)
     }
+}
+
+/// What a function gives for each of some things, side by side.
+pub fn for_each<T: Sync, U: Send>(
+    all: &[T],
+    of: impl Fn(&T) -> Result<U, Error> + Sync + Send,
+) -> Result<Vec<U>, Error> {
+    // The first error is that of the first thing, not of the first thread.
+    let made: Vec<Result<U, Error>> = all.par_iter().map(of).collect();
+    made.into_iter().collect()
 }
 
 /// The worst over the band of the page.
@@ -43,28 +60,33 @@ pub fn over_band(samples: usize, response: Response) -> Objective {
     Objective { omega, response, ..Objective::default() }
 }
 
-/// E1max of a scene by an objective; infinite where it cannot be run.
-pub fn energy(scene: &Scene, objective: &Objective, window: Window, settings: &Settings) -> f64 {
-    let goal = Goal { objective: objective.clone(), ..window.into() };
+/// E1max of a scene at its frequency; infinite where it cannot be run.
+pub fn energy(scene: &Scene, window: Window, settings: &Settings) -> f64 {
+    let goal = Goal { objective: Objective::default(), ..window.into() };
     goal.evaluate(scene, settings, f64::INFINITY).map_or(f64::INFINITY, |found| found.value)
 }
 
-/// At the scene's own frequency, in the window.
+/// The same in the window of the plan.
 pub fn at_omega(plan: &Plan, scene: &Scene) -> f64 {
-    energy(scene, &Objective::default(), plan.window(), &plan.settings())
+    energy(scene, plan.window(), &plan.settings())
 }
 
-/// At the scene's own frequency, from rest to the end of the window.
-pub fn whole(plan: &Plan, scene: &Scene) -> f64 {
-    let window = Window { from: 0.0, to: plan.window().to };
-    energy(scene, &Objective::default(), window, &plan.settings())
+/// The motion of a scene from rest in a window, every `interval` seconds.
+pub fn recorded(plan: &Plan, scene: &Scene, window: Window, interval: f64) -> Result<Vec<Sample>, Error> {
+    let mut samples = Vec::new();
+    trajectory(scene, window, &plan.settings(), Rows::every(interval), &mut |sample| samples.push(*sample))?;
+    Ok(samples)
+}
+
+/// A time or a number as it stands in data files: to a millionth, without the errors of a sum of intervals.
+pub fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
 }
 
 /// The scene of the TMD with the mass of the paper's, k2 and c2 free, that has the least steady worst over the band at the tuned stiffness.
 pub fn best_tmd(plan: &Plan) -> Result<Scene, Error> {
     let scene = plan.tmd.scene;
-    let damper = scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))?;
-    Ok(Scene { damper: Some(crate::retention::best_tmd(&scene, damper, BAND)?.0), ..scene })
+    Ok(Scene { damper: Some(crate::retention::best_tmd(&scene, damper(&plan.tmd)?, BAND)?.0), ..scene })
 }
 
 /// Its spring and its damping in words.
@@ -80,4 +102,91 @@ pub fn near(members: u32, scene: &Scene, value: impl Fn(&Scene) -> f64 + Sync) -
     let ensemble = Ensemble { members, phases: false, errors: 1e-3, seed: 0, statistic: Statistic::Worst };
     let one = |i: u32| ensemble.member(scene, i).map_or(f64::INFINITY, |(scene, _)| value(&scene));
     Spread::of((0..members).into_par_iter().map(one).collect())
+}
+
+/// Designs within ±0.1 %.
+const MEMBERS: u32 = 21;
+
+/// What "decided" means, for the rules of statements.
+pub const RULE: &str = "Each number is the largest on the finest frequencies (table); what does not hold as well at the least and at the largest of 21 designs within ±0.1 % cannot be decided.";
+
+/// The largest E1max on samples of a band, J: lower bounds, each of which a run reaches.
+pub struct Ladder {
+    /// On the frequencies of the plan's ladder.
+    values: Vec<f64>,
+    /// Of the practically equal designs.
+    pub near: Spread,
+}
+
+/// One number of a ladder.
+pub type Pick = fn(&Ladder) -> f64;
+/// Those that a verdict must hold on: the finest, and both ends of the spread.
+const PICKS: [Pick; 3] = [Ladder::finest, |ladder| ladder.near.least, |ladder| ladder.near.largest];
+
+impl Ladder {
+    /// Of a scene over the frequencies of Figure 3.
+    pub fn climb(plan: &Plan, scene: &Scene) -> Self {
+        let near = near(MEMBERS, scene, |scene| sampled(plan, scene, middle(plan)));
+        let values = plan.file.ladder.iter().map(|samples| sampled(plan, scene, *samples)).collect();
+        Self { values, near }
+    }
+
+    /// On the finest frequencies.
+    pub fn finest(&self) -> f64 {
+        self.values.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The range of the finest and the spread, in words.
+    pub fn words(&self) -> String {
+        let Spread { least, largest, .. } = self.near;
+        format!(
+            "{:.0} J on the finest frequencies, {least:.0} to {largest:.0} J within ±0.1 %",
+            self.finest()
+        )
+    }
+
+    /// Its cells in a [`ladder_table`].
+    pub fn cells(&self) -> Vec<Cell> {
+        let values = self.values.iter().map(|value| format!("{value:.1}").into());
+        values.chain(cells![self.near.words()]).collect()
+    }
+}
+
+/// The number of frequencies in the middle of the ladder.
+fn middle(plan: &Plan) -> usize {
+    let rungs = &plan.file.ladder;
+    rungs.get(rungs.len() / 2).copied().unwrap_or(2)
+}
+
+/// The finest number of frequencies.
+pub fn finest(plan: &Plan) -> usize {
+    plan.file.ladder.last().copied().unwrap_or(2)
+}
+
+/// The largest on evenly spaced frequencies, J, without a search between them.
+pub fn sampled(plan: &Plan, scene: &Scene, samples: usize) -> f64 {
+    let value = |omega| Parameter::Omega.at(*scene, omega).map_or(f64::NAN, |scene| at_omega(plan, &scene));
+    let omega = evenly(plan.file.omega.from, plan.file.omega.to, samples);
+    omega.into_par_iter().map(value).reduce(|| f64::NEG_INFINITY, f64::max)
+}
+
+/// What a statement is on the finest frequencies and at both ends of the spread, where it is the same on all three.
+pub fn decided(statement: impl Fn(Pick) -> bool) -> Option<bool> {
+    let [finest, least, largest] = PICKS.map(statement);
+    (finest == least && finest == largest).then_some(finest)
+}
+
+/// The verdict on a statement of several parts, each of which must be decided.
+pub fn verdict(parts: &[Option<bool>]) -> Verdict {
+    let known: Option<Vec<bool>> = parts.iter().copied().collect();
+    known.map_or(Verdict::Undecided, |parts| Verdict::of_all(&parts))
+}
+
+/// A table of ladders without rows; `head` names the columns before them.
+pub fn ladder_table(plan: &Plan, head: &str) -> Table {
+    let mut table = Table::headed(head);
+    table.columns.extend(plan.file.ladder.iter().map(|samples| Column::new(format!("{samples} ω, J"), "")));
+    let near = format!("{MEMBERS} designs within ±0.1 % on {} ω, J", middle(plan));
+    table.columns.push(Column::new(near, ""));
+    table
 }

@@ -1,16 +1,22 @@
-//! The data of Figure 4: the motions of the SSVI NES over the frequencies around a resonance.
+//! The data of Figure 4: the motions of the SSVI NES over the frequencies around a resonance. Runs name a regime at each frequency; on
+//! the branch of its motions the ends of a periodic one are exact, with the bifurcation there.
 
-use super::plan::Plan;
-use crate::Error;
-use crate::Progress;
-use rayon::prelude::*;
+use super::family::Family;
+use super::measures::for_each;
+use super::plan::{Plan, stiffness};
+use crate::{Error, Progress};
+use retune_dynamics::periodic::branches::{Control, Plan as BranchPlan};
+use retune_dynamics::periodic::{Branch, End, EventKind, branches};
 use retune_dynamics::poincare::Periods;
 use retune_dynamics::record::coordinates;
+use retune_dynamics::regime::periodic_label;
 use retune_dynamics::{
     Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, classify, continuation, follow,
     independent_orbits, resumed,
 };
 use retune_model::Scene;
+use retune_report::cells;
+use retune_report::table::Table;
 
 /// The starts of motions: from rest, from the frequency below, from the frequency above.
 pub const STARTS: [&str; 3] = ["rest", "up", "down"];
@@ -47,13 +53,11 @@ impl Motions {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
         let settings = plan.settings();
-        let record = |&value: &f64| -> Result<Record, retune_dynamics::Error> {
+        let records = for_each(&omega, |&value| {
             let record = follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?;
             bar.inc(1);
             Ok(record)
-        };
-        let records: Vec<Result<Record, retune_dynamics::Error>> = omega.par_iter().map(record).collect();
-        let records = records.into_iter().collect::<Result<Vec<_>, _>>()?;
+        })?;
         let sweep = |values: &[f64]| {
             let periods = Periods { settle: SETTLE[1], record: RECORD };
             continuation(scene, Parameter::Omega, values, periods, &settings, || bar.inc(1))
@@ -65,11 +69,9 @@ impl Motions {
         let rest = independent_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
         let orbits = [rest, up?, back];
         let indices: Vec<usize> = (0..omega.len()).collect();
-        let found: Vec<Result<Option<Coexisting>, Error>> = indices
-            .par_iter()
-            .map(|&index| coexisting(plan, scene, index, &records[index], &orbits))
-            .collect();
-        let coexisting = found.into_iter().filter_map(Result::transpose).collect::<Result<_, _>>()?;
+        let coexisting =
+            for_each(&indices, |&index| coexisting(plan, scene, index, &records[index], &orbits))?;
+        let coexisting = coexisting.into_iter().flatten().collect();
         Ok(Self { omega, regimes: records.iter().map(classify).collect(), orbits, coexisting })
     }
 
@@ -121,4 +123,115 @@ fn coexisting(
         .map(|start| (start, classify(&records[start])))
         .collect();
     Ok((motions.len() > 1).then_some(Coexisting { index, motions }))
+}
+
+/// Of branches: frequencies at which runs are started, at most, and starts at each beside that from rest.
+const SAMPLES: usize = 61;
+const OTHERS: usize = 4;
+/// The narrowest regime that is listed, as a share of the frequencies: a step of the figure.
+const NARROW: f64 = 1.0 / 200.0;
+
+/// A range of frequencies over which one branch has stable motions of one name.
+struct Part {
+    label: String,
+    /// The frequencies, ascending, and what happens at either.
+    ends: [(f64, &'static str); 2],
+    /// Whether a run from rest ends on it.
+    rest: bool,
+}
+
+/// Where periodic motions begin and end.
+pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
+    let found = for_each(all, |(family, motions)| {
+        let range = [motions.omega[0], motions.omega[motions.omega.len() - 1]];
+        let samples = SAMPLES.min(motions.omega.len());
+        let wanted =
+            BranchPlan { samples, starts: OTHERS, passes: 1, ..BranchPlan::over(Parameter::Omega, range) };
+        Ok(branches(&family.scenes[1], wanted, &plan.settings(), Control::default())?)
+    })?;
+    let mut table = Table::headed(
+        "k1, N/m | motion | from ω, rad/s | to ω, rad/s | begins by | ends by | reached from rest",
+    );
+    for ((family, _), found) in all.iter().zip(found) {
+        let [from, to] = found.plan.range;
+        let mut parts: Vec<Part> = Vec::new();
+        for (number, branch) in found.branches.iter().enumerate() {
+            for part in stable_parts(branch) {
+                let within = |value: f64| part.ends[0].0 <= value && value <= part.ends[1].0;
+                let rest = found.on(number).any(|(sample, one)| one.from_rest && within(sample.value));
+                parts.push(Part { rest, ..part });
+            }
+        }
+        for Part { label, ends: [begin, end], rest } in merged(parts) {
+            if end.0 - begin.0 >= NARROW * (to - from) {
+                table.push(cells![
+                    stiffness(family.k1),
+                    label,
+                    format!("{:.6}", begin.0),
+                    format!("{:.6}", end.0),
+                    begin.1,
+                    end.1,
+                    if rest { "yes" } else { "no" },
+                ]);
+            }
+        }
+    }
+    Ok(table)
+}
+
+/// Parts of one name that overlap or meet, as one, by their first frequency: those of a closed branch on either side of its first motion, or of a
+/// branch that was found from several motions.
+fn merged(mut parts: Vec<Part>) -> Vec<Part> {
+    parts.sort_by(|a, b| a.label.cmp(&b.label).then(a.ends[0].0.total_cmp(&b.ends[0].0)));
+    let mut found: Vec<Part> = Vec::new();
+    for part in parts {
+        match found.last_mut() {
+            Some(last) if last.label == part.label && part.ends[0].0 <= last.ends[1].0 => {
+                last.rest |= part.rest;
+                if part.ends[1].0 > last.ends[1].0 {
+                    last.ends[1] = part.ends[1];
+                }
+            }
+            _ => found.push(part),
+        }
+    }
+    found.sort_by(|a, b| a.ends[0].0.total_cmp(&b.ends[0].0));
+    found
+}
+
+/// The parts of a branch with stable motions of one name.
+fn stable_parts(branch: &Branch) -> Vec<Part> {
+    let event = |place: usize| branch.events.iter().find(|event| event.place == place);
+    let last = branch.points.len() - 1;
+    let why = |place: usize| match event(place) {
+        Some(event) => event.kind.name(),
+        None => match branch.ends[usize::from(place == last)] {
+            _ if place > 0 && place < last => "not located",
+            End::Range => "the range",
+            End::Halved => "period doubling",
+            End::Closed => "goes on",
+            End::Steps | End::Lost | End::Ended => "not followed farther",
+        },
+    };
+    let at = |place: usize| (branch.points[place].value, why(place));
+    let mut found = Vec::new();
+    let mut first = None;
+    for place in 0..branch.points.len() {
+        let goes_on = branch.is_stable_after(place);
+        let ends = !goes_on || event(place).is_some_and(|event| event.kind == EventKind::Grazing);
+        if let (Some(begin), true) = (first, ends) {
+            // At a grazing rounding decides whether the impact counts: the motion between the ends names the part.
+            let orbit = &branch.points[usize::midpoint(begin, place)];
+            let struck = |wall: char| orbit.seen.impacts.matches(wall).count() as f64;
+            let label = periodic_label(orbit.periods, ['S', 'O'].map(struck));
+            let mut ends = [at(begin), at(place)];
+            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            found.push(Part { label, ends, rest: false });
+            first = None;
+        }
+        if goes_on && first.is_none() {
+            first = Some(place);
+        }
+    }
+    found
 }

@@ -1,10 +1,10 @@
 //! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
 
-use crate::Error;
-use crate::Observer;
-use retune_model::{Design, Scene};
+use crate::{Error, Observer};
+use retune_model::{Damper, Design, Parameter, Scene};
+use retune_optim::Failures;
 use retune_solver::{Settings, Window};
-use retune_study::{Kind, PaperStudy, Study, StudyError, read_paper, read_table2};
+use retune_study::{Kind, PaperStudy, Setting, Study, StudyError, read_paper, read_table2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -77,6 +77,9 @@ pub struct Plan<'a> {
 /// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
 const MOST_STEPS: u64 = 1_000_000;
 
+/// Radii of the damper's surfaces for which results are repeated, m: the paper does not give its own.
+pub const RADII: [f64; 5] = [0.1, 0.5, 2.0, 5.0, 10.0];
+
 impl Range {
     /// The values.
     pub fn values(self) -> Vec<f64> {
@@ -94,9 +97,6 @@ impl Range {
 
 impl<'a> Plan<'a> {
     /// Reads the plan at `path`.
-    ///
-    /// # Errors
-    /// It, or a file that it names, is wrong.
     pub fn read(path: &Path, watch: &'a dyn Observer) -> Result<Self, Error> {
         let file: PaperPlan = read_paper(path)?;
         let refuse = |problem: &str| {
@@ -125,13 +125,8 @@ impl<'a> Plan<'a> {
     }
 
     /// The scenes without damper, with SSVI NES and with TMD at a stiffness.
-    ///
-    /// # Errors
-    /// A stiffness that cannot be.
     pub fn scenes(&self, k1: f64) -> Result<[Scene; 3], Error> {
-        let at = |study: &Study| -> Result<Scene, Error> {
-            Ok(retune_dynamics::Parameter::K1.at(study.scene, k1)?)
-        };
+        let at = |study: &Study| -> Result<Scene, Error> { Ok(Parameter::K1.at(study.scene, k1)?) };
         let (ssvi, tmd) = (at(&self.ssvi)?, at(&self.tmd)?);
         Ok([Scene { damper: None, ..ssvi }, ssvi, tmd])
     }
@@ -141,9 +136,32 @@ impl<'a> Plan<'a> {
         self.ssvi.scene.primary.stiffness.get()
     }
 
+    /// The scene of the SSVI NES with other values of some parameters.
+    pub fn ssvi_with(&self, values: &[(Parameter, f64)]) -> Result<Scene, Error> {
+        let settings: Vec<Setting> =
+            values.iter().map(|&(parameter, value)| Setting::new(parameter, value)).collect();
+        Ok(self.ssvi.scene_with(&settings)?)
+    }
+
+    /// The radius of the SSVI NES's surfaces, m.
+    pub fn radius(&self) -> f64 {
+        self.ssvi.value_of(Parameter::R).unwrap_or(f64::NAN)
+    }
+
+    /// The others of [`RADII`], m.
+    pub fn other_radii(&self) -> impl Iterator<Item = f64> {
+        let own = self.radius();
+        RADII.into_iter().filter(move |radius| *radius != own)
+    }
+
     /// The window of the maxima.
     pub fn window(&self) -> Window {
         self.ssvi.window.window()
+    }
+
+    /// From rest to the end of that window.
+    pub fn whole_run(&self) -> Window {
+        Window { from: 0.0, ..self.window() }
     }
 
     /// How runs are integrated.
@@ -160,6 +178,11 @@ impl<'a> Plan<'a> {
         });
         format!("{radius}{}. {more}", crate::summary::MadeBy::new(&self.ssvi))
     }
+}
+
+/// The damper of a study.
+pub fn damper(study: &Study) -> Result<Damper, Error> {
+    study.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))
 }
 
 /// `2.00e4`, as the paper writes stiffnesses.

@@ -69,7 +69,7 @@ fn chart(sweep: &Sweep, table: &Table, name: &str, top: bool, count: usize) -> C
     if sweep.len() < FEW {
         layers.push(Layer::Marks { points: points(&with), mark: MARK });
     }
-    let label = Column::new(name.replace('_', " "), table.unit(name)).heading();
+    let label = Column::new(name.replace('_', " "), table.unit(name).to_owned()).heading();
     let values: Vec<f64> = with.iter().chain(&without).copied().collect();
     let plan = sweep.plan();
     let scale = match plan.scale {

@@ -149,7 +149,7 @@ fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<Strin
 fn columns(sweep: &Sweep, table: &Table) -> Vec<([String; 2], usize, Vec<f64>)> {
     let of = |column: &Column, heading: &str, width| {
         let values = table.column(&column.name).unwrap_or_default();
-        ([heading.to_owned(), column.unit.to_owned()], width, values)
+        ([heading.to_owned(), column.unit.to_string()], width, values)
     };
     let find = |name: &str| table.columns.iter().find(|column| column.name == name);
     let mut columns = vec![("omega", "omega"), ("f_Hz", ""), ("n_rpm", "")]
