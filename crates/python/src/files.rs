@@ -73,7 +73,9 @@ fn done(job: Job, request: &Request, monitor: &Monitor) -> Result<String, Fault>
             tune::merge::merge(request, &parts, monitor)?;
             out = out_of_one(request)?;
         }
-        Job::Reproduce { only } => drop(retune_jobs::paper::reproduce(request, only.as_deref(), monitor)?),
+        Job::Reproduce { only } => {
+            retune_jobs::paper::reproduce(request, only.as_deref(), monitor)?;
+        }
         Job::Share(shard) => {
             tune::merge::share(request, read("shard", &shard)?, monitor)?;
             out = out_of_one(request)?;
