@@ -50,6 +50,6 @@ mod tests {
             ["k2", "k2_most", "E1", "E1max", "E1max_none", "contact_force", "omega_worst", "v1", "place"];
         let table = table(&names);
         let units: Vec<&str> = table.columns.iter().map(|column| &*column.unit).collect();
-        assert_eq!(units, ["N/m", "N/m", "Pa", "J", "J", "N", "rad/s", "m/s", ""]);
+        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", ""]);
     }
 }

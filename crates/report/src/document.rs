@@ -1,6 +1,6 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
-use crate::html::{Section, Table, figure, head, link};
+use crate::html::{Table, figure, head, link};
 use crate::{Drawing, table};
 use maud::{DOCTYPE, Markup, html};
 use serde::{Deserialize, Serialize};
@@ -106,6 +106,8 @@ pub enum Block {
     Picture(Picture),
     /// Links to files beside the page.
     Files(Vec<String>),
+    /// Elements of a page as HTML alone, which Markdown leaves out.
+    Elements(Markup),
 }
 
 /// A page.
@@ -117,9 +119,12 @@ pub struct Document {
     pub command: &'static str,
     /// What stands before the first section.
     pub opening: Vec<Block>,
-    /// The target of links to a section, its heading, its contents.
-    pub sections: Vec<(&'static str, &'static str, Vec<Block>)>,
+    /// Its sections.
+    pub sections: Vec<Section>,
 }
+
+/// The target of links to a section, its heading, its contents.
+pub type Section = (&'static str, &'static str, Vec<Block>);
 
 impl Document {
     /// Its files, each with its name: both forms and all figures.
@@ -148,7 +153,7 @@ impl Document {
         let page: Markup = html! {
             (DOCTYPE)
             html lang="en" {
-                (head(&self.title, ""))
+                (head(&self.title))
                 body {
                     header {
                         h1 { (self.title) }
@@ -158,7 +163,10 @@ impl Document {
                         } }
                     }
                     main.text { @for (id, title, blocks) in &self.sections {
-                        (Section { id, title, body: html! { @for block in blocks { (block.html()) } } }.markup())
+                        section id=(id) aria-labelledby={ (id) "-title" } {
+                            h2 id={ (id) "-title" } { (title) }
+                            @for block in blocks { (block.html()) }
+                        }
                     } }
                     footer { p { "Made by " code { (self.command) } ", Retune " (env!("CARGO_PKG_VERSION")) "." } }
                 }
@@ -248,6 +256,7 @@ impl Block {
                 let links: Vec<String> = files.iter().map(|file| format!("[{file}]({file})")).collect();
                 format!("{}\n\n", links.join(", "))
             }
+            Self::Elements(_) => String::new(),
         }
     }
 
@@ -271,6 +280,7 @@ impl Block {
             Self::Files(files) => {
                 html! { p.files { b { "Files: " } @for file in files { (link(file)) " " } } }
             }
+            Self::Elements(markup) => markup.clone(),
         }
     }
 }

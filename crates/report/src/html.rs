@@ -6,8 +6,8 @@ use maud::{Markup, PreEscaped, html};
 /// What all pages of Retune look like: light and dark, wide, narrow and in print.
 const STYLE: &str = include_str!("page.css");
 
-/// The head of a page: its title, and the style of all pages with what this page has beside it, as CSS.
-pub fn head(title: &str, own: &str) -> Markup {
+/// The head of a page: its title, and the style of all pages.
+pub fn head(title: &str) -> Markup {
     html! {
         head {
             meta charset="utf-8";
@@ -15,35 +15,12 @@ pub fn head(title: &str, own: &str) -> Markup {
             meta name="color-scheme" content="light dark";
             link rel="icon" href="data:,";
             title { (title) }
-            style { (PreEscaped(STYLE)) (PreEscaped(own)) }
+            style { (PreEscaped(STYLE)) }
         }
     }
 }
 
-/// A section with its heading.
-pub struct Section {
-    /// The target of links to it.
-    pub id: &'static str,
-    /// Its heading.
-    pub title: &'static str,
-    /// What stands below it.
-    pub body: Markup,
-}
-
-impl Section {
-    /// Its HTML.
-    pub fn markup(&self) -> Markup {
-        let heading = format!("{}-title", self.id);
-        html! {
-            section id=(self.id) aria-labelledby=(heading) {
-                h2 id=(heading) { (self.title) }
-                (self.body)
-            }
-        }
-    }
-}
-
-/// Texts of more letters than this are long.
+/// Cells of more letters than this may break into lines.
 const LONG: usize = 48;
 
 /// A table. The first cell of each row is the row's heading.

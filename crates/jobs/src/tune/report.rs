@@ -20,15 +20,11 @@ pub(crate) use findings::Findings;
 
 use crate::Error;
 use crate::resolved::study_text;
-use maud::{DOCTYPE, Markup, html};
-use retune_report::html;
+use retune_report::document::Document;
 use retune_store::Directory;
 
 /// The file.
 pub const FILE: &str = "report.html";
-
-/// What this page has beside it.
-const OWN: &str = include_str!("report/report.css");
 
 /// Writes the page, after all other files of the results but those that say what made them.
 ///
@@ -41,7 +37,7 @@ pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Erro
         rayon::join(|| response::section(findings, &compared), || motion::section(findings));
     let mut files = results.whole()?;
     files.retain(|name| name != FILE); // that of a run that was cut off
-    let sections = [
+    let sections = vec![
         answer::section(findings, &compared, &flags),
         response,
         motion?,
@@ -52,25 +48,6 @@ pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Erro
     ];
     let name = findings.study.name();
     let title = format!("{name}: {}", answer::title(findings));
-    Ok(results.write(FILE, &page(&title, &sections))?)
-}
-
-fn page(title: &str, sections: &[html::Section]) -> String {
-    let markup: Markup = html! {
-        (DOCTYPE)
-        html lang="en" {
-            (html::head(title, OWN))
-            body {
-                header {
-                    h1 { (title) }
-                    nav aria-label="Sections" { ul {
-                        @for section in sections { li { a href={ "#" (section.id) } { (section.title) } } }
-                    } }
-                }
-                main { @for section in sections { (section.markup()) } }
-                footer { p { "Made by " code { "retune optimize" } ", Retune " (env!("CARGO_PKG_VERSION")) "." } }
-            }
-        }
-    };
-    markup.into_string()
+    let page = Document { title, command: "retune optimize", opening: Vec::new(), sections };
+    Ok(results.write(FILE, &page.html())?)
 }

@@ -8,7 +8,8 @@ use crate::summary::whose;
 use maud::{Markup, html};
 use retune_model::{Measure, Parameter};
 use retune_optim::{Evaluation, Response, Unusable};
-use retune_report::html::{Section, Table};
+use retune_report::document::{Block, Section};
+use retune_report::html::Table;
 use retune_study::over;
 
 /// The answer in a line.
@@ -34,7 +35,7 @@ pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Sect
         @if let Some(table) = limits(findings) { (table.markup()) }
         (next(findings, flags))
     };
-    Section { id: "answer", title: "The answer", body }
+    ("answer", "The answer", vec![Block::Elements(body)])
 }
 
 /// What the value is taken over, in words.

@@ -8,7 +8,8 @@ use crate::tune::optimum::stop_words;
 use crate::tune::refine::Descended;
 use maud::html;
 use retune_optim::value_of;
-use retune_report::html::{Section, Table, figure, link};
+use retune_report::document::{Block, Section};
+use retune_report::html::{Table, figure, link};
 use retune_store::Directory;
 use retune_study::counted;
 
@@ -38,7 +39,7 @@ pub fn section(findings: &Findings, results: &Directory) -> Section {
             (figure(&svg.into(), html! { (findings.quantity().name()) " and the tuned parameters over the best refinement. " (link("convergence.svg")) }))
         }
     };
-    Section { id: "search", title: "How the search went", body }
+    ("search", "How the search went", vec![Block::Elements(body)])
 }
 
 fn stages(findings: &Findings) -> Table {

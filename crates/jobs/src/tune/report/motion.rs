@@ -7,7 +7,8 @@ use crate::amount::label;
 use maud::html;
 use retune_model::{Coupled, Side};
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
-use retune_report::html::{Section, Table, figure};
+use retune_report::document::{Block, Section};
+use retune_report::html::{Table, figure};
 use retune_report::{Axis, Chart, Dash, Drawing, Key, Layer, Scale, Sheet, Stroke, Width, drawing};
 use retune_solver::{Rows, Sample, Window, trajectory};
 
@@ -37,7 +38,7 @@ pub fn section(findings: &Findings) -> Result<Section, Error> {
         }))
         (methods(findings).markup())
     };
-    Ok(Section { id: "motion", title: "Motion at the worst frequency", body })
+    Ok(("motion", "Motion at the worst frequency", vec![Block::Elements(body)]))
 }
 
 /// The last periods of the window.

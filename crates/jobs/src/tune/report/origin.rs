@@ -4,7 +4,8 @@ use super::answer::objective;
 use super::findings::Findings;
 use crate::resolved;
 use maud::html;
-use retune_report::html::{Section, Table, link};
+use retune_report::document::{Block, Section};
+use retune_report::html::{Table, link};
 use retune_store::{Identity, manifest};
 use retune_study::joined;
 
@@ -32,5 +33,5 @@ pub fn section(findings: &Findings, files: &[String], study: &str) -> Section {
         (table.markup())
         p { "Files beside this page: " @for (i, name) in names.iter().enumerate() { @if i > 0 { ", " } (link(name)) } "." }
     };
-    Section { id: "origin", title: "What made this page", body }
+    ("origin", "What made this page", vec![Block::Elements(body)])
 }

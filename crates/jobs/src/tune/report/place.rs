@@ -4,7 +4,8 @@ use super::findings::Findings;
 use super::numbers::{amount, digits, four};
 use maud::{Markup, html};
 use retune_optim::{Bounds, value_of};
-use retune_report::html::{Section, Table, figure, link};
+use retune_report::document::{Block, Section};
+use retune_report::html::{Table, figure, link};
 use retune_store::Directory;
 
 /// Bytes of maps that a page holds; of more it holds links alone.
@@ -29,7 +30,7 @@ pub fn section(findings: &Findings, files: &[String], results: &Directory) -> Se
             p { "Maps of the grid: " @for (name, _) in &maps { (link(name)) " " } }
         }
     };
-    Section { id: "place", title: "Where the design lies", body }
+    ("place", "Where the design lies", vec![Block::Elements(body)])
 }
 
 fn words(findings: &Findings) -> Markup {

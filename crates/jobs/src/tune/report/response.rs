@@ -8,7 +8,8 @@ use crate::summary::whose;
 use maud::{Markup, html};
 use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, GREY, VERMILION};
-use retune_report::html::{Section, figure, link};
+use retune_report::document::{Block, Section};
+use retune_report::html::{figure, link};
 use retune_report::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
 };
@@ -76,7 +77,7 @@ pub fn section(findings: &Findings, compared: &Compared) -> Section {
             (four(findings.study.window.end.get())) " s of a run from rest."
         }))
     };
-    Section { id: "response", title: "Response over frequency", body }
+    ("response", "Response over frequency", vec![Block::Elements(body)])
 }
 
 fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {

@@ -6,7 +6,8 @@ use crate::amount::label;
 use maud::html;
 use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, SKY, VERMILION};
-use retune_report::html::{Section, Table, figure, link};
+use retune_report::document::{Block, Section};
+use retune_report::html::{Table, figure, link};
 use retune_report::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width, drawing, scale_for,
 };
@@ -32,7 +33,7 @@ pub fn section(findings: &Findings) -> Section {
         }))
         (table(findings).markup())
     };
-    Section { id: "sensitivity", title: "Sensitivity to small errors", body }
+    ("sensitivity", "Sensitivity to small errors", vec![Block::Elements(body)])
 }
 
 /// A value; one that is infinite is of a design that cannot be computed.
