@@ -1,10 +1,10 @@
 //! The results of a run: one type, from which JSON and text are made.
 
+mod baseline;
 mod tuned_damper;
-mod whose;
 
+pub use baseline::{baseline, how_many};
 pub use tuned_damper::TunedDamper;
-pub use whose::{how_many, whose};
 
 use retune_model::{Measure, Scene, Source, energy_ratios};
 use retune_optim::Objective;

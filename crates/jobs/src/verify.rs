@@ -40,7 +40,7 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
             report.place =
                 if below.as_os_str().is_empty() { String::new() } else { format!("{}/", below.display()) };
         }
-        look(place, sample, &mut report)?;
+        check(place, sample, &mut report)?;
     }
     report.end(path)
 }
@@ -60,7 +60,7 @@ static KINDS: [&Kind; 8] = [
 static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
 
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
-fn look(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
     let there = files::verify(place, report)?;
     let known = known(place, &there);
     let is_input = |content: &Content| matches!(content, Content::Input);

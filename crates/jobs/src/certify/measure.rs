@@ -65,13 +65,13 @@ const INEXACT: [Parameter; 13] = [
 pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
     let (own, known) = goal.known(&study.scene, &settings)?;
-    let look = |scene: &Scene| Look::of(goal.evaluate_following(scene, &settings, &known));
+    let outcome = |scene: &Scene| Outcome::of(goal.evaluate_following(scene, &settings, &known));
     let mut near = Vec::new();
-    let sensitivity = sensitivities(study, &goal, look, &mut near);
-    let neighbourhood = neighbourhood(&study.scene, look, &mut near);
+    let sensitivity = sensitivities(study, &goal, outcome, &mut near);
+    let neighbourhood = neighbourhood(&study.scene, outcome, &mut near);
     let convergence = convergence(&own.worst, &goal, &settings)?;
     let finer = finer(&goal).map(|goal| {
-        let found = Look::of(goal.evaluate(&study.scene, &settings, f64::INFINITY));
+        let found = Outcome::of(goal.evaluate(&study.scene, &settings, f64::INFINITY));
         near.push(Near {
             at: format!("with {FINER} times the samples"),
             neighbour: false,
@@ -165,7 +165,7 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
 fn sensitivities(
     study: &Study,
     goal: &Goal,
-    look: impl Fn(&Scene) -> Look + Sync,
+    outcome: impl Fn(&Scene) -> Outcome + Sync,
     near: &mut Vec<Near>,
 ) -> Vec<Sensitivity> {
     let single = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none());
@@ -179,9 +179,9 @@ fn sensitivities(
         .flat_map(|&(parameter, value)| ERRORS.map(|error| (parameter, error, value * (1.0 + error))))
         .collect();
     let at = |&(parameter, _, value): &(Parameter, f64, f64)| {
-        parameter.at(study.scene, value).map_or(Look::NOTHING, |scene| look(&scene))
+        parameter.at(study.scene, value).map_or(Outcome::NOTHING, |scene| outcome(&scene))
     };
-    let found: Vec<Look> = off.par_iter().map(at).collect();
+    let found: Vec<Outcome> = off.par_iter().map(at).collect();
     near.extend(off.iter().zip(&found).map(|((name, error, _), found)| Near {
         at: format!("with {name} off by {:+} %", 100.0 * error),
         neighbour: false,
@@ -195,25 +195,29 @@ fn sensitivities(
 }
 
 /// The objective of the neighbours. What they reach goes to `near`.
-fn neighbourhood(scene: &Scene, look: impl Fn(&Scene) -> Look + Sync, near: &mut Vec<Near>) -> Neighbourhood {
+fn neighbourhood(
+    scene: &Scene,
+    outcome: impl Fn(&Scene) -> Outcome + Sync,
+    near: &mut Vec<Near>,
+) -> Neighbourhood {
     let member = |i: u32| {
         let scene = NEIGHBOURS.member(scene, i);
-        scene.map_or(Look::NOTHING, |(scene, _)| look(&scene))
+        scene.map_or(Outcome::NOTHING, |(scene, _)| outcome(&scene))
     };
-    let found: Vec<Look> = (0..NEIGHBOURS.members).into_par_iter().map(member).collect();
+    let found: Vec<Outcome> = (0..NEIGHBOURS.members).into_par_iter().map(member).collect();
     let at = format!("for a design within {} %", 100.0 * NEIGHBOURS.errors);
     near.extend(found.iter().map(|found| Near { at: at.clone(), neighbour: true, reached: found.reached }));
     Neighbourhood::new(NEIGHBOURS.errors, found.iter().map(|found| found.energy).collect())
 }
 
 /// The result of a scene.
-struct Look {
+struct Outcome {
     /// Infinite where there is none.
     energy: f64,
     reached: PerLimit<f64>,
 }
 
-impl Look {
+impl Outcome {
     /// Of a scene that cannot be run.
     const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 8]) };
 

@@ -69,17 +69,17 @@ pub(super) fn coexisting(
     }
     let measure = goal.objective.quantity();
     let force = scene.forcing.amplitude().filter(|(_, force)| force.get() > 0.0);
-    let look = |times: f64| {
+    let at_force = |times: f64| {
         let all: Result<Vec<_>, Unusable> =
             places.par_iter().map(|place| place.at(times, settings)).collect();
         all
     };
     let first = 1.0 + needed.force;
     let (mut here, more) = if force.is_some() && first > 1.0 {
-        let (here, more) = rayon::join(|| look(1.0), || look(first));
+        let (here, more) = rayon::join(|| at_force(1.0), || at_force(first));
         (here?, more?)
     } else {
-        (look(1.0)?, Vec::new())
+        (at_force(1.0)?, Vec::new())
     };
     let is_safe = |(place, found): (&Place, &AtForce)| {
         found.branches.largest(quantity(measure)).is_none_or(|one| one.value <= NOTABLE * place.from_rest)
@@ -90,7 +90,7 @@ pub(super) fn coexisting(
         if margin.other.is_none() && first < MORE {
             margin.safe_to = MORE;
             margin.forces.push(MORE);
-            there.extend(margin.lower(&places, &look(MORE)?, measure, settings)?);
+            there.extend(margin.lower(&places, &at_force(MORE)?, measure, settings)?);
         }
         there.iter().for_each(|(i, seed)| here[*i].branches.adopt(seed));
     }

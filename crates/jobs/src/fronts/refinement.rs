@@ -51,13 +51,13 @@ pub(super) fn screen(
     let (study, search, samples) = from(study, start)?;
     let Some(at) = search.given.first() else { return Ok(None) };
     let of = searched(&study, &search, &search.variables);
-    let look = || {
+    let value = || {
         let (height, _) = of.height_and_runs(at, most);
         if height.violation > 0.0 { f64::MAX } else { height.worst }
     };
     let Under { damper, sweep, bound } = under;
     let value =
-        journal.value(&format!("{damper} {} {bound} {samples}", sweep.name()), at, most, look, |_| ());
+        journal.value(&format!("{damper} {} {bound} {samples}", sweep.name()), at, most, value, |_| ());
     Ok(of
         .damper(at)
         .ok()

@@ -7,8 +7,8 @@ use super::descents::Task;
 use super::designs::{Fronts, GIVEN, at_most};
 use super::refinement::Under;
 use crate::certify::judge;
-use crate::look::{finer, look};
 use crate::needs::Largest;
+use crate::resampled::{finer, worst};
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
 use crate::{Error, Observer};
@@ -101,7 +101,7 @@ impl Fronts {
     /// A design on the samples of the study of fronts; none where it cannot be run.
     pub(super) fn candidate(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
         let (_, study) = self.plan.dampers.get(damper)?;
-        let found = look(&finer(study, self.plan.said.samples, &at)?)?;
+        let found = worst(&finer(study, self.plan.said.samples, &at)?)?;
         let [stroke, force] =
             [Measure::Stroke, Measure::ContactForce].map(|of| found.reached.get(Limit::Of(of)));
         Some(Candidate {
@@ -145,7 +145,7 @@ impl Fronts {
         if checked.is_none() {
             let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
             let seen =
-                study.and_then(|study| look(&study)).map_or(f64::INFINITY, |found| found.value.max(*e1_max));
+                study.and_then(|study| worst(&study)).map_or(f64::INFINITY, |found| found.value.max(*e1_max));
             return Ok(Candidate { checked: Some(seen), ..design.clone() });
         }
         let study = self.bounded(under, Vec::new())?;

@@ -3,7 +3,7 @@
 use super::files::BAND;
 use crate::Error;
 use crate::amount::{self, measured};
-use crate::summary::{MadeBy, whose};
+use crate::summary::{MadeBy, baseline};
 use rayon::prelude::*;
 use retune_model::{Measure, NonNegative, Scene};
 use retune_optim::{Band, Goal, Objective, Response};
@@ -95,7 +95,7 @@ pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
 fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
     let lines: [(&str, Stroke); 3] = [
         ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
-        (whose(&study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
+        (baseline(&study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
         ("tuned for the band", Stroke::new(VERMILION, 1.3, Dash::Solid)),
     ];
     let quantity = study.quantity();

@@ -5,7 +5,7 @@ use super::refine::{Refined, Run};
 use crate::Error;
 use crate::amount::Amount;
 use crate::certify::{Certificate, Verdict, certify, judge};
-use crate::look::look;
+use crate::resampled::worst;
 use retune_model::{Measure, PerVariable};
 use retune_optim::Limit;
 use retune_study::Study;
@@ -59,7 +59,7 @@ fn rank(verdict: Option<Verdict>, safe_to: f64) -> (u8, f64) {
 
 /// The contact force, N, and the stroke, m, of a design; none where it cannot be run.
 fn burden(study: &Study) -> Option<[f64; 2]> {
-    let reached = look(study)?.reached;
+    let reached = worst(study)?.reached;
     Some([Measure::ContactForce, Measure::Stroke].map(|measure| reached.get(Limit::Of(measure))))
 }
 

@@ -13,7 +13,7 @@ use crate::Error;
 use crate::amount::Amount;
 use crate::certify::Short;
 use crate::needs::Needs;
-use crate::summary::{MadeBy, Summary, TunedDamper, whose};
+use crate::summary::{MadeBy, Summary, TunedDamper, baseline};
 use notes::{Goal, LimitNote, Met};
 use retune_model::{Parameter, PerVariable, Scene};
 use retune_optim::{Evaluation, Failures, Scaling, Stop, value_of};
@@ -37,7 +37,7 @@ pub struct Optimum {
     none: Amount,
     /// The damper of the study's scene in words.
     #[serde(skip)]
-    whose: &'static str,
+    baseline: &'static str,
     /// The same with the damper of the study's scene; null if it cannot be run.
     #[serde(flatten)]
     study: Amount,
@@ -150,7 +150,7 @@ impl Optimum {
             damper: TunedDamper::of(&damper, &search.variables),
             value: Amount::new(quantity, evaluation.value),
             none: Amount::of(quantity, "_none", study.energy_without_damper()),
-            whose: whose(&study.scene),
+            baseline: baseline(&study.scene),
             study: Amount::of(quantity, "_study", study.energy(&study.scene).unwrap_or(f64::NAN)),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
             on_bound: notes::on_bound(search, best),

@@ -109,9 +109,9 @@ impl Optimum {
             times => format!("{} ({times} times as much)", other.words()),
         };
         let study = if self.study.value.is_nan() {
-            format!("no value with {}", self.whose)
+            format!("no value with {}", self.baseline)
         } else {
-            format!("{} with {}", times(self.study), self.whose)
+            format!("{} with {}", times(self.study), self.baseline)
         };
         format!("instead  {} without a damper, {study}", times(self.none))
     }

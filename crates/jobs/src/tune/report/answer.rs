@@ -4,7 +4,7 @@ use super::findings::{Compared, Findings};
 use super::flags::Flag;
 use super::numbers::{amount, compared, digits, four, frequency};
 use crate::needs::{Needs, sized};
-use crate::summary::whose;
+use crate::summary::baseline;
 use maud::{Markup, html};
 use retune_model::{Measure, Parameter};
 use retune_optim::{Evaluation, Response, Unusable};
@@ -105,7 +105,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     html! {
         dl.facts {
             (fact("Against no damper", &none.0, &none.1))
-            (fact(&format!("Against {}", whose(&findings.study.scene)), &study.0, &study.1))
+            (fact(&format!("Against {}", baseline(&findings.study.scene)), &study.0, &study.1))
             (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
             @if let Some(needs) = &findings.optimum.needs {
                 @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
@@ -141,8 +141,10 @@ fn others(needs: &Needs, measure: Measure) -> String {
 fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
     let varied = &findings.search.variables;
-    let mut table =
-        Table::new("The damper", &["symbol", "name", "value", "unit", whose(&findings.study.scene), "tuned"]);
+    let mut table = Table::new(
+        "The damper",
+        &["symbol", "name", "value", "unit", baseline(&findings.study.scene), "tuned"],
+    );
     let mut shown = vec![Parameter::M2];
     shown.extend(Parameter::columns(varied).into_iter().filter(|one| *one != Parameter::M2));
     for parameter in shown {

@@ -4,7 +4,7 @@ use super::curves::{ABOUT, Curves};
 use super::findings::{Compared, Findings};
 use super::numbers::{HERTZ, amount, four, frequency};
 use crate::amount::label;
-use crate::summary::whose;
+use crate::summary::baseline;
 use maud::{Markup, html};
 use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, GREY, VERMILION};
@@ -18,7 +18,7 @@ use retune_report::{
 fn lines(findings: &Findings) -> [(&'static str, Stroke); 3] {
     [
         ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
-        (whose(&findings.study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
+        (baseline(&findings.study.scene), Stroke::new(BLUE, 1.1, Dash::Long)),
         ("tuned", Stroke::new(VERMILION, 1.4, Dash::Solid)),
     ]
 }
@@ -89,14 +89,14 @@ fn words(findings: &Findings, compared: &Compared, curves: &Curves) -> Markup {
     if curves.is_objective {
         return html! { p {
             "The objective is the worst over this band: " (worst(&compared.none)) " without a damper, " (worst(&compared.study))
-            " with " (whose(&findings.study.scene)) ", " (amount(findings.evaluation.value, quantity)) " with the tuned one, at " (frequency(omega)) "."
+            " with " (baseline(&findings.study.scene)) ", " (amount(findings.evaluation.value, quantity)) " with the tuned one, at " (frequency(omega)) "."
         } };
     }
     let top = curves.value.each_ref().map(|curve| Curves::largest(curve));
     html! { p {
         "The search looked at ω = " (frequency(omega)) " alone, and the band here is outside of its objective: ± " (100.0 * ABOUT)
         " % of the natural frequency about it, for the reader to see how sharp the tuning is. In this band the largest " (quantity.name()) " is "
-        (amount(top[0], quantity)) " without a damper, " (amount(top[1], quantity)) " with " (whose(&findings.study.scene)) ", and " (amount(top[2], quantity)) " with the tuned one."
+        (amount(top[0], quantity)) " without a damper, " (amount(top[1], quantity)) " with " (baseline(&findings.study.scene)) ", and " (amount(top[2], quantity)) " with the tuned one."
     } }
 }
 

@@ -4,7 +4,7 @@ use retune_model::Scene;
 use retune_study::{is_of_paper, rounded};
 
 /// The damper of a study's scene: the paper's where it has the numbers of an optimum that the paper publishes.
-pub fn whose(scene: &Scene) -> &'static str {
+pub fn baseline(scene: &Scene) -> &'static str {
     if scene.damper.as_ref().is_some_and(is_of_paper) {
         "the paper's damper"
     } else {

@@ -1,12 +1,12 @@
-//! A design on other samples of the band than those that its search looked at.
+//! A design on other samples of the band than those of its search.
 
 use retune_model::{Design, Measure, Positive};
 use retune_optim::{Evaluation, Limit, Limits};
 use retune_study::Study;
 
-/// E1max of a design as it stands in the tables, J: the worst over the band of its study on so many samples.
-pub fn energy(study: &Study, samples: usize, at: &Design) -> Option<f64> {
-    Some(look(&finer(study, samples, at)?)?.value)
+/// The value of a design as it stands in the tables: the worst over the band of its study on so many samples.
+pub fn value(study: &Study, samples: usize, at: &Design) -> Option<f64> {
+    Some(worst(&finer(study, samples, at)?)?.value)
 }
 
 /// A study with a design in its scene, its band on so many samples; none where there is no such scene.
@@ -20,7 +20,7 @@ pub fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
 }
 
 /// The worst of the scene of a study over its band; none where it cannot be run.
-pub fn look(study: &Study) -> Option<Evaluation> {
+pub fn worst(study: &Study) -> Option<Evaluation> {
     // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
     let mut goal = study.goal();
     let least = Positive::new(f64::MIN_POSITIVE).ok()?;
