@@ -2,7 +2,7 @@
 #![allow(clippy::approx_constant, reason = "the paper's 6.28 and 0.318 are not 2π and 1/π")]
 
 use retune_model::{
-    Bare, Contact, Coupled, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary,
+    Bare, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
     RegularisedContact, RegularisedState, Scene, Source,
 };
 
@@ -24,6 +24,8 @@ pub struct Numbers {
     pub q: f64,
     /// Young's moduli E1 … E4, N/m².
     pub young: [f64; 4],
+    /// λ of contacts that lose energy, s/m.
+    pub lambda: f64,
 }
 
 /// Table 2, the tuned single-sided vibro-impact damper.
@@ -41,6 +43,7 @@ pub const SSVI: Numbers = Numbers {
     r: 2.0,
     q: 0.318,
     young: [2.1e11, 2.21e7, 2.1e11, 2.05e7],
+    lambda: 0.0,
 };
 
 /// Table 2, the tuned mass damper: its walls are out of reach.
@@ -91,6 +94,7 @@ impl Numbers {
                 poisson_3: metal,
                 young_4,
                 poisson_4: rubber,
+                loss: Loss { lambda: non_negative(self.lambda) },
             }),
         }
     }

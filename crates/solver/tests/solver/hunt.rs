@@ -5,10 +5,10 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a hunt says what it looked at")]
 
 use rayon::prelude::*;
-use retune_model::Coupled;
+use retune_model::{Coupled, Side};
 use retune_solver::observe::{
-    DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum,
-    Segment, StructureMotion, Unobserved,
+    ContactForces, DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition,
+    RunningMaximum, Segment, StructureMotion, Unobserved, WallForce,
 };
 use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
 use retune_testkit::scenes::{Numbers, SSVI, Spread};
@@ -49,6 +49,12 @@ fn dense(draw: &mut Spread) -> Numbers {
 fn anywhere_masses(draw: &mut Spread) -> Numbers {
     let numbers = anywhere(draw);
     Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
+}
+
+/// Any scene whose contacts lose energy, from a thousandth to nearly all.
+fn lossy(draw: &mut Spread) -> Numbers {
+    let numbers = anywhere(draw);
+    Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
 }
 
 /// The largest value by looking everywhere: many moments in each piece, and every sign change of the slope between them.
@@ -143,8 +149,8 @@ impl Observer<4> for ContactPieces {
 }
 
 /// The gains that the search missed in a scene, of E1, E2, both ends of the relative displacement, and the sizes of x1, v1, a1 and the
-/// force on the ground; and the number of contact pieces.
-fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 8], u64), SolverError> {
+/// force on the ground, and the forces of walls that lose energy; and the number of contact pieces.
+fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 10], u64), SolverError> {
     let system = numbers.coupled();
     let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
     let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
@@ -154,16 +160,25 @@ fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 8], u64), So
         sizes(&system, StructureMotion::acceleration),
         sizes(&system, StructureMotion::ground_force),
     ];
-    let mut all = (energies, (sides, (ContactPieces::default(), structure)));
+    // Without loss they follow from the relative displacement.
+    let everywhere = || Side::BOTH.map(|side| Everywhere::new(WallForce::new(&system, side)));
+    let forces = ContactForces::of(&system).map(|forces| (forces, everywhere()));
+    let mut all = (energies, ((sides, forces), (ContactPieces::default(), structure)));
     let mut hybrid = Hybrid::new(&system, rtol, 20.0, 20_000_000);
     let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     let middle = if from > 0.0 { hybrid.propagate(rest, from, &mut Unobserved)? } else { rest };
     hybrid.propagate(middle, 20.0, &mut all)?;
-    let ((e1, e2), ([far, near], (ContactPieces(pieces), structure))) = all;
+    let ((e1, e2), (([far, near], forces), (ContactPieces(pieces), structure))) = all;
     let reach = far.1.largest.abs().max(near.1.largest.abs());
     let [x1, v1, a1, ground] = structure.each_ref().map(missed_size);
     let [e1, e2] = [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest)];
-    Ok(([e1, e2, missed(&far, reach), missed(&near, reach), x1, v1, a1, ground], pieces))
+    let [on_primary, on_obstacle] = forces.map_or([0.0; 2], |(found, everywhere)| {
+        let most = everywhere[0].largest.max(everywhere[1].largest).max(1.0);
+        let missed = |side: usize| everywhere[side].largest - found.records()[side].value.max(0.0);
+        [0, 1].map(|side| relative(missed(side), found.doubt(), most))
+    });
+    let [far, near] = [missed(&far, reach), missed(&near, reach)];
+    Ok(([e1, e2, far, near, x1, v1, a1, ground, on_primary, on_obstacle], pieces))
 }
 
 /// A difference relative to a size; infinite for what is no number.
@@ -284,13 +299,27 @@ fn invariant_nor_where_two_maxima_in_a_step_are_common() {
 }
 
 #[test]
+fn invariant_nor_where_contacts_lose_energy() {
+    hunt("the same where contacts lose energy", lossy, scenes(150));
+}
+
+#[test]
 fn reference_the_hybrid_sees_what_dop853_sees() {
+    // Two in three are anywhere, one where two maxima in a step are common.
+    beside_dop853("hybrid beside DOP853", |number| if number % 3 == 0 { dense } else { anywhere });
+}
+
+#[test]
+fn reference_nor_does_it_miss_what_contacts_lose() {
+    beside_dop853("the same where contacts lose energy", |_| lossy);
+}
+
+fn beside_dop853(what: &str, scene: fn(u64) -> fn(&mut Spread) -> Numbers) {
     let count = scenes(75);
     let compared: Vec<_> = (0..count)
         .into_par_iter()
         .filter_map(|number| {
-            // Two in three are anywhere, one where two maxima in a step are common.
-            let (numbers, from, _) = drawn(number, if number % 3 == 0 { dense } else { anywhere });
+            let (numbers, from, _) = drawn(number, scene(number));
             let (differences, run) = compare(&numbers, from)?;
             Some((number, differences, run.impacts[0] + run.impacts[1]))
         })
@@ -299,7 +328,7 @@ fn reference_the_hybrid_sees_what_dop853_sees() {
     let impacts: u64 = compared.iter().map(|(_, _, impacts)| impacts).sum();
     let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > ALIKE)).collect();
     println!(
-        "\n| hybrid beside DOP853, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
+        "\n| {what}, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
         compared.len(),
         faults.len()
     );
