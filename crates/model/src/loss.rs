@@ -163,7 +163,7 @@ mod tests {
             } else {
                 chi * e - 1.0 // to exp(-1/e)
             };
-            assert!(off.abs() < if e > 0.02 { 1e-12 } else { 1e-14 }, "{e}: {off:e}");
+            assert!(off.abs() < 1e-12 + 4e-16 / (1.0 - e), "{e}: {off:e}");
         }
         assert_eq!(restoring(1.0, 2.0), Loss::default());
     }

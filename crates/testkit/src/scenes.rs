@@ -61,6 +61,9 @@ pub const ROW3: Numbers = Numbers { k2: 220.375, c2: 233.45, d: 0.060375, c: 0.3
 /// Both walls within reach.
 pub const TWO_SIDED: Numbers = Numbers { k2: 2400.0, c2: 100.0, d: 0.1, c: 0.1, ..SSVI };
 
+/// The same with contacts that lose energy: at 1 m/s a restitution of 0.79.
+pub const LOSSY: Numbers = Numbers { lambda: 0.4, ..TWO_SIDED };
+
 impl Numbers {
     /// The structure.
     pub fn primary(&self) -> Primary {

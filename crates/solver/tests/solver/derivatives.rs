@@ -167,7 +167,7 @@ fn reference_derivatives_agree_with_differences() {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let size = size(&numbers, parameter);
             // No loss is negative: by the smallest ones there are differences to one side.
-            let step = if parameter == Parameter::Lambda { 5e-3 * numbers.lambda } else { share * size };
+            let step = if parameter == Parameter::Lambda { 1e-3 * numbers.lambda } else { share * size };
             if step == 0.0 {
                 // Also at (almost) zero contacts are followed step by step, as those with loss.
                 let at = |h: f64| after(&moved(&numbers, parameter, h + f64::MIN_POSITIVE), y, seconds);
@@ -180,7 +180,7 @@ fn reference_derivatives_agree_with_differences() {
         }
     }
     // The differences of contacts that are followed step by step have fewer digits.
-    assert!(worsts[0] < 1e-8 && worsts[1] < 1e-7 && worst_at_zero < 1e-7, "{worsts:?} {worst_at_zero:e}");
+    assert!(worsts[0] < 1e-8 && worsts[1] < 1e-6 && worst_at_zero < 1e-7, "{worsts:?} {worst_at_zero:e}");
 }
 
 /// Liouville: the volume shrinks at the rate of the trace, contact or not.
@@ -227,7 +227,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         for (by, parameter) in first.by.iter().zip(BY) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let step = if parameter == Parameter::Lambda {
-                5e-3 * numbers.lambda
+                1e-3 * numbers.lambda
             } else {
                 share * size(numbers, parameter)
             };
