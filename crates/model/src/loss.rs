@@ -38,7 +38,7 @@ struct InFile {
 enum Refused {
     #[error("give `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s), not both")]
     Both,
-    #[error("missing field `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s)")]
+    #[error("empty: give `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s)")]
     Neither,
     #[error("missing field `at`: the impact speed at which the restitution holds, m/s")]
     NoSpeed,
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(serde_json::to_string(&lambda).expect("JSON"), r#"{"lambda":0.3}"#);
         assert_eq!(read(r#"{"restitution":0.7,"at":0.5}"#), Ok(restoring(0.7, 0.5)));
         for (text, said) in [
-            ("{}", "missing field `lambda` (s/m), or `restitution` with `at`"),
+            ("{}", "empty: give `lambda` (s/m), or `restitution` with `at`"),
             (r#"{"lambda":-1}"#, "-1 is not allowed here: give a finite number not below 0"),
             (r#"{"lambda":1,"restitution":0.7,"at":1}"#, "not both"),
             (r#"{"lambda":1,"at":1}"#, "not both"),

@@ -167,11 +167,12 @@ fn reference_derivatives_agree_with_differences() {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let size = size(&numbers, parameter);
             // No loss is negative: by the smallest ones there are differences to one side.
-            let step = if parameter == Parameter::Lambda { 1e-3 * numbers.lambda } else { share * size };
+            let step =
+                if parameter == Parameter::Lambda { 1e-3 * numbers.lambda.min(0.5) } else { share * size };
             if step == 0.0 {
                 // Also at (almost) zero contacts are followed step by step, as those with loss.
                 let at = |h: f64| after(&moved(&numbers, parameter, h + f64::MIN_POSITIVE), y, seconds);
-                worst_at_zero = worst_at_zero.max(error(column, &one_sided(3e-3, at)));
+                worst_at_zero = worst_at_zero.max(error(column, &one_sided(3e-5, at)));
                 continue;
             }
             let expected = richardson(step, |h| after(&moved(&numbers, parameter, h), y, seconds));
@@ -180,7 +181,7 @@ fn reference_derivatives_agree_with_differences() {
         }
     }
     // The differences of contacts that are followed step by step have fewer digits.
-    assert!(worsts[0] < 1e-8 && worsts[1] < 1e-6 && worst_at_zero < 1e-7, "{worsts:?} {worst_at_zero:e}");
+    assert!(worsts[0] < 1e-8 && worsts[1] < 1e-6 && worst_at_zero < 1e-6, "{worsts:?} {worst_at_zero:e}");
 }
 
 /// Liouville: the volume shrinks at the rate of the trace, contact or not.
@@ -227,7 +228,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         for (by, parameter) in first.by.iter().zip(BY) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let step = if parameter == Parameter::Lambda {
-                1e-3 * numbers.lambda
+                1e-3 * numbers.lambda.min(0.5)
             } else {
                 share * size(numbers, parameter)
             };
