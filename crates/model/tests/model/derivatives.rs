@@ -13,11 +13,7 @@ fn states(system: &Coupled) -> Vec<[f64; 4]> {
     let mut spread = Spread::new(1);
     let mut states = Vec::new();
     for _ in 0..4 {
-        for r in [
-            0.5 * system.wall(retune_model::Side::Obstacle),
-            -2e-3,
-            system.wall(retune_model::Side::Obstacle) + 3e-3,
-        ] {
+        for r in [0.5 * system.wall(Side::Obstacle), -2e-3, system.wall(Side::Obstacle) + 3e-3] {
             states.push(spread.state(r));
         }
     }
