@@ -1,6 +1,6 @@
 //! Descriptions of study files in words, for `check`.
 
-use retune_model::{Forcing, Measure, Source};
+use retune_model::{Contact, Forcing, Measure, Source};
 use retune_optim::{Part, Response};
 use retune_solver::{Method, least_steps};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
@@ -34,9 +34,7 @@ pub fn study(study: &Study) -> String {
     match study.scene.damper {
         None => lines.push("no damper".to_owned()),
         Some(damper) => {
-            let walls = damper.contact.map_or("no walls".to_owned(), |contact| {
-                format!("contact stiffnesses {} N/m^1.5", joined(&contact.stiffness().map(short), " and "))
-            });
+            let walls = damper.contact.map_or("no walls".to_owned(), |contact| walls(&contact));
             lines.push(format!("damper of {} kg; {walls}", damper.mass.get()));
         }
     }
@@ -47,6 +45,20 @@ pub fn study(study: &Study) -> String {
     lines.extend(steps(study));
     lines.extend(study.transient());
     lines.join("\n  ")
+}
+
+/// The law of the walls.
+fn walls(contact: &Contact) -> String {
+    let stiffness = joined(&contact.stiffness().map(short), " and ");
+    let hertz = format!("contact stiffnesses {stiffness} N/m^1.5");
+    if contact.loss.is_none() {
+        return format!("{hertz}, Hertz without loss");
+    }
+    let [slow, fast] = [0.1, 1.0].map(|speed| short(contact.loss.restitution(speed)));
+    let lambda = short(contact.loss.lambda.get());
+    format!(
+        "{hertz}, Hunt and Crossley's loss with lambda = {lambda} s/m: restitution {slow} at 0.1 m/s, {fast} at 1 m/s"
+    )
 }
 
 /// What a run costs, where runs are made in exact steps.

@@ -4,6 +4,7 @@ mod energies;
 mod structure;
 
 use crate::bare::largest;
+use crate::loss::factors;
 use crate::{Bare, Damper, Excitation, Finite, Forcing, Primary, Start, hertz_force, hertz_force_slope};
 use nalgebra::SMatrix;
 
@@ -40,6 +41,8 @@ pub struct Coupled {
     /// Where the walls are, relative to the structure, m: infinitely far of a damper without.
     walls: [f64; 2],
     hertz: [f64; 2],
+    /// λ of both walls, s/m; 0 without loss.
+    lambda: f64,
     /// R, m; 0 of a damper without walls.
     pub(crate) radius: f64,
 }
@@ -58,6 +61,7 @@ impl Coupled {
                 None => [f64::NEG_INFINITY, f64::INFINITY],
             },
             hertz: damper.contact.map_or([0.0; 2], |contact| contact.stiffness()),
+            lambda: damper.contact.map_or(0.0, |contact| contact.loss.lambda.get()),
             radius: damper.contact.map_or(0.0, |contact| contact.radius.get()),
         }
     }
@@ -121,6 +125,25 @@ impl Coupled {
         self.hertz[side as usize]
     }
 
+    /// λ, the damping factor of the contact force, s/m; 0 without loss.
+    pub fn lambda(&self) -> f64 {
+        self.lambda
+    }
+
+    /// Whether contacts lose energy.
+    pub fn is_lossy(&self) -> bool {
+        self.lambda != 0.0
+    }
+
+    /// The force of a wall at an indentation `z` (m) that changes at the rate `w` (m/s), `[F, ∂F/∂z, ∂F/∂w]` in N, N/m, N·s/m: the law of
+    /// Hunt and Crossley, `F = K z^(3/2) (1 + λ w)`, and nothing where that would pull.
+    #[inline]
+    pub(crate) fn wall_force(&self, side: Side, z: f64, w: f64) -> [f64; 3] {
+        let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda, w));
+        let force = hertz_force(hertz, z);
+        [force * factor, hertz_force_slope(hertz, z) * factor, force * lambda]
+    }
+
     /// `[m1, m2]`, kg.
     pub fn masses(&self) -> [f64; 2] {
         [self.bare.m1, self.m2]
@@ -141,8 +164,10 @@ impl Coupled {
     /// Contact forces `[F_con(z1), F_con(z2)]`, N, none negative.
     #[inline]
     pub fn contact_forces(&self, y: &[f64; 4]) -> [f64; 2] {
-        let [z1, z2] = self.indentation(y);
-        [hertz_force(self.hertz[0], z1), hertz_force(self.hertz[1], z2)]
+        let ([z1, z2], rate) = (self.indentation(y), y[3] - y[1]);
+        let ([f1, ..], [f2, ..]) =
+            (self.wall_force(Side::Primary, z1, -rate), self.wall_force(Side::Obstacle, z2, rate));
+        [f1, f2]
     }
 
     /// Equation (1): `[v1, a1, v2, a2]`.
@@ -167,7 +192,7 @@ impl Coupled {
 
     /// The linear part: `A` of `y' = A (y - y0) + b P cos ωt` away from contacts, and `b`; `y0` is [`Self::rest`].
     pub fn linear_part(&self) -> (SMatrix<f64, 4, 4>, [f64; 4]) {
-        (self.jacobian_with(0.0), [0.0, 1.0 / self.bare.m1, 0.0, 0.0])
+        (self.jacobian_with([0.0; 2]), [0.0, 1.0 / self.bare.m1, 0.0, 0.0])
     }
 
     /// A bound on how fast the motion between contacts can change, 1/s: the larger of ω and `√(tr M⁻¹K) + tr M⁻¹C`, which is
@@ -216,14 +241,22 @@ impl Coupled {
 
     /// Jacobian `∂y'/∂y` of equation (1), contacts included.
     pub fn jacobian(&self, y: &[f64; 4]) -> SMatrix<f64, 4, 4> {
-        let [z1, z2] = self.indentation(y);
-        self.jacobian_with(hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2))
+        self.jacobian_with(self.wall_slopes(y))
     }
 
-    /// Both contact forces act against the indentation, so `∂(F1 - F2)/∂(x2 - x1) = -slope`.
-    fn jacobian_with(&self, slope: f64) -> SMatrix<f64, 4, 4> {
+    /// The sums of the slopes of both contact forces, by the indentation (N/m) and by its rate (N·s/m).
+    #[inline]
+    fn wall_slopes(&self, y: &[f64; 4]) -> [f64; 2] {
+        let ([z1, z2], rate) = (self.indentation(y), y[3] - y[1]);
+        let [_, stiff_1, drag_1] = self.wall_force(Side::Primary, z1, -rate);
+        let [_, stiff_2, drag_2] = self.wall_force(Side::Obstacle, z2, rate);
+        [stiff_1 + stiff_2, drag_1 + drag_2]
+    }
+
+    /// Both contact forces act against the indentation and its rate, so `∂(F1 - F2)/∂(x2 - x1) = -slope`, and the same by the speeds.
+    fn jacobian_with(&self, [slope, drag]: [f64; 2]) -> SMatrix<f64, 4, 4> {
         let Bare { m1, c1, k1, .. } = self.bare;
-        let (k, c) = (self.k2 + slope, self.c2);
+        let (k, c) = (self.k2 + slope, self.c2 + drag);
         #[rustfmt::skip]
         let rows = [
             0.0, 1.0, 0.0, 0.0,

@@ -1,6 +1,6 @@
 //! The damper and the surfaces that it may strike.
 
-use crate::{NonNegative, OutOfRange, PoissonRatio, Positive, hertz_stiffness};
+use crate::{Loss, NonNegative, OutOfRange, PoissonRatio, Positive, hertz_stiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -115,6 +115,9 @@ pub struct Contact {
     /// nu4, Poisson's ratio of the damper's surface that meets the obstacle.
     #[serde(rename = "nu4")]
     pub poisson_4: PoissonRatio,
+    /// What a contact loses; left out, contacts lose nothing.
+    #[serde(default, skip_serializing_if = "Loss::is_none")]
+    pub loss: Loss,
 }
 
 impl Contact {
@@ -138,6 +141,7 @@ impl Contact {
             poisson_3: steel,
             young_4: young(2.05e7)?,
             poisson_4: soft,
+            loss: Loss::default(),
         })
     }
 

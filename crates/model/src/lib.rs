@@ -46,6 +46,7 @@ mod damper;
 mod design;
 mod forcing;
 mod hertz;
+mod loss;
 mod measure;
 mod parameter;
 mod per_variable;
@@ -64,6 +65,7 @@ pub use damper::{Contact, Damper};
 pub use design::{Design, NoDesign};
 pub use forcing::{Excitation, Forcing, Source, Start};
 pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
+pub use loss::Loss;
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
@@ -73,7 +75,7 @@ pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene, den_hartog};
 pub use steady::Steady;
 pub use unit::Unit;
-pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive};
+pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution};
 
 /// Energy ratios of section 3: `R1 = E1max / (E1max + E2max)` and `R2 = E2max / (E1max + E2max)`, dimensionless.
 ///

@@ -3,7 +3,7 @@
 
 pub mod place;
 
-use crate::unit::{DAMPING, FORCE, FREQUENCY, IMBALANCE, LENGTH, MASS, MODULUS, NONE, STIFFNESS};
+use crate::unit::{DAMPING, FORCE, FREQUENCY, IMBALANCE, LENGTH, LOSS, MASS, MODULUS, NONE, STIFFNESS};
 use crate::{Unit, unit};
 use serde::{Deserialize, Serialize};
 
@@ -34,11 +34,12 @@ pub enum Parameter {
     Nu3,
     E4,
     Nu4,
+    Lambda,
 }
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::K2,
         Self::C2,
         Self::D,
@@ -61,6 +62,7 @@ impl Parameter {
         Self::Nu3,
         Self::E4,
         Self::Nu4,
+        Self::Lambda,
     ];
     /// Those that a search may vary, the first of [`Self::ALL`].
     pub const VARIED: [Self; 6] = [Self::K2, Self::C2, Self::D, Self::C, Self::M2, Self::R];
@@ -110,6 +112,7 @@ impl Parameter {
             Self::Nu3 => ("nu3", "Poisson's ratio of the obstacle's surface", NONE),
             Self::E4 => ("E4", "Young's modulus of the damper's surface that meets the obstacle", MODULUS),
             Self::Nu4 => ("nu4", "Poisson's ratio of the damper's surface that meets the obstacle", NONE),
+            Self::Lambda => ("lambda", "damping factor of the contact force", LOSS),
         }
     }
 
@@ -172,7 +175,7 @@ impl Parameter {
 
     /// Whether motions have derivatives by it.
     pub const fn has_derivative(self) -> bool {
-        !matches!(self, Self::M1) && (!self.is_of_contact() || matches!(self, Self::R))
+        !matches!(self, Self::M1) && (!self.is_of_contact() || matches!(self, Self::R | Self::Lambda))
     }
 
     /// The columns of a table of designs in which these are varied: the paper's, and what else is varied.

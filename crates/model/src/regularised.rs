@@ -9,6 +9,8 @@
 //!
 //! Every right-hand side is a polynomial, so the motion is analytic in `θ` from before touch-down (`q = 0`, `w > 0`)
 //! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
+//! A loss, `K q³ (1 + λ w)`, leaves it polynomial. Where that would pull the force is zero, until the damper has left the wall or is pressed
+//! into it again: [`RegularisedContact::without_force`].
 //! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
 
 pub(crate) mod bounds;
@@ -30,6 +32,8 @@ pub struct RegularisedContact {
     hertz: [f64; 2],   // K/m1, K (1/m1 + 1/m2)
     dashpot: [f64; 2], // c2/m1, c2 (1/m1 + 1/m2)
     spring: [f64; 2],  // k2/m1, k2 (1/m1 + 1/m2)
+    lambda: f64,       // λ
+    law: [f64; 2],     // the factor of Hertz's force is law[0] + law[1] w: 1 + λ w, or 0 without force
     stretch: f64,      // sign (wall - D): the spring's stretch at touch-down, towards the wall
     since: f64,        // the time at which the excitation was set
     cos: [f64; WAVE],  // Taylor coefficients of P cos ωt and P sin ωt about that time
@@ -55,6 +59,8 @@ impl Coupled {
             hertz: pair(self.hertz(side)),
             dashpot: pair(c2),
             spring: pair(k2),
+            lambda: self.lambda(),
+            law: [1.0, self.lambda()],
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
             since: 0.0,
             cos: [0.0; WAVE],
@@ -67,6 +73,38 @@ impl RegularisedContact {
     /// The wall in contact.
     pub fn side(&self) -> Side {
         self.side
+    }
+
+    /// Whether contacts lose energy.
+    pub fn is_lossy(&self) -> bool {
+        self.lambda != 0.0
+    }
+
+    /// `1 + λ w` of a state: the force of the contact ends where it falls through zero.
+    pub fn push(&self, w: f64) -> f64 {
+        1.0 + self.lambda * w
+    }
+
+    /// The speed at which the force ends, `-1/λ`, m/s.
+    pub fn parting_speed(&self) -> f64 {
+        -1.0 / self.lambda
+    }
+
+    /// The equations where the wall exerts no force although the damper is inside it, or with its force again.
+    #[must_use]
+    pub fn without_force(self, without: bool) -> Self {
+        Self { law: if without { [0.0; 2] } else { [1.0, self.lambda] }, ..self }
+    }
+
+    /// Whether they are those without force.
+    pub fn has_no_force(&self) -> bool {
+        self.law[0] == 0.0
+    }
+
+    /// The factor of Hertz's force.
+    #[inline(always)]
+    fn factor(&self, w: f64) -> f64 {
+        self.law[0] + self.law[1] * w
     }
 
     /// The angle (rad) by which the force may turn after [`Self::set_excitation`]: the first neglected term is below
@@ -94,11 +132,11 @@ impl RegularisedContact {
     }
 
     /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
-    /// and the net force on the damper `-s (K q³ + c2 w + k2 (z + s (wall - D)))`.
+    /// and the net force on the damper `-s (K q³ (1 + λ w) + c2 w + k2 (z + s (wall - D)))`.
     #[inline(always)]
     fn accelerations(&self, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
         let z = q * q;
-        let (cube, stretch) = (z * q, z + self.stretch);
+        let (cube, stretch) = (z * q * self.factor(w), z + self.stretch);
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
         let resisting = self.primary[1] * v1 + self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
@@ -114,7 +152,7 @@ impl RegularisedContact {
         self.primary[0] * self.cos[0].hypot(self.sin[0])
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()
-            + self.hertz[0] * q.abs().powi(3)
+            + self.hertz[0] * q.abs().powi(3) * (self.law[0] + self.law[1] * w.abs())
             + self.dashpot[0] * w.abs()
             + self.spring[0] * (q * q + self.stretch).abs()
     }
@@ -167,12 +205,13 @@ impl RegularisedContact {
 
     /// A prediction of the `θ` (s/√m) in which a damper that moves away from the wall will leave it; infinite if it will not.
     ///
-    /// With the acceleration beside Hertz's, `a = dw/dt + κ q³`, held constant, `w² = v² - (4/5) κ q⁵ + 2 a q²`, and
+    /// With the acceleration beside Hertz's, `a = dw/dt + κ q³`, and the factor of a loss held constant, `w² = v² - (4/5) κ q⁵ + 2 a q²`, and
     /// `θ = ∫₀^q 2 dq / |w|` is expanded in `x = (4/5) κ q⁵ / v²` and `y = 2 a q² / v²`.
     pub fn theta_to_wall(&self, y: &RegularisedState) -> f64 {
         let &[q, w, ..] = y;
-        let depth = 0.8 * self.hertz[1] * q.powi(5);
-        let steady = 2.0 * (self.acceleration(y) + self.hertz[1] * q.powi(3)) * q * q;
+        let hertz = self.hertz[1] * self.factor(w);
+        let depth = 0.8 * hertz * q.powi(5);
+        let steady = 2.0 * (self.acceleration(y) + hertz * q.powi(3)) * q * q;
         let v2 = w * w + depth - steady;
         if v2 <= 0.0 {
             return f64::INFINITY;

@@ -1,6 +1,7 @@
 //! The derivatives of equation (1) by its parameters, at a fixed state and a fixed time.
 
-use crate::{Bare, Coupled, Excitation, Measure, Parameter, Side, Source, hertz_force_slope};
+use crate::loss::factors;
+use crate::{Bare, Coupled, Excitation, Measure, Parameter, Side, Source};
 
 impl Bare {
     /// `∂[P cos(ωt + φ), P sin(ωt + φ)]/∂parameter` at time `t` (s), N per unit of the parameter.
@@ -50,17 +51,24 @@ impl Coupled {
     }
 
     /// The net force of a contact on the damper, N, and its derivative by a parameter, the state held; of the contact with a wall at the
-    /// indentation `q²` (m).
-    pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64) -> [f64; 2] {
-        let stiffness = self.hertz(side);
-        let force = -side.sign() * stiffness * q * q * q;
-        let own = force * self.hertz_by(parameter);
-        [force, self.contact_slope(side, q) * self.wall_by(parameter, side) + own]
+    /// indentation `q²` (m), which grows at the rate `w` (m/s).
+    pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64, w: f64) -> [f64; 2] {
+        let [factor, acts] = factors(1.0, self.lambda() * w);
+        let hertz = -side.sign() * self.hertz(side) * q * q * q;
+        let force = hertz * factor;
+        let own = match parameter {
+            Parameter::Lambda => hertz * w * acts,
+            _ => force * self.hertz_by(parameter),
+        };
+        let [slope, _] = self.contact_slopes(side, q, w);
+        [force, slope * self.wall_by(parameter, side) + own]
     }
 
-    /// The slope `dF/dz` of Hertz's force on a wall at the indentation `q²` (m), N/m: [`crate::hertz_force_slope`] where the root is known.
-    pub fn contact_slope(&self, side: Side, q: f64) -> f64 {
-        1.5 * self.hertz(side) * q
+    /// The slopes of the force of a wall at the indentation `q²` (m), by it and by its rate `w` (m/s), N/m and N·s/m: those of the law in
+    /// `crate::Coupled` where the root is known.
+    pub fn contact_slopes(&self, side: Side, q: f64, w: f64) -> [f64; 2] {
+        let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda(), w));
+        [1.5 * hertz * q * factor, hertz * q * q * q * lambda]
     }
 
     /// `∂[x1'', x2'']/∂parameter` by equation (1), m/s² per unit of the parameter, at a state, with the net contact force on the damper
@@ -105,8 +113,8 @@ impl Coupled {
         let [m1, k1] = self.bare().primary_energy_weights();
         let [near, far] = self.indentation(y);
         let side = if near > far { Side::Primary } else { Side::Obstacle };
-        let depth = near.max(far).max(0.0);
-        let contact = self.contact_force_by(parameter, side, depth.sqrt());
+        let (depth, rate) = (near.max(far).max(0.0), side.sign() * (y[3] - y[1]));
+        let contact = self.contact_force_by(parameter, side, depth.sqrt(), rate);
         let is = |other: Parameter| if parameter == other { 1.0 } else { 0.0 };
         match measure {
             Measure::Energy => k1 * y[0] * by[0] + m1 * y[1] * by[1] + 0.5 * y[0] * y[0] * is(Parameter::K1),
@@ -129,8 +137,8 @@ impl Coupled {
                 stretch.signum() * (by[2] - by[0] - is(Parameter::D))
             }
             Measure::ContactForce => {
-                let slope = hertz_force_slope(self.hertz(side), depth);
-                side.sign() * (slope * (by[2] - by[0]) - contact[1])
+                let [_, slope, drag] = self.wall_force(side, depth, rate);
+                side.sign() * (slope * (by[2] - by[0]) + drag * (by[3] - by[1]) - contact[1])
             }
         }
     }

@@ -21,6 +21,8 @@ pub(crate) const IMBALANCE: &[Unit] =
     &[("kg·m", 1.0), ("kg m", 1.0), ("kgm", 1.0), ("g·mm", 1e-6), ("kg·mm", 1e-3)];
 /// Units of a Young's modulus, N/m².
 pub(crate) const MODULUS: &[Unit] = &[("N/m²", 1.0), ("Pa", 1.0), ("MPa", 1e6), ("GPa", 1e9)];
+/// Units of the damping factor of a contact, s/m.
+pub(crate) const LOSS: &[Unit] = &[("s/m", 1.0), ("s/mm", 1e3)];
 /// Units of time, s.
 pub const TIME: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// Units of angular frequency, rad/s.

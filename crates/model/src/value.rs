@@ -70,6 +70,12 @@ range_type!(
     |v| v > -1.0 && v <= 0.5
 );
 
+range_type!(
+    /// A coefficient of restitution, 0 < e <= 1.
+    Restitution, "a number above 0 and at most 1", ("exclusiveMinimum" = 0.0, "maximum" = 1.0),
+    |v| v > 0.0 && v <= 1.0
+);
+
 impl Default for NonNegative {
     /// Zero.
     fn default() -> Self {

@@ -4,6 +4,7 @@ use crate::energy_bound;
 use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
 use crate::observe::Magnitude;
+use crate::observe::contact_forces::ContactForces;
 use crate::observe::counters::{TouchDownTimes, TouchDowns};
 use crate::observe::observer::Unobserved;
 use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};
@@ -124,10 +125,13 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     let e1 = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
     let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
     let mut before = TouchDowns::default();
-    let mut seen = ((e1, e2), ([1.0, -1.0].map(position), (TouchDowns::default(), largest_of(system))));
+    let mut seen = (
+        (e1, e2),
+        ([1.0, -1.0].map(position), (TouchDowns::default(), (ContactForces::of(system), largest_of(system)))),
+    );
     let plan = Plan::of(system, settings, Request::Motion);
     let (final_state, work) = system.follow(plan, window, settings, &mut before, &mut seen)?;
-    let ((e1, e2), ([farthest, nearest], (TouchDowns(impacts), structure))) = seen;
+    let ((e1, e2), ([farthest, nearest], (TouchDowns(impacts), (forces, structure)))) = seen;
     let (nearest, farthest) = (-nearest.record().value, farthest.record().value);
     let e1_max = e1.record();
     let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
@@ -147,7 +151,10 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
             }
         }
     }
-    let force_max = Side::BOTH.map(|side| hertz_force(system.hertz(side), depths[side as usize]));
+    let force_max = match forces {
+        Some(forces) => forces.records().map(|largest| largest.value.max(0.0)),
+        None => Side::BOTH.map(|side| hertz_force(system.hertz(side), depths[side as usize])),
+    };
     // A damper that rests on a wall at t = 0 is in contact without a touch-down.
     let touched = before.0 != [0; 2] || impacts != [0; 2] || force_max != [0.0; 2];
     Ok(Response {

@@ -3,11 +3,11 @@
 //! it at random, the fuzzer where new code is reached.
 
 use crate::scenes::SSVI;
-use retune_model::{Contact, Damper, Forcing, NonNegative, PoissonRatio, Positive, Primary, Scene};
+use retune_model::{Contact, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary, Scene};
 use retune_solver::{Contacts, Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 
 /// Numbers in [0, 1] that make a run.
-pub const DRAWS: usize = 27;
+pub const DRAWS: usize = 28;
 
 /// Most steps of a run.
 pub const MOST_STEPS: u64 = 5_000;
@@ -49,7 +49,7 @@ impl Anything {
     /// The run that `draws`, each in [0, 1], stand for.
     pub fn new(draws: &[f64; DRAWS]) -> Self {
         let [m1, c1, k1, p, omega, m2, k2, c2, d, c, r, q, e1, e2, e3, e4, rest @ ..] = *draws;
-        let [nu1, nu2, nu3, nu4, t, t0, rtol, atol, method, contacts, bare] = rest;
+        let [nu1, nu2, nu3, nu4, t, t0, rtol, atol, method, contacts, bare, lambda] = rest;
         let damper = Damper {
             mass: positive(SSVI.m2, m2),
             stiffness: not_negative(SSVI.k2, k2),
@@ -67,6 +67,8 @@ impl Anything {
                 poisson_3: poisson(nu3),
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
+                // Two scenes of three lose nothing in contacts, the middle of the draws among them.
+                loss: Loss { lambda: not_negative(1.0, (3.0 * lambda - 2.0).max(0.0)) },
             }),
         };
         let scene = Scene {

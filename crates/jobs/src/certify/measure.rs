@@ -41,8 +41,8 @@ pub(super) enum OtherStarts {
     WhereTheyDecide,
 }
 
-/// The parameters that a built scene has with an error.
-const INEXACT: [Parameter; 13] = [
+/// The parameters that a built scene has with an error; a loss where it has one.
+const INEXACT: [Parameter; 14] = [
     Parameter::M1,
     Parameter::C1,
     Parameter::K1,
@@ -56,6 +56,7 @@ const INEXACT: [Parameter; 13] = [
     Parameter::Imbalance,
     Parameter::Base,
     Parameter::Omega,
+    Parameter::Lambda,
 ];
 
 /// Makes all measurements and the certificate.

@@ -160,6 +160,26 @@ fn paper_table_2_is_certified() {
     assert!((slope("k2") - expected).abs() < 1e-6, "{expected}");
 }
 
+/// Where contacts lose energy λ is one of the parameters that may be off, and results are made and verified like all others.
+#[test]
+fn contract_a_loss_is_among_the_sensitivities() {
+    let parameters = |loss: bool| {
+        let mut study = global(json!({}), json!({}));
+        if loss {
+            study["scene"]["damper"]["contact"]["loss"] = json!({ "restitution": 0.7, "at": 1 });
+        }
+        let desk = Desk::with(&study);
+        search(&desk, "study.json", "made");
+        good(verify(&desk.path("made"), 20, 0.0, &Silent));
+        let certificate = desk.read_json("made/certificate.json");
+        let rows = certificate["sensitivity"].as_array().expect("rows").clone();
+        rows.iter().map(|row| row["parameter"].as_str().expect("a name").to_owned()).collect::<Vec<_>>()
+    };
+    let without = parameters(false);
+    assert_eq!(parameters(true), [without.as_slice(), &["lambda".to_owned()]].concat());
+    assert!(!without.contains(&"lambda".to_owned()));
+}
+
 #[test]
 fn contract_results_of_a_search_are_certified_in_place() {
     let mut study = global(json!({}), json!({}));

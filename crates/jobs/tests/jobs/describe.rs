@@ -21,6 +21,17 @@ fn contract_the_objective_is_described() {
 }
 
 #[test]
+fn contract_the_law_of_the_walls_is_described() {
+    let without = said(&committed("ssvi.json"));
+    assert!(without.contains("4.95558e7 and 4.59684e7 N/m^1.5, Hertz without loss"), "{without}");
+    let with = said(&committed("ssvi-loss.json"));
+    assert!(
+        with.contains("Hunt and Crossley's loss with lambda = 0.453449 s/m: restitution 0.970655 at 0.1 m/s"),
+        "{with}"
+    );
+}
+
+#[test]
 fn contract_every_part_of_an_objective_is_described() {
     let robust = json!({
         "omega": { "from": 0.9, "to": 1.1, "samples": 3, "relative": true },

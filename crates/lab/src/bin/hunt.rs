@@ -5,6 +5,7 @@
 use retune_lab::Any;
 use retune_lab::hunts::{robust, scenes, walk};
 use retune_testkit::hunt as hunts;
+use retune_testkit::hunt::largest::Scenes;
 use retune_testkit::hunt::{Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, settled};
 use std::path::Path;
 use std::process::ExitCode;
@@ -31,9 +32,11 @@ fn main() -> Any<ExitCode> {
     match name {
         "largest" => {
             let count = number(150_000)?.into();
-            show(include_str!("../hunts/hunt.md"), largest::beside_everywhere(false, count));
-            show("", largest::beside_everywhere(true, count));
-            show("", largest::beside_dop853(count));
+            show(include_str!("../hunts/hunt.md"), largest::beside_everywhere(Scenes::Any, count));
+            show("", largest::beside_everywhere(Scenes::TwoMaxima, count));
+            show("", largest::beside_everywhere(Scenes::Lossy, count));
+            show("", largest::beside_dop853(Scenes::Any, count));
+            show("", largest::beside_dop853(Scenes::Lossy, count));
         }
         "repeats" => show(include_str!("../hunts/repeats.md"), repeats::repeats(number(42_000)?.into())),
         "peaks" => show(include_str!("../hunts/peaks.md"), peaks::peaks(number(3000)?)),

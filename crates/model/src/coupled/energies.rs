@@ -1,7 +1,7 @@
 //! Energies, momentum and relative displacement of the coupled system, with the rates at which they change.
 
 use super::Coupled;
-use crate::{Bare, Excitation, hertz_energy, hertz_force, hertz_force_slope};
+use crate::{Bare, Excitation, Side, hertz_energy, hertz_force};
 use wide::f64x4;
 
 impl Coupled {
@@ -17,7 +17,7 @@ impl Coupled {
     /// [`Self::primary_energy_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn primary_energy_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.primary_energy_rates_under(excitation, y, WallForces::NONE)
+        self.primary_energy_rates_under(excitation, y, self.no_wall_forces())
     }
 
     #[inline(always)]
@@ -47,7 +47,7 @@ impl Coupled {
     /// [`Self::damper_energy_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn damper_energy_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.damper_energy_rates_under(excitation, y, WallForces::NONE)
+        self.damper_energy_rates_under(excitation, y, self.no_wall_forces())
     }
 
     #[inline(always)]
@@ -70,6 +70,11 @@ impl Coupled {
         [self.m2, self.k2]
     }
 
+    /// `[k2, c2]`: the weights of the stretch and of its rate in the force of spring and dashpot on the damper, N.
+    pub fn damper_force_weights(&self) -> [f64; 2] {
+        [self.k2, self.c2]
+    }
+
     /// Relative position `r = x2 - x1` with its first two time derivatives, in m, m/s, m/s².
     #[inline]
     pub fn relative_position_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
@@ -81,7 +86,7 @@ impl Coupled {
     /// [`Self::relative_position_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn relative_position_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.relative_position_rates_under(excitation, y, WallForces::NONE)
+        self.relative_position_rates_under(excitation, y, self.no_wall_forces())
     }
 
     #[inline(always)]
@@ -109,7 +114,7 @@ impl Coupled {
         let on_damper = walls.net - stretch_rate * self.c2 - stretch * self.k2;
         let g = cos - v1 * c1 - on_damper;
         let (a1, a2) = ((g - x1 * k1) / m1, on_damper / self.m2);
-        let on_damper_rate = -walls.slope * stretch_rate - (a2 - a1) * self.c2 - stretch_rate * self.k2;
+        let on_damper_rate = -walls.slope * stretch_rate - (a2 - a1) * walls.drag - stretch_rate * self.k2;
         let g_rate = sin * -omega - a1 * c1 - on_damper_rate;
         Accelerations { a: [a1, a2], force: [g, on_damper], force_rate: [g_rate, on_damper_rate] }
     }
@@ -117,15 +122,31 @@ impl Coupled {
     /// The contact forces of both walls on the damper.
     #[inline(always)]
     pub(super) fn wall_forces(&self, y: &[f64x4; 4]) -> WallForces {
-        let [z1, z2] = self.indentation(&y.map(|lanes| lanes.to_array()[0]));
-        let net = hertz_force(self.hertz[0], z1) - hertz_force(self.hertz[1], z2);
-        let slope = hertz_force_slope(self.hertz[0], z1) + hertz_force_slope(self.hertz[1], z2);
-        WallForces { net: f64x4::splat(net), slope: f64x4::splat(slope) }
+        let y = y.map(|lanes| lanes.to_array()[0]);
+        let ([f1, f2], [slope, drag]) = (self.contact_forces(&y), self.wall_slopes(&y));
+        let [net, slope, drag] = [f1 - f2, slope, self.c2 + drag].map(f64x4::splat);
+        WallForces { net, slope, drag }
+    }
+
+    /// Those of a damper that touches no wall.
+    #[inline(always)]
+    pub(super) fn no_wall_forces(&self) -> WallForces {
+        WallForces { net: f64x4::ZERO, slope: f64x4::ZERO, drag: f64x4::splat(self.c2) }
+    }
+
+    /// The power that contacts lose, W: `(F - K z^(3/2)) ż`, what the force does to the bodies beyond what it stores.
+    pub fn contact_loss(&self, y: &[f64; 4]) -> f64 {
+        let (forces, depths) = (self.contact_forces(y), self.indentation(y));
+        let lost = |side: Side| {
+            let rate = side.sign() * (y[3] - y[1]);
+            (forces[side as usize] - hertz_force(self.hertz(side), depths[side as usize])) * rate
+        };
+        Side::BOTH.map(lost).iter().sum()
     }
 
     /// True mechanical energy, J: kinetic, both springs (the damper's by its own stretch), and `(2/5) K z^(5/2)` a contact.
     ///
-    /// Constant when `P = c1 = c2 = 0`.
+    /// Constant when `P = c1 = c2 = 0` and contacts lose nothing.
     pub fn total_energy(&self, y: &[f64; 4]) -> f64 {
         let &[x1, v1, x2, v2] = y;
         let [z1, z2] = self.indentation(y);
@@ -142,15 +163,13 @@ impl Coupled {
     }
 }
 
-/// The net contact force on the damper, N, and the sum of the slopes of both contact forces, N/m.
+/// The net contact force on the damper, N, the sum of the slopes of both contact forces, N/m, and that of their slopes by the speed and of
+/// the dashpot's, N·s/m.
 #[derive(Clone, Copy)]
 pub(super) struct WallForces {
     pub net: f64x4,
     pub slope: f64x4,
-}
-
-impl WallForces {
-    pub const NONE: Self = Self { net: f64x4::ZERO, slope: f64x4::ZERO };
+    pub drag: f64x4,
 }
 
 /// Of the structure and of the damper: the acceleration, the sum of all forces but its own spring's on the structure and of all

@@ -3,7 +3,8 @@
 
 use super::Coupled;
 use super::energies::{Accelerations, WallForces, at_one_moment};
-use crate::{Bare, Excitation, hertz_force, hertz_force_curvature};
+use crate::loss::factors;
+use crate::{Bare, Excitation, Side, hertz_force, hertz_force_curvature, hertz_force_slope};
 use wide::f64x4;
 
 impl Bare {
@@ -35,21 +36,43 @@ impl Coupled {
     #[inline]
     pub fn primary_motion(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 5] {
         at_one_moment(excitation, y, |excitation, lanes| {
-            let bend = f64x4::splat(self.wall_bend(y));
-            self.primary_motion_under(excitation, lanes, self.wall_forces(lanes), bend)
+            let bends = self.wall_bends(y).map(f64x4::splat);
+            self.primary_motion_under(excitation, lanes, self.wall_forces(lanes), bends)
         })
     }
 
     /// [`Self::primary_motion`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn primary_motion_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 5] {
-        self.primary_motion_under(excitation, y, WallForces::NONE, f64x4::ZERO)
+        self.primary_motion_under(excitation, y, self.no_wall_forces(), [f64x4::ZERO; 2])
     }
 
-    /// `d²(F_con(z1) - F_con(z2)) / dr²`, N/m².
-    fn wall_bend(&self, y: &[f64; 4]) -> f64 {
-        let [z1, z2] = self.indentation(y);
-        hertz_force_curvature(self.hertz[0], z1) - hertz_force_curvature(self.hertz[1], z2)
+    /// `∂²N/∂r²`, N/m², and `2 ∂²N/∂r∂ṙ`, N·s/m², of `N = F_con(z1) - F_con(z2)`; the force is linear in the speed.
+    fn wall_bends(&self, y: &[f64; 4]) -> [f64; 2] {
+        let ([z1, z2], rate) = (self.indentation(y), y[3] - y[1]);
+        let (near, far) = (self.bends(Side::Primary, z1, -rate), self.bends(Side::Obstacle, z2, rate));
+        [near[0] - far[0], near[1] - far[1]]
+    }
+
+    /// `∂²F/∂z²`, N/m², and `2 ∂²F/∂z∂w`, N·s/m², of [`Self::wall_force`].
+    fn bends(&self, side: Side, z: f64, w: f64) -> [f64; 2] {
+        let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda(), w));
+        [hertz_force_curvature(hertz, z) * factor, 2.0 * hertz_force_slope(hertz, z) * lambda]
+    }
+
+    /// The contact force on a wall with its first two time derivatives, N, N/s, N/s².
+    pub fn contact_force_rates(&self, excitation: Excitation, y: &[f64; 4], side: Side) -> [f64; 3] {
+        // The second and third derivatives of r.
+        let [apart, jerk] = at_one_moment(excitation, y, |excitation, y| {
+            let Accelerations { a: [a1, a2], force_rate: [g_rate, rate], .. } =
+                self.accelerations(excitation, y, self.wall_forces(y));
+            [a2 - a1, rate / self.m2 - (g_rate - y[1] * self.bare.k1) / self.bare.m1]
+        });
+        let (z, sign) = (self.indentation(y)[side as usize], side.sign());
+        let [w, rate, bend] = [y[3] - y[1], apart, jerk].map(|of| sign * of);
+        let ([force, by_z, by_w], [curved, mixed]) = (self.wall_force(side, z, w), self.bends(side, z, w));
+        let curvature = (curved * w + mixed * rate) * w + by_z * rate + by_w * bend;
+        [force, by_z * w + by_w * rate, curvature]
     }
 
     #[inline(always)]
@@ -58,7 +81,7 @@ impl Coupled {
         excitation: &[f64x4; 2],
         y: &[f64x4; 4],
         walls: WallForces,
-        bend: f64x4,
+        [bend, twist]: [f64x4; 2],
     ) -> [f64x4; 5] {
         let &[x1, v1, _, v2] = y;
         let Bare { m1, c1, k1, omega, .. } = self.bare;
@@ -66,8 +89,10 @@ impl Coupled {
             self.accelerations(excitation, y, walls);
         let (jerk, jerk_2) = ((g_rate - v1 * k1) / m1, on_damper_rate / self.m2);
         let (speed, apart) = (v2 - v1, a2 - a1);
-        let on_damper_bend =
-            bend * speed * speed - walls.slope * apart - (jerk_2 - jerk) * self.c2 - apart * self.k2;
+        let on_damper_bend = (bend * speed + twist * apart) * speed
+            - walls.slope * apart
+            - (jerk_2 - jerk) * walls.drag
+            - apart * self.k2;
         let g_bend = excitation[0] * (-omega * omega) - jerk * c1 - on_damper_bend;
         [x1, v1, a1, jerk, (g_bend - a1 * k1) / m1]
     }
@@ -77,9 +102,11 @@ impl Coupled {
     pub fn contact_size(&self, y: &[f64; 4]) -> f64 {
         let [z1, z2] = self.indentation(y);
         let position = y[0].abs() + y[2].abs();
+        // Of the two terms of the law that is the sum of the sizes.
+        let loss = 1.0 + self.lambda() * (y[1].abs() + y[3].abs());
         let size = |hertz: f64, z: f64, wall: f64| {
             if z > 0.0 { hertz_force(hertz, z) * (1.0 + 1.5 * (position + wall) / z) } else { 0.0 }
         };
-        (size(self.hertz[0], z1, 0.0) + size(self.hertz[1], z2, self.walls[1])) / self.bare.m1
+        (size(self.hertz[0], z1, 0.0) + size(self.hertz[1], z2, self.walls[1])) * loss / self.bare.m1
     }
 }

@@ -98,6 +98,7 @@ impl Parameter {
             Self::Nu3 => Place::Poisson(&mut contact.poisson_3),
             Self::E4 => Place::Positive(&mut contact.young_4),
             Self::Nu4 => Place::Poisson(&mut contact.poisson_4),
+            Self::Lambda => Place::NonNegative(&mut contact.loss.lambda),
             _ => Place::Positive(&mut contact.radius),
         };
         Ok(place)

@@ -96,18 +96,22 @@ impl RegularisedContact {
         };
         let [mut q, mut w, mut x1, mut v1] = [q0, w0, x0, v0].map(start);
         let mut excitation = start(self.cos[0].hypot(self.sin[0]));
-        let (mut z, mut stretch, mut cube) = ([0.0; K], [0.0; K], [0.0; K]);
+        let (mut z, mut stretch, mut cube, mut force) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
         for k in 0..K {
             z[k] = product(&q, &q, k);
             cube[k] = product(&z, &q, k);
+            force[k] = self.law[0] * cube[k];
+            if self.law[1] != 0.0 {
+                force[k] += self.law[1] * product(&cube, &w, k);
+            }
             stretch[k] = z[k] + if k == 0 { self.stretch.abs() } else { 0.0 };
             if k + 1 == K && !IF_RATES {
                 break;
             }
             let outside = self.primary[0] * excitation[k] + self.primary[1] * v1[k] + self.primary[2] * x1[k];
             let push =
-                |i: usize| self.hertz[i] * cube[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
+                |i: usize| self.hertz[i] * force[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
             (a1[k], rate[k]) = (outside + push(0), outside + push(1));
             if k + 1 == K {
                 break;

@@ -1,7 +1,7 @@
 //! Bounds on the motion in contact against the series that they stand for, and against motions.
 
 use retune_model::{Coupled, RegularisedState, Side};
-use retune_testkit::scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, advance};
+use retune_testkit::scenes::{LOSSY, Numbers, ROW1, SSVI, Spread, TWO_SIDED, advance};
 
 const T: f64 = 1.21;
 
@@ -36,6 +36,7 @@ fn picard(n: &Numbers, system: &Coupled, side: Side, start: [f64; 4]) -> [[Serie
     let mut rates = [[0.0; 7]; 2];
     for _ in 0..9 {
         let (cube, stretch) = (times(&q, &times(&q, &q)), stretch(&q));
+        let cube = sum(&[(1.0, &cube), (n.lambda, &times(&cube, &w))]);
         let outside = sum(&[(1.0 / n.m1, &p), (n.c1 / n.m1, &v), (n.k1 / n.m1, &x)]);
         rates = lightness(n).map(|by| {
             let push = sum(&[(system.hertz(side), &cube), (n.c2, &w), (n.k2, &stretch)]);
@@ -55,7 +56,7 @@ fn exact_bounds_on_a_piece_are_the_series_with_every_term_by_its_size() {
     let mut spread = Spread::new(17);
     // The force is next to nothing in a contact of these: only a fast and strong one shows.
     let driven = Numbers { p: 8e6, omega: 900.0, ..SSVI };
-    for numbers in [SSVI, ROW1, TWO_SIDED, driven] {
+    for numbers in [SSVI, ROW1, TWO_SIDED, LOSSY, driven] {
         let system = numbers.coupled();
         for side in Side::BOTH {
             let mut equations = system.regularised_contact(side);

@@ -11,6 +11,7 @@ fn scenes() -> [Scene; 3] {
     [Source::Force(amplitude), Source::Imbalance(amplitude), Source::Base(amplitude)].map(|source| {
         let mut scene = SSVI.scene();
         scene.forcing.source = source;
+        Parameter::Lambda.set(&mut scene, 0.3).expect("in range");
         scene
     })
 }
@@ -46,7 +47,8 @@ fn exact_parameters_stand_in_files_under_their_symbols() {
             }
         }
         let file = serde_json::to_value(scene).expect("JSON");
-        let parts = ["/primary", "/forcing", "/damper", "/damper/contact"].map(|part| file.pointer(part));
+        let parts = ["/primary", "/forcing", "/damper", "/damper/contact", "/damper/contact/loss"]
+            .map(|part| file.pointer(part));
         let mut count = 0;
         for parameter in Parameter::ALL {
             let found = parts.iter().flatten().find_map(|part| part.get(parameter.symbol())?.as_f64());

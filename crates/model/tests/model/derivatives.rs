@@ -1,7 +1,7 @@
 //! Every derivative that the model states, against finite differences of what it is the derivative of.
 
-use retune_model::{Coupled, Measure, NonNegative, Parameter, Source};
-use retune_testkit::scenes::{Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED, slope};
+use retune_model::{Coupled, Measure, NonNegative, Parameter, Side, Source};
+use retune_testkit::scenes::{LOSSY, Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
 
@@ -13,11 +13,7 @@ fn states(system: &Coupled) -> Vec<[f64; 4]> {
     let mut spread = Spread::new(1);
     let mut states = Vec::new();
     for _ in 0..4 {
-        for r in [
-            0.5 * system.wall(retune_model::Side::Obstacle),
-            -2e-3,
-            system.wall(retune_model::Side::Obstacle) + 3e-3,
-        ] {
+        for r in [0.5 * system.wall(Side::Obstacle), -2e-3, system.wall(Side::Obstacle) + 3e-3] {
             states.push(spread.state(r));
         }
     }
@@ -34,7 +30,7 @@ fn assert_close(found: f64, expected: f64, size: f64, tolerance: f64, what: &str
 
 #[test]
 fn exact_jacobian_is_the_derivative_of_equation_1() {
-    for numbers in [SSVI, ROW1, TWO_SIDED] {
+    for numbers in [SSVI, ROW1, TWO_SIDED, LOSSY] {
         let system = numbers.coupled();
         let excitation = system.excitation(T);
         for y in states(&system) {
@@ -90,10 +86,10 @@ fn exact_time_derivative_of_equation_1() {
     (0..2).for_each(|i| assert_close(found[i], expected[i], 5.0, 1e-12, "bare"));
 }
 
-/// The true energy changes only by the force and the two dampers, so contacts and springs hold what they take.
+/// The true energy changes only by the force, the two dampers and what contacts lose: contacts and springs hold what else they take.
 #[test]
 fn invariant_energy_balance() {
-    for numbers in [SSVI, ROW1, TWO_SIDED] {
+    for numbers in [SSVI, ROW1, TWO_SIDED, LOSSY] {
         let system = numbers.coupled();
         let excitation = system.excitation(T);
         for y in states(&system) {
@@ -101,7 +97,10 @@ fn invariant_energy_balance() {
             let h = H / f[3].abs().max(f[1].abs()).max(3.0); // velocities differ by H, positions by less
             let [rate] = slope(h, |s| [system.total_energy(&along(&y, &f, s))]);
             let [_, v1, _, v2] = y;
-            let power = excitation[0] * v1 - numbers.c1 * v1 * v1 - numbers.c2 * (v2 - v1) * (v2 - v1);
+            let power = excitation[0] * v1
+                - numbers.c1 * v1 * v1
+                - numbers.c2 * (v2 - v1) * (v2 - v1)
+                - system.contact_loss(&y);
             let size = numbers.m2 * (f[3] * v2).abs() + numbers.m1 * (f[1] * v1).abs() + power.abs();
             assert_close(rate, power, size, 1e-7, &format!("dE/dt at {y:?}"));
         }
@@ -128,7 +127,7 @@ fn assert_rates(system: &Coupled, name: &str, rates: impl Fn([f64; 2], &[f64; 4]
 
 #[test]
 fn exact_rates_of_the_observed_quantities() {
-    for numbers in [SSVI, ROW1, TWO_SIDED] {
+    for numbers in [SSVI, ROW1, TWO_SIDED, LOSSY] {
         let system = numbers.coupled();
         assert_rates(&system, "E1", |excitation, y| system.primary_energy_rates(excitation, y));
         assert_rates(&system, "E2", |excitation, y| system.damper_energy_rates(excitation, y));
@@ -136,6 +135,9 @@ fn exact_rates_of_the_observed_quantities() {
         let motion = |excitation, y: &[f64; 4]| system.primary_motion(excitation, y);
         assert_rates(&system, "x1", |excitation, y| [0, 1, 2].map(|i| motion(excitation, y)[i]));
         assert_rates(&system, "a1", |excitation, y| [2, 3, 4].map(|i| motion(excitation, y)[i]));
+        for side in Side::BOTH {
+            assert_rates(&system, "F", |excitation, y| system.contact_force_rates(excitation, y, side));
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The regularised equations of a contact against equation (1), and the undisturbed collision against quadrature.
 
 use retune_model::{RegularisedContact, RegularisedState, Side};
-use retune_testkit::scenes::{Numbers, ROW1, SSVI, Spread, TWO_SIDED, advance, slope};
+use retune_testkit::scenes::{LOSSY, Numbers, ROW1, SSVI, Spread, TWO_SIDED, advance, slope};
 
 const T: f64 = 1.21;
 
@@ -38,7 +38,7 @@ fn exact_compressing_and_expanding_is_the_identity() {
 #[test]
 fn exact_regularised_equations_are_equation_1() {
     let mut spread = Spread::new(3);
-    for numbers in [SSVI, ROW1, TWO_SIDED] {
+    for numbers in [SSVI, ROW1, TWO_SIDED, LOSSY] {
         let system = numbers.coupled();
         for side in Side::BOTH {
             let mut equations = system.regularised_contact(side);

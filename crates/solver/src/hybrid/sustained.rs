@@ -39,27 +39,30 @@ impl Hybrid<'_> {
         }
         equations.set_excitation(0.0, touch.excitation);
         let (speed, pull) = (regularised[1], equations.acceleration(&regularised));
-        // After `s` seconds at this speed the force has moved the damper by `κ √z s²` of `z = w s`.
+        // After `s` seconds at this speed the force has moved the damper by `κ √z s²` of `z = w s`; a loss may make it larger.
+        let rate = equations.hertz_rate() * equations.push(speed.abs());
         let slow = |s: f64| speed <= pull * s;
-        if speed > 0.0 && !slow((1e-28 / (equations.hertz_rate().powi(2) * speed)).powf(0.2)) {
+        if speed > 0.0 && !slow((1e-28 / (rate.powi(2) * speed)).powf(0.2)) {
             return Ok((touch, regularised)); // fast enough to start at q = 0
         }
-        let unfelt = |s: f64, z: f64| z > 0.0 && equations.hertz_rate() * z.sqrt() * s * s <= 1e-14;
+        let unfelt = |s: f64, z: f64, w: f64| {
+            z > 0.0 && equations.hertz_rate() * equations.push(w.abs()) * z.sqrt() * s * s <= 1e-14
+        };
         let sign = equations.side().sign();
         let motion = self.flow.expand(touch.excitation, &touch.y);
         let depth = relative_position(&motion, sign);
-        let (mean_rate, rate) = (depth.over_s(), depth.derivative());
+        let (mean_rate, closing) = (depth.over_s(), depth.derivative());
         let mut s = self.flow.step().min(remaining);
         let energy = self.system.energy_norm(&touch.y) + self.flow.step() * self.system.energy_norm_growth();
         for _ in 0..400 {
             let z = s * mean_rate.at(s);
-            if unfelt(s, z) {
+            if unfelt(s, z, closing.at(s)) {
                 let mut step = Step::part(&self.flow, touch, &motion, s, energy);
                 step.end().y[2] = step.end().y[0] + self.system.wall(equations.side()) + sign * z;
                 observer.segment(&step);
                 let end = *step.ends()[1];
                 let mut regularised = equations.regularise(&end.y);
-                (regularised[0], regularised[1]) = (z.sqrt(), rate.at(s));
+                (regularised[0], regularised[1]) = (z.sqrt(), closing.at(s));
                 return Ok((end, regularised));
             }
             s *= 0.5;

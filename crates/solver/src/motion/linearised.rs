@@ -26,6 +26,8 @@ pub struct LinearContact {
     pub terms: usize,
     /// The integrals at the nodes and at lift-off: `z^1.5` and powers of time.
     pub impulses: Vec<[f64; MOMENTS]>,
+    /// The same of `z^1.5 dz/dt`, which a loss adds to the force; none where they were not asked for.
+    pub drags: Vec<[f64; MOMENTS]>,
     /// `A^k b`, and by how much it reduces the indentation.
     pub kicks: [[f64; 4]; MOMENTS],
     /// See `kicks`.

@@ -1,5 +1,6 @@
 //! The range of the relative displacement, from which stroke and contact forces follow.
 
+use super::contact_forces::ContactForces;
 use super::observer::{Observer, Path};
 use super::quantity::RelativePosition;
 use super::running_maximum::RunningMaximum;
@@ -13,13 +14,15 @@ pub struct DisplacementRange<'a> {
     system: &'a Coupled,
     cutoff: f64,
     ends: [RunningMaximum<RelativePosition<'a>>; 2],
+    /// The forces themselves, of walls that lose energy.
+    forces: Option<ContactForces<'a>>,
 }
 
 impl<'a> DisplacementRange<'a> {
     /// Watches a damper; `cutoff` is for whoever reads it.
     pub fn new(system: &'a Coupled, cutoff: f64) -> Self {
         let end = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
-        Self { system, cutoff, ends: [1.0, -1.0].map(end) }
+        Self { system, cutoff, ends: [1.0, -1.0].map(end), forces: ContactForces::of(system) }
     }
 
     /// The value above which its reader needs no more.
@@ -36,6 +39,11 @@ impl<'a> DisplacementRange<'a> {
     /// The largest contact force on either wall, N, and when; `-∞` and NaN while no motion has been seen.
     pub fn force(&self) -> Extreme {
         let system = self.system;
+        if let Some(forces) = &self.forces {
+            let [near, far] = forces.records();
+            let larger = if near.value > far.value { near } else { far };
+            return if larger.value > 0.0 { larger } else { self.larger(|_, _| 0.0) };
+        }
         self.larger(|side, place| hertz_force(system.hertz(side), side.sign() * (place - system.wall(side))))
     }
 
@@ -54,11 +62,14 @@ impl<'a> DisplacementRange<'a> {
 impl Observer<4> for DisplacementRange<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         self.ends.segment(segment);
+        self.forces.segment(segment);
     }
     fn path(&mut self, path: &impl Path<4>) {
         self.ends.path(path);
+        self.forces.path(path);
     }
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         self.ends.steps(steps);
+        self.forces.steps(steps);
     }
 }

@@ -3,9 +3,11 @@
 //! A method hands its motion over segment by segment, and nothing else is stored on the way, so a run allocates nothing. Read
 //! `observer` (the contract, and how observers compose), then `quantity` and `running_maximum` (E1max and its like), and for its
 //! proof `search` and `quintic`. `structure` has the quantities of the structure's motion, `magnitude` the largest size of a quantity
-//! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces; `largest_values` has any of the
+//! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces, `contact_forces` those of
+//! walls that lose energy; `largest_values` has any of the
 //! measures, `since` a part of a run.
 
+pub mod contact_forces;
 pub mod counters;
 pub mod displacement_range;
 pub mod largest_values;
@@ -22,6 +24,7 @@ pub mod structure;
 pub use crate::motion::form::Form;
 pub use crate::motion::knot::Knot;
 pub use crate::motion::segment::Segment;
+pub use contact_forces::{ContactForces, WallForce};
 pub use counters::{TouchDownTimes, TouchDowns};
 pub use displacement_range::DisplacementRange;
 pub use largest_values::LargestValues;

@@ -23,8 +23,8 @@ pub trait Path<const N: usize> {
     fn first_derivative(&self, form: &Form<N>) -> f64;
     /// Hands the segment that follows a knot to an observer.
     fn show(&self, piece: usize, observer: &mut impl Observer<N>);
-    /// The contact that it is, as linear equations for small changes.
-    fn linearised(&self) -> LinearContact;
+    /// The contact that it is, as linear equations for small changes; with what a small loss would take away, if it is asked for.
+    fn linearised(&self, loss: bool) -> LinearContact;
 }
 
 /// Most knots of a [`Path`].

@@ -50,6 +50,8 @@ pub(super) struct Change {
     pub parameter: Option<usize>,
     /// The change of the wall's position, m.
     pub wall: f64,
+    /// Whether it is a change of λ.
+    pub loss: bool,
 }
 
 /// How one contact hands changes on.
@@ -68,6 +70,8 @@ pub(super) struct Crossing<'a> {
     closing: f64,
     /// What a change of the push of each order does to it by the indentation.
     pushes: [f64x4; MOMENTS],
+    /// What a small loss does to it, per unit of λ, if that is asked for.
+    by_loss: f64x4,
 }
 
 impl<'a> Crossing<'a> {
@@ -104,12 +108,22 @@ impl<'a> Crossing<'a> {
             _ => 1.5 * contact.roots[j] * contact.additions[j][c],
         });
         matrix.lu().solve_mut(&mut weights);
-        let (mut powers, mut pushes) = ([f64x4::ZERO; BRIEF], [f64x4::ZERO; MOMENTS]);
+        let (mut powers, mut pushes, mut by_loss) =
+            ([f64x4::ZERO; BRIEF], [f64x4::ZERO; MOMENTS], f64x4::ZERO);
         for i in 0..=n {
             let time = contact.times[i] * duration;
             let mut power = f64x4::from(std::array::from_fn(|c| sign * weights[(i, c)]));
             for k in 0..contact.terms {
                 pushes[k] += power * contact.impulses[i][k];
+            }
+            if let Some(drags) = contact.drags.get(i) {
+                // A force at the place itself counts by the kernels, as `pushes` do in `carry`; at lift-off it moves the state, too.
+                for (kick, drag) in contact.kicks.iter().zip(drags).take(contact.terms) {
+                    by_loss += power * (drag * (kick[2] - kick[0]));
+                    if i == n {
+                        by_loss += f64x4::from(*kick) * *drag;
+                    }
+                }
             }
             for term in &mut powers {
                 *term += power;
@@ -131,15 +145,18 @@ impl<'a> Crossing<'a> {
         let by_delay = applied(&rows[0], &begin) - f64x4::from(after);
         let (by_wall, closing) = (-powers[0], rate[2] - rate[0]);
         let along = Along::new(free.terms(), &rows, 1.0, 1.0);
-        Self { flight, kicks, contact, row: rows[0], along, by_wall, by_delay, closing, pushes }
+        Self { flight, kicks, contact, row: rows[0], along, by_wall, by_delay, closing, pushes, by_loss }
     }
 
     /// The change of the state at the time of lift-off.
     pub(super) fn carry(&self, change: &Change) -> [f64; 4] {
-        let Change { at, parameter, wall } = change;
+        let Change { at, parameter, wall, loss } = change;
         // Touch-down moves to where the gap closes; up to there the motion is that without contact.
         let later = (wall - (at.y[2] - at.y[0])) / self.closing;
         let mut end = applied(&self.row, at) + self.by_delay * later + self.by_wall * *wall;
+        if *loss {
+            end += self.by_loss;
+        }
         if let Some(number) = parameter {
             end += self.flight.forced(*number, &self.along);
             let last = &self.contact.impulses[self.contact.roots.len()];

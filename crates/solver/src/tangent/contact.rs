@@ -2,7 +2,8 @@
 //!
 //! With `r = x2 - x1`, the slope `κ` of the contact force and `f` what a parameter adds to the accelerations, the variational equations are
 //! `δ' = A δ + κ δr (e1/m1 - e2/m2) + f`, the linear part `A` that of flight and `e1`, `e2` unit speeds of the two bodies. What `A` alone
-//! would make of each until the end of the stretch is exact, so `δr` at the nodes solves as many linear equations as there are nodes.
+//! would make of each until the end of the stretch is exact, so `δr` at the nodes solves as many linear equations as there are nodes. In a
+//! contact with loss the force changes with `δr'`, too; there `κ δr` as a whole, the change of the force, is the unknown.
 
 use super::flight::Flight;
 use super::series::sum;
@@ -26,14 +27,22 @@ pub(super) fn carry(
     let [m1, m2] = system.masses();
     let seconds = nodes.span[1] - nodes.span[0];
     let side = side(system, nodes);
-    let slope = |i: usize| system.contact_slope(side, nodes.roots[i]);
+    let rate = |i: usize| side.sign() * (nodes.states[i][3] - nodes.states[i][1]);
+    let slopes = |i: usize| system.contact_slopes(side, nodes.roots[i], rate(i));
+    let lossy = system.is_lossy();
+    // The row of the unknown, and what a unit of it adds to the force.
+    let unknown = |i: usize| {
+        let [slope, drag] = slopes(i);
+        if lossy { [-slope, -drag, slope, drag] } else { [-1.0, 0.0, 1.0, 0.0] }
+    };
+    let slope = |i: usize| if lossy { 1.0 } else { slopes(i)[0] };
     // What becomes of unit speeds at each node until the end, and which row gives `δr` at each node from what `A` would make of it.
     let mut kicks = [[[0.0; 4]; 2]; FOLLOWED];
     let mut rows = [[0.0; 4]; FOLLOWED];
     for i in 0..n {
         let left = seconds - nodes.times[i];
         kicks[i] = [[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]].map(|kick| flight.decay(left, kick));
-        rows[i] = flight.row_decay(-left, [-1.0, 0.0, 1.0, 0.0]);
+        rows[i] = flight.row_decay(-left, unknown(i));
     }
     let mut gains = [0, 1].map(|_| [[0.0; FOLLOWED]; FOLLOWED]);
     for i in 0..n {
@@ -71,7 +80,7 @@ pub(super) fn carry(
     for (number, (column, &parameter)) in by.iter_mut().zip(parameters).enumerate() {
         let mut added = [[0.0; 2]; FOLLOWED];
         for (j, added) in added.iter_mut().enumerate() {
-            let contact = system.contact_force_by(parameter, side, nodes.roots[j]);
+            let contact = system.contact_force_by(parameter, side, nodes.roots[j], rate(j));
             let [a1, a2] = system.acceleration_by(parameter, &nodes.states[j], contact);
             *added = [a1 + force_by(number, nodes.times[j])[0] / m1, a2];
         }

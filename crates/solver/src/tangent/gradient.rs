@@ -8,7 +8,7 @@ use crate::observe::observer::Unobserved;
 use crate::response::Extreme;
 use crate::run::Follower;
 use crate::settings::{Settings, Window};
-use retune_model::{Coupled, Measure, Parameter};
+use retune_model::{Coupled, Measure, Parameter, Side};
 use std::f64::consts::TAU;
 
 /// Maxima as near as this share to the largest are ties: each has a gradient of its own.
@@ -96,6 +96,11 @@ fn lateness(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
             let [k1, c1] = system.bare().ground_force_weights();
             let [_, v1, a1, jerk, _] = motion();
             [k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk]
+        }
+        Measure::ContactForce if system.is_lossy() => {
+            let [near, far] = Side::BOTH.map(|side| system.contact_force_rates(excitation, &now.y, side));
+            let [_, slope, curvature] = if near[0] > far[0] { near } else { far };
+            [slope, curvature]
         }
         Measure::Stroke | Measure::ContactForce => {
             let [_, slope, curvature] = system.relative_position_rates(excitation, &now.y);

@@ -136,12 +136,18 @@ impl Course<'_> {
         let (end, lift_off) = (contact.end, t + contact.duration);
         let crossing = Crossing::new(self.system, self.flight, &self.kicks[side as usize], contact);
         let by_state = self.by_state.map(|y| {
-            crossing.carry(&Change { at: Moment { y, force: [0.0; 2] }, parameter: None, wall: 0.0 })
+            crossing.carry(&Change {
+                at: Moment { y, force: [0.0; 2] },
+                parameter: None,
+                wall: 0.0,
+                loss: false,
+            })
         });
         let by = self.by.iter().enumerate().map(|(number, &y)| {
             let at = Moment { y, force: self.force_by(number, t) };
             let wall = self.system.wall_by(self.parameters[number], side);
-            crossing.carry(&Change { at, parameter: Some(number), wall })
+            let loss = self.parameters[number] == Parameter::Lambda;
+            crossing.carry(&Change { at, parameter: Some(number), wall, loss })
         });
         let by = by.collect();
         (self.t, self.y, self.by_state, self.by) = (lift_off, end, by_state, by);
@@ -155,7 +161,7 @@ impl Observer<4> for Course<'_> {
         }
     }
     fn path(&mut self, path: &impl Path<4>) {
-        self.cross(path.linearised());
+        self.cross(path.linearised(self.parameters.contains(&Parameter::Lambda)));
     }
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}
 }

@@ -26,7 +26,7 @@ fn after(numbers: &Numbers, y: [f64; 4], seconds: f64) -> [f64; 4] {
 }
 
 /// The parameters of a scene under a force by which there are derivatives.
-const BY: [Parameter; 10] = [
+const BY: [Parameter; 11] = [
     Parameter::Omega,
     Parameter::P,
     Parameter::K1,
@@ -37,6 +37,7 @@ const BY: [Parameter; 10] = [
     Parameter::D,
     Parameter::C,
     Parameter::R,
+    Parameter::Lambda,
 ];
 
 fn tangent(numbers: &Numbers, y: [f64; 4], seconds: f64) -> Transition {
@@ -59,6 +60,7 @@ fn moved(numbers: &Numbers, parameter: Parameter, by: f64) -> Numbers {
         Parameter::D => &mut moved.d,
         Parameter::C => &mut moved.c,
         Parameter::R => &mut moved.r,
+        Parameter::Lambda => &mut moved.lambda,
         other => panic!("no derivative by {other}"),
     };
     *value += by;
@@ -77,6 +79,7 @@ fn size(numbers: &Numbers, parameter: Parameter) -> f64 {
         Parameter::D => numbers.d,
         Parameter::C => numbers.c,
         Parameter::R => numbers.r,
+        Parameter::Lambda => 1.0,
         other => panic!("no derivative by {other}"),
     }
 }
@@ -96,6 +99,19 @@ fn richardson(h: f64, at: impl Fn(f64) -> [f64; 4]) -> [f64; 4] {
             .collect();
     }
     table[0]
+}
+
+/// The derivative at zero by values at 0 to `7 h`: that of the polynomial through them.
+fn one_sided(h: f64, at: impl Fn(f64) -> [f64; 4]) -> [f64; 4] {
+    let values: Vec<[f64; 4]> = (0..8).map(|k| at(f64::from(k) * h)).collect();
+    std::array::from_fn(|i| {
+        let (mut row, mut sum): (Vec<f64>, f64) = (values.iter().map(|value| value[i]).collect(), 0.0);
+        for order in 1..8 {
+            row = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            sum += row[0] * if order % 2 == 1 { 1.0 } else { -1.0 } / f64::from(order);
+        }
+        sum / h
+    })
 }
 
 /// The largest error of derivatives beside differences, relative to the largest derivative of the column, over scales of the state.
@@ -127,9 +143,15 @@ fn random(spread: &mut Spread, two_walls: bool) -> (Numbers, [f64; 4]) {
 #[test]
 fn reference_derivatives_agree_with_differences() {
     let mut spread = Spread::new(5);
-    let mut worst: f64 = 0.0;
-    for scene in 0..120 {
-        let (numbers, y) = random(&mut spread, scene % 2 == 1);
+    let (mut worsts, mut worst_at_zero) = ([0.0_f64; 2], 0.0_f64);
+    for scene in 0..240 {
+        let (mut numbers, y) = random(&mut spread, scene % 2 == 1);
+        // Half of them lose energy in contacts, some so much that their force ends before they do.
+        let lossy = scene >= 120;
+        if lossy {
+            numbers.lambda = spread.logarithmic(0.01, 30.0);
+        }
+        let worst = &mut worsts[usize::from(lossy)];
         let seconds = 1.5;
         let found = tangent(&numbers, y, seconds);
         for j in 0..4 {
@@ -139,17 +161,27 @@ fn reference_derivatives_agree_with_differences() {
                 after(&numbers, y, seconds)
             });
             let error = error(&found.by_state[j], &expected);
-            worst = worst.max(error);
+            *worst = worst.max(error);
         }
         for (column, &parameter) in found.by.iter().zip(&BY) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
-            let step = share * size(&numbers, parameter);
+            let size = size(&numbers, parameter);
+            // No loss is negative: by the smallest ones there are differences to one side.
+            let step =
+                if parameter == Parameter::Lambda { 1e-3 * numbers.lambda.min(0.5) } else { share * size };
+            if step == 0.0 {
+                // Also at (almost) zero contacts are followed step by step, as those with loss.
+                let at = |h: f64| after(&moved(&numbers, parameter, h + f64::MIN_POSITIVE), y, seconds);
+                worst_at_zero = worst_at_zero.max(error(column, &one_sided(3e-5, at)));
+                continue;
+            }
             let expected = richardson(step, |h| after(&moved(&numbers, parameter, h), y, seconds));
             let error = error(column, &expected);
-            worst = worst.max(error);
+            *worst = worst.max(error);
         }
     }
-    assert!(worst < 1e-8, "{worst:e}");
+    // The differences of contacts that are followed step by step have fewer digits.
+    assert!(worsts[0] < 1e-8 && worsts[1] < 1e-6 && worst_at_zero < 1e-6, "{worsts:?} {worst_at_zero:e}");
 }
 
 /// Liouville: the volume shrinks at the rate of the trace, contact or not.
@@ -174,7 +206,11 @@ fn exact_the_determinant_over_a_period() {
 fn reference_gradients_of_largest_values_agree_with_differences() {
     let mut spread = Spread::new(8);
     let window = Window { from: 1.0, to: 5.0 };
-    let scenes: Vec<Numbers> = (0..60).map(|scene| random(&mut spread, scene % 2 == 1).0).collect();
+    let mut scenes: Vec<Numbers> = (0..60).map(|scene| random(&mut spread, scene % 2 == 1).0).collect();
+    for scene in 0..30 {
+        let lambda = spread.logarithmic(0.02, 10.0);
+        scenes.push(Numbers { lambda, ..random(&mut spread, scene % 2 == 1).0 });
+    }
     let largest = |numbers: &Numbers, measure: Measure| {
         let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
         extremes(&numbers.scene(), window, &settings(), ask).expect("a run").largest
@@ -191,7 +227,14 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         }
         for (by, parameter) in first.by.iter().zip(BY) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
-            let step = share * size(numbers, parameter);
+            let step = if parameter == Parameter::Lambda {
+                1e-3 * numbers.lambda.min(0.5)
+            } else {
+                share * size(numbers, parameter)
+            };
+            if step == 0.0 {
+                continue;
+            }
             let at = |h: f64| largest(&moved(numbers, parameter, h), measure);
             if [-step, step].iter().any(|&h| (at(h).time - first.at.time).abs() > 0.02) {
                 continue;
@@ -207,7 +250,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     let all =
         scenes.par_iter().flat_map_iter(|numbers| Measure::ALL.map(|measure| compare(numbers, measure)));
     let (compared, worst) = all.reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)));
-    assert!(compared > 3000 && worst < 1e-6, "{compared} {worst:e}");
+    assert!(compared > 5000 && worst < 1e-6, "{compared} {worst:e}");
 }
 
 /// A settled motion reaches its largest value in every period: each has a gradient, and for the derivative they agree.

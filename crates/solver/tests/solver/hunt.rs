@@ -1,20 +1,30 @@
 //! The hunt for a largest value that is missed, on few scenes.
 
-use retune_testkit::hunt::largest::{beside_dop853, beside_everywhere, missed_in};
+use retune_testkit::hunt::largest::{Scenes, beside_dop853, beside_everywhere, missed_in};
 
 #[test]
 fn invariant_no_search_misses_what_a_look_at_everything_finds() {
-    beside_everywhere(false, 200).passes();
+    beside_everywhere(Scenes::Any, 200).passes();
 }
 
 #[test]
 fn invariant_nor_where_two_maxima_in_a_step_are_common() {
-    beside_everywhere(true, 1250).passes();
+    beside_everywhere(Scenes::TwoMaxima, 1250).passes();
+}
+
+#[test]
+fn invariant_nor_where_contacts_lose_energy() {
+    beside_everywhere(Scenes::Lossy, 150).passes();
 }
 
 #[test]
 fn reference_the_hybrid_sees_what_dop853_sees() {
-    beside_dop853(75).passes();
+    beside_dop853(Scenes::Any, 75).passes();
+}
+
+#[test]
+fn reference_nor_does_it_miss_what_contacts_lose() {
+    beside_dop853(Scenes::Lossy, 75).passes();
 }
 
 /// Found by the hunt: with neither spring nor dashpot E2 is level at each lift-off, to the error of the contact, and a search that

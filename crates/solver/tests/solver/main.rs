@@ -12,6 +12,7 @@ mod forcings;
 mod general_methods;
 mod hunt;
 mod invariant;
+mod loss;
 mod measures;
 mod observers;
 mod order;

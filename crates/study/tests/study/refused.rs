@@ -39,6 +39,33 @@ fn refused(pointer: &str, value: Value, message: &str) {
     refused_text(&study.to_string(), message);
 }
 
+/// A loss is given in one of two ways.
+#[test]
+fn contract_wrong_losses_are_named_with_what_is_allowed() {
+    let loss = |value: Value, message: &str| {
+        let mut study = tiny();
+        study["scene"]["damper"]["contact"]["loss"] = value;
+        assert_eq!(problem(&study.to_string()), format!("scene.damper.contact.loss{message}"));
+    };
+    loss(json!({ "lambda": -0.1 }), ".lambda: -0.1 is not allowed here: give a finite number not below 0");
+    loss(
+        json!({ "restitution": 1.2, "at": 1 }),
+        ".restitution: 1.2 is not allowed here: give a number above 0 and at most 1",
+    );
+    loss(
+        json!({ "restitution": 0, "at": 1 }),
+        ".restitution: 0 is not allowed here: give a number above 0 and at most 1",
+    );
+    loss(json!({ "restitution": 0.7, "at": 0 }), ".at: 0 is not allowed here: give a finite number above 0");
+    loss(json!({ "restitution": 0.7 }), ".at: missing, and it has no default");
+    loss(json!({ "at": 0.7 }), ".restitution: missing, and it has no default");
+    loss(
+        json!({ "lambda": 1, "restitution": 0.7, "at": 1 }),
+        ": give `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s), not both",
+    );
+    loss(json!({}), ": empty: give `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s)");
+}
+
 #[test]
 fn contract_unknown_fields_are_named_with_a_suggestion() {
     let mut study = tiny();
@@ -365,6 +392,7 @@ fn contract_settings_are_checked_like_the_file() {
         ("m1=-1", "m1: -1 is not allowed here: give a finite number above 0"),
         ("k2=nan", "k2: NaN is not allowed here: give a finite number not below 0"),
         ("R=0", "R: 0 is not allowed here: give a finite number above 0"),
+        ("lambda=-0.3", "lambda: -0.3 is not allowed here: give a finite number not below 0"),
         ("t0=9", "window: t0 = 9 s is not before T = 4 s: the window is empty"),
     ] {
         let setting: Setting = setting.parse().expect("a setting");

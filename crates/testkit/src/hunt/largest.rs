@@ -4,10 +4,10 @@
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
-use retune_model::Coupled;
+use retune_model::{Coupled, Side};
 use retune_solver::observe::{
-    DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition, RunningMaximum,
-    Segment, StructureMotion, Unobserved,
+    ContactForces, DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition,
+    RunningMaximum, Segment, StructureMotion, Unobserved, WallForce,
 };
 use retune_solver::{Hybrid, Method, Motion, Phase, Response, Settings, SolverError, Window, simulate};
 
@@ -47,6 +47,26 @@ fn dense(draw: &mut Spread) -> Numbers {
 fn anywhere_masses(draw: &mut Spread) -> Numbers {
     let numbers = anywhere(draw);
     Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
+}
+
+/// Any scene whose contacts lose energy, from a thousandth to nearly all.
+fn lossy(draw: &mut Spread) -> Numbers {
+    let numbers = anywhere(draw);
+    Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
+}
+
+/// How a scene is drawn.
+type Draw = fn(&mut Spread) -> Numbers;
+
+/// What scenes are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scenes {
+    /// Any; beside DOP853 one in three with often two maxima in a step.
+    Any,
+    /// Such as often have two maxima in one step.
+    TwoMaxima,
+    /// Any, with contacts that lose energy.
+    Lossy,
 }
 
 /// The largest value by looking everywhere: many moments in each piece, and every sign change of the slope between them.
@@ -141,8 +161,8 @@ impl Observer<4> for ContactPieces {
 }
 
 /// The gains that the search missed in a scene, of E1, E2, both ends of the relative displacement, and the sizes of x1, v1, a1 and the
-/// force on the ground; and the number of contact pieces.
-fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 8], u64), SolverError> {
+/// force on the ground, and the forces of walls that lose energy; and the number of contact pieces.
+fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 10], u64), SolverError> {
     let system = numbers.coupled();
     let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
     let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
@@ -152,16 +172,25 @@ fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 8], u64), So
         sizes(&system, StructureMotion::acceleration),
         sizes(&system, StructureMotion::ground_force),
     ];
-    let mut all = (energies, (sides, (ContactPieces::default(), structure)));
+    // Without loss they follow from the relative displacement.
+    let everywhere = || Side::BOTH.map(|side| Everywhere::new(WallForce::new(&system, side)));
+    let forces = ContactForces::of(&system).map(|forces| (forces, everywhere()));
+    let mut all = (energies, ((sides, forces), (ContactPieces::default(), structure)));
     let mut hybrid = Hybrid::new(&system, rtol, 20.0, 20_000_000);
     let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     let middle = if from > 0.0 { hybrid.propagate(rest, from, &mut Unobserved)? } else { rest };
     hybrid.propagate(middle, 20.0, &mut all)?;
-    let ((e1, e2), ([far, near], (ContactPieces(pieces), structure))) = all;
+    let ((e1, e2), (([far, near], forces), (ContactPieces(pieces), structure))) = all;
     let reach = far.1.largest.abs().max(near.1.largest.abs());
     let [x1, v1, a1, ground] = structure.each_ref().map(missed_size);
     let [e1, e2] = [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest)];
-    Ok(([e1, e2, missed(&far, reach), missed(&near, reach), x1, v1, a1, ground], pieces))
+    let [on_primary, on_obstacle] = forces.map_or([0.0; 2], |(found, everywhere)| {
+        let most = everywhere[0].largest.max(everywhere[1].largest).max(1.0);
+        let missed = |side: usize| everywhere[side].largest - found.records()[side].value.max(0.0);
+        [0, 1].map(|side| relative(missed(side), found.doubt(), most))
+    });
+    let [far, near] = [missed(&far, reach), missed(&near, reach)];
+    Ok(([e1, e2, far, near, x1, v1, a1, ground, on_primary, on_obstacle], pieces))
 }
 
 /// A difference relative to a size; infinite for what is no number.
@@ -229,19 +258,19 @@ fn differences(a: &Response, b: &Response) -> [f64; 11] {
 }
 
 /// A scene, the beginning of its window and its tolerance, by number.
-fn drawn(number: u64, scene: fn(&mut Spread) -> Numbers) -> (Numbers, f64, f64) {
+fn drawn(number: u64, scene: Draw) -> (Numbers, f64, f64) {
     let mut draw = Spread::new(number + 1);
     let numbers = scene(&mut draw);
     let from = if draw.unit() < 0.5 { 0.0 } else { 15.0 * draw.unit() };
     (numbers, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
 }
 
-/// The search beside a look everywhere on `count` scenes: any, or such as often have two maxima in one step.
-pub fn beside_everywhere(two_maxima: bool, count: u64) -> Hunt {
-    let (what, scene): (_, fn(&mut Spread) -> Numbers) = if two_maxima {
-        ("the same where two maxima in a step are common", dense)
-    } else {
-        ("search beside a look everywhere, any scene", anywhere)
+/// The search beside a look everywhere on `count` scenes.
+pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
+    let (what, scene): (_, Draw) = match scenes {
+        Scenes::Any => ("search beside a look everywhere, any scene", anywhere),
+        Scenes::TwoMaxima => ("the same where two maxima in a step are common", dense),
+        Scenes::Lossy => ("the same where contacts lose energy", lossy),
     };
     let looked: Vec<_> = (0..count)
         .into_par_iter()
@@ -270,12 +299,17 @@ pub fn beside_everywhere(two_maxima: bool, count: u64) -> Hunt {
 }
 
 /// The hybrid beside DOP853 on `count` scenes.
-pub fn beside_dop853(count: u64) -> Hunt {
+pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
+    let (what, scene): (_, fn(u64) -> Draw) = match scenes {
+        // Two in three are anywhere, one where two maxima in a step are common.
+        Scenes::Any => ("hybrid beside DOP853", |number| if number % 3 == 0 { dense } else { anywhere }),
+        Scenes::TwoMaxima => ("the same where two maxima in a step are common", |_| dense),
+        Scenes::Lossy => ("the same where contacts lose energy", |_| lossy),
+    };
     let compared: Vec<_> = (0..count)
         .into_par_iter()
         .filter_map(|number| {
-            // Two in three are anywhere, one where two maxima in a step are common.
-            let (numbers, from, _) = drawn(number, if number % 3 == 0 { dense } else { anywhere });
+            let (numbers, from, _) = drawn(number, scene(number));
             let (differences, run) = compare(&numbers, from)?;
             Some((number, differences, run.impacts[0] + run.impacts[1]))
         })
@@ -285,7 +319,7 @@ pub fn beside_dop853(count: u64) -> Hunt {
     let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > ALIKE)).collect();
     let mut hunt = Hunt::default();
     hunt.row(format!(
-        "| hybrid beside DOP853, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
+        "| {what}, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
         compared.len(),
         faults.len()
     ));
@@ -297,7 +331,7 @@ pub fn beside_dop853(count: u64) -> Hunt {
 }
 
 /// The gains that the search missed in scene `number` of those drawn anywhere, and the most that is allowed.
-pub fn missed_in(number: u64) -> ([f64; 8], f64) {
+pub fn missed_in(number: u64) -> ([f64; 10], f64) {
     let (numbers, from, rtol) = drawn(number, anywhere);
     (search(&numbers, from, rtol).expect("a run").0, ALLOWED)
 }

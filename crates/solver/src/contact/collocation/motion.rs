@@ -135,6 +135,28 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
     }
 }
 
+impl<const N: usize, const M: usize> Collision<'_, N, M> {
+    /// The integrals of `z^1.5 dz/dt` at the nodes and at lift-off.
+    fn drags(&self, powers: &[f64; MOMENTS]) -> Vec<[f64; MOMENTS]> {
+        let drag = |j: usize| {
+            let (y, root) = (self.state(j), node(&self.roots, j));
+            root.powi(3) * self.of.side.sign() * (y[3] - y[1])
+        };
+        let drag: [f64; N] = std::array::from_fn(drag);
+        let mut all = vec![[0.0; MOMENTS]; N + 1];
+        for k in 0..=self.terms {
+            for (j, drag) in drag.iter().enumerate() {
+                for (i, integrals) in all.iter_mut().enumerate() {
+                    let moment =
+                        if i < N { node(&self.rule.moments[k][j], i) } else { node(&self.rule.last[k], j) };
+                    integrals[k] += powers[k] * moment * drag;
+                }
+            }
+        }
+        all
+    }
+}
+
 impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     fn pieces(&self) -> usize {
         N + 1
@@ -197,7 +219,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         });
     }
 
-    fn linearised(&self) -> LinearContact {
+    fn linearised(&self, loss: bool) -> LinearContact {
         let (rule, of, terms) = (self.rule, self.of, self.terms + 1);
         let powers: [f64; MOMENTS] = std::array::from_fn(|k| self.duration.powi(k as i32 + 1));
         let force = self.depth * self.depth.sqrt();
@@ -222,6 +244,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             reductions.column_mut(j).iter_mut().zip(column).for_each(|(to, from)| *to = from);
         }
         let moment = |k: usize, i: usize| if i < N { node(&self.moments[k], i) } else { self.last[k] };
+        let drags = if loss { self.drags(&powers) } else { Vec::new() };
         LinearContact {
             side: of.side,
             touch: *self.touch,
@@ -231,6 +254,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             roots: (0..N).map(|j| node(&self.roots, j)).collect(),
             terms,
             impulses: (0..=N).map(|i| std::array::from_fn(|k| powers[k] * force * moment(k, i))).collect(),
+            drags,
             kicks: of.kicks,
             gains: of.gains,
             reductions,

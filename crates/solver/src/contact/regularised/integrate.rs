@@ -36,12 +36,13 @@ pub fn integrate(
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
     equations.set_excitation(y[TIME], from.excitation);
+    equations = equations.without_force(equations.push(y[W]) < 0.0);
     let plan = Plan::new(&equations, &y, rtol);
     let start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
     let mut contact =
         Contact { shortest: plan.h * 1e-12, touch_down: from.t, equations, to, rtol, budget, plan, start, y };
     loop {
-        let Accepted { slope, length, next, end, is_last, lifts_off } = contact.step(work)?;
+        let Accepted { slope, length, next, end, is_last, lifts_off, parts } = contact.step(work)?;
         let piece = Piece {
             equations: &contact.equations,
             touch_down: contact.touch_down,
@@ -52,7 +53,12 @@ pub fn integrate(
             ends: [contact.start, end],
             bounds: Default::default(),
         };
-        observer.segment(&piece);
+        if length > 0.0 {
+            observer.segment(&piece);
+        }
+        if parts {
+            contact.equations = contact.equations.without_force(!contact.equations.has_no_force());
+        }
         if is_last || observer.satisfied() {
             return Ok(End::InContact(end));
         }
@@ -89,6 +95,8 @@ struct Accepted {
     /// Whether the run ends there.
     is_last: bool,
     lifts_off: bool,
+    /// Whether the force of a contact with loss ends there, or begins again.
+    parts: bool,
 }
 
 impl Contact {
@@ -137,10 +145,20 @@ impl Contact {
             if let Some(wall) = wall {
                 (next, length) = (wall, to_wall(&wall));
             }
-            let is_last = touch_down + next[TIME] >= self.to;
+            let advance = |theta: f64| step(equations, y, &slope, theta).y;
+            let mut is_last = touch_down + next[TIME] >= self.to;
             if is_last {
-                let advance = |theta: f64| step(equations, y, &slope, theta).y;
                 (length, next) = at_elapsed(advance, length, self.to - touch_down);
+            }
+            let mut lifts_off = wall.is_some();
+            let parting = if equations.is_lossy() {
+                parting(equations, [y, &next], (&slope, length), advance)
+            } else {
+                None
+            };
+            if let Some(parted) = parting {
+                (length, next) = parted;
+                (is_last, lifts_off) = (false, false);
             }
             let mut end = knot(equations, touch_down, &next);
             if is_last {
@@ -148,9 +166,65 @@ impl Contact {
             }
             let seconds = next[TIME] - y[TIME];
             plan.adapt(equations, error, (shortened, seconds), &next, rtol);
-            return Ok(Accepted { slope, length, next, end, is_last, lifts_off: wall.is_some() });
+            return Ok(Accepted { slope, length, next, end, is_last, lifts_off, parts: parting.is_some() });
         }
     }
+}
+
+/// Where the force of a contact with loss ends within a step between two states, as it would begin to pull, or begins again where it had
+/// ended: `1 + λ w = 0`. Forces are continuous there, but not their rates. Both ends of a step may lie on one side of a brief pull in it;
+/// then the cubic through the speeds and their slopes shows where to look.
+fn parting(
+    equations: &RegularisedContact,
+    [from, to]: [&RegularisedState; 2],
+    (slope, length): (&RegularisedState, f64),
+    advance: impl Fn(f64) -> RegularisedState,
+) -> Option<(f64, RegularisedState)> {
+    let sign = if equations.has_no_force() { -1.0 } else { 1.0 };
+    let left = |y: &RegularisedState| sign * equations.push(y[W]);
+    let (begin, end) = (left(from), left(to));
+    let mut upper = length;
+    if end >= 0.0 {
+        let rate = |slope: &RegularisedState| sign * (equations.push(slope[W]) - 1.0) * length;
+        let falling = rate(slope);
+        if begin + falling >= 0.0 {
+            return None;
+        }
+        let rising = rate(&equations.derivative(to));
+        upper = length * lowest([begin, end], [falling, rising])?;
+        if left(&advance(upper)) >= 0.0 {
+            return None;
+        }
+    }
+    // Bisection, with Newton's step where it stays inside.
+    let (mut lower, mut theta) = (0.0, 0.5 * upper);
+    let mut y = advance(theta);
+    for _ in 0..100 {
+        if left(&y) > 0.0 {
+            lower = theta
+        } else {
+            upper = theta
+        }
+        let newton = theta - (equations.push(y[W])) / (equations.push(equations.derivative(&y)[W]) - 1.0);
+        let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+        if (next - theta).abs() <= 2.0 * f64::EPSILON * length {
+            break;
+        }
+        theta = next;
+        y = advance(theta);
+    }
+    y[W] = equations.parting_speed();
+    Some((theta, y))
+}
+
+/// Where in (0, 1) the cubic with these values and slopes at both ends has its minimum, if it has one and that is below zero.
+fn lowest([begin, end]: [f64; 2], [falling, rising]: [f64; 2]) -> Option<f64> {
+    // c(u) = begin + falling u + b u² + a u³
+    let (a, b) = (falling + rising - 2.0 * (end - begin), 3.0 * (end - begin) - 2.0 * falling - rising);
+    let root = (b * b - 3.0 * a * falling).sqrt();
+    let u = -falling / (b + root);
+    let value = begin + u * (falling + u * (b + u * a));
+    (u > 0.0 && u < 1.0 && value < 0.0).then_some(u)
 }
 
 /// The state at the wall, `q = 0`, from one near it on either side (past lift-off the polynomial equations still hold), with

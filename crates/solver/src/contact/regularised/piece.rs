@@ -65,6 +65,9 @@ impl Segment<4> for Piece<'_> {
         let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
         Knot { t, ..knot(self.equations, self.touch_down, &y) }
     }
+    fn in_flight(&self) -> bool {
+        self.equations.has_no_force()
+    }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
         let own;
         let [growth, rates] = if h == self.length {
