@@ -55,7 +55,7 @@ fn contract_a_trajectory_replaces_only_trajectories() {
     desk.write("notes.csv", "t,x\n1,2\n");
     desk.write("surf.csv", "k2,c2,D,C,E1max\n");
     for file in ["notes.csv", "surf.csv"] {
-        protected(file, "a file stands there that Retune did not make");
+        protected(file, "there is a file that Retune did not make");
     }
     assert_eq!([desk.read("study.json"), desk.read("notes.csv")], [before, "t,x\n1,2\n".to_owned()]);
     desk.write("empty.csv", "");

@@ -49,7 +49,8 @@ class Contact(Part):
 
     ``R`` (m) is the radius of the damper's surfaces, ``q`` the geometrical coefficient of Hertz's theory, ``E1`` to ``E4`` (Pa) and
     ``nu1`` to ``nu4`` are Young's moduli and Poisson's ratios: 1 the structure, 2 the damper where it meets the structure, 3 the
-    obstacle, 4 the damper where it meets the obstacle.
+    obstacle, 4 the damper where it meets the obstacle. ``loss`` is what contacts lose, by the law of Hunt and Crossley: ``{"lambda": s/m}``,
+    or ``{"restitution": e, "at": v}`` for an undisturbed collision at a speed of v (m/s); nothing if left out.
     """
 
     title: ClassVar[str] = "colliding surfaces"
@@ -63,9 +64,13 @@ class Contact(Part):
     nu3: float = 0.3
     E4: float = 2.05e7
     nu4: float = 0.4
+    loss: dict[str, float] | None = None
 
     def __post_init__(self) -> None:
-        _check(None, {"m2": 1, "k2": 0, "c2": 0, "D": 0, "C": 0, "contact": asdict(self)})
+        _check(None, {"m2": 1, "k2": 0, "c2": 0, "D": 0, "C": 0, "contact": self._study()})
+
+    def _study(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if value is not None}
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,7 +117,7 @@ class SSVI(Part):
 
     def _study(self) -> dict[str, Any]:
         return {
-            name: asdict(value) if isinstance(value, Contact) else value
+            name: value._study() if isinstance(value, Contact) else value
             for name, value in vars(self).items()
             if value is not None
         }
