@@ -24,9 +24,6 @@ pub const DAMPERS: [Numbers; 4] = [
     },
 ];
 
-/// As near as this to a period doubling, rad/s, halves may be nearer than a millionth of a motion's size.
-const BESIDE: f64 = 1e-7;
-
 /// Runs from rest at `count` frequencies of four dampers are followed in the search. What settles there on no known branch is a fault; and of as
 /// many runs between them hardly one may.
 pub fn from_rest(count: usize) -> Hunt {
@@ -120,23 +117,37 @@ pub fn periods(stiffnesses: &[f64]) -> Hunt {
     hunt
 }
 
-/// Which motions of a branch repeat after fewer periods than they count. Those beside a period doubling at which it begins or ends nearly do, since the
-/// parameter goes with the square of their halves' difference.
-fn of_a_shorter_period(branch: &Branch) -> impl Iterator<Item = bool> {
-    let ends = [branch.points.first(), branch.points.last()];
-    let joined = branch.ends.iter().zip(ends).filter(|(end, _)| **end == End::Halved);
-    let joined: Vec<f64> = joined.filter_map(|(_, orbit)| Some(orbit?.value)).collect();
-    let is_beside = move |orbit: &Orbit| joined.iter().any(|value| (orbit.value - value).abs() < BESIDE);
-    branch.points.iter().map(move |orbit| repeats_sooner(orbit) && !is_beside(orbit))
+/// Which motions of a branch repeat after fewer periods than they count. Those at a period doubling at which it begins or ends nearly do: from there on
+/// the difference of their halves grows, with the root of the distance or, where an impact begins nearby, more slowly. On a motion of a
+/// shorter period it is nothing but the error of Newton's iteration.
+fn of_a_shorter_period(branch: &Branch) -> Vec<bool> {
+    let gaps: Vec<f64> = branch.points.iter().map(least_gap).collect();
+    let mut sooner: Vec<bool> = gaps.iter().map(|gap| *gap < SAME).collect();
+    let places: Vec<usize> = (0..gaps.len()).collect();
+    let outwards = [places.clone(), places.into_iter().rev().collect()];
+    for (end, places) in branch.ends.iter().zip(outwards) {
+        let mut before = -1.0;
+        for place in places.into_iter().take_while(|_| *end == End::Halved) {
+            if gaps[place] <= before || gaps[place] >= SAME {
+                break;
+            }
+            (sooner[place], before) = (false, gaps[place]);
+        }
+    }
+    sooner
 }
 
-/// Whether a motion repeats after fewer periods than it counts, to a millionth of its size.
-fn repeats_sooner(Orbit { states, .. }: &Orbit) -> bool {
+/// Parts of a motion whose states differ by less than this share of its size are the same.
+const SAME: f64 = 1e-6;
+
+/// The least difference between a motion and itself some periods later, of those that divide its own, as a share of its size; infinite for one period.
+fn least_gap(Orbit { states, .. }: &Orbit) -> f64 {
     let n = states.len();
     let size = states.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));
     let gap = |m: usize| {
         let pairs = states.iter().zip(states.iter().cycle().skip(m));
         pairs.flat_map(|(a, b)| a.iter().zip(b)).fold(0.0_f64, |gap, (a, b)| gap.max((a - b).abs()))
     };
-    (1..n).filter(|m| n.is_multiple_of(*m)).any(|m| gap(m) < 1e-6 * size)
+    let gaps = (1..n).filter(|m| n.is_multiple_of(*m)).map(|m| gap(m) / size);
+    gaps.fold(f64::INFINITY, f64::min)
 }
