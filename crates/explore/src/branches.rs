@@ -4,7 +4,6 @@ use crate::limits::{MOST_MOTIONS, of_periods};
 use crate::protocol::Answer;
 use crate::response::{Stale, band};
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
-use retune_dynamics::periodic::worst::quantity;
 use retune_dynamics::periodic::{Branch, Branches, Control, Event, EventKind, Largest, Orbit, branches};
 use retune_model::{Parameter, Source};
 use retune_study::{Study, rounded};
@@ -40,7 +39,7 @@ pub fn follow(
     if let Err(rule) = study.begins_at_rest() {
         return Ok(answer.with("problem", rule.to_string()));
     }
-    let of = quantity(study.quantity());
+    let measure = study.quantity();
     let band = band(study);
     let range = [band.from, band.to];
     let plan = Plan {
@@ -60,8 +59,8 @@ pub fn follow(
     }
     Ok(match found {
         Err(error) => answer.with("problem", error.to_string()),
-        Ok(found) => drawn(answer, &found, |orbit| of(&orbit.seen))
-            .with("largest", found.largest(of).as_ref().map(largest)),
+        Ok(found) => drawn(answer, &found, |orbit| orbit.seen.largest(measure))
+            .with("largest", found.largest(measure).as_ref().map(largest)),
     })
 }
 

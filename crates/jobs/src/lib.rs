@@ -47,6 +47,7 @@ pub mod artefact;
 pub mod branches;
 pub mod certify;
 pub mod columns;
+pub mod contacts;
 pub mod describe;
 pub mod design;
 pub mod designs;

@@ -2,9 +2,11 @@
 //! values over all that an answer covers. Whoever tells of a design tells this.
 
 use crate::amount::Amount;
+use crate::contacts::Contacts;
 use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Goal, Limit, Limits, Need, Response};
-use retune_study::{Search, Study, rounded, short};
+use retune_solver::Window;
+use retune_study::{Search, Setting, Study, rounded, short};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
@@ -27,6 +29,9 @@ pub const TOLD: [Measure; 5] = [
 pub struct Needs {
     /// The design.
     pub damper: Largest,
+    /// What its contacts are like in the run with the largest contact force, whole, from rest on; none if it touches no wall.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<Contacts>,
     /// No damper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none: Option<Largest>,
@@ -81,6 +86,15 @@ impl Largest {
     /// Of a scene by the objective of a study, whatever its limits; none where it cannot be run.
     pub fn of(study: &Study, scene: &Scene) -> Option<Self> {
         study.goal().needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
+    }
+
+    /// What the contacts are like in the run with the largest contact force.
+    fn contacts(&self, study: &Study, design: &Scene) -> Option<Contacts> {
+        let Need { value, omega, k1 } = self.0.whole.get(Measure::ContactForce);
+        let there = [Setting::new(Parameter::Omega, omega), Setting::new(Parameter::K1, k1)];
+        let scene = Study { scene: *design, ..study.clone() }.scene_with(&there).ok()?;
+        let whole = Window { from: 0.0, ..study.window.window() };
+        (value > 0.0).then(|| Contacts::of(&scene, whole, &study.solver.settings()).ok().flatten()).flatten()
     }
 
     /// The largest value of a measure, from rest on.
@@ -186,12 +200,14 @@ impl Needs {
                 (none, linear)
             },
         );
-        Some(Self { damper: damper?, none, linear })
+        let damper = damper?;
+        let contacts = damper.contacts(study, design);
+        Some(Self { damper, contacts, none, linear })
     }
 
     /// What a reader must know first: a better damper that the study excludes, and what the damper makes worse.
     pub fn warnings(&self) -> Vec<String> {
-        let mut lines = Vec::new();
+        let mut lines: Vec<String> = self.contacts.iter().flat_map(Contacts::warnings).collect();
         if let Some(Linear { k2, c2, value, better_but: Some(why), needs }) = &self.linear {
             let (k2, c2) = (rounded(*k2, 4), rounded(*c2, 4));
             lines.push(format!(
@@ -228,6 +244,9 @@ impl Needs {
             ("needs", self.damper.damper_words()),
             ("there", format!("the structure {}", self.damper.structure_words())),
         ];
+        let place = rounded(self.damper.omega(Measure::ContactForce), 4);
+        let contacts = self.contacts.iter().flat_map(Contacts::words);
+        lines.extend(contacts.map(|words| ("contact", format!("{words}, at {place} rad/s"))));
         lines.extend(self.damper.own_words(study).map(|words| ("later", words)));
         let none = self.none.iter().map(|none| format!("no damper: {}", beside(none, false)));
         let linear = self.linear.iter().map(|Linear { k2, c2, needs, .. }| {

@@ -1,6 +1,7 @@
 //! `simulate`: one run.
 
 use crate::Error;
+use crate::contacts::{Contacts, Powers};
 use crate::summary::Summary;
 use retune_solver::{Rows, Sample, trajectory};
 use retune_store::{Pending, order::may_write};
@@ -33,11 +34,18 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
     if let Some(Trajectory { file, inputs, .. }) = trajectory {
         may_write(file, inputs, HEAD)?;
     }
-    let response = retune_solver::simulate(&study.scene, study.window.window(), &study.solver.settings())?;
+    let (window, settings) = (study.window.window(), study.solver.settings());
+    let response = retune_solver::simulate(&study.scene, window, &settings)?;
+    let losses = retune_solver::losses(&study.scene, window, &settings)?;
+    let contacts = Contacts::of(&study.scene, window, &settings)?;
     if let Some(Trajectory { file, interval, .. }) = trajectory {
         write_trajectory(study, file, interval)?;
     }
-    Ok(Simulation::of(Summary::new(study, study.scene, &response), study.transient()))
+    let summary = Summary::new(study, study.scene, &response);
+    let [hertz, rpm] = hertz_and_rpm(summary.omega());
+    let transmissibility = summary.transmissibility();
+    let powers = Powers::new(losses, window.to - window.from);
+    Ok(Simulation { summary, hertz, rpm, transmissibility, contacts, powers, transient: study.transient() })
 }
 
 /// One run as the command line shows it: its summary, and the same in the units and the ratio that engineers ask for.
@@ -53,21 +61,26 @@ pub struct Simulation {
     rpm: f64,
     /// As [`Summary::transmissibility`].
     transmissibility: Option<f64>,
+    /// What the contacts are like; null if no wall is touched.
+    contacts: Option<Contacts>,
+    /// Where the energy goes, W.
+    #[serde(rename = "power_lost")]
+    powers: Powers,
     /// What is to be known of the transient in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     transient: Option<String>,
 }
 
-impl Simulation {
-    fn of(summary: Summary, transient: Option<String>) -> Self {
-        let [hertz, rpm] = hertz_and_rpm(summary.omega());
-        Self { hertz, rpm, transmissibility: summary.transmissibility(), transient, summary }
-    }
-}
-
 impl std::fmt::Display for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.summary.fmt(f)?;
+        for words in self.contacts.iter().flat_map(Contacts::words) {
+            write!(f, "\ncontacts    {words}")?;
+        }
+        self.powers.words().iter().try_for_each(|words| write!(f, "\nlosses      {words}"))?;
+        for words in self.contacts.iter().flat_map(Contacts::warnings) {
+            write!(f, "\nwarning     {words}")?;
+        }
         self.transient.iter().try_for_each(|words| write!(f, "\nnote        {words}"))
     }
 }

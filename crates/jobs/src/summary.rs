@@ -36,6 +36,7 @@ pub struct Summary {
     relative_displacement_max: f64,
     spring_deflection_max: f64,
     force_max: Walls<f64>,
+    pressure_max: Walls<f64>,
     final_state: FinalState,
     /// The smallest model that was exact.
     scene: SceneKind,
@@ -102,6 +103,12 @@ struct Walls<T> {
     obstacle: T,
 }
 
+impl<T> Walls<T> {
+    fn of([primary, obstacle]: [T; 2]) -> Self {
+        Self { primary, obstacle }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Serialize)]
 struct FinalState {
     x1: f64,
@@ -150,7 +157,7 @@ impl std::fmt::Display for MadeBy {
 impl Summary {
     /// Collects the observations of a run of `scene` with the window and solver of `study`.
     pub fn new(study: &Study, scene: Scene, response: &Response) -> Self {
-        let Response { e1_max, e2_max, impacts, force_max, final_state, scene: kind, work, .. } = *response;
+        let Response { e1_max, e2_max, impacts, final_state, scene: kind, work, .. } = *response;
         let Response { relative_displacement_max, spring_deflection_max, .. } = *response;
         let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
         let [x1, v1, x2, v2] = final_state;
@@ -163,10 +170,11 @@ impl Summary {
             r1,
             r2,
             structure: Structure::new(&response.structure),
-            impacts: Walls { primary: impacts[0], obstacle: impacts[1] },
+            impacts: Walls::of(impacts),
             relative_displacement_max,
             spring_deflection_max,
-            force_max: Walls { primary: force_max[0], obstacle: force_max[1] },
+            force_max: Walls::of(response.force_max),
+            pressure_max: Walls::of(response.pressure_max),
             final_state: FinalState { x1, v1, x2, v2 },
             scene: kind,
             steps: work.steps,
@@ -203,6 +211,7 @@ impl Summary {
             Measure::GroundForce => self.structure.ground_force_max,
             Measure::Stroke => self.spring_deflection_max,
             Measure::ContactForce => self.force_max.primary.max(self.force_max.obstacle),
+            Measure::ContactPressure => self.pressure_max.primary.max(self.pressure_max.obstacle),
         }
     }
 

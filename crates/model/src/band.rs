@@ -96,7 +96,7 @@ impl Coupled {
         visit: &mut dyn FnMut(Worst),
     ) -> Worst {
         let mut worst = Worst::NONE;
-        if from < to && measure != Measure::ContactForce {
+        if from < to && !measure.is_of_walls() {
             let factors = Factors::new(self, to * to);
             let seen = Seen { worst: &mut worst, share, visit };
             Search::new(self.bare(), factors, true, measure, [from, to], seen).run();
@@ -228,7 +228,7 @@ impl<'a> Search<'a> {
             Measure::Energy => 0.5 * m1 * unit * amplitude * amplitude * ratio,
             Measure::Velocity => size * unit.sqrt(),
             Measure::Acceleration => size * unit,
-            Measure::Displacement | Measure::GroundForce | Measure::Stroke | Measure::ContactForce => size,
+            _ => size,
         }
     }
 }

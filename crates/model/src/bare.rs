@@ -109,6 +109,15 @@ impl Bare {
         (a, [0.0, 1.0 / self.m1])
     }
 
+    /// The power that the structure's dashpot takes, W: `c1 (v1 - vb)²`, with the velocity `vb` of a moving base.
+    pub fn dashpot_loss(&self, [cos, sin]: Excitation, v1: f64) -> f64 {
+        // The base moves by Y cos(ωt + φ), and pushes by the real part of (k1 + i ω c1) Y e^(i(ωt + φ)).
+        let impedance = Complex::new(self.k1, self.omega * self.c1);
+        let moves = self.is_on_moving_base() && impedance.norm_sqr() > 0.0;
+        let base = if moves { -self.omega * (Complex::new(cos, sin) / impedance).im } else { 0.0 };
+        self.c1 * (v1 - base).powi(2)
+    }
+
     /// `∂y'/∂t`, which is due to the force alone.
     pub fn time_derivative(&self, [_, sin]: Excitation) -> [f64; 2] {
         [0.0, -self.omega * sin / self.m1]

@@ -5,7 +5,9 @@ mod structure;
 
 use crate::bare::largest;
 use crate::loss::factors;
-use crate::{Bare, Damper, Excitation, Finite, Forcing, Primary, Start, hertz_force, hertz_force_slope};
+use crate::{
+    Bare, Damper, Excitation, Finite, Forcing, Primary, Start, hertz_force, hertz_force_slope, hertz_pressure,
+};
 use nalgebra::SMatrix;
 
 /// The two walls of the cavity.
@@ -142,6 +144,17 @@ impl Coupled {
         let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda, w));
         let force = hertz_force(hertz, z);
         [force * factor, hertz_force_slope(hertz, z) * factor, force * lambda]
+    }
+
+    /// The radius of the contact area at an indentation `z` (m), m: `√(R z)` (Johnson, p. 92).
+    pub fn contact_radius(&self, z: f64) -> f64 {
+        (self.radius * z.max(0.0)).sqrt()
+    }
+
+    /// The largest pressure of a contact at an indentation `z` (m), N/m²: that of Hertz's theory. What a contact loses is not in it, since the
+    /// law of its loss is one of forces alone.
+    pub fn wall_pressure(&self, side: Side, z: f64) -> f64 {
+        hertz_pressure(self.hertz(side), self.radius, z)
     }
 
     /// `[m1, m2]`, kg.

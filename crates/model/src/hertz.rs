@@ -38,6 +38,13 @@ pub fn hertz_energy(stiffness: f64, z: f64) -> f64 {
     0.4 * z * hertz_force(stiffness, z)
 }
 
+/// Largest pressure of the contact of a sphere of radius `radius` (m) with a plane at the indentation `z` (m), in the middle of the contact
+/// area, N/m²: `3 F / (2 π a²)` with `a² = R z` (Johnson, p. 92), `(3 / (2π)) K √z / R`.
+#[inline]
+pub fn hertz_pressure(stiffness: f64, radius: f64, z: f64) -> f64 {
+    if z > 0.0 { 1.5 / PI * stiffness * z.sqrt() / radius } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,6 +56,18 @@ mod tests {
         let expected = 4.0 / 3.0 * e_star * 2.0_f64.sqrt();
         let k = hertz_stiffness(1.0 / PI, 2.0, surfaces);
         assert!((k / expected - 1.0).abs() < 1e-14, "{k} {expected}");
+    }
+
+    /// Johnson's `p0 = (2 E*/π) √(z/R)`, and the force as the integral of the pressure `p0 √(1 - r²/a²)` over the contact area.
+    #[test]
+    fn exact_pressure_carries_the_force() {
+        let (modulus, radius, z) = (2e7, 0.05, 3e-4);
+        let k = 4.0 / 3.0 * modulus * f64::sqrt(radius);
+        let pressure = hertz_pressure(k, radius, z);
+        assert!((pressure / (2.0 / PI * modulus * (z / radius).sqrt()) - 1.0).abs() < 1e-14);
+        let carried = 2.0 / 3.0 * PI * radius * z * pressure;
+        assert!((carried / hertz_force(k, z) - 1.0).abs() < 1e-14);
+        assert_eq!(hertz_pressure(k, radius, -z), 0.0);
     }
 
     #[test]

@@ -64,7 +64,9 @@ pub use coupled::{Coupled, Side};
 pub use damper::{Contact, Damper};
 pub use design::{Design, NoDesign};
 pub use forcing::{Excitation, Forcing, Source, Start};
-pub use hertz::{hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_stiffness};
+pub use hertz::{
+    hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure, hertz_stiffness,
+};
 pub use loss::Loss;
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;

@@ -23,11 +23,13 @@ pub enum Measure {
     Stroke,
     /// The force on either wall.
     ContactForce,
+    /// The pressure of Hertz's contact at the middle of either wall's contact area.
+    ContactPressure,
 }
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Energy,
         Self::Displacement,
         Self::Velocity,
@@ -35,13 +37,14 @@ impl Measure {
         Self::GroundForce,
         Self::Stroke,
         Self::ContactForce,
+        Self::ContactPressure,
     ];
 
     /// Those that a structure has without a damper, too: the first of [`Self::ALL`].
     pub const OF_STRUCTURE: [Self; 5] =
         [Self::Energy, Self::Displacement, Self::Velocity, Self::Acceleration, Self::GroundForce];
     /// Those that only a damper has.
-    pub const OF_DAMPER: [Self; 2] = [Self::Stroke, Self::ContactForce];
+    pub const OF_DAMPER: [Self; 3] = [Self::Stroke, Self::ContactForce, Self::ContactPressure];
 
     /// Name in files, short name, words, SI unit: its own entry of the catalogue.
     const fn entry(self) -> [&'static str; 4] {
@@ -53,6 +56,7 @@ impl Measure {
             Self::GroundForce => ["ground_force", "ground", "the largest force on the ground", "N"],
             Self::Stroke => ["stroke", "stroke", "the largest stroke of the damper", "m"],
             Self::ContactForce => ["contact_force", "walls", "the largest contact force", "N"],
+            Self::ContactPressure => ["contact_pressure", "pressure", "the largest contact pressure", "Pa"],
         }
     }
 
@@ -78,7 +82,12 @@ impl Measure {
 
     /// Whether only a motion with a damper has it.
     pub const fn is_of_damper(self) -> bool {
-        matches!(self, Self::Stroke | Self::ContactForce)
+        matches!(self, Self::Stroke) || self.is_of_walls()
+    }
+
+    /// Whether only a motion that touches a wall has it.
+    pub const fn is_of_walls(self) -> bool {
+        matches!(self, Self::ContactForce | Self::ContactPressure)
     }
 
     /// Name, words and unit, as schemas describe it.
@@ -121,9 +130,14 @@ impl JsonSchema for Measure {
 
 /// A value for each [`Measure`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PerMeasure<T>(pub [T; 7]);
+pub struct PerMeasure<T>(pub [T; Measure::ALL.len()]);
 
 impl<T: Copy> PerMeasure<T> {
+    /// The same value for every measure.
+    pub const fn all(value: T) -> Self {
+        Self([value; Measure::ALL.len()])
+    }
+
     /// The value for `measure`.
     pub fn get(&self, measure: Measure) -> T {
         self.0[measure as usize]
@@ -137,7 +151,7 @@ impl<T: Copy> PerMeasure<T> {
 
 impl PerMeasure<bool> {
     /// Every measure.
-    pub const EVERY: Self = Self([true; 7]);
+    pub const EVERY: Self = Self::all(true);
 
     /// Those that are set.
     pub fn chosen(self) -> impl Iterator<Item = Measure> {

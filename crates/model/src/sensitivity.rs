@@ -140,6 +140,12 @@ impl Coupled {
                 let [_, slope, drag] = self.wall_force(side, depth, rate);
                 side.sign() * (slope * (by[2] - by[0]) + drag * (by[3] - by[1]) - contact[1])
             }
+            Measure::ContactPressure if depth > 0.0 => {
+                let deeper = side.sign() * (by[2] - by[0] - self.wall_by(parameter, side));
+                let radius = is(Parameter::R) / self.radius;
+                self.wall_pressure(side, depth) * (0.5 * deeper / depth + self.hertz_by(parameter) - radius)
+            }
+            Measure::ContactPressure => 0.0,
         }
     }
 }

@@ -31,7 +31,7 @@ impl Steady {
             }
             Measure::GroundForce => bare.k1.hypot(omega * bare.c1) * x1,
             Measure::Stroke => self.stroke(),
-            Measure::ContactForce => 0.0,
+            Measure::ContactForce | Measure::ContactPressure => 0.0,
         }
     }
 

@@ -137,7 +137,7 @@ fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Resu
             e1.record()
         }
         // There is no damper that could move or touch.
-        Observed::Stroke | Observed::Force => Extreme { value: 0.0, time: window.from },
+        Observed::Damper => Extreme { value: 0.0, time: window.from },
     };
     let also = ask.also.map(|also| bare_values(system, also, window.to, settings)).transpose()?;
     Ok(Extremes { largest, reached: also.unwrap_or_default(), settled: true })
@@ -184,8 +184,7 @@ fn values(beside: Option<&Beside<'_>>) -> PerMeasure<f64> {
 pub(crate) enum Peak<'a> {
     Energy(RunningMaximum<PrimaryEnergy<'a>>),
     Motion(Magnitude<StructureMotion<'a, Coupled, 4>>),
-    Stroke(DisplacementRange<'a>),
-    Force(DisplacementRange<'a>),
+    Damper(DisplacementRange<'a>, Measure),
 }
 
 impl<'a> Peak<'a> {
@@ -193,8 +192,7 @@ impl<'a> Peak<'a> {
         match observed(measure) {
             Observed::Energy => Self::Energy(RunningMaximum::new(PrimaryEnergy::new(system), cutoff)),
             Observed::Motion(quantity) => Self::Motion(Magnitude::new(|sign| quantity(system, sign), cutoff)),
-            Observed::Stroke => Self::Stroke(DisplacementRange::new(system, cutoff)),
-            Observed::Force => Self::Force(DisplacementRange::new(system, cutoff)),
+            Observed::Damper => Self::Damper(DisplacementRange::new(system, cutoff), measure),
         }
     }
 
@@ -202,18 +200,17 @@ impl<'a> Peak<'a> {
         match self {
             Self::Energy(e1) => e1.record(),
             Self::Motion(size) => size.record(),
-            Self::Stroke(range) => range.stroke(),
-            Self::Force(range) => range.force(),
+            Self::Damper(range, measure) => range.largest(*measure),
         }
     }
 }
 
-/// What is observed for a measure: of the structure's motion, the quantity whose largest size it is.
+/// What is observed for a measure: of the structure's motion, the quantity whose largest size it is; of the damper, the range of its
+/// displacement.
 enum Observed<Q> {
     Energy,
     Motion(Q),
-    Stroke,
-    Force,
+    Damper,
 }
 
 fn observed<'a, S: Structure<N>, const N: usize>(
@@ -225,8 +222,7 @@ fn observed<'a, S: Structure<N>, const N: usize>(
         Measure::Velocity => Observed::Motion(StructureMotion::velocity),
         Measure::Acceleration => Observed::Motion(StructureMotion::acceleration),
         Measure::GroundForce => Observed::Motion(StructureMotion::ground_force),
-        Measure::Stroke => Observed::Stroke,
-        Measure::ContactForce => Observed::Force,
+        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure => Observed::Damper,
     }
 }
 
@@ -236,7 +232,7 @@ impl Observer<4> for Peak<'_> {
         match self {
             Self::Energy(e1) => e1.segment(segment),
             Self::Motion(size) => size.segment(segment),
-            Self::Stroke(range) | Self::Force(range) => range.segment(segment),
+            Self::Damper(range, _) => range.segment(segment),
         }
     }
     #[inline(always)]
@@ -244,7 +240,7 @@ impl Observer<4> for Peak<'_> {
         match self {
             Self::Energy(e1) => e1.path(path),
             Self::Motion(size) => size.path(path),
-            Self::Stroke(range) | Self::Force(range) => range.path(path),
+            Self::Damper(range, _) => range.path(path),
         }
     }
     #[inline(always)]
@@ -252,15 +248,14 @@ impl Observer<4> for Peak<'_> {
         match self {
             Self::Energy(e1) => e1.steps(steps),
             Self::Motion(size) => size.steps(steps),
-            Self::Stroke(range) | Self::Force(range) => range.steps(steps),
+            Self::Damper(range, _) => range.steps(steps),
         }
     }
     fn satisfied(&self) -> bool {
         match self {
             Self::Energy(e1) => Observer::<4>::satisfied(e1),
             Self::Motion(size) => size.satisfied(),
-            Self::Stroke(range) => range.stroke().value > range.cutoff(),
-            Self::Force(range) => range.force().value > range.cutoff(),
+            Self::Damper(range, measure) => range.largest(*measure).value > range.cutoff(),
         }
     }
 }

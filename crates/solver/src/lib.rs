@@ -38,6 +38,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod budget;
+mod collisions;
 mod contact;
 mod derivatives;
 mod energy_bound;
@@ -45,6 +46,7 @@ mod error;
 mod extremes;
 mod hybrid;
 mod linear;
+mod losses;
 pub mod methods;
 mod motion;
 pub mod observe;
@@ -60,11 +62,13 @@ mod tangent;
 mod trajectory;
 
 pub use budget::{Budget, Pace};
+pub use collisions::{Collisions, collisions};
 pub use derivatives::{extremes_by, settled_by};
 pub use error::{Remedy, SolverError};
 pub use extremes::{Also, Ask, Extremes, extremes};
 pub use hybrid::propagator::{Hybrid, Motion, Phase};
 pub use linear::steps;
+pub use losses::{Losses, losses};
 pub use recurrence::test::Settle;
 pub use response::{Extreme, Response, SceneKind, StructureMaxima, Work};
 pub use run::{Follower, least_steps};

@@ -69,6 +69,8 @@ pub struct Response {
     pub impacts: [u64; 2],
     /// Largest contact forces on the primary structure and on the obstacle, N.
     pub force_max: [f64; 2],
+    /// Largest contact pressures on the primary structure and on the obstacle, N/m².
+    pub pressure_max: [f64; 2],
     /// Largest relative displacement `|x2 - x1|` of the damper, m: its place in the cavity.
     pub relative_displacement_max: f64,
     /// The stroke: largest spring deflection `|x2 - x1 - D|`, m.
@@ -82,7 +84,7 @@ pub struct Response {
 }
 
 impl Response {
-    /// The largest value of a measure, in its unit; of the contact force, that on either wall.
+    /// The largest value of a measure, in its unit; of contact force and pressure, that on either wall.
     pub fn largest(&self, measure: Measure) -> f64 {
         match measure {
             Measure::Energy => self.e1_max.value,
@@ -92,6 +94,7 @@ impl Response {
             Measure::GroundForce => self.structure.ground_force.value,
             Measure::Stroke => self.spring_deflection_max,
             Measure::ContactForce => self.force_max[0].max(self.force_max[1]),
+            Measure::ContactPressure => self.pressure_max[0].max(self.pressure_max[1]),
         }
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
             None => Ok(()),
         };
     }
-    if objective.response == Response::Steady && objective.quantity == Measure::ContactForce {
+    if objective.response == Response::Steady && objective.quantity.is_of_walls() {
         let allowed = "another quantity, or another response: what is steady touches no wall";
         return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
     }

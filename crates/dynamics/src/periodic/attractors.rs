@@ -5,6 +5,7 @@ use super::seen::Seen;
 use super::settle::{Settled, Starts, is_same, settle};
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
+use retune_model::Measure;
 
 /// A motion on which runs settle, at one sample.
 #[derive(Clone, Debug)]
@@ -103,10 +104,10 @@ impl Reached {
         Ok(())
     }
 
-    /// The largest value of a quantity.
-    pub(super) fn most(&self, quantity: fn(&Seen) -> f64) -> f64 {
-        let periodic = self.attractors.iter().map(|one| quantity(&one.orbit.seen));
-        periodic.chain(self.irregular.iter().map(quantity)).fold(0.0, f64::max)
+    /// The largest value of a measure.
+    pub(super) fn most(&self, measure: Measure) -> f64 {
+        let periodic = self.attractors.iter().map(|one| one.orbit.seen.largest(measure));
+        periodic.chain(self.irregular.iter().map(|seen| seen.largest(measure))).fold(0.0, f64::max)
     }
 
     /// Whether a periodic motion is such a one.

@@ -4,7 +4,6 @@ use super::attractors::{Reached, Sample, attractors_at, attractors_from};
 use super::events::Event;
 use super::largest::{COUNTS, crest, keep_crests, merged, stable_parts};
 use super::orbit::Orbit;
-use super::seen::quantity;
 use super::settle::{MOST_PERIODS, Starts, most_energy};
 use super::shooting::{Shooting, Solution};
 use super::trace::{Branch, doubled, trace};
@@ -71,7 +70,7 @@ impl Plan {
 
     /// Whether a motion is followed.
     pub(super) fn follows(&self, orbit: &Orbit) -> bool {
-        self.least.is_none_or(|(measure, least)| quantity(measure)(&orbit.seen) >= least)
+        self.least.is_none_or(|(measure, least)| orbit.seen.largest(measure) >= least)
     }
 
     /// Starts at a value where runs are started beside the samples.
@@ -146,7 +145,7 @@ pub fn branches(
     let values = evenly(from, to, plan.samples);
     let mut seen: Vec<Reached> = values.par_iter().map(from_rest).collect::<Result<_, Error>>()?;
     if let Some(measure) = plan.crests {
-        found.plan.least = Some((measure, COUNTS * keep_crests(&mut seen, quantity(measure))));
+        found.plan.least = Some((measure, COUNTS * keep_crests(&mut seen, measure)));
     }
     found.add(&shooting, seen, &proceed);
     let other = |number: usize| attractors_from(&shooting, &starts, number, &proceed);
@@ -256,7 +255,7 @@ impl Branches {
         }
         let number = self.branches.len();
         if let Some(measure) = self.plan.crests {
-            self.branches.push(crest(shooting, seed, self.plan.range, quantity(measure))?);
+            self.branches.push(crest(shooting, seed, self.plan.range, measure)?);
             return Some(number);
         }
         self.branches.push(trace(shooting, seed, self.plan.range, proceed)?);

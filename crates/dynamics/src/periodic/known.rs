@@ -4,7 +4,6 @@ use super::branches::{Branches, Control, Plan, branches, equations};
 use super::largest::COUNTS;
 use super::onset::Seed;
 use super::orbit::Orbit;
-use super::seen::quantity;
 use super::shooting::{Shooting, Solution};
 use crate::parameter::Error;
 use retune_model::{Measure, Parameter, Scene};
@@ -44,9 +43,8 @@ impl Branches {
     /// # Errors
     /// A value of the range is out of the parameter's.
     pub fn known(&self, scene: &Scene, measure: Measure, settings: &Settings) -> Result<Vec<Seed>, Error> {
-        let quantity = quantity(measure);
-        let most = self.largest(quantity).map_or(0.0, |largest| largest.value);
-        let counts = |orbit: &Orbit| quantity(&orbit.seen) >= COUNTS * most;
+        let most = self.largest(measure).map_or(0.0, |largest| largest.value);
+        let counts = |orbit: &Orbit| orbit.seen.largest(measure) >= COUNTS * most;
         Ok(self.seeds(&equations(scene, &self.plan, settings)?, counts).concat())
     }
 }

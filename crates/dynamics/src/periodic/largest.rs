@@ -3,9 +3,9 @@
 
 use super::attractors::Reached;
 use super::orbit::Orbit;
-use super::seen::Seen;
 use super::shooting::{Shooting, Solution};
 use super::trace::{Branch, trace_while};
+use retune_model::Measure;
 use std::cell::Cell;
 
 /// Motions that are looked at for the largest value have this share of the largest that is known.
@@ -116,11 +116,11 @@ pub(super) fn crest(
     shooting: &Shooting,
     seed: &Solution,
     range: [f64; 2],
-    quantity: fn(&Seen) -> f64,
+    measure: Measure,
 ) -> Option<Branch> {
     let most = Cell::new(0.0);
     let proceed = |orbit: &Orbit| {
-        let value = quantity(&orbit.seen);
+        let value = orbit.seen.largest(measure);
         most.set(f64::max(most.get(), value));
         orbit.is_stable() && value >= DOWN * most.get()
     };
@@ -128,8 +128,8 @@ pub(super) fn crest(
 }
 
 /// Keeps of samples in a row those at which runs reach as much as at both beside them; gives the largest value of all.
-pub(super) fn keep_crests(seen: &mut Vec<Reached>, quantity: fn(&Seen) -> f64) -> f64 {
-    let reached: Vec<f64> = seen.iter().map(|seen| seen.most(quantity)).collect();
+pub(super) fn keep_crests(seen: &mut Vec<Reached>, measure: Measure) -> f64 {
+    let reached: Vec<f64> = seen.iter().map(|seen| seen.most(measure)).collect();
     let at = |i: usize| reached.get(i).copied().unwrap_or(0.0);
     let mut places = 0..;
     seen.retain(|_| places.next().is_some_and(|i| at(i) >= at(i.wrapping_sub(1)) && at(i) >= at(i + 1)));

@@ -13,20 +13,8 @@ pub struct Seen {
     /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
     /// empty if none.
     pub impacts: String,
-    /// Largest energy of the structure, J.
-    pub e1_max: f64,
-    /// Largest displacement of the structure, m.
-    pub displacement: f64,
-    /// Largest velocity of the structure, m/s.
-    pub velocity: f64,
-    /// Largest acceleration of the structure, m/s².
-    pub acceleration: f64,
-    /// Largest force on the ground, N.
-    pub ground_force: f64,
-    /// The stroke, m.
-    pub stroke: f64,
-    /// Largest contact force, N.
-    pub force: f64,
+    /// The largest value of each measure.
+    pub largest: PerMeasure<f64>,
     /// `[x1, v1, x2, v2]` at its first crest of the force.
     pub start: [f64; 4],
 }
@@ -46,23 +34,15 @@ pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 
         follower.propagate(start, (k + 1) as f64 * share, &mut all)?;
     }
     let (values, touches) = all;
-    let PerMeasure([e1_max, displacement, velocity, acceleration, ground_force, stroke, force]) =
-        values.values();
     let start = states.first().copied().unwrap_or_default();
     let impacts = turned(touches.0.iter().map(|(_, side)| *side));
-    Ok(Seen { impacts, e1_max, displacement, velocity, acceleration, ground_force, stroke, force, start })
+    Ok(Seen { impacts, largest: values.values(), start })
 }
 
-/// How a motion has a quantity.
-pub fn quantity(measure: Measure) -> fn(&Seen) -> f64 {
-    match measure {
-        Measure::Energy => |seen| seen.e1_max,
-        Measure::Displacement => |seen| seen.displacement,
-        Measure::Velocity => |seen| seen.velocity,
-        Measure::Acceleration => |seen| seen.acceleration,
-        Measure::GroundForce => |seen| seen.ground_force,
-        Measure::Stroke => |seen| seen.stroke,
-        Measure::ContactForce => |seen| seen.force,
+impl Seen {
+    /// The largest value of a measure, in its unit.
+    pub fn largest(&self, measure: Measure) -> f64 {
+        self.largest.get(measure)
     }
 }
 

@@ -6,9 +6,8 @@ use super::branches::{Branches, Control, Interval, Plan, branches};
 use super::largest::{largest, stable_ranges};
 use super::orbit::Orbit;
 use super::seen::Seen;
-pub use super::seen::quantity;
 use crate::parameter::Error;
-use retune_model::Scene;
+use retune_model::{Measure, Scene};
 use retune_solver::Settings;
 
 /// A range without a stable motion is named if it is wider than this share of the range.
@@ -52,15 +51,15 @@ impl Share {
 /// What motions there are in a range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motions {
-    /// The largest value of each quantity asked for; none where nothing was found.
+    /// The largest value of each measure asked for; none where nothing was found.
     pub largest: Vec<Option<Largest>>,
     /// The share of the range over which a stable periodic motion is known.
     pub covered: f64,
-    /// The parts over which none is, and the largest value of the first quantity in the runs that were made there.
+    /// The parts over which none is, and the largest value of the first measure in the runs that were made there.
     pub irregular: Vec<(Interval, f64)>,
 }
 
-/// Finds the motions of a scene in the range of a plan, which may be one value, and the largest values of some quantities over them.
+/// Finds the motions of a scene in the range of a plan, which may be one value, and the largest values of some measures over them.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
@@ -68,20 +67,21 @@ pub fn motions(
     scene: &Scene,
     plan: Plan,
     settings: &Settings,
-    quantities: &[fn(&Seen) -> f64],
+    measures: &[Measure],
 ) -> Result<Motions, Error> {
-    Ok(Motions::of(&branches(scene, plan, settings, Control::default())?, quantities))
+    Ok(Motions::of(&branches(scene, plan, settings, Control::default())?, measures))
 }
 
 impl Motions {
     /// Of what was found.
-    pub fn of(found: &Branches, quantities: &[fn(&Seen) -> f64]) -> Self {
+    pub fn of(found: &Branches, measures: &[Measure]) -> Self {
         let [from, to] = found.plan.range;
-        let largest = quantities.iter().map(|quantity| found.largest(*quantity)).collect();
+        let first = |seen: &Seen| measures.first().map_or(0.0, |measure| seen.largest(*measure));
+        let largest = measures.iter().map(|measure| found.largest(*measure)).collect();
         if from == to {
             let is_stable = found.samples.iter().any(|sample| !sample.attractors.is_empty());
             let runs = found.samples.iter().flat_map(|sample| &sample.irregular);
-            let runs = quantities.first().and_then(|quantity| runs.map(quantity).max_by(f64::total_cmp));
+            let runs = runs.map(first).max_by(f64::total_cmp);
             let irregular = runs.filter(|_| !is_stable).map(|runs| ([from, to], runs)).into_iter().collect();
             return Self { largest, covered: f64::from(u8::from(is_stable)), irregular };
         }
@@ -91,7 +91,7 @@ impl Motions {
         let irregular = irregular.map(|[low, high]| {
             let within = |sample: &&Sample| sample.value >= low && sample.value <= high;
             let runs = found.samples.iter().filter(within).flat_map(|sample| &sample.irregular);
-            ([low, high], quantities.first().map_or(0.0, |quantity| runs.map(quantity).fold(0.0, f64::max)))
+            ([low, high], runs.map(first).fold(0.0, f64::max))
         });
         Self { largest, covered, irregular: irregular.collect() }
     }
@@ -105,19 +105,19 @@ pub fn width_missed(starts: usize, share: f64, missed: f64) -> f64 {
 
 impl Sample {
     /// The largest value at this sample.
-    fn largest(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
+    fn largest(&self, measure: Measure) -> Option<Largest> {
         let share = |ends: usize| Share { ends, starts: self.starts, within: [self.value; 2] };
         let periodic = self.attractors.iter().map(|Attractor { orbit, starts, from_rest, .. }| Largest {
-            value: quantity(&orbit.seen),
+            value: orbit.seen.largest(measure),
             at: self.value,
             start: orbit.seen.start,
             orbit: Some(orbit.clone()),
             from_rest: *from_rest,
             share: share(*starts),
         });
-        let most = self.irregular.iter().max_by(|a, b| quantity(a).total_cmp(&quantity(b)));
+        let most = self.irregular.iter().max_by(|a, b| a.largest(measure).total_cmp(&b.largest(measure)));
         let irregular = most.map(|most| Largest {
-            value: quantity(most),
+            value: most.largest(measure),
             start: most.start,
             at: self.value,
             orbit: None,
@@ -168,18 +168,18 @@ impl Branches {
         self.on(number).any(|(_, one)| one.from_rest)
     }
 
-    /// The stable motion with the largest value of a quantity on each branch; none of a branch without stable motions.
-    pub fn largest_of_each(&self, quantity: fn(&Seen) -> f64) -> Vec<Option<Orbit>> {
-        self.branches.iter().map(|branch| largest(branch, |orbit| quantity(&orbit.seen))).collect()
+    /// The stable motion with the largest value of a measure on each branch; none of a branch without stable motions.
+    pub fn largest_of_each(&self, measure: Measure) -> Vec<Option<Orbit>> {
+        self.branches.iter().map(|branch| largest(branch, |orbit| orbit.seen.largest(measure))).collect()
     }
 
-    /// The largest value of a quantity over the range.
-    pub fn largest(&self, quantity: fn(&Seen) -> f64) -> Option<Largest> {
-        let all = self.largest_of_each(quantity).into_iter().enumerate();
+    /// The largest value of a measure over the range.
+    pub fn largest(&self, measure: Measure) -> Option<Largest> {
+        let all = self.largest_of_each(measure).into_iter().enumerate();
         let on_branches = all.filter_map(|(number, orbit)| {
             let orbit = orbit?;
             Some(Largest {
-                value: quantity(&orbit.seen),
+                value: orbit.seen.largest(measure),
                 at: orbit.value,
                 from_rest: self.is_reached_from_rest(number),
                 share: self.share(number),
@@ -190,7 +190,7 @@ impl Branches {
         let others = self.samples.iter().flat_map(|sample| {
             // A motion whose branch could not be followed counts where it was met, and so does one that does not repeat.
             let alone = sample.attractors.iter().any(|one| one.branch.is_none());
-            (alone || !sample.irregular.is_empty()).then(|| sample.largest(quantity)).flatten()
+            (alone || !sample.irregular.is_empty()).then(|| sample.largest(measure)).flatten()
         });
         let others = others.map(|one| if one.orbit.is_none() { self.irregular_share(one) } else { one });
         on_branches.chain(others).max_by(|a, b| a.value.total_cmp(&b.value))

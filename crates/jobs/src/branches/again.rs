@@ -11,7 +11,7 @@ use retune_dynamics::periodic::Plane;
 use retune_dynamics::periodic::branches::{Plan, sample};
 use retune_dynamics::periodic::forced::settings_of;
 use retune_dynamics::periodic::seen::seen;
-use retune_model::Scene;
+use retune_model::{Measure, Scene};
 use retune_study::Study;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -63,7 +63,7 @@ fn orbit(study: &Study, plan: Plan, states: &[[f64; 4]], row: Row) -> Option<f64
     let scene = at(study, plan, row)?;
     let periods = row.text("periods").parse().ok()?;
     let settings = settings_of(&study.solver.settings());
-    Some(seen(&scene, &settings, periods, states).map_or(f64::INFINITY, |seen| seen.e1_max))
+    Some(seen(&scene, &settings, periods, states).map_or(f64::INFINITY, |seen| seen.largest(Measure::Energy)))
 }
 
 /// E1max of what runs settle on.
@@ -84,7 +84,7 @@ fn attractor(study: &Study, plan: Plan, row: Row) -> Option<f64> {
             && one.starts.to_string() == row.text("starts")
             && one.orbit.periods.to_string() == row.text("periods")
     });
-    Some(own.map_or(f64::INFINITY, |own| own.orbit.seen.e1_max))
+    Some(own.map_or(f64::INFINITY, |own| own.orbit.seen.largest(Measure::Energy)))
 }
 
 fn at(study: &Study, plan: Plan, row: Row) -> Option<Scene> {

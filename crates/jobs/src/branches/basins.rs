@@ -3,7 +3,7 @@
 use crate::branches::motions::{Motions, joule, kind};
 use crate::branches::tables::STARTS;
 use retune_dynamics::periodic::Basins;
-use retune_model::Bare;
+use retune_model::{Bare, Measure};
 use retune_report::document::Block;
 use retune_report::{Nodes, Place, Scale, Sheet, heat_map, svg};
 use retune_study::{counted, rounded};
@@ -43,7 +43,7 @@ fn row(motions: &Motions, basins: &Basins, motion: Option<usize>) -> Vec<String>
         or_none(motion.map(|number| number.to_string())),
         or_none(one.and_then(|one| one.branch).map(|branch| branch.to_string())),
         one.map_or("irregular, or none of these".to_owned(), |one| kind(&one.orbit)),
-        or_none(one.map(|one| joule(one.orbit.seen.e1_max))),
+        or_none(one.map(|one| joule(one.orbit.seen.largest(Measure::Energy)))),
         format!("{} %", rounded(100.0 * own().count() as f64 / basins.ends.len() as f64, 3)),
         or_none(push.is_finite().then(|| rounded(push, 3))),
     ]
@@ -59,8 +59,9 @@ fn draw(motions: &Motions, basins: &Basins) -> String {
     };
     let sides =
         [side("x1 at the start, m", &basins.sides[0]), side("v1 at the start, m/s", &basins.sides[1])];
-    let energy =
-        |end: &Option<usize>| end.map_or(f64::NAN, |end| basins.sample.attractors[end].orbit.seen.e1_max);
+    let energy = |end: &Option<usize>| {
+        end.map_or(f64::NAN, |end| basins.sample.attractors[end].orbit.seen.largest(Measure::Energy))
+    };
     let energies: Vec<f64> = basins.ends.iter().map(energy).collect();
     let places = [Place { at: (0.0, 0.0), label: "from rest".to_owned() }];
     let (chart, legend) = heat_map(&sides, &energies, "E1max, J", &places);

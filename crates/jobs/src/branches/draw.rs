@@ -3,6 +3,7 @@
 use crate::branches::motions::Motions;
 use crate::pages::abscissa;
 use retune_dynamics::periodic::{Branch, EventKind, Orbit};
+use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION};
 use retune_report::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
@@ -29,7 +30,10 @@ fn mark(kind: EventKind) -> Mark {
 
 /// A quantity that is drawn: its label and its value.
 type Drawn = (&'static str, fn(&Orbit) -> f64);
-const DRAWN: [Drawn; 2] = [("E1max, J", |orbit| orbit.seen.e1_max), ("stroke, m", |orbit| orbit.seen.stroke)];
+const DRAWN: [Drawn; 2] = [
+    ("E1max, J", |orbit| orbit.seen.largest(Measure::Energy)),
+    ("stroke, m", |orbit| orbit.seen.largest(Measure::Stroke)),
+];
 
 /// The figure.
 pub fn draw(motions: &Motions) -> Drawing {
@@ -80,7 +84,7 @@ fn chart(motions: &Motions, (label, value): &Drawn, is_first: bool) -> Chart {
     if is_first {
         for sample in samples {
             for (i, seen) in sample.irregular.iter().enumerate() {
-                let point = (sample.value, seen.e1_max);
+                let point = (sample.value, seen.largest(Measure::Energy));
                 if i == 0 && sample.rest_is_irregular { rest.push(point) } else { others.push(point) }
             }
         }

@@ -8,7 +8,7 @@ use crate::Error;
 use crate::certify::periodic;
 use retune_dynamics::periodic::branches::{Control, branches};
 use retune_dynamics::periodic::{Basins, Branch, Branches, Onset, Orbit, Sample, onset};
-use retune_model::Parameter;
+use retune_model::{Measure, Parameter};
 use retune_study::{Study, rounded, short};
 
 /// The forces at which motions are looked for, as multiples of the scene's own.
@@ -48,7 +48,7 @@ pub struct Margin {
 impl Motions {
     /// Of a study.
     pub(crate) fn new(study: Study, branches: Branches) -> Self {
-        let largest = branches.largest_of_each(|seen| seen.e1_max);
+        let largest = branches.largest_of_each(Measure::Energy);
         Self { study, largest, branches, margin: None, basins: None }
     }
 
@@ -69,7 +69,8 @@ impl Motions {
 
     /// The branches that no run from rest leads to, with stable motions of much more energy than any on branches that runs from rest do.
     fn others(&self) -> impl Iterator<Item = &Branch> {
-        let energy = |i: usize| self.largest[i].as_ref().map_or(0.0, |orbit| orbit.seen.e1_max);
+        let energy =
+            |i: usize| self.largest[i].as_ref().map_or(0.0, |orbit| orbit.seen.largest(Measure::Energy));
         let from_rest = |i: &usize| self.branches.is_reached_from_rest(*i);
         let usual = (0..self.largest.len()).filter(from_rest).map(energy).fold(0.0, f64::max);
         let is_other = move |(i, _): &(usize, &Branch)| !from_rest(i) && energy(*i) > NOTABLE * usual;
@@ -79,7 +80,7 @@ impl Motions {
 
 /// The largest E1max of the runs of a sample that settle on no periodic motion, J; 0 where there are none.
 pub(super) fn most_irregular(sample: &Sample) -> f64 {
-    sample.irregular.iter().map(|seen| seen.e1_max).fold(0.0, f64::max)
+    sample.irregular.iter().map(|seen| seen.largest(Measure::Energy)).fold(0.0, f64::max)
 }
 
 /// The periods and impacts of a motion in words.
@@ -147,7 +148,7 @@ impl Margin {
                 rounded(value / own, 6),
                 rounded(*value, 8),
                 rounded(*omega, 6),
-                rounded(orbit.seen.e1_max, 5),
+                rounded(orbit.seen.largest(Measure::Energy), 5),
                 orbit.periods,
                 orbit.seen.impacts
             ),

@@ -88,10 +88,14 @@ pub fn answer(motions: &Motions) -> Vec<String> {
     let largest = motions.largest.iter().enumerate();
     let mut most: Vec<(usize, &Orbit)> =
         largest.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
-    most.sort_by(|a, b| b.1.seen.e1_max.total_cmp(&a.1.seen.e1_max));
+    most.sort_by(|a, b| b.1.seen.largest(Measure::Energy).total_cmp(&a.1.seen.largest(Measure::Energy)));
     let reached = |(number, orbit): &(usize, &Orbit)| {
         let place = motions.at(orbit.value, 6);
-        format!("{} J at {place}, on branch {number} ({})", joule(orbit.seen.e1_max), kind(orbit))
+        format!(
+            "{} J at {place}, on branch {number} ({})",
+            joule(orbit.seen.largest(Measure::Energy)),
+            kind(orbit)
+        )
     };
     if let Some(first) = most.first() {
         words.push(format!("The largest E1max of all stable motions: {}.", reached(first)));
@@ -153,7 +157,7 @@ fn isola(motions: &Motions, number: usize, branch: &Branch) -> Option<String> {
         rounded(low, 8),
         rounded(high, 8),
         kind(most),
-        joule(most.seen.e1_max)
+        joule(most.seen.largest(Measure::Energy))
     ))
 }
 
@@ -175,7 +179,7 @@ fn branches(motions: &Motions) -> Block {
             branch.shooting.periods.to_string(),
             format!("{} to {}", rounded(low, 6), rounded(high, 6)),
             format!("{stable} of {}", branch.points.len()),
-            most.map_or("-".to_owned(), |orbit| joule(orbit.seen.e1_max)),
+            most.map_or("-".to_owned(), |orbit| joule(orbit.seen.largest(Measure::Energy))),
             most.map_or(String::new(), |orbit| rounded(orbit.value, 6)),
             most.map_or(String::new(), |orbit| orbit.seen.impacts.clone()),
             if first == last { first.to_owned() } else { format!("{first}; {last}") },
@@ -251,7 +255,14 @@ fn attractors(motions: &Motions) -> Block {
     for sample in &motions.branches.samples {
         for one in sample.attractors.iter().filter(|one| !is_usual(one)) {
             let Attractor { branch, orbit, starts, from_rest } = one;
-            rows.push(row(sample, *branch, kind(orbit), orbit.seen.e1_max, *starts, *from_rest));
+            rows.push(row(
+                sample,
+                *branch,
+                kind(orbit),
+                orbit.seen.largest(Measure::Energy),
+                *starts,
+                *from_rest,
+            ));
         }
         if !sample.irregular.is_empty() {
             let (starts, rest) = (sample.irregular.len(), sample.rest_is_irregular);

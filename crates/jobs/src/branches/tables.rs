@@ -4,6 +4,7 @@ use crate::branches::motions::{Motions, most_irregular};
 use crate::columns;
 use retune_dynamics::periodic::Attractor;
 use retune_dynamics::periodic::{Basins, Onset, Orbit};
+use retune_model::Measure;
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
 use serde_json::{Value, json};
@@ -40,7 +41,13 @@ fn branches(motions: &Motions) -> Table {
         let Orbit { value, periods, seen, multipliers, .. } = orbit;
         let first = cells![number, place, *value, *periods, seen.impacts.as_str(), orbit.is_stable()];
         let multiplier = multipliers[0].norm();
-        let values = cells![seen.e1_max, seen.displacement, seen.stroke, seen.force, multiplier];
+        let values = cells![
+            seen.largest(Measure::Energy),
+            seen.largest(Measure::Displacement),
+            seen.largest(Measure::Stroke),
+            seen.largest(Measure::ContactForce),
+            multiplier
+        ];
         table.push([first, values].concat());
     }
     table
@@ -73,7 +80,7 @@ pub fn bifurcations(motions: &Motions) -> Table {
         for event in &branch.events {
             let Orbit { value, periods, seen, multipliers, .. } = &event.orbit;
             let place = cells![number, event.place, event.kind.name(), *value, *periods];
-            let reached = cells![seen.impacts.as_str(), seen.e1_max];
+            let reached = cells![seen.impacts.as_str(), seen.largest(Measure::Energy)];
             let multipliers = multipliers.iter().flat_map(|m| cells![m.re, m.im]).collect();
             table.push([place, reached, multipliers].concat());
         }
@@ -90,7 +97,7 @@ fn attractors(motions: &Motions) -> Table {
         for Attractor { branch, orbit, starts, from_rest } in &sample.attractors {
             let Orbit { periods, seen, states, .. } = orbit;
             let motion = cells!["periodic", *branch, *periods, seen.impacts.as_str()];
-            let starts = cells![sample.starts, *starts, *from_rest, seen.e1_max];
+            let starts = cells![sample.starts, *starts, *from_rest, seen.largest(Measure::Energy)];
             table.push([place.clone(), motion, starts, states[0].map(Cell::from).to_vec()].concat());
         }
         if !sample.irregular.is_empty() {
@@ -130,7 +137,7 @@ pub fn summary(motions: &Motions) -> Value {
                 "events": events.collect::<Vec<_>>(),
                 "largest_stable": most.as_ref().map(|orbit| json!({
                     "value": orbit.value,
-                    "E1max": orbit.seen.e1_max,
+                    "E1max": orbit.seen.largest(Measure::Energy),
                     "impacts": orbit.seen.impacts,
                 })),
             })
@@ -148,7 +155,7 @@ pub fn summary(motions: &Motions) -> Value {
             "birth": margin.birth.as_ref().map(|Onset { value, omega, orbit }| json!({
                 "P": value,
                 "omega": omega,
-                "E1max": orbit.seen.e1_max,
+                "E1max": orbit.seen.largest(Measure::Energy),
                 "impacts": orbit.seen.impacts,
             })),
         })),

@@ -5,7 +5,6 @@ use super::motions::{AtForce, NOTABLE, Place, with_force};
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::periodic::branches::equations;
-use retune_dynamics::periodic::worst::quantity;
 use retune_dynamics::periodic::{Onset, Orbit, Seed, onset};
 use retune_model::{Measure, Parameter};
 use retune_optim::Unusable;
@@ -36,16 +35,15 @@ impl Place {
         settings: &Settings,
         margin: &mut Margin,
     ) -> Result<Vec<Seed>, Unusable> {
-        let of = quantity(measure);
         let Some((amplitude, own)) = self.scene.forcing.amplitude() else { return Ok(Vec::new()) };
         let own = own.get();
         let errors = 0.01 * margin.needed_percent;
         // As a power of the force between the two that are known.
         let power = (found.from_rest / self.from_rest).ln() / found.times.ln();
         let much = move |times: f64| NOTABLE * self.from_rest * times.powf(power);
-        let counts = |orbit: &Orbit| of(&orbit.seen) > much(orbit.value / own);
+        let counts = |orbit: &Orbit| orbit.seen.largest(measure) > much(orbit.value / own);
         let k1 = self.scene.primary.stiffness.get();
-        let largest = found.branches.largest(of);
+        let largest = found.branches.largest(measure);
         if let Some(one) = largest.filter(|one| one.orbit.is_none() && one.value > much(found.times)) {
             // It cannot be followed: it may begin anywhere above the force that was looked at before.
             let before =
@@ -57,9 +55,9 @@ impl Place {
         }
         let scene = with_force(&self.scene, found.times)?;
         let shooting = equations(&scene, &self.plan(), settings)?;
-        let seeds = found.branches.seeds(&shooting, |orbit| of(&orbit.seen) > much(found.times));
+        let seeds = found.branches.seeds(&shooting, |orbit| orbit.seen.largest(measure) > much(found.times));
         let other = |onset: &Onset| Other {
-            value: Amount::new(measure, of(&onset.orbit.seen)),
+            value: Amount::new(measure, onset.orbit.seen.largest(measure)),
             omega: onset.omega,
             k1,
             state: onset.orbit.seen.start,

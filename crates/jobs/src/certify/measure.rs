@@ -220,7 +220,7 @@ struct Outcome {
 
 impl Outcome {
     /// Of a scene that cannot be run.
-    const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit([0.0; 8]) };
+    const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit::all(0.0) };
 
     fn of(found: Result<Evaluation, Unusable>) -> Self {
         found.map_or(Self::NOTHING, |found| Self { energy: found.value, reached: found.reached })

@@ -5,7 +5,7 @@ use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::Error;
 use retune_dynamics::periodic::branches::Plan;
-use retune_dynamics::periodic::worst::{quantity, width_missed};
+use retune_dynamics::periodic::worst::width_missed;
 use retune_dynamics::periodic::{Branches, Control, branches};
 use retune_model::{Measure, NonNegative, Parameter, Scene, Source};
 use retune_optim::{Evaluation, Goal, Limit, Limits, PerLimit, Stiffnesses, Unusable};
@@ -82,7 +82,7 @@ pub(super) fn coexisting(
         (at_force(1.0)?, Vec::new())
     };
     let is_safe = |(place, found): (&Place, &AtForce)| {
-        found.branches.largest(quantity(measure)).is_none_or(|one| one.value <= NOTABLE * place.from_rest)
+        found.branches.largest(measure).is_none_or(|one| one.value <= NOTABLE * place.from_rest)
     };
     let mut margin = force.filter(|_| places.iter().zip(&here).all(is_safe)).map(|_| Margin::new(&needed));
     if let Some(margin) = &mut margin {
@@ -97,7 +97,7 @@ pub(super) fn coexisting(
     let mut reached = own.reached;
     let mut all = Vec::new();
     for (place, AtForce { branches, .. }) in places.iter().zip(&here) {
-        let kinds: Vec<_> = [measure].iter().chain(&Measure::ALL).map(|measure| quantity(*measure)).collect();
+        let kinds: Vec<_> = [measure].into_iter().chain(Measure::ALL).collect();
         let found = retune_dynamics::periodic::Motions::of(branches, &kinds);
         for (measure, largest) in Measure::ALL.into_iter().zip(found.largest.iter().skip(1)) {
             let limit = Limit::Of(measure);

@@ -98,8 +98,8 @@ impl Candidate {
 
     /// The names of its columns in a table with these parameters.
     pub fn names(parameters: &[Parameter]) -> Vec<&'static str> {
-        [&["E1max", "E1max_check"], &*columns::symbols(parameters), &Measure::OF_DAMPER.map(Measure::name)]
-            .concat()
+        let reached = [Measure::Stroke, Measure::ContactForce].map(Measure::name);
+        [&["E1max", "E1max_check"], &*columns::symbols(parameters), &reached].concat()
     }
 
     /// Its cells there.

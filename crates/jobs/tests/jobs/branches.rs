@@ -5,6 +5,7 @@ use retune_dynamics::periodic::settle::{Settled, settle};
 use retune_dynamics::periodic::{EventKind, Onset};
 use retune_jobs::branches::{Options, branches};
 use retune_jobs::{Done, Error, Request, Silent};
+use retune_model::Measure;
 use retune_testkit::desk::{Desk, committed};
 use retune_testkit::observers::{good, refused};
 use retune_testkit::verified::{End, a_changed_digit_is_found, holds, look};
@@ -102,9 +103,13 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
         let [from, to] = [-0.05, 0.05].map(|way| Some((omega + way).to_string()));
         let options = Options { from, to, samples: 15, starts: 32, ..Options::default() };
         let Done::Made(found) = good(branches(&request(&desk, 2), &options, &Silent)) else { panic!("made") };
-        let energies = found.largest.iter().flatten().map(|orbit| orbit.seen.e1_max);
+        let energies = found.largest.iter().flatten().map(|orbit| orbit.seen.largest(Measure::Energy));
         let most = energies.fold(0.0, f64::max);
-        assert_eq!(most > 0.8 * orbit.seen.e1_max, is_there, "{most} J at {share} of the force");
+        assert_eq!(
+            most > 0.8 * orbit.seen.largest(Measure::Energy),
+            is_there,
+            "{most} J at {share} of the force"
+        );
     }
     let wrong = Options { over: Parameter::K1, margin: true, ..Options::default() };
     let error = refused(branches(&request(&desk, 1), &wrong, &Silent));

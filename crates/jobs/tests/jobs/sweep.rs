@@ -97,7 +97,7 @@ fn contract_a_sweep_that_is_cut_off_resumes_and_ends_in_the_same_bytes() {
         let request = Request { threads: Some(1), ..request(&desk, "study.json", "out") };
         cut_off(at, |watch| swept(&request, &Points::All, watch));
         let kept = count_lines(&desk.path("out/unfinished/journal")) - 1;
-        assert!(kept > 0 && kept.is_multiple_of(14), "{at}: {kept}"); // numbers of a point
+        assert!(kept > 0 && kept.is_multiple_of(15), "{at}: {kept}"); // numbers of a point
         good(swept(&resume(&desk, "study.json", "out"), &Points::All, &Silent));
         desk.assert_same("whole", "out");
         desk.remove("out");

@@ -4,7 +4,7 @@ use crate::Any;
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::motions;
 use retune_jobs::certify::judge;
-use retune_model::{Parameter, PerVariable};
+use retune_model::{Measure, Parameter, PerVariable};
 use retune_study::{Setting, Study};
 use retune_testkit::hunt::Hunt;
 use std::ops::Range;
@@ -118,6 +118,6 @@ fn hard(study: &Study) -> Any<f64> {
     let [samples, starts] = HARD;
     let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
     let plan = Plan { samples, starts, passes: SPACINGS.len(), ..over };
-    let found = motions(&study.scene, plan, &study.solver.settings(), &[|seen| seen.e1_max])?;
+    let found = motions(&study.scene, plan, &study.solver.settings(), &[Measure::Energy])?;
     Ok(found.largest[0].as_ref().map_or(0.0, |largest| largest.value))
 }

@@ -144,6 +144,11 @@ impl Coupled {
         Side::BOTH.map(lost).iter().sum()
     }
 
+    /// The power that the damper's dashpot takes, W: `c2 (v2 - v1)²`.
+    pub fn damper_loss(&self, y: &[f64; 4]) -> f64 {
+        self.c2 * (y[3] - y[1]).powi(2)
+    }
+
     /// True mechanical energy, J: kinetic, both springs (the damper's by its own stretch), and `(2/5) K z^(5/2)` a contact.
     ///
     /// Constant when `P = c1 = c2 = 0` and contacts lose nothing.

@@ -175,7 +175,7 @@ impl Runs<'_> {
                 let k1 = |i: usize| set.get(i).map_or(own, |k1| k1.get());
                 let results = in_groups(set.len(), 1, |i, _| at(k1(i)), above);
                 let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
-                results.into_iter().try_fold([0.0; 8], |worst, more| Ok(larger(worst, more?)))
+                results.into_iter().try_fold(Largest::default(), |worst, more| Ok(larger(worst, more?)))
             }
         }
     }

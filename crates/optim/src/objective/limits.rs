@@ -22,8 +22,8 @@ pub enum Limit {
 
 impl Limit {
     /// All of them.
-    pub const ALL: [Self; 8] = {
-        let mut all = [Self::Cavity; 8];
+    pub const ALL: [Self; Measure::ALL.len() + 1] = {
+        let mut all = [Self::Cavity; Measure::ALL.len() + 1];
         let mut i = 0;
         while i < Measure::ALL.len() {
             all[i] = Self::Of(Measure::ALL[i]);
@@ -79,9 +79,14 @@ impl std::fmt::Display for Limit {
 
 /// A value for each [`Limit`]: what is allowed, or what was reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PerLimit<T>(pub [T; 8]);
+pub struct PerLimit<T>(pub [T; Limit::ALL.len()]);
 
 impl<T: Copy> PerLimit<T> {
+    /// The same value for every limit.
+    pub const fn all(value: T) -> Self {
+        Self([value; Limit::ALL.len()])
+    }
+
     /// The value for `limit`.
     pub fn get(&self, limit: Limit) -> T {
         self.0[limit.place()]

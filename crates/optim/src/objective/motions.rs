@@ -3,7 +3,7 @@
 use super::spec::{Objective, STARTS};
 use super::unusable::Unusable;
 use retune_dynamics::periodic::branches::{Control, Plan, branches};
-use retune_dynamics::periodic::worst::{Motions, quantity};
+use retune_dynamics::periodic::worst::Motions;
 use retune_dynamics::periodic::{Seed, from_rest_and};
 use retune_model::{Measure, Parameter, PerMeasure, Scene, Worst};
 use retune_solver::Settings;
@@ -55,7 +55,6 @@ pub(super) fn largest_motion(
     let starts = term.starts.unwrap_or(STARTS);
     let plan = Plan { samples, starts, passes: 1, ..Plan::over(Parameter::Omega, [from, to]) };
     let measures: Vec<Measure> = [term.quantity].into_iter().chain(also.chosen()).collect();
-    let kinds: Vec<_> = measures.iter().map(|measure| quantity(*measure)).collect();
     let found = if let Sought::Followed(known) = sought
         && from < to
     {
@@ -70,7 +69,7 @@ pub(super) fn largest_motion(
         }
         found
     };
-    let found = Motions::of(&found, &kinds);
+    let found = Motions::of(&found, &measures);
     let mut worst = found.largest.iter().map(|largest| match largest {
         Some(largest) => Worst { value: largest.value, frequency: largest.at },
         None => Worst { value: 0.0, frequency: from },

@@ -76,7 +76,7 @@ impl Goal {
         from: Option<f64>,
         proceed: Proceed<'_>,
     ) -> Result<PerMeasure<Need>, Unusable> {
-        let largest = Mutex::new(PerMeasure([Need { value: f64::NEG_INFINITY, ..Need::default() }; 7]));
+        let largest = Mutex::new(PerMeasure::all(Need { value: f64::NEG_INFINITY, ..Need::default() }));
         let keep = |run: Run| {
             let Scene { primary, forcing, .. } = run.place.scene;
             let (omega, k1) = (forcing.frequency.get(), primary.stiffness.get());
@@ -91,7 +91,7 @@ impl Goal {
             }
         };
         let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
-        let observed = Observed { also, own: from.is_none(), matters: PerMeasure([f64::NEG_INFINITY; 7]) };
+        let observed = Observed { also, own: from.is_none(), matters: PerMeasure::all(f64::NEG_INFINITY) };
         let runs = Runs::new(self, scene, settings, observed, Hooks { keep: &keep, proceed, ..FREE });
         self.sum(scene, f64::INFINITY, &runs)?;
         Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))

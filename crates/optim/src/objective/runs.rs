@@ -62,7 +62,7 @@ pub(super) struct Runs<'a> {
 pub(super) type Numbered<'a> = (usize, &'a Objective);
 
 /// The largest quantity of some runs, and their largest value of each measure; 0 of those that are not observed.
-pub(super) type Largest = [f64; 8];
+pub(super) type Largest = [f64; Measure::ALL.len() + 1];
 
 fn largest_of(quantity: f64, PerMeasure(reached): PerMeasure<f64>) -> Largest {
     std::array::from_fn(|i| if i == 0 { quantity } else { reached[i - 1] })

@@ -67,7 +67,7 @@ fn exact_violations_are_shares_of_the_limits() {
     assert_eq!(limits.active(&free.reached), [Limit::Of(Measure::Stroke)]);
     // Quantities without a limit are not observed.
     let seen = evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached;
-    assert_eq!(seen.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.42]);
+    assert_eq!(seen.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.42]);
 }
 
 /// Every measure can be limited, to what the whole run from rest has of it.
@@ -80,14 +80,15 @@ fn exact_each_measure_is_limited_by_what_the_run_has_of_it() {
         [structure.displacement, structure.velocity, structure.acceleration, structure.ground_force]
             .map(|largest| largest.value);
     let force = run.force_max[0].max(run.force_max[1]);
-    let most =
-        [run.e1_max.value, displacement, velocity, acceleration, ground, run.spring_deflection_max, force];
+    let pressure = run.pressure_max[0].max(run.pressure_max[1]);
+    let [energy, stroke] = [run.e1_max.value, run.spring_deflection_max];
+    let most = [energy, displacement, velocity, acceleration, ground, stroke, force, pressure];
     for (measure, most) in Measure::ALL.into_iter().zip(most) {
         let limit = Limit::Of(measure);
         let limits = Limits::default().with(limit, positive(most / 1.25));
         let found = evaluate(&Goal { limits, ..WINDOW.into() }, &scene, f64::INFINITY);
         assert!((found.violation - 0.25).abs() < 1e-7, "{limit}: {}", found.violation);
-        // Stroke and contact force are of one observer, and come together.
+        // What is of the damper is of one observer, and comes together.
         let of_the_damper = |measure: Measure| measure.is_of_damper();
         let mut others = Measure::ALL
             .into_iter()
@@ -240,7 +241,7 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
 fn contract_limits_have_names_and_units() {
     let told = Limit::ALL.map(|limit| (limit.name(), limit.unit()));
     let cavity = format!("{:>7}", Limit::Cavity);
-    assert_eq!((cavity.as_str(), told[1], told[7]), (" cavity", ("x1max", "m"), ("cavity", "m")));
+    assert_eq!((cavity.as_str(), told[1], told[8]), (" cavity", ("x1max", "m"), ("cavity", "m")));
     for limit in Limit::ALL {
         let text = format!("{{\"{limit}\": 2}}");
         let limits: Limits = serde_json::from_str(&text).expect("a limit by its name");

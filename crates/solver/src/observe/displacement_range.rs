@@ -7,7 +7,7 @@ use super::running_maximum::RunningMaximum;
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::response::Extreme;
-use retune_model::{Coupled, Side, hertz_force};
+use retune_model::{Coupled, Measure, Side, hertz_force};
 
 /// The ends of the relative displacement `x2 - x1`.
 pub struct DisplacementRange<'a> {
@@ -45,6 +45,21 @@ impl<'a> DisplacementRange<'a> {
             return if larger.value > 0.0 { larger } else { self.larger(|_, _| 0.0) };
         }
         self.larger(|side, place| hertz_force(system.hertz(side), side.sign() * (place - system.wall(side))))
+    }
+
+    /// The largest contact pressure on either wall, N/m², and when; `-∞` and NaN while no motion has been seen.
+    pub fn pressure(&self) -> Extreme {
+        let system = self.system;
+        self.larger(|side, place| system.wall_pressure(side, side.sign() * (place - system.wall(side))))
+    }
+
+    /// The largest value of a measure of the damper; of all others, the stroke.
+    pub fn largest(&self, measure: Measure) -> Extreme {
+        match measure {
+            Measure::ContactForce => self.force(),
+            Measure::ContactPressure => self.pressure(),
+            _ => self.stroke(),
+        }
     }
 
     /// The larger of a value at both ends of the range, the one nearest to each wall.

@@ -27,7 +27,7 @@ impl<'a> LargestValues<'a> {
             measures.get(measure).then(size)
         };
         let energy = || RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
-        let range = measures.get(Measure::Stroke) || measures.get(Measure::ContactForce);
+        let range = Measure::OF_DAMPER.into_iter().any(|measure| measures.get(measure));
         Self {
             energy: measures.get(Measure::Energy).then(energy),
             motions: [
@@ -45,11 +45,9 @@ impl<'a> LargestValues<'a> {
         let energy = self.energy.as_ref().map_or(0.0, |energy| energy.record().value);
         let [x1, v1, a1, ground] =
             self.motions.each_ref().map(|motion| motion.as_ref().map_or(0.0, |size| size.record().value));
-        let [stroke, force] = self
-            .range
-            .as_ref()
-            .map_or([0.0; 2], |range| [range.stroke(), range.force()].map(|largest| largest.value));
-        PerMeasure([energy, x1, v1, a1, ground, stroke, force].map(|value| value.max(0.0)))
+        let of_range = |measure| self.range.as_ref().map_or(0.0, |range| range.largest(measure).value);
+        let [stroke, force, pressure] = Measure::OF_DAMPER.map(of_range);
+        PerMeasure([energy, x1, v1, a1, ground, stroke, force, pressure].map(|value| value.max(0.0)))
     }
 }
 

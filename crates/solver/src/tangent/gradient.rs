@@ -102,7 +102,7 @@ fn lateness(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
             let [_, slope, curvature] = if near[0] > far[0] { near } else { far };
             [slope, curvature]
         }
-        Measure::Stroke | Measure::ContactForce => {
+        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure => {
             let [_, slope, curvature] = system.relative_position_rates(excitation, &now.y);
             [slope, curvature]
         }

@@ -100,7 +100,7 @@ fn invariant_no_sample_of_the_force_on_a_moving_ground_is_above_its_maximum() {
     assert!(touched > 20, "{touched}");
 }
 
-fn decay(numbers: Numbers, start: Start) -> Scene {
+pub(crate) fn decay(numbers: Numbers, start: Start) -> Scene {
     let forcing = Forcing { source: Source::Decay(start), frequency: NonNegative::default(), start: None };
     Scene { forcing, ..numbers.scene() }
 }

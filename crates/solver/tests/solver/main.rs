@@ -3,6 +3,7 @@
 mod any_scene;
 mod bounds;
 mod bounds_in_flight;
+mod collisions;
 mod derivatives;
 mod edge;
 mod exact;
@@ -13,6 +14,7 @@ mod general_methods;
 mod hunt;
 mod invariant;
 mod loss;
+mod losses;
 mod measures;
 mod observers;
 mod order;

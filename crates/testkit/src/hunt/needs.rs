@@ -55,7 +55,7 @@ fn scanned(scene: &Scene, band: &FrequencyBand, window: Window, count: usize) ->
 }
 
 /// By which share what is told is below a scan, for each measure; negative where it is above.
-fn below(number: u64, walls: bool, periods: f64, count: usize) -> [f64; 7] {
+fn below(number: u64, walls: bool, periods: f64, count: usize) -> [f64; Measure::ALL.len()] {
     let (scene, omega, window) = drawn(number, walls, periods);
     let objective = Objective { omega: Some(omega), ..Objective::default() };
     let goal = Goal { objective, ..window.into() };
@@ -72,7 +72,7 @@ fn below(number: u64, walls: bool, periods: f64, count: usize) -> [f64; 7] {
 pub fn needs(dampers: u64, periods: f64, count: usize, allowed: f64) -> Hunt {
     let mut hunt = Hunt::default();
     for (name, walls) in [("without walls", false), ("with walls", true)] {
-        let all: Vec<[f64; 7]> = (0..dampers).map(|number| below(number, walls, periods, count)).collect();
+        let all: Vec<_> = (0..dampers).map(|number| below(number, walls, periods, count)).collect();
         for measure in Measure::ALL {
             let shares: Vec<f64> = all.iter().map(|below| below[measure as usize]).collect();
             let short = SHORT.map(|least| shares.iter().filter(|share| **share > least).count().to_string());

@@ -101,8 +101,9 @@ mod tests {
         let most = |value| retune_model::Positive::new(value).expect("a limit");
         let stroke = Limit::Of(retune_model::Measure::Stroke);
         let limits = Limits::default().with(stroke, most(0.2)).with(Limit::Cavity, most(0.5));
-        let reached =
-            |[stroke, force, cavity]: [f64; 3]| PerLimit([0.0, 0.0, 0.0, 0.0, 0.0, stroke, force, cavity]);
+        let reached = |[stroke, force, cavity]: [f64; 3]| {
+            PerLimit([0.0, 0.0, 0.0, 0.0, 0.0, stroke, force, 0.0, cavity])
+        };
         let near = |at: &str, neighbour, seen| Near { at: at.to_owned(), neighbour, reached: reached(seen) };
         let around = [
             near("here", true, [0.2, 9e9, 0.5]),
@@ -115,6 +116,6 @@ mod tests {
         assert_eq!(said, "stroke is 0.21 m beyond, 5 % over its limit of 0.2 m");
         let kept = Kept::new(&limits, &reached([0.1, 0.0, 0.75]), &[]).expect("limits");
         assert_eq!(kept.broken().as_deref(), Some("the limit of cavity: 0.75 of 0.5 m, 50 % over"));
-        assert!(Kept::new(&Limits::default(), &PerLimit([1.0; 8]), &around).is_none());
+        assert!(Kept::new(&Limits::default(), &PerLimit::all(1.0), &around).is_none());
     }
 }

@@ -11,8 +11,8 @@ use std::borrow::Cow;
 /// The field with the time from which limits apply.
 const FROM: &str = "from";
 /// All fields.
-const FIELDS: [&str; 9] = {
-    let mut fields = [FROM; 9];
+const FIELDS: [&str; Limit::ALL.len() + 1] = {
+    let mut fields = [FROM; Limit::ALL.len() + 1];
     let mut i = 0;
     while i < Limit::ALL.len() {
         fields[i] = Limit::ALL[i].name();

@@ -1,0 +1,59 @@
+//! What contacts are like: speed, depth and duration.
+
+use crate::forcings::decay;
+use crate::problems::assert_close;
+use retune_model::{Finite, Side, Start};
+use retune_solver::{Moment, Rows, Settings, Window, collisions, simulate, trajectory};
+use retune_testkit::scenes::{LOSSY, Numbers, SSVI, TWO_SIDED};
+
+/// An undisturbed Hertz collision at the speed v: `z = (5 μ v² / (4 K))^(2/5)` with the effective mass μ, and 2.9432751 z/v long
+/// (Johnson, p. 353).
+#[test]
+fn exact_the_undisturbed_collision() {
+    let number = |value: f64| Finite::new(value).expect("a number");
+    let free = Numbers { k1: 0.0, c1: 0.0, k2: 0.0, c2: 0.0, c: 0.2, d: 0.1, ..SSVI };
+    for speed in [0.01, 1.0, 3.0] {
+        let start = Start { x2: Some(number(0.1)), v2: number(-speed), ..Start::default() };
+        let scene = decay(free, start);
+        let window = Window { from: 0.0, to: 0.1 / speed + 0.2 / speed };
+        let [structure, obstacle] = collisions(&scene, window, &Settings::default()).expect("a run");
+        let system = free.coupled();
+        let stiffness = system.hertz(Side::Primary);
+        let depth = (1.25 * speed * speed / system.inverse_effective_mass() / stiffness).powf(0.4);
+        assert_eq!((structure.count, obstacle.count, obstacle.indentation), (1, 0, 0.0));
+        assert_close(structure.speed, speed, speed, 1e-12, "speed");
+        assert_close(structure.indentation, depth, depth, 1e-10, "indentation");
+        let duration = 2.943_275_1 * depth / speed;
+        assert_close(structure.longest, duration, duration, 1e-7, "duration");
+        assert_eq!(structure.shortest, structure.longest);
+    }
+}
+
+/// The same as the events of a trajectory, and as the largest values of a run.
+#[test]
+fn reference_the_events_of_a_trajectory() {
+    let (window, settings) = (Window { from: 3.0, to: 20.0 }, Settings::default());
+    for numbers in [SSVI, TWO_SIDED, LOSSY, Numbers { lambda: 20.0, ..TWO_SIDED }] {
+        let scene = numbers.scene();
+        let system = numbers.coupled();
+        let mut speeds = [0.0_f64; 2];
+        trajectory(&scene, window, &settings, Rows { interval: 1.0, events: true }, &mut |sample| {
+            if sample.moment == Moment::TouchDown {
+                let [near, far] = system.indentation(&sample.state);
+                let speed = &mut speeds[usize::from(far > near)];
+                *speed = speed.max((sample.state[3] - sample.state[1]).abs());
+            }
+        })
+        .expect("a run");
+        let run = simulate(&scene, window, &settings).expect("a run");
+        let found = collisions(&scene, window, &settings).expect("a run");
+        assert!(run.impacts[0] > 5, "{run:?}");
+        for side in Side::BOTH {
+            let (i, wall) = (side as usize, found[side as usize]);
+            assert_eq!(wall.count, run.impacts[i]);
+            assert_close(wall.speed, speeds[i], 1.0, 1e-12, "speed");
+            let pressure = system.wall_pressure(side, wall.indentation);
+            assert_close(pressure, run.pressure_max[i], pressure.max(1.0), 1e-8, "pressure");
+        }
+    }
+}
