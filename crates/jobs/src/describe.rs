@@ -1,6 +1,6 @@
 //! Descriptions of study files in words, for `check`.
 
-use retune_model::{Contact, Forcing, Measure, Source};
+use retune_model::{Contact, Forcing, Loss, Measure, Source};
 use retune_optim::{Part, Response};
 use retune_solver::{Method, least_steps};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
@@ -55,10 +55,15 @@ fn walls(contact: &Contact) -> String {
         return format!("{hertz}, Hertz without loss");
     }
     let [slow, fast] = [0.1, 1.0].map(|speed| short(contact.loss.restitution(speed)));
-    let lambda = short(contact.loss.lambda.get());
-    format!(
-        "{hertz}, Hunt and Crossley's loss with lambda = {lambda} s/m: restitution {slow} at 0.1 m/s, {fast} at 1 m/s"
-    )
+    match contact.loss {
+        Loss::Damping(lambda) => {
+            let lambda = short(lambda.get());
+            format!(
+                "{hertz}, Hunt and Crossley's loss with lambda = {lambda} s/m: restitution {slow} at 0.1 m/s, {fast} at 1 m/s"
+            )
+        }
+        Loss::Restoring(_) => format!("{hertz}, a loss with restitution {slow} at every speed"),
+    }
 }
 
 /// What a run costs, where runs are made in exact steps.

@@ -4,7 +4,7 @@ mod energies;
 mod structure;
 
 use crate::bare::largest;
-use crate::loss::factors;
+use crate::loss::{Factor, Law};
 use crate::{
     Bare, Damper, Excitation, Finite, Forcing, Primary, Start, hertz_force, hertz_force_slope, hertz_pressure,
 };
@@ -43,8 +43,8 @@ pub struct Coupled {
     /// Where the walls are, relative to the structure, m: infinitely far of a damper without.
     walls: [f64; 2],
     hertz: [f64; 2],
-    /// λ of both walls, s/m; 0 without loss.
-    lambda: f64,
+    /// What contacts lose.
+    law: Law,
     /// R, m; 0 of a damper without walls.
     pub(crate) radius: f64,
 }
@@ -63,7 +63,7 @@ impl Coupled {
                 None => [f64::NEG_INFINITY, f64::INFINITY],
             },
             hertz: damper.contact.map_or([0.0; 2], |contact| contact.stiffness()),
-            lambda: damper.contact.map_or(0.0, |contact| contact.loss.lambda.get()),
+            law: damper.contact.map_or(Law::NONE, |contact| contact.loss.into()),
             radius: damper.contact.map_or(0.0, |contact| contact.radius.get()),
         }
     }
@@ -127,23 +127,32 @@ impl Coupled {
         self.hertz[side as usize]
     }
 
-    /// λ, the damping factor of the contact force, s/m; 0 without loss.
-    pub fn lambda(&self) -> f64 {
-        self.lambda
+    /// What contacts lose.
+    pub(crate) fn law(&self) -> Law {
+        self.law
     }
 
     /// Whether contacts lose energy.
     pub fn is_lossy(&self) -> bool {
-        self.lambda != 0.0
+        self.law.is_lossy()
     }
 
-    /// The force of a wall at an indentation `z` (m) that changes at the rate `w` (m/s), `[F, ∂F/∂z, ∂F/∂w]` in N, N/m, N·s/m: the law of
-    /// Hunt and Crossley, `F = K z^(3/2) (1 + λ w)`, and nothing where that would pull.
+    /// The force of a wall at an indentation `z` (m) that changes at the rate `w` (m/s), `[F, ∂F/∂z, ∂F/∂w]` in N, N/m, N·s/m: Hertz's,
+    /// times the [factor](Law::factor) of the law of its loss.
     #[inline]
     pub(crate) fn wall_force(&self, side: Side, z: f64, w: f64) -> [f64; 3] {
-        let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda, w));
+        if z <= 0.0 {
+            return [0.0; 3];
+        }
+        let (hertz, Factor { f, by_z, by_w, .. }) = (self.hertz(side), self.wall_factor(side, z.sqrt(), w));
         let force = hertz_force(hertz, z);
-        [force * factor, hertz_force_slope(hertz, z) * factor, force * lambda]
+        [force * f, hertz_force_slope(hertz, z) * f + force * by_z / z, force * by_w]
+    }
+
+    /// The factor of Hertz's force at the indentation `q²` (m) that changes at the rate `w` (m/s).
+    #[inline]
+    pub(crate) fn wall_factor(&self, side: Side, q: f64, w: f64) -> Factor {
+        self.law.factor(|| 0.4 * self.hertz(side) * self.inverse_effective_mass() * q.powi(5), w)
     }
 
     /// The radius of the contact area at an indentation `z` (m), m: `√(R z)` (Johnson, p. 92).

@@ -11,10 +11,12 @@
 //! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
 //! A loss, `K q³ (1 + λ w)`, leaves it polynomial. Where that would pull the force is zero, until the damper has left the wall or is pressed
 //! into it again: [`RegularisedContact::without_force`].
+//! With the same restitution at every speed the factor is not polynomial but analytic, in `q` too, as it depends on `q⁵` (`crate::loss`).
 //! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
 
 pub(crate) mod bounds;
 
+use crate::loss::{Law, Restoring, Stage};
 use crate::{Coupled, Excitation, Side};
 
 /// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.
@@ -28,15 +30,16 @@ pub struct RegularisedContact {
     wall: f64,
     omega: f64,
     // Accelerations per unit of each cause.
-    primary: [f64; 3], // 1/m1, c1/m1, k1/m1
-    hertz: [f64; 2],   // K/m1, K (1/m1 + 1/m2)
-    dashpot: [f64; 2], // c2/m1, c2 (1/m1 + 1/m2)
-    spring: [f64; 2],  // k2/m1, k2 (1/m1 + 1/m2)
-    lambda: f64,       // λ
-    law: [f64; 2],     // the factor of Hertz's force is law[0] + law[1] w: 1 + λ w, or 0 without force
-    stretch: f64,      // sign (wall - D): the spring's stretch at touch-down, towards the wall
-    since: f64,        // the time at which the excitation was set
-    cos: [f64; WAVE],  // Taylor coefficients of P cos ωt and P sin ωt about that time
+    primary: [f64; 3],            // 1/m1, c1/m1, k1/m1
+    hertz: [f64; 2],              // K/m1, K (1/m1 + 1/m2)
+    dashpot: [f64; 2],            // c2/m1, c2 (1/m1 + 1/m2)
+    spring: [f64; 2],             // k2/m1, k2 (1/m1 + 1/m2)
+    lambda: f64,                  // λ
+    law: [f64; 2], // the factor of Hertz's force is law[0] + law[1] w: 1 + λ w, or 0 without force
+    restoring: Option<Restoring>, // the law in its place
+    stretch: f64,  // sign (wall - D): the spring's stretch at touch-down, towards the wall
+    since: f64,    // the time at which the excitation was set
+    cos: [f64; WAVE], // Taylor coefficients of P cos ωt and P sin ωt about that time
     sin: [f64; WAVE],
 }
 
@@ -50,6 +53,10 @@ impl Coupled {
         let bare = self.bare();
         let (inv_m1, inv_m) = (1.0 / bare.m1, self.inverse_effective_mass());
         let pair = |factor: f64| [factor * inv_m1, factor * inv_m];
+        let (lambda, restoring) = match self.law() {
+            Law::Damping(lambda) => (lambda, None),
+            Law::Restoring(law) => (0.0, Some(law)),
+        };
         RegularisedContact {
             side,
             sign: side.sign(),
@@ -59,8 +66,9 @@ impl Coupled {
             hertz: pair(self.hertz(side)),
             dashpot: pair(c2),
             spring: pair(k2),
-            lambda: self.lambda(),
-            law: [1.0, self.lambda()],
+            lambda,
+            law: [1.0, lambda],
+            restoring,
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
             since: 0.0,
             cos: [0.0; WAVE],
@@ -77,6 +85,11 @@ impl RegularisedContact {
 
     /// Whether contacts lose energy.
     pub fn is_lossy(&self) -> bool {
+        self.may_part() || self.restoring.is_some()
+    }
+
+    /// Whether the law may pull: the force then ends while the damper is inside the wall.
+    pub fn may_part(&self) -> bool {
         self.lambda != 0.0
     }
 
@@ -103,8 +116,11 @@ impl RegularisedContact {
 
     /// The factor of Hertz's force.
     #[inline(always)]
-    fn factor(&self, w: f64) -> f64 {
-        self.law[0] + self.law[1] * w
+    fn factor(&self, q: f64, w: f64) -> f64 {
+        match &self.restoring {
+            None => self.law[0] + self.law[1] * w,
+            Some(law) => law.stage(0.4 * self.hertz[1] * q.powi(5), w).f,
+        }
     }
 
     /// The angle (rad) by which the force may turn after [`Self::set_excitation`]: the first neglected term is below
@@ -136,7 +152,7 @@ impl RegularisedContact {
     #[inline(always)]
     fn accelerations(&self, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
         let z = q * q;
-        let (cube, stretch) = (z * q * self.factor(w), z + self.stretch);
+        let (cube, stretch) = (z * q * self.factor(q, w), z + self.stretch);
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
         let resisting = self.primary[1] * v1 + self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
@@ -152,9 +168,19 @@ impl RegularisedContact {
         self.primary[0] * self.cos[0].hypot(self.sin[0])
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()
-            + self.hertz[0] * q.abs().powi(3) * (self.law[0] + self.law[1] * w.abs())
+            + self.hertz[0] * q.abs().powi(3) * self.most(w)
             + self.dashpot[0] * w.abs()
             + self.spring[0] * (q * q + self.stretch).abs()
+    }
+
+    /// The stage of a state.
+    fn stage(&self, law: Restoring, y: &RegularisedState) -> Stage {
+        law.stage(0.4 * self.hertz[1] * y[0].powi(5), y[1])
+    }
+
+    /// A bound on the factor at speeds up to `w` (m/s).
+    fn most(&self, w: f64) -> f64 {
+        self.restoring.as_ref().map_or(self.law[0] + self.law[1] * w.abs(), |law| 1.0 + law.chi)
     }
 
     /// Derivative with respect to `θ` of every component.
@@ -209,7 +235,7 @@ impl RegularisedContact {
     /// `θ = ∫₀^q 2 dq / |w|` is expanded in `x = (4/5) κ q⁵ / v²` and `y = 2 a q² / v²`.
     pub fn theta_to_wall(&self, y: &RegularisedState) -> f64 {
         let &[q, w, ..] = y;
-        let hertz = self.hertz[1] * self.factor(w);
+        let hertz = self.hertz[1] * self.factor(q, w);
         let depth = 0.8 * hertz * q.powi(5);
         let steady = 2.0 * (self.acceleration(y) + hertz * q.powi(3)) * q * q;
         let v2 = w * w + depth - steady;

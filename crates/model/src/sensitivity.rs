@@ -1,6 +1,6 @@
 //! The derivatives of equation (1) by its parameters, at a fixed state and a fixed time.
 
-use crate::loss::factors;
+use crate::loss::Factor;
 use crate::{Bare, Coupled, Excitation, Measure, Parameter, Side, Source};
 
 impl Bare {
@@ -53,12 +53,17 @@ impl Coupled {
     /// The net force of a contact on the damper, N, and its derivative by a parameter, the state held; of the contact with a wall at the
     /// indentation `q²` (m), which grows at the rate `w` (m/s).
     pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64, w: f64) -> [f64; 2] {
-        let [factor, acts] = factors(1.0, self.lambda() * w);
+        let Factor { f, by_z, by_own, .. } = self.wall_factor(side, q, w);
         let hertz = -side.sign() * self.hertz(side) * q * q * q;
-        let force = hertz * factor;
+        let force = hertz * f;
+        // The factor depends on z by z^(5/2) K (1/m1 + 1/m2).
         let own = match parameter {
-            Parameter::Lambda => hertz * w * acts,
-            _ => force * self.hertz_by(parameter),
+            Parameter::Lambda | Parameter::Restitution => hertz * by_own,
+            Parameter::M2 => {
+                let (m2, ..) = self.damper();
+                -hertz * 0.4 * by_z / (m2 * m2 * self.inverse_effective_mass())
+            }
+            _ => (force + hertz * 0.4 * by_z) * self.hertz_by(parameter),
         };
         let [slope, _] = self.contact_slopes(side, q, w);
         [force, slope * self.wall_by(parameter, side) + own]
@@ -67,8 +72,8 @@ impl Coupled {
     /// The slopes of the force of a wall at the indentation `q²` (m), by it and by its rate `w` (m/s), N/m and N·s/m: those of the law in
     /// `crate::Coupled` where the root is known.
     pub fn contact_slopes(&self, side: Side, q: f64, w: f64) -> [f64; 2] {
-        let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda(), w));
-        [1.5 * hertz * q * factor, hertz * q * q * q * lambda]
+        let (hertz, Factor { f, by_z, by_w, .. }) = (self.hertz(side), self.wall_factor(side, q, w));
+        [hertz * q * (1.5 * f + by_z), hertz * q * q * q * by_w]
     }
 
     /// `∂[x1'', x2'']/∂parameter` by equation (1), m/s² per unit of the parameter, at a state, with the net contact force on the damper

@@ -76,6 +76,11 @@ range_type!(
     |v| v > 0.0 && v <= 1.0
 );
 
+impl Restitution {
+    /// That of a contact that loses nothing.
+    pub const ONE: Self = Self(1.0);
+}
+
 impl Default for NonNegative {
     /// Zero.
     fn default() -> Self {

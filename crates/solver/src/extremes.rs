@@ -181,6 +181,7 @@ fn values(beside: Option<&Beside<'_>>) -> PerMeasure<f64> {
 }
 
 /// The observer of a [`Measure`].
+#[expect(clippy::large_enum_variant, reason = "there is one for a run, and a run allocates nothing")]
 pub(crate) enum Peak<'a> {
     Energy(RunningMaximum<PrimaryEnergy<'a>>),
     Motion(Magnitude<StructureMotion<'a, Coupled, 4>>),

@@ -3,7 +3,9 @@
 //! it at random, the fuzzer where new code is reached.
 
 use crate::scenes::SSVI;
-use retune_model::{Contact, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary, Scene};
+use retune_model::{
+    Contact, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary, Restitution, Scene,
+};
 use retune_solver::{Contacts, Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 
 /// Numbers in [0, 1] that make a run.
@@ -45,6 +47,15 @@ fn poisson(draw: f64) -> PoissonRatio {
     PoissonRatio::new(0.5 - 1.499 * draw).expect("a Poisson's ratio")
 }
 
+/// What a contact loses: nothing in two draws of three, λ in one of six, the same restitution at every speed in another.
+fn loss(draw: f64) -> Loss {
+    let e = 6.0 * draw - 5.0;
+    match Restitution::new(e) {
+        Ok(e) => Loss::Restoring(e),
+        Err(_) => Loss::Damping(not_negative(1.0, (6.0 * draw - 4.0).max(0.0))),
+    }
+}
+
 impl Anything {
     /// The run that `draws`, each in [0, 1], stand for.
     pub fn new(draws: &[f64; DRAWS]) -> Self {
@@ -67,8 +78,7 @@ impl Anything {
                 poisson_3: poisson(nu3),
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
-                // Two scenes of three lose nothing in contacts, the middle of the draws among them.
-                loss: Loss { lambda: not_negative(1.0, (3.0 * lambda - 2.0).max(0.0)) },
+                loss: loss(lambda),
             }),
         };
         let scene = Scene {

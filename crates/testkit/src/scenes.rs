@@ -3,7 +3,7 @@
 
 use retune_model::{
     Bare, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
-    RegularisedContact, RegularisedState, Scene, Source,
+    RegularisedContact, RegularisedState, Restitution, Scene, Source,
 };
 
 /// A scene as plain numbers in the paper's symbols and SI units, to be varied by `..`.
@@ -26,6 +26,8 @@ pub struct Numbers {
     pub young: [f64; 4],
     /// λ of contacts that lose energy, s/m.
     pub lambda: f64,
+    /// Restitution at every speed, 1 of those that λ is given for.
+    pub e: f64,
 }
 
 /// Table 2, the tuned single-sided vibro-impact damper.
@@ -44,6 +46,7 @@ pub const SSVI: Numbers = Numbers {
     q: 0.318,
     young: [2.1e11, 2.21e7, 2.1e11, 2.05e7],
     lambda: 0.0,
+    e: 1.0,
 };
 
 /// Table 2, the tuned mass damper: its walls are out of reach.
@@ -64,7 +67,19 @@ pub const TWO_SIDED: Numbers = Numbers { k2: 2400.0, c2: 100.0, d: 0.1, c: 0.1, 
 /// The same with contacts that lose energy: at 1 m/s a restitution of 0.79.
 pub const LOSSY: Numbers = Numbers { lambda: 0.4, ..TWO_SIDED };
 
+/// The same with one restitution at every speed.
+pub const RESTORING: Numbers = Numbers { e: 0.7, ..TWO_SIDED };
+
 impl Numbers {
+    /// What contacts lose.
+    fn loss(&self) -> Loss {
+        if self.e < 1.0 {
+            Loss::Restoring(Restitution::new(self.e).expect("above 0"))
+        } else {
+            Loss::Damping(non_negative(self.lambda))
+        }
+    }
+
     /// The structure.
     pub fn primary(&self) -> Primary {
         Primary { mass: positive(self.m1), damping: non_negative(self.c1), stiffness: non_negative(self.k1) }
@@ -97,7 +112,7 @@ impl Numbers {
                 poisson_3: metal,
                 young_4,
                 poisson_4: rubber,
-                loss: Loss { lambda: non_negative(self.lambda) },
+                loss: self.loss(),
             }),
         }
     }

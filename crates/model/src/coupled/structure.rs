@@ -3,7 +3,7 @@
 
 use super::Coupled;
 use super::energies::{Accelerations, WallForces, at_one_moment};
-use crate::loss::factors;
+use crate::loss::Factor;
 use crate::{Bare, Excitation, Side, hertz_force, hertz_force_curvature, hertz_force_slope};
 use wide::f64x4;
 
@@ -44,20 +44,29 @@ impl Coupled {
     /// [`Self::primary_motion`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn primary_motion_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 5] {
-        self.primary_motion_under(excitation, y, self.no_wall_forces(), [f64x4::ZERO; 2])
+        self.primary_motion_under(excitation, y, self.no_wall_forces(), [f64x4::ZERO; 3])
     }
 
-    /// `∂²N/∂r²`, N/m², and `2 ∂²N/∂r∂ṙ`, N·s/m², of `N = F_con(z1) - F_con(z2)`; the force is linear in the speed.
-    fn wall_bends(&self, y: &[f64; 4]) -> [f64; 2] {
+    /// `∂²N/∂r²`, N/m², `2 ∂²N/∂r∂ṙ`, N·s/m², and `∂²N/∂ṙ²`, N·s²/m², of `N = F_con(z1) - F_con(z2)`.
+    fn wall_bends(&self, y: &[f64; 4]) -> [f64; 3] {
         let ([z1, z2], rate) = (self.indentation(y), y[3] - y[1]);
         let (near, far) = (self.bends(Side::Primary, z1, -rate), self.bends(Side::Obstacle, z2, rate));
-        [near[0] - far[0], near[1] - far[1]]
+        std::array::from_fn(|i| near[i] - far[i])
     }
 
-    /// `∂²F/∂z²`, N/m², and `2 ∂²F/∂z∂w`, N·s/m², of [`Self::wall_force`].
-    fn bends(&self, side: Side, z: f64, w: f64) -> [f64; 2] {
-        let (hertz, [factor, lambda]) = (self.hertz(side), factors(self.lambda(), w));
-        [hertz_force_curvature(hertz, z) * factor, 2.0 * hertz_force_slope(hertz, z) * lambda]
+    /// `∂²F/∂z²`, N/m², `2 ∂²F/∂z∂w`, N·s/m², and `∂²F/∂w²`, N·s²/m², of [`Self::wall_force`].
+    fn bends(&self, side: Side, z: f64, w: f64) -> [f64; 3] {
+        if z <= 0.0 {
+            return [0.0; 3];
+        }
+        let hertz = self.hertz(side);
+        let Factor { f, by_z, by_w, by_zz, by_zw, by_ww, .. } = self.wall_factor(side, z.sqrt(), w);
+        let [force, slope] = [hertz_force(hertz, z), hertz_force_slope(hertz, z)];
+        [
+            hertz_force_curvature(hertz, z) * f + (2.0 * slope * by_z + force * by_zz / z) / z,
+            2.0 * (slope * by_w + force * by_zw / z),
+            force * by_ww,
+        ]
     }
 
     /// The contact force on a wall with its first two time derivatives, N, N/s, N/s².
@@ -70,8 +79,9 @@ impl Coupled {
         });
         let (z, sign) = (self.indentation(y)[side as usize], side.sign());
         let [w, rate, bend] = [y[3] - y[1], apart, jerk].map(|of| sign * of);
-        let ([force, by_z, by_w], [curved, mixed]) = (self.wall_force(side, z, w), self.bends(side, z, w));
-        let curvature = (curved * w + mixed * rate) * w + by_z * rate + by_w * bend;
+        let ([force, by_z, by_w], [curved, mixed, fast]) =
+            (self.wall_force(side, z, w), self.bends(side, z, w));
+        let curvature = (curved * w + mixed * rate) * w + fast * rate * rate + by_z * rate + by_w * bend;
         [force, by_z * w + by_w * rate, curvature]
     }
 
@@ -81,7 +91,7 @@ impl Coupled {
         excitation: &[f64x4; 2],
         y: &[f64x4; 4],
         walls: WallForces,
-        [bend, twist]: [f64x4; 2],
+        [bend, twist, warp]: [f64x4; 3],
     ) -> [f64x4; 5] {
         let &[x1, v1, _, v2] = y;
         let Bare { m1, c1, k1, omega, .. } = self.bare;
@@ -89,7 +99,7 @@ impl Coupled {
             self.accelerations(excitation, y, walls);
         let (jerk, jerk_2) = ((g_rate - v1 * k1) / m1, on_damper_rate / self.m2);
         let (speed, apart) = (v2 - v1, a2 - a1);
-        let on_damper_bend = (bend * speed + twist * apart) * speed
+        let on_damper_bend = (bend * speed + twist * apart) * speed + warp * apart * apart
             - walls.slope * apart
             - (jerk_2 - jerk) * walls.drag
             - apart * self.k2;
@@ -102,8 +112,8 @@ impl Coupled {
     pub fn contact_size(&self, y: &[f64; 4]) -> f64 {
         let [z1, z2] = self.indentation(y);
         let position = y[0].abs() + y[2].abs();
-        // Of the two terms of the law that is the sum of the sizes.
-        let loss = 1.0 + self.lambda() * (y[1].abs() + y[3].abs());
+        // The sum of the sizes of the terms of the law.
+        let loss = self.law().most(y[1].abs() + y[3].abs());
         let size = |hertz: f64, z: f64, wall: f64| {
             if z > 0.0 { hertz_force(hertz, z) * (1.0 + 1.5 * (position + wall) / z) } else { 0.0 }
         };

@@ -1,7 +1,9 @@
 //! Where each parameter stands in a scene: its value, read and set.
 
 use super::Parameter;
-use crate::{Damper, Forcing, NonNegative, OutOfRange, PoissonRatio, Positive, Scene, Source};
+use crate::{
+    Damper, Forcing, Loss, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution, Scene, Source,
+};
 use schemars::{Schema, json_schema};
 
 /// Why a scene has no such parameter.
@@ -16,6 +18,9 @@ pub enum Absent {
     /// Another number gives the forcing.
     #[error("the forcing of the scene is given by `{0}`")]
     Forcing(&'static str),
+    /// Another number gives the loss of its contacts.
+    #[error("the loss of the contact is given by `{0}`")]
+    Loss(&'static str),
 }
 
 /// Why a parameter cannot be set.
@@ -34,6 +39,7 @@ enum Place<'a> {
     Positive(&'a mut Positive),
     NonNegative(&'a mut NonNegative),
     Poisson(&'a mut PoissonRatio),
+    Restitution(&'a mut Restitution),
 }
 
 impl Place<'_> {
@@ -42,6 +48,7 @@ impl Place<'_> {
             Self::Positive(at) => at.get(),
             Self::NonNegative(at) => at.get(),
             Self::Poisson(at) => at.get(),
+            Self::Restitution(at) => at.get(),
         }
     }
 
@@ -50,6 +57,7 @@ impl Place<'_> {
             Self::Positive(at) => *at = Positive::new(value)?,
             Self::NonNegative(at) => *at = NonNegative::new(value)?,
             Self::Poisson(at) => *at = PoissonRatio::new(value)?,
+            Self::Restitution(at) => *at = Restitution::new(value)?,
         }
         Ok(())
     }
@@ -98,10 +106,26 @@ impl Parameter {
             Self::Nu3 => Place::Poisson(&mut contact.poisson_3),
             Self::E4 => Place::Positive(&mut contact.young_4),
             Self::Nu4 => Place::Poisson(&mut contact.poisson_4),
-            Self::Lambda => Place::NonNegative(&mut contact.loss.lambda),
+            Self::Lambda | Self::Restitution => return self.place_in_loss(&mut contact.loss),
             _ => Place::Positive(&mut contact.radius),
         };
         Ok(place)
+    }
+
+    /// Where it stands in the loss of a contact. One that loses nothing may be given either number.
+    fn place_in_loss(self, loss: &mut Loss) -> Result<Place<'_>, Absent> {
+        if loss.is_none() {
+            *loss = match self {
+                Self::Restitution => Loss::Restoring(Restitution::ONE),
+                _ => Loss::default(),
+            };
+        }
+        match (self, loss) {
+            (Self::Restitution, Loss::Restoring(e)) => Ok(Place::Restitution(e)),
+            (Self::Lambda, Loss::Damping(lambda)) => Ok(Place::NonNegative(lambda)),
+            (_, Loss::Restoring(_)) => Err(Absent::Loss("restitution")),
+            (_, Loss::Damping(_)) => Err(Absent::Loss("lambda")),
+        }
     }
 
     /// Its value in a scene, in its SI unit; none where the scene has no such parameter.
@@ -114,7 +138,10 @@ impl Parameter {
     /// # Errors
     /// The scene does not have it, or the value is out of its range; the scene is then unchanged.
     pub fn set(self, scene: &mut Scene, value: f64) -> Result<(), Unsettable> {
-        Ok(self.place(scene)?.set(value)?)
+        let mut changed = *scene;
+        self.place(&mut changed)?.set(value)?;
+        *scene = changed;
+        Ok(())
     }
 
     /// Its value in a damper; none where it is not one of a damper, or the damper has no walls.
@@ -137,7 +164,10 @@ impl Parameter {
         if !self.is_of_damper() {
             return Err(Absent::NoDamper.into());
         }
-        Ok(self.place_in(damper)?.set(value)?)
+        let mut changed = *damper;
+        self.place_in(&mut changed)?.set(value)?;
+        *damper = changed;
+        Ok(())
     }
 
     /// Whether its value must be above zero, of those that a search may vary.

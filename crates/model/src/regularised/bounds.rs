@@ -1,6 +1,9 @@
 //! Proven bounds on the derivatives of the motion during a contact, from the equations with every term replaced by its size.
 
+mod stages;
+
 use super::{RegularisedContact, RegularisedState};
+use stages::{StageSeries, Stages, product};
 
 /// Orders of the derivatives that are bounded, 0 to 6.
 pub const ORDERS: usize = 7;
@@ -31,16 +34,16 @@ struct Series<const K: usize> {
     growth: Growth<K>,
     a1: [f64; K],
     rate: [f64; K],
+    stages: Option<StageSeries<K>>,
 }
 
-/// Term `k` of the product of two series.
-#[inline(always)]
-fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..K.min(k + 1) {
-        sum += a[i] * b[k - i];
-    }
-    sum
+/// Bounds on a piece of a contact.
+#[derive(Clone, Copy)]
+struct Bounds {
+    /// On the sizes of `[q, w, x1, v1]`.
+    state: [f64; 4],
+    /// Of a restitution that is the same at every speed.
+    stages: Option<Stages>,
 }
 
 impl RegularisedContact {
@@ -64,31 +67,37 @@ impl RegularisedContact {
         let Some(bounds) = self.bounds_between(h, from, to) else {
             return [[[f64::INFINITY; ORDERS]; 4]; 2];
         };
-        let Series { growth, a1, rate } = self.series::<ORDERS, true>(bounds);
+        let Series { growth, a1, rate, .. } = self.series::<ORDERS, true>(bounds);
         let [_, v1, _, w] = growth;
         [growth, [v1, a1, w, rate]]
     }
 
-    /// Bounds on `[q, w, x1, v1]` on a piece; `None` if it is too long for the proof.
-    fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<[f64; 4]> {
+    /// Bounds on a piece; `None` if it is too long for the proof.
+    fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
-        let mut bounds = ends;
+        let stages = self.restoring.map(|law| Stages::of(law, [from, to].map(|y| self.stage(law, y))));
+        let mut bounds = Bounds { state: ends, stages };
         for _ in 0..8 {
-            let Series { growth: [x1, v1, _, w], .. } = self.series::<2, false>(bounds);
-            let slopes = [0.5 * bounds[1], w[1], x1[1], v1[1]];
+            let series = self.series::<2, false>(bounds);
+            let [x1, v1, _, w] = series.growth;
+            let slopes = [0.5 * bounds.state[1], w[1], x1[1], v1[1]];
             let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + 0.5 * h * slopes[i]);
-            if (0..4).all(|i| reach[i] <= bounds[i]) {
+            let reached = stages.map(|stages| stages.widened(series.stages, 0.5 * h));
+            let staged = bounds.stages.zip(reached).is_none_or(|(bounds, reached)| bounds.hold(&reached));
+            if staged && (0..4).all(|i| reach[i] <= bounds.state[i]) {
                 return Some(bounds);
             }
             for i in 0..4 {
-                bounds[i] = bounds[i].max(1.05 * reach[i]);
+                bounds.state[i] = bounds.state[i].max(1.05 * reach[i]);
             }
+            bounds.stages = bounds.stages.zip(reached).map(|(bounds, reached)| bounds.joined(&reached));
         }
         None
     }
 
-    /// The series that follow from bounds on `[q, w, x1, v1]`; those of the accelerations to the last order only `IF_RATES`.
-    fn series<const K: usize, const IF_RATES: bool>(&self, [q0, w0, x0, v0]: [f64; 4]) -> Series<K> {
+    /// The series that follow from bounds on a piece; those of the accelerations to the last order only `IF_RATES`.
+    fn series<const K: usize, const IF_RATES: bool>(&self, bounds: Bounds) -> Series<K> {
+        let [q0, w0, x0, v0] = bounds.state;
         let start = |bound: f64| {
             let mut series = [0.0; K];
             series[0] = bound;
@@ -98,13 +107,15 @@ impl RegularisedContact {
         let mut excitation = start(self.cos[0].hypot(self.sin[0]));
         let (mut z, mut stretch, mut cube, mut force) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
+        let mut stages = bounds.stages.map(StageSeries::new);
         for k in 0..K {
             z[k] = product(&q, &q, k);
             cube[k] = product(&z, &q, k);
-            force[k] = self.law[0] * cube[k];
-            if self.law[1] != 0.0 {
-                force[k] += self.law[1] * product(&cube, &w, k);
-            }
+            force[k] = match &stages {
+                Some(stages) => product(&cube, &stages.f, k),
+                None if self.law[1] != 0.0 => self.law[0] * cube[k] + self.law[1] * product(&cube, &w, k),
+                None => self.law[0] * cube[k],
+            };
             stretch[k] = z[k] + if k == 0 { self.stretch.abs() } else { 0.0 };
             if k + 1 == K && !IF_RATES {
                 break;
@@ -121,8 +132,11 @@ impl RegularisedContact {
             (x1[k + 1], excitation[k + 1]) = (along * next, turned * next);
             (v1[k + 1], w[k + 1]) = (product(&q, &a1, k) * next, product(&q, &rate, k) * next);
             q[k + 1] = 0.5 * w[k] * next;
+            if let Some(stages) = &mut stages {
+                stages.extend(k, &q, self.hertz[1] * cube[k], rate[k] - self.hertz[1] * force[k]);
+            }
         }
-        Series { growth: [x1, v1, stretch, w], a1, rate }
+        Series { growth: [x1, v1, stretch, w], a1, rate, stages }
     }
 
     /// Bounds over a whole contact of `duration` seconds that begins at `touch` (`q = 0`); `None` if forces other than Hertz's may

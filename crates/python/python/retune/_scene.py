@@ -49,8 +49,9 @@ class Contact(Part):
 
     ``R`` (m) is the radius of the damper's surfaces, ``q`` the geometrical coefficient of Hertz's theory, ``E1`` to ``E4`` (Pa) and
     ``nu1`` to ``nu4`` are Young's moduli and Poisson's ratios: 1 the structure, 2 the damper where it meets the structure, 3 the
-    obstacle, 4 the damper where it meets the obstacle. ``loss`` is what contacts lose, by the law of Hunt and Crossley: ``{"lambda": s/m}``,
-    or ``{"restitution": e, "at": v}`` for an undisturbed collision at a speed of v (m/s); nothing if left out.
+    obstacle, 4 the damper where it meets the obstacle. ``loss`` is what contacts lose: ``{"restitution": e}`` for the same restitution at
+    every speed, or the law of Hunt and Crossley, ``{"lambda": s/m}`` or ``{"restitution": e, "at": v}`` for an undisturbed collision at a
+    speed of v (m/s); nothing if left out.
     """
 
     title: ClassVar[str] = "colliding surfaces"

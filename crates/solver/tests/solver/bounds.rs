@@ -107,10 +107,11 @@ fn invariant_no_motion_leaves_its_bounds() {
     };
     let mut draw = Spread::new(5);
     let mut scenes = vec![SSVI, ROW1, TMD, TWO_SIDED, Numbers { d: 0.0, ..TWO_SIDED }];
-    for number in 0..60 {
+    for number in 0..80 {
         scenes.push(Numbers {
-            // A third of them lose energy in contacts.
-            lambda: if number < 40 { 0.0 } else { draw.logarithmic(1e-2, 30.0) },
+            // Half of them lose energy in contacts.
+            lambda: if number % 4 == 1 { draw.logarithmic(1e-2, 30.0) } else { 0.0 },
+            e: if number % 4 == 2 { 0.4 + 0.59 * draw.unit() } else { 1.0 },
             m2: draw.logarithmic(1.0, 3000.0),
             k1: draw.logarithmic(1e4, 1e5),
             k2: 3500.0 * draw.unit(),

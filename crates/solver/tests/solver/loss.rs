@@ -1,4 +1,4 @@
-//! Contacts that lose energy: the law of Hunt and Crossley.
+//! Contacts that lose energy: the law of Hunt and Crossley, and one restitution at every speed.
 
 use crate::problems::{assert_close, assert_states};
 use nalgebra::Matrix4;
@@ -9,14 +9,14 @@ use retune_testkit::scenes::{Numbers, SSVI, Spread, TWO_SIDED};
 use serde::Deserialize;
 
 fn restitution(lambda: f64, speed: f64) -> f64 {
-    Loss { lambda: NonNegative::new(lambda).expect("a number") }.restitution(speed)
+    Loss::Damping(NonNegative::new(lambda).expect("a number")).restitution(speed)
 }
 
 /// Two bodies without spring, dashpot or force: the speed after over the speed before is that of the implicit relation.
 #[test]
 fn exact_restitution_of_the_undisturbed_collision() {
     let mut draw = Spread::new(11);
-    for _ in 0..300 {
+    for number in 0..400 {
         let free = Numbers { k1: 0.0, c1: 0.0, p: 0.0, k2: 0.0, c2: 0.0, c: 0.2, d: 0.1, ..SSVI };
         let speed = draw.logarithmic(1e-3, 10.0);
         let chi = draw.logarithmic(1e-3, 60.0);
@@ -26,6 +26,10 @@ fn exact_restitution_of_the_undisturbed_collision() {
             lambda: chi / speed,
             ..free
         };
+        // Over six decades of speed.
+        let numbers =
+            if number < 100 { Numbers { e: 0.02 + 0.97 * draw.unit(), ..numbers } } else { numbers };
+        let speed = if number < 100 { draw.logarithmic(1e-5, 10.0) } else { speed };
         let system = numbers.coupled();
         for side in Side::BOTH {
             let wall = system.wall(side);
@@ -36,7 +40,7 @@ fn exact_restitution_of_the_undisturbed_collision() {
             let mut last = After { side, system: &system, parted: None };
             hybrid.propagate(begin, 0.01 / speed + 1e4 / speed, &mut last).expect("a run");
             let found = last.parted.expect("a lift-off") / speed;
-            let expected = restitution(numbers.lambda, speed);
+            let expected = if numbers.e < 1.0 { numbers.e } else { restitution(numbers.lambda, speed) };
             let error = (found / expected - 1.0).abs();
             assert!(error < 1e-10 / expected, "{chi} {speed}: {found} {expected} {error:e}");
         }
@@ -127,7 +131,10 @@ fn lossy(draw: &mut Spread) -> Numbers {
         omega: about(base.omega),
         ..base
     };
-    numbers.lambda = draw.logarithmic(0.01, 30.0);
+    match draw.unit() < 0.5 {
+        true => numbers.lambda = draw.logarithmic(0.01, 30.0),
+        false => numbers.e = 0.05 + 0.94 * draw.unit(),
+    }
     numbers
 }
 

@@ -151,7 +151,7 @@ impl Contact {
                 (length, next) = at_elapsed(advance, length, self.to - touch_down);
             }
             let mut lifts_off = wall.is_some();
-            let parting = if equations.is_lossy() {
+            let parting = if equations.may_part() {
                 parting(equations, [y, &next], (&slope, length), advance)
             } else {
                 None

@@ -1,0 +1,278 @@
+//! A contact with the same restitution at every speed.
+//!
+//! After H. M. Lankarani and P. E. Nikravesh (J. Mech. Des. 112 (1990) 369) λ of Hunt and Crossley is taken as `χ / v`, with the speed `v` at
+//! touch-down, and `χ` here from the exact relation. For a contact whose speed at touch-down is not known, that begins pressed into
+//! the wall, or is disturbed, `v` is not a property of its state. So `v` is taken as the speed at touch-down of the *undisturbed collision
+//! through the present state*: the force is a function of `z` and `ż` alone, and in an undisturbed collision `v` is the one at touch-down.
+//!
+//! With `h = ż/v` that collision obeys `v dh/dt = -κ z^(3/2) (1 + χ h)`, and so
+//!
+//! ```text
+//! S = (2/5) κ z^(5/2) = v² G(h),      G(h) = ∫_h^1 s / (1 + χ s) ds
+//! ```
+//!
+//! with `h = 1` at touch-down and `h = -e` at lift-off, `G(-e) = 0`. Given `S` and `ż`, this determines `h` and `v`. The factor of the
+//! force is `1 + χ h >= 1 - χ e > 0`: it never pulls.
+
+use super::collision::chi;
+use std::f64::consts::PI;
+
+/// The factor `f` of Hertz's force at an indentation `z` that changes at the rate `w`, with its derivatives: those by `z` times `z`, and
+/// `by_own`, that by the number of the law itself, λ or e.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Factor {
+    pub f: f64,
+    pub by_z: f64,
+    pub by_w: f64,
+    pub by_own: f64,
+    pub by_zz: f64,
+    pub by_zw: f64,
+    pub by_ww: f64,
+}
+
+/// The law of a restitution.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Restoring {
+    pub(crate) chi: f64,
+    e: f64,
+    /// dχ/de.
+    chi_by_e: f64,
+    /// `ln(1 + χ)`, and `ln(1 - χ e)`, which 1 - χ e itself cannot tell where e is small.
+    logs: [f64; 2],
+    /// Coefficients of Chebyshev's interpolant of ln f, from which its computation begins, see [`Self::guess`].
+    series: [f64; NODES],
+}
+
+/// Where in an undisturbed collision a contact is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage {
+    /// ż/v, 1 at touch-down and -e at lift-off.
+    pub h: f64,
+    /// v, the speed at touch-down, m/s.
+    pub v: f64,
+    /// `1 + χ h`.
+    pub f: f64,
+    /// ln f.
+    log: f64,
+    /// G(h).
+    pub g: f64,
+    /// `2 (1 + χ h) G + h²`, from e² at lift-off to 1 at touch-down: it grows with h, by `2 χ G`.
+    pub d: f64,
+}
+
+/// Nodes of the interpolant: below 1e-7 for e >= 0.7, below 1e-3 for e >= 0.2.
+const NODES: usize = 20;
+/// Below this χ the integrals over `[h, 1]` are series.
+const SMALL: f64 = 0.1;
+/// Terms of them: the first that is left out is below `SMALL^TERMS`.
+const TERMS: i32 = 17;
+
+impl Restoring {
+    /// The law of the restitution `e` in (0, 1).
+    pub(crate) fn new(e: f64) -> Self {
+        let chi = chi(e);
+        let chi_by_e = chi * e * (1.0 + chi) / ((1.0 - chi * e) - e * e * (1.0 + chi));
+        let first = chi.ln_1p();
+        let law = Self { chi, e, chi_by_e, logs: [first, first - chi * (1.0 + e)], series: [0.0; NODES] };
+        let angle = |node: usize| PI * (node as f64 + 0.5) / NODES as f64;
+        let values: [f64; NODES] = std::array::from_fn(|node| {
+            let x = angle(node).cos();
+            law.stage(0.5 * (1.0 - x * x), x).log
+        });
+        let series = std::array::from_fn(|k| {
+            let sum: f64 = (0..NODES).map(|node| values[node] * (k as f64 * angle(node)).cos()).sum();
+            sum * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
+        });
+        Self { series, ..law }
+    }
+
+    /// `G = ∫_h^1 s / (1 + χ s) ds = ((1 - h) - ln((1 + χ) / f) / χ) / χ`, from h and ln f.
+    fn g(&self, h: f64, log: f64) -> f64 {
+        let chi = self.chi;
+        if chi < SMALL {
+            let (mut sum, mut sign, mut power) = (0.0, 1.0, h * h);
+            for k in 2..TERMS + 2 {
+                sum += sign * (1.0 - power) / f64::from(k);
+                (sign, power) = (-chi * sign, h * power);
+            }
+            return sum;
+        }
+        (chi * (1.0 - h) - (self.logs[0] - log)) / (chi * chi)
+    }
+
+    /// The stage with this ln f; v is left open.
+    fn at(&self, log: f64) -> Stage {
+        let f = log.exp();
+        let h = if self.chi < SMALL { log.exp_m1() } else { f - 1.0 } / self.chi;
+        self.with(log, f, h)
+    }
+
+    /// The stage where ln f is larger by `step`, of which the third power is below rounding.
+    fn near(&self, Stage { log, f, h, .. }: Stage, step: f64) -> Stage {
+        let more = f * (step + 0.5 * step * step);
+        self.with(log + step, f + more, h + more / self.chi)
+    }
+
+    fn with(&self, log: f64, f: f64, h: f64) -> Stage {
+        let g = self.g(h, log);
+        Stage { h, v: f64::NAN, f, log, g, d: 2.0 * f * g + h * h }
+    }
+
+    /// The stage with this h between -e and 1; v is left open.
+    pub(crate) fn stage_at(&self, h: f64) -> Stage {
+        self.at(if h <= -self.e { self.logs[1] } else { (self.chi * h).ln_1p().max(self.logs[1]) })
+    }
+
+    /// ln f at `x = ż / √(ż² + 2 S)`, on which alone it depends, by its interpolant; without loss x would be h.
+    fn guess(&self, x: f64) -> f64 {
+        let [mut now, mut before] = [0.0, 0.0];
+        for c in self.series.iter().skip(1).rev() {
+            (now, before) = (c + 2.0 * x * now - before, now);
+        }
+        self.series[0] + x * now - before
+    }
+
+    /// The stage at `S` (m²/s²) and the rate of indentation `w` (m/s): the root of `φ = w² G - h² S` on the side of the sign of w, by Halley's
+    /// iteration on ln f, kept inside by bisection. A step of an integration may end a little beyond lift-off, where `S < 0` and `h < -e`.
+    pub(crate) fn stage(&self, s: f64, w: f64) -> Stage {
+        let Self { chi, e, logs, .. } = *self;
+        if w == 0.0 {
+            let deepest = self.at(0.0);
+            return Stage { v: (s / deepest.g).sqrt(), ..deepest };
+        }
+        let whole = w * w + 2.0 * s;
+        let (a, b) = (w * w / whole, s / whole);
+        let beyond = if s < 0.0 { 2.0 * chi } else { 0.0 };
+        let rises = w <= 0.0;
+        let [mut low, mut high] = if rises { [logs[1] - beyond, 0.0] } else { [0.0, logs[0] + beyond] };
+        let mut log = self.guess(w / whole.sqrt()).clamp(low, high);
+        let mut stage = self.at(log);
+        for _ in 0..100 {
+            let Stage { h, f, g, .. } = stage;
+            let value = a * g - b * h * h;
+            if (value > 0.0) == rises {
+                high = log
+            } else {
+                low = log
+            }
+            let weight = (a + 2.0 * b * f) / chi;
+            let slope = -h * weight;
+            let curvature = -(f / chi) * (weight + 2.0 * b * h);
+            let newton = value / slope;
+            let next = log - newton / (1.0 - 0.5 * newton * curvature / slope);
+            let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
+            let step = next - log;
+            log = next;
+            // The next step would be of the order of the cube of this one.
+            if step.abs() <= 1e-6 * log.abs() || value == 0.0 {
+                stage = self.near(stage, step);
+                break;
+            }
+            stage = self.at(log);
+        }
+        // Of both ways to v the one that keeps its digits.
+        let v = if stage.h.abs() > 0.5 * e { w / stage.h } else { (s / stage.g).sqrt() };
+        Stage { v, ..stage }
+    }
+
+    /// The factor `1 + χ h` with its derivatives. `h` depends on `u = ż/√S` alone, with `h' = 2 f G^(3/2) / D`.
+    pub(crate) fn factor(&self, s: f64, w: f64) -> Factor {
+        if s == 0.0 && w == 0.0 {
+            return Factor { f: 1.0, ..Factor::default() };
+        }
+        let chi = self.chi;
+        let stage = self.stage(s, w);
+        let Stage { h, v, f, g, d, .. } = stage;
+        let along = 2.0 * f * g / d; // dh/du / √G
+        let bend = (2.0 * chi * g - 3.0 * h - 4.0 * chi * f * g * g / d) * along / d; // d²h/du² / G
+        let (first, second) = (h * along, h * h * bend); // u h', u² h''
+        Factor {
+            f,
+            by_z: -1.25 * chi * first,
+            by_w: chi * along / v,
+            by_own: self.chi_by_e * (h + chi * self.h_by_chi(stage)),
+            by_zz: chi * (1.5625 * (first + second) + 1.25 * first),
+            by_zw: -1.25 * chi * (along + h * bend) / v,
+            by_ww: chi * bend / (v * v),
+        }
+    }
+
+    /// `dh/dχ` at one S and ż: `h f / D ∂G/∂χ`, with `∂G/∂χ = -∫_h^1 s² / (1 + χ s)² ds`.
+    fn h_by_chi(&self, Stage { h, f, log, d, .. }: Stage) -> f64 {
+        let chi = self.chi;
+        // f ∂G/∂χ: the integral itself grows without bound where f vanishes.
+        let by_chi = if chi < SMALL {
+            let (mut sum, mut sign, mut power) = (0.0, 1.0, h * h * h);
+            for k in 3..TERMS + 3 {
+                sum += sign * f64::from(k - 2) * (1.0 - power) / f64::from(k);
+                (sign, power) = (-chi * sign, h * power);
+            }
+            -sum * f
+        } else {
+            // s - 2 ln(1 + χ s) / χ - 1 / (χ (1 + χ s)), at 1 and at h
+            let upper = 1.0 - 2.0 * self.logs[0] / chi - 1.0 / (chi * (1.0 + chi));
+            let lower = f * h - 2.0 * f * log / chi - 1.0 / chi;
+            -(f * upper - lower) / (chi * chi)
+        };
+        h / d * by_chi
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [f64; 10] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.7, 0.9, 0.95, 0.999, 1.0 - 1e-9];
+
+    /// Along the undisturbed collision, which the equation of h describes in time, v is the speed at touch-down.
+    #[test]
+    fn exact_the_stages_of_an_undisturbed_collision() {
+        for e in ALL {
+            let law = Restoring::new(e);
+            let end = law.stage_at(-e);
+            assert!(
+                end.g.abs() < 1e-15 / law.chi.min(1.0) && (end.h / -e - 1.0).abs() < 1e-13,
+                "{e}: {end:?}"
+            );
+            for v in [1e-4, 1.0, 30.0] {
+                for i in 0..=200 {
+                    let h = -e + (1.0 + e) * f64::from(i) / 200.0;
+                    let stage = law.stage(v * v * law.stage_at(h).g.max(0.0), h * v);
+                    let allowed = 2e-13 / (e * law.chi.min(1.0)).min(1.0);
+                    assert!((stage.h - h).abs() < allowed, "{e} {v} {h}: {stage:?}");
+                    assert!((stage.v / v - 1.0).abs() < allowed / e, "{e} {v} {h}: {stage:?}");
+                }
+            }
+        }
+    }
+
+    /// Every derivative of the factor beside differences.
+    #[test]
+    fn exact_derivatives_of_the_factor() {
+        for e in [0.05, 0.3, 0.7, 0.92, 0.99] {
+            let law = Restoring::new(e);
+            // S = z^(5/2), so that z is the fifth root of S².
+            let at = |z: f64, w: f64| law.factor(z.powf(2.5), w);
+            for (z, w) in [(0.7, 1.0), (0.3, 0.2), (1.3, -0.4), (0.5, -2.0), (0.9, 0.0), (0.02, 1.0)] {
+                let Factor { by_z, by_w, by_own, by_zz, by_zw, by_ww, .. } = at(z, w);
+                let (dz, dw, de) = (1e-5 * z, 1e-5, 1e-6);
+                let by_differences = [
+                    z * (at(z + dz, w).f - at(z - dz, w).f) / (2.0 * dz),
+                    (at(z, w + dw).f - at(z, w - dw).f) / (2.0 * dw),
+                    (Restoring::new(e + de).factor(z.powf(2.5), w).f
+                        - Restoring::new(e - de).factor(z.powf(2.5), w).f)
+                        / (2.0 * de),
+                    z * z * (at(z + dz, w).by_z / (z + dz) - at(z - dz, w).by_z / (z - dz)) / (2.0 * dz),
+                    (at(z, w + dw).by_z - at(z, w - dw).by_z) / (2.0 * dw),
+                    (at(z, w + dw).by_w - at(z, w - dw).by_w) / (2.0 * dw),
+                ];
+                for (found, expected) in
+                    [by_z, by_w, by_own, by_zz, by_zw, by_ww].into_iter().zip(by_differences)
+                {
+                    let size = 1.0 + expected.abs();
+                    assert!((found - expected).abs() < 2e-6 * size, "{e} {z} {w}: {found} {expected}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Bounds on the stage of a contact whose restitution is the same at every speed (`crate::loss::Restoring`).
+//!
+//! With the acceleration `A` into the wall by all forces but that of the contact, and in the coordinate of regularised contacts,
+//!
+//! ```text
+//! σ = q/v (-κ q³ + 2 A G / D)
+//! dh/dθ = f σ      dG/dθ = -h σ      dD/dθ = 2 χ G f σ      d(1/v)/dθ = -q/v² A h / D      f = 1 + χ h
+//! ```
+//!
+//! So `h`, `1/v`, `G` and `1/D` obey polynomial equations among themselves, and each coefficient follows from those before it.
+
+use crate::loss::{Restoring, Stage};
+
+/// Term `k` of the product of two series.
+#[inline(always)]
+pub(super) fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..K.min(k + 1) {
+        sum += a[i] * b[k - i];
+    }
+    sum
+}
+
+/// Bounds on the stages of a piece.
+#[derive(Clone, Copy)]
+pub struct Stages {
+    law: Restoring,
+    /// The least and the greatest h.
+    h: [f64; 2],
+    /// The greatest 1/v, s/m.
+    slowness: f64,
+}
+
+impl Stages {
+    /// Of two stages.
+    pub fn of(law: Restoring, [a, b]: [Stage; 2]) -> Self {
+        let slowness = (1.0 / a.v).max(1.0 / b.v);
+        Self { law, h: [a.h.min(b.h), a.h.max(b.h)], slowness }
+    }
+
+    /// What may be reached within `h` of where they hold, by slopes that are bounded.
+    pub fn widened<const K: usize>(self, series: Option<StageSeries<K>>, h: f64) -> Self {
+        let Some([stage, slowness]) = series.map(|series| series.slopes()) else { return self };
+        let [low, high] = self.h;
+        let reach = h * stage;
+        Self { h: [low - reach, high + reach], slowness: self.slowness + h * slowness, ..self }
+    }
+
+    /// Whether others lie within.
+    pub fn hold(&self, other: &Self) -> bool {
+        let ([low, high], [least, greatest]) = (self.h, other.h);
+        low <= least && greatest <= high && other.slowness <= self.slowness
+    }
+
+    /// Bounds that hold both, and a little more.
+    pub fn joined(&self, other: &Self) -> Self {
+        let ([low, high], [least, greatest]) = (self.h, other.h);
+        let spare = 0.05 * (greatest - least);
+        let h = [low.min(least - spare), high.max(greatest + spare)];
+        Self { h, slowness: self.slowness.max(1.05 * other.slowness), ..*self }
+    }
+}
+
+/// Series with every term by its size.
+pub struct StageSeries<const K: usize> {
+    chi: f64,
+    h: [f64; K],
+    /// 1/v.
+    slowness: [f64; K],
+    /// 1 + χ h.
+    pub f: [f64; K],
+    g: [f64; K],
+    /// 1/D.
+    by_d: [f64; K],
+    /// What follows from them: q/v, A, 2 G / D, κ q³ + 2 A G / D, σ, f σ, h / D, A h / D, A h / (D v), and G f σ / D².
+    more: [[f64; K]; 10],
+}
+
+impl<const K: usize> StageSeries<K> {
+    /// From bounds on the stages.
+    pub fn new(Stages { law, h: [low, high], slowness }: Stages) -> Self {
+        let start = |bound: f64| {
+            let mut series = [0.0; K];
+            series[0] = bound;
+            series
+        };
+        // G is greatest where h is nearest to 0, and D, which grows with h, least where h is.
+        let [first, middle] = [low, 0.0_f64.clamp(low, high)].map(|h| law.stage_at(h));
+        Self {
+            chi: law.chi,
+            h: start(low.abs().max(high.abs())),
+            slowness: start(slowness),
+            f: start(1.0 + law.chi * high),
+            g: start(middle.g),
+            by_d: start(1.0 / first.d),
+            more: [[0.0; K]; 10],
+        }
+    }
+
+    /// Term `k + 1` of each, from term `k` of q, of `κ q³`, and of the acceleration by all but the contact, `beside`.
+    pub fn extend(&mut self, k: usize, q: &[f64; K], hertz: f64, beside: f64) {
+        let next = 1.0 / (k + 1) as f64;
+        let Self { chi, h, slowness, f, g, by_d, more } = self;
+        let [along, accel, share, inner, sigma, slope, hd, turned, slowed, gathered] = more;
+        along[k] = product(q, slowness, k);
+        accel[k] = beside;
+        share[k] = 2.0 * product(g, by_d, k);
+        inner[k] = hertz + product(accel, share, k);
+        sigma[k] = product(along, inner, k);
+        slope[k] = product(f, sigma, k);
+        hd[k] = product(h, by_d, k);
+        turned[k] = product(accel, hd, k);
+        slowed[k] = product(turned, slowness, k);
+        gathered[k] = 0.5 * product(share, slope, k);
+        h[k + 1] = slope[k] * next;
+        f[k + 1] = *chi * h[k + 1];
+        g[k + 1] = product(h, sigma, k) * next;
+        slowness[k + 1] = product(along, slowed, k) * next;
+        by_d[k + 1] = 2.0 * *chi * product(by_d, gathered, k) * next;
+    }
+
+    /// Bounds on the first coefficients of h and of 1/v.
+    pub fn slopes(&self) -> [f64; 2] {
+        [self.h[1], self.slowness[1]]
+    }
+}
