@@ -42,7 +42,7 @@ struct InFile {
     /// lambda, damping factor of the contact force, s/m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     lambda: Option<NonNegative>,
-    /// Speed after over speed before an undisturbed collision, at the impact speed `at` or at every speed.
+    /// restitution, restitution of a contact at every speed: that of an undisturbed collision; where `at` is given, at that speed alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     restitution: Option<Restitution>,
     /// The impact speed at which the restitution holds, m/s; left out, it holds at every speed.
