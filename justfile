@@ -85,6 +85,11 @@ retention +K1:
 
 alias retune := retention
 
+# Contacts that lose energy: dampers tuned for each restitution and for all at once, into results/losses
+[group('compare')]
+losses *OPTIONS:
+    {{retune}} losses --out results/losses "$@"
+
 # Pareto fronts of both dampers under bounds on k2 and stroke, into results/fronts; also `just fronts studies/fronts-soft.json`
 [group('compare')]
 fronts *OPTIONS:

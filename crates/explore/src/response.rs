@@ -30,7 +30,7 @@ pub fn of_all_motions(study: &Study) -> bool {
 fn term(study: &Study) -> Objective {
     let first = first(study);
     let response = if first.response == Response::Motions { Response::Window } else { first.response };
-    Objective { omega: None, k1: None, ensemble: None, response, ..first }
+    Objective { omega: None, k1: None, restitution: None, ensemble: None, response, ..first }
 }
 
 /// The band of frequencies of the study; about the natural frequency if it has none.

@@ -127,7 +127,8 @@ fn runs(objective: &Objective) -> usize {
         let omega = term.omega.map_or(1, |band| band.samples);
         let members = term.ensemble.map_or(1, |ensemble| ensemble.members as usize);
         let motions = if term.response == Response::Motions { 100 } else { 1 };
-        omega.saturating_mul(k1).saturating_mul(members).saturating_mul(motions)
+        let losses = term.restitution.as_ref().map_or(1, Vec::len);
+        omega.saturating_mul(k1).saturating_mul(losses).saturating_mul(members).saturating_mul(motions)
     };
     objective.terms().into_iter().map(term).fold(0, usize::saturating_add)
 }

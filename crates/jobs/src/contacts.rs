@@ -129,9 +129,14 @@ impl Powers {
         Self { structure: structure / seconds, damper: damper / seconds, impacts: impacts / seconds }
     }
 
+    /// In the dashpot of the structure, in that of the damper, in impacts, W.
+    pub fn parts(&self) -> [f64; 3] {
+        [self.structure, self.damper, self.impacts]
+    }
+
     /// Where the energy goes; none if nothing is lost.
     pub fn words(&self) -> Option<String> {
-        let Self { structure, damper, impacts } = *self;
+        let [structure, damper, impacts] = self.parts();
         let total = structure + damper + impacts;
         let share = |part: f64| rounded(100.0 * part / total, 3);
         (total > 0.0).then(|| {

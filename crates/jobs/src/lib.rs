@@ -55,6 +55,7 @@ pub mod error;
 pub mod evaluate;
 pub mod fronts;
 pub mod job;
+pub mod losses;
 pub mod methods;
 pub mod needs;
 pub mod observer;

@@ -75,7 +75,7 @@ impl Serialize for Largest {
         }
         let mut map = serializer.serialize_map(Some(Measure::ALL.len()))?;
         for measure in Measure::ALL {
-            let Need { value, omega, k1 } = self.0.whole.get(measure);
+            let Need { value, omega, k1, .. } = self.0.whole.get(measure);
             map.serialize_entry(measure.name(), &Place { value, omega, k1, own: self.own(measure) })?;
         }
         map.end()
@@ -90,8 +90,11 @@ impl Largest {
 
     /// What the contacts are like in the run with the largest contact force.
     fn contacts(&self, study: &Study, design: &Scene) -> Option<Contacts> {
-        let Need { value, omega, k1 } = self.0.whole.get(Measure::ContactForce);
-        let there = [Setting::new(Parameter::Omega, omega), Setting::new(Parameter::K1, k1)];
+        let Need { value, omega, k1, restitution } = self.0.whole.get(Measure::ContactForce);
+        let mut there = vec![Setting::new(Parameter::Omega, omega), Setting::new(Parameter::K1, k1)];
+        if Parameter::Restitution.of(design).is_some() {
+            there.push(Setting::new(Parameter::Restitution, restitution));
+        }
         let scene = Study { scene: *design, ..study.clone() }.scene_with(&there).ok()?;
         let whole = Window { from: 0.0, ..study.window.window() };
         (value > 0.0).then(|| Contacts::of(&scene, whole, &study.solver.settings()).ok().flatten()).flatten()

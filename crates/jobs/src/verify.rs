@@ -12,7 +12,8 @@ use crate::again::Made;
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
 use crate::{
-    Error, Observer, branches, certify, fronts, methods, paper, resolved, retention, sweep, table2, tune,
+    Error, Observer, branches, certify, fronts, losses, methods, paper, resolved, retention, sweep, table2,
+    tune,
 };
 use report::Report;
 use retune_store::manifest::Manifest;
@@ -46,10 +47,11 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
 }
 
 /// The kinds of jobs.
-static KINDS: [&Kind; 8] = [
+static KINDS: [&Kind; 9] = [
     &tune::KIND,
     &certify::KIND,
     &table2::KIND,
+    &losses::KIND,
     &sweep::KIND,
     &retention::KIND,
     &fronts::KIND,

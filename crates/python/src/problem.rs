@@ -221,7 +221,7 @@ impl Core {
         };
         let is_one = |term: &Objective| {
             let at_once = term.omega.is_none() || term.response == Response::Steady;
-            at_once && term.k1.is_none() && term.ensemble.is_none()
+            at_once && term.k1.is_none() && term.restitution.is_none() && term.ensemble.is_none()
         };
         let periods = study.window.window().to * study.scene.forcing.frequency.get() / TAU;
         let takes_long = periods > LONG && !study.objective().is_steady()

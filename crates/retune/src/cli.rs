@@ -102,6 +102,14 @@ pub enum Command {
         #[command(flatten)]
         running: Running,
     },
+    /// Contacts that lose energy: tune a damper for each restitution and for all at once, and plot what a wrong one costs
+    Losses {
+        /// A study whose objective has restitutions
+        #[arg(default_value = "studies/ssvi-hedged.json")]
+        study: PathBuf,
+        #[command(flatten)]
+        running: Running,
+    },
     /// Retention of tuning along k1: tune dampers again for other stiffnesses of the structure, and plot what detuning costs
     Retention {
         /// Stiffnesses of the primary structure, N/m

@@ -11,7 +11,7 @@ use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
 use retune_jobs::tune::Optimum;
 use retune_jobs::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
-use retune_jobs::{fronts, retention};
+use retune_jobs::{fronts, losses, retention};
 use retune_study as study;
 use std::io::BufReader;
 use std::path::Path;
@@ -52,6 +52,10 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Table2 { study, running } => {
             let (request, screen) = running.request(&study);
             made(table2::table2(&request, &screen)?, Designs::check_limits)
+        }
+        Command::Losses { study, running } => {
+            let (request, screen) = running.request(&study);
+            losses::losses(&request, &screen).map(drop)
         }
         Command::Retention { k1, study, running } => {
             let (request, screen) = running.request(&study);

@@ -2,7 +2,7 @@
 
 use super::format::{Coarse, Study};
 use super::rule::Rule;
-use retune_model::{Forcing, Measure, Scene, Source};
+use retune_model::{Forcing, Measure, Parameter, Scene, Source};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limit, Limits, Objective, Part, Response, Statistic, StiffnessRange,
     Stiffnesses,
@@ -18,7 +18,8 @@ const MOST_STARTS: usize = 1000;
 ///
 /// # Errors
 /// The first [`Rule`] that is broken.
-pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Result<(), Rule> {
+pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
+    let forcing = &scene.forcing;
     let omega = forcing.frequency.get();
     let decays = matches!(forcing.source, Source::Decay(_));
     let field = |name: &str| format!("{path}.{name}");
@@ -29,9 +30,8 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
         if !alone.is_default() {
             return Err(Rule::SumAndMore { path: path.to_owned() });
         }
-        let part = |(i, part): (usize, &Part)| {
-            check(&part.objective, &field(&format!("sum[{i}].objective")), forcing)
-        };
+        let part =
+            |(i, part): (usize, &Part)| check(&part.objective, &field(&format!("sum[{i}].objective")), scene);
         objective.sum.iter().enumerate().try_for_each(part)?;
         let other = objective.sum.iter().position(|part| part.objective.quantity() != objective.quantity());
         return match other {
@@ -79,6 +79,16 @@ pub(super) fn check(objective: &Objective, path: &str, forcing: &Forcing) -> Res
         }
         Some(Stiffnesses::Range(StiffnessRange { from, to, samples })) => {
             band("k1.range", " N/m", [from.get(), to.get()], *samples)?;
+        }
+        _ => {}
+    }
+    match &objective.restitution {
+        Some(set) if set.is_empty() => {
+            return bad(field("restitution"), "an empty list".to_owned(), "at least one restitution");
+        }
+        Some(_) if Parameter::Restitution.of(scene).is_none() => {
+            let allowed = "nothing: the contacts of the scene have another loss, or there are none";
+            return bad(field("restitution"), "a list".to_owned(), allowed);
         }
         _ => {}
     }

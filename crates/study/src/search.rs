@@ -101,7 +101,7 @@ impl Study {
             });
         }
         let variables = varied(&optimize.vary)?;
-        check(&optimize.objective, "optimize.objective", &self.scene.forcing)?;
+        check(&optimize.objective, "optimize.objective", &self.scene)?;
         check_limits(&optimize.limits, &optimize.objective, &self.scene.forcing, self.window.end.get())?;
         let tuned = |field, variable: &Parameter| match variables.contains(variable) {
             true => Ok(()),

@@ -1,6 +1,6 @@
 //! An objective in words, for figures, tables and the screen; numbers and counts in words.
 
-use retune_model::{Design, Parameter};
+use retune_model::{Design, Parameter, Restitution};
 use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange, Stiffnesses};
 use std::f64::consts::TAU;
 use std::fmt::Display;
@@ -14,13 +14,22 @@ pub fn over(objective: &Objective, omega: f64) -> String {
         let unit = if relative { "times √(k1/m1)" } else { "rad/s" };
         format!("omega = {} to {} {unit}", from.get(), to.get())
     };
-    let over = [objective.omega.map(band), objective.k1.as_ref().map(stiffnesses)];
+    let over = [
+        objective.omega.map(band),
+        objective.k1.as_ref().map(stiffnesses),
+        objective.restitution.as_deref().map(restitutions),
+    ];
     let over: Vec<String> = over.into_iter().flatten().collect();
     let own = if objective.omega.is_none() { format!("omega = {omega} rad/s") } else { String::new() };
     let worst = if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
     let mut parts: Vec<String> = objective.ensemble.iter().map(ensemble).collect();
     parts.extend([own, worst].into_iter().filter(|part| !part.is_empty()));
     parts.join(", ")
+}
+
+fn restitutions(set: &[Restitution]) -> String {
+    let values: Vec<String> = set.iter().map(|e| e.get().to_string()).collect();
+    format!("restitution = {}", values.join(", "))
 }
 
 fn stiffnesses(of: &Stiffnesses) -> String {

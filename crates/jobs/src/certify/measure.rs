@@ -142,7 +142,8 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
             Response::Settled => settled(&worst.scene, goal.window, settle, &settings, ask),
             Response::Motions => {
                 let term = goal.term(worst.term).cloned().unwrap_or_default();
-                let objective = Objective { omega: None, k1: None, ensemble: None, ..term };
+                let objective =
+                    Objective { omega: None, k1: None, restitution: None, ensemble: None, ..term };
                 let own = Goal { objective, limits: Limits::default(), ..goal.clone() };
                 let value = own.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
                 return Ok(Run { method, rtol, value: Amount::new(quantity, value) });

@@ -130,7 +130,8 @@ fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> 
                 vec![range.from.get(), worst.primary.stiffness.get(), range.to.get()]
             }
         };
-        for k1 in k1 {
+        let losses = term.scenes(scene)?;
+        for (scene, k1) in losses.iter().flat_map(|scene| k1.iter().map(move |k1| (scene, *k1))) {
             let mut scene = *scene;
             scene.primary.stiffness = NonNegative::new(k1).map_err(Unusable::Stiffness)?;
             let omega = scene.forcing.frequency.get();

@@ -125,7 +125,7 @@ impl Goal {
         let free = Self { limits: Limits::default(), ..self.clone() };
         let observed = Observed::limits(&free.limits);
         let runs = Runs::new(&free, scene, settings, observed, Hooks { proceed, ..FREE });
-        runs.over_k1(scene, phase, term, f64::INFINITY)?;
+        runs.over_losses(scene, phase, term, f64::INFINITY)?;
         Ok(runs.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
     }
 
@@ -148,12 +148,28 @@ impl Goal {
 
 impl Runs<'_> {
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
-        let Some(ensemble) = &term.1.ensemble else { return Ok(self.over_k1(scene, 0.0, term, cutoff)?[0]) };
+        let Some(ensemble) = &term.1.ensemble else {
+            return Ok(self.over_losses(scene, 0.0, term, cutoff)?[0]);
+        };
         let member = |i: u32, cutoff: f64| {
             let (scene, phase) = ensemble.member(scene, i).map_err(Unusable::Member)?;
-            Ok(self.over_k1(&scene, phase, term, cutoff)?[0])
+            Ok(self.over_losses(&scene, phase, term, cutoff)?[0])
         };
         ensemble.over(member, cutoff)
+    }
+
+    fn over_losses(
+        &self,
+        scene: &Scene,
+        phase: f64,
+        term: Numbered,
+        cutoff: f64,
+    ) -> Result<Largest, Unusable> {
+        if term.1.restitution.is_none() {
+            return self.over_k1(scene, phase, term, cutoff); // the common case, without an allocation
+        }
+        let all = term.1.scenes(scene)?;
+        worst_of(all.len(), |i| self.over_k1(&all[i], phase, term, cutoff), cutoff)
     }
 
     fn over_k1(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<Largest, Unusable> {
@@ -167,15 +183,7 @@ impl Runs<'_> {
             None => self.over_omega(scene, phase, term, cutoff),
             Some(Stiffnesses::Range(range)) => self.worst_over(&range.band(), at, cutoff),
             Some(Stiffnesses::Set(set)) => {
-                let above = |results: &[Result<Largest, Unusable>]| match results.last() {
-                    Some(Ok([largest, ..])) => *largest > cutoff,
-                    Some(Err(_)) => true,
-                    None => false,
-                };
-                let k1 = |i: usize| set.get(i).map_or(own, |k1| k1.get());
-                let results = in_groups(set.len(), 1, |i, _| at(k1(i)), above);
-                let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
-                results.into_iter().try_fold(Largest::default(), |worst, more| Ok(larger(worst, more?)))
+                worst_of(set.len(), |i| at(set.get(i).map_or(own, |k1| k1.get())), cutoff)
             }
         }
     }
@@ -217,4 +225,20 @@ impl Runs<'_> {
             std::array::from_fn(|i| i.checked_sub(1).map(|measure| self.observed.matters.0[measure]));
         Ok(all_worst_over(band, at, cutoff, limits, self.peaks)?.map(|worst| worst.value))
     }
+}
+
+/// The larger of each over `count` cases, until one is above the cutoff.
+fn worst_of(
+    count: usize,
+    at: impl Fn(usize) -> Result<Largest, Unusable> + Sync,
+    cutoff: f64,
+) -> Result<Largest, Unusable> {
+    let above = |results: &[Result<Largest, Unusable>]| match results.last() {
+        Some(Ok([largest, ..])) => *largest > cutoff,
+        Some(Err(_)) => true,
+        None => false,
+    };
+    let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
+    let results = in_groups(count, 1, |i, _| at(i), above);
+    results.into_iter().try_fold(Largest::default(), |worst, more| Ok(larger(worst, more?)))
 }

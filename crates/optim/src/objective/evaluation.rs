@@ -2,7 +2,7 @@
 
 use super::limits::PerLimit;
 use super::spec::Goal;
-use retune_model::{PerMeasure, Scene};
+use retune_model::{Parameter, PerMeasure, Scene};
 
 /// The run with the largest quantity among those behind a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,13 +45,22 @@ pub struct Evaluation {
     pub unsettled: u64,
 }
 
+/// A scene with the loss of the contacts of another.
+fn with_loss_of(scene: Scene, other: &Scene) -> Scene {
+    let restitution = Parameter::Restitution;
+    restitution.of(other).and_then(|e| restitution.at(scene, e).ok()).unwrap_or(scene)
+}
+
 impl Evaluation {
-    /// The scene of the worst run: `scene` at its ω and k1, without the parameter errors of an ensemble member and
+    /// The scene of the worst run: `scene` at its ω, k1 and restitution, without the parameter errors of an ensemble member and
     /// with the force starting at a crest.
     pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
         scene.forcing.frequency = self.worst.scene.forcing.frequency;
         if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
             scene.primary.stiffness = self.worst.scene.primary.stiffness;
+        }
+        if goal.term(self.worst.term).is_some_and(|term| term.restitution.is_some()) {
+            scene = with_loss_of(scene, &self.worst.scene);
         }
         scene
     }

@@ -23,6 +23,8 @@ pub struct Need {
     pub omega: f64,
     /// The stiffness of the structure there, N/m.
     pub k1: f64,
+    /// Restitution of its contacts; 1 where that is not the same at every speed.
+    pub restitution: f64,
 }
 
 /// The largest value of each measure, each at its own place: over the band, the stiffnesses, the members and the terms of a goal.
@@ -52,7 +54,7 @@ impl Goal {
         whole.window.from = 0.0;
         whole.objective.for_each_term(&mut |term| {
             term.response = Response::Window;
-            let single = term.ensemble.is_none() && term.k1.is_none();
+            let single = term.ensemble.is_none() && term.k1.is_none() && term.restitution.is_none();
             if let Some(band) = term.omega.as_mut().filter(|_| single) {
                 let Band { from, to, samples } = band.of(&scene.primary);
                 let wanted = ((to - from) * end * PER_WIDTH / TAU).ceil().min(MOST);
@@ -80,11 +82,12 @@ impl Goal {
         let keep = |run: Run| {
             let Scene { primary, forcing, .. } = run.place.scene;
             let (omega, k1) = (forcing.frequency.get(), primary.stiffness.get());
+            let restitution = Parameter::Restitution.of(&run.place.scene).unwrap_or(1.0);
             let mut largest = largest.lock().unwrap_or_else(PoisonError::into_inner);
             for (known, value) in largest.0.iter_mut().zip(run.reached.0) {
-                let found = Need { value, omega, k1 };
-                // Of equal ones the first by ω and k1, whichever thread comes first.
-                let key = |need: &Need| [-need.value, need.omega, need.k1];
+                let found = Need { value, omega, k1, restitution };
+                // Of equal ones the first by ω, k1 and restitution, whichever thread comes first.
+                let key = |need: &Need| [-need.value, need.omega, need.k1, need.restitution];
                 if key(&found).partial_cmp(&key(known)).is_some_and(std::cmp::Ordering::is_lt) {
                     *known = found;
                 }

@@ -92,13 +92,17 @@ impl Goal {
     }
 }
 
-/// The highest peaks of a quantity over the frequencies at each stiffness, highest first.
+/// The highest peaks of a quantity over the frequencies at each stiffness and restitution, highest first.
 fn peaks(runs: &[Run], value: impl Fn(&Run) -> f64) -> Vec<&Run> {
-    let key = |run: &Run| [run.place.scene.primary.stiffness.get(), run.place.scene.forcing.frequency.get()];
+    let key = |run: &Run| {
+        let Scene { primary, forcing, .. } = run.place.scene;
+        let e = Parameter::Restitution.of(&run.place.scene).unwrap_or(1.0);
+        ([primary.stiffness.get(), e], forcing.frequency.get())
+    };
     let mut order: Vec<&Run> = runs.iter().collect();
     order.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
     let beside = |i: Option<usize>, run: &Run| {
-        let other = i.and_then(|i| order.get(i)).filter(|other| key(other)[0] == key(run)[0]);
+        let other = i.and_then(|i| order.get(i)).filter(|other| key(other).0 == key(run).0);
         other.map_or(f64::NEG_INFINITY, |other| value(other))
     };
     let is_peak = |&(i, run): &(usize, &&Run)| {
@@ -110,8 +114,8 @@ fn peaks(runs: &[Run], value: impl Fn(&Run) -> f64) -> Vec<&Run> {
     let least = peaks.first().map_or(0.0, |run| HIGH * value(run));
     let mut high: Vec<&Run> = Vec::new();
     for run in peaks.into_iter().take_while(|run| value(run) >= least) {
-        let [k1, omega] = key(run);
-        let is_known = |other: &&Run| key(other)[0] == k1 && (key(other)[1] / omega - 1.0).abs() < APART;
+        let (case, omega) = key(run);
+        let is_known = |other: &&Run| key(other).0 == case && (key(other).1 / omega - 1.0).abs() < APART;
         if high.len() < MOST && !high.iter().any(is_known) {
             high.push(run);
         }

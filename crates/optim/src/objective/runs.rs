@@ -5,7 +5,7 @@ use super::limits::{Limit, Limits};
 use super::motions::{Outcome, Sought, largest_motion};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
-use retune_model::{Bare, Coupled, Measure, NonNegative, PerMeasure, Scene, Worst};
+use retune_model::{Bare, Coupled, Measure, NonNegative, Parameter, PerMeasure, Scene, Worst};
 use retune_solver::{Also, Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
@@ -207,9 +207,11 @@ impl<'a> Runs<'a> {
         seen.reached = seen.reached.max(reached);
         let key = |place: &Place| {
             let Scene { primary, forcing, .. } = place.scene;
-            [-place.largest, place.term as f64, forcing.frequency.get(), primary.stiffness.get(), place.phase]
+            let e = Parameter::Restitution.of(&place.scene).unwrap_or(1.0);
+            let (omega, k1) = (forcing.frequency.get(), primary.stiffness.get());
+            [-place.largest, place.term as f64, omega, k1, e, place.phase]
         };
-        // Of equal ones the first by term, ω, k1 and phase.
+        // Of equal ones the first by term, ω, k1, restitution and phase.
         let order =
             key(&place).iter().zip(&key(&seen.worst)).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne());
         if order.is_some_and(|order| order.is_lt()) {

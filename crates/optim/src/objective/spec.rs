@@ -3,7 +3,8 @@
 use super::band::Band;
 use super::ensemble::Ensemble;
 use super::limits::Limits;
-use retune_model::{Measure, Positive, Primary};
+use super::unusable::Unusable;
+use retune_model::{Measure, Parameter, Positive, Primary, Restitution, Scene};
 use retune_solver::{Settle, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,7 +36,7 @@ impl Goal {
     }
 }
 
-/// The objective to minimise: a statistic over `ensemble` of the maximum over `k1` of the maximum over `omega` of `quantity`, evaluated
+/// The objective to minimise: a statistic over `ensemble` of the maximum over `restitution`, over `k1` and over `omega` of `quantity`, evaluated
 /// in each run as `response` specifies. Fields left out keep their nominal value, that of `scene`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -48,6 +49,10 @@ pub struct Objective {
     /// Worst case over stiffnesses k1 of the structure, each with its own worst case over `omega`; null for the k1 of `scene` alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k1: Option<Stiffnesses>,
+    /// Worst case over restitutions of the contacts, each the same at every speed and with its own worst case over `k1` and `omega`; null for
+    /// the loss of `scene` alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<Vec<Restitution>>,
     /// The part of the response in which the quantity is evaluated: in `window`, steady, or settled.
     pub response: Response,
     /// Starts at each frequency beside that from rest, for the response "motions".
@@ -171,6 +176,22 @@ impl StiffnessRange {
     /// The range as a band that is searched, N/m.
     pub fn band(&self) -> Band {
         Band { from: self.from.get(), to: self.to.get(), samples: self.samples }
+    }
+}
+
+impl Objective {
+    /// A scene with each of the restitutions; as it is where none are given.
+    ///
+    /// # Errors
+    /// Its contacts have a loss of another kind, or there are none.
+    pub fn scenes(&self, scene: &Scene) -> Result<Vec<Scene>, Unusable> {
+        let Some(set) = &self.restitution else { return Ok(vec![*scene]) };
+        let with = |e: &Restitution| {
+            let (mut scene, parameter) = (*scene, Parameter::Restitution);
+            parameter.set(&mut scene, e.get()).map_err(|source| Unusable::Value { parameter, source })?;
+            Ok(scene)
+        };
+        set.iter().map(with).collect()
     }
 }
 

@@ -95,7 +95,10 @@ impl Optimum {
 
     fn headline(&self) -> String {
         let at = match self.objective.as_ref().filter(|goal| goal.band().is_some()) {
-            Some(goal) => format!(", worst at omega = {}", frequency(goal.worst_omega)),
+            Some(goal) => {
+                let e = goal.worst_restitution.map_or(String::new(), |e| format!(" and restitution {e}"));
+                format!(", worst at omega = {}{e}", frequency(goal.worst_omega))
+            }
             None => format!(" at omega = {}", frequency(self.simulation.omega())),
         };
         format!("{}: {} {}{at}", self.damper_type, self.value.quantity.name(), self.value.words())

@@ -17,6 +17,9 @@ pub(crate) struct Goal {
     /// The stiffness k1 at which it is reached, N/m, if the objective has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     worst_k1: Option<f64>,
+    /// The restitution at which it is reached, if the objective has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) worst_restitution: Option<f64>,
     /// Of the runs of the best design, those that should have settled and did not; their E1max is that of the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) unsettled: Option<u64>,
@@ -74,6 +77,9 @@ impl Goal {
             objective: objective.clone(),
             worst_omega: forcing.frequency.get(),
             worst_k1: any(|term| term.k1.is_some()).then_some(primary.stiffness.get()),
+            worst_restitution: any(|term| term.restitution.is_some())
+                .then(|| Parameter::Restitution.of(&evaluation.worst.scene))
+                .flatten(),
             unsettled: settles.then_some(evaluation.unsettled),
             runs: settles.then_some(evaluation.runs),
         }

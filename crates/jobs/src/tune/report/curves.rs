@@ -50,7 +50,7 @@ fn about(findings: &Findings) -> (Vec<f64>, [Vec<f64>; 3]) {
     let objective = findings.study.objective();
     let term = first(&objective).cloned().unwrap_or_default();
     // One run a frequency, of the nominal scene.
-    let single = Objective { omega: None, ensemble: None, k1: None, ..term };
+    let single = Objective { omega: None, ensemble: None, k1: None, restitution: None, ..term };
     let omega = frequencies(findings);
     let value = |(scene, omega): (Scene, f64)| {
         at(omega, scene).map_or(f64::NAN, |scene| energy(findings.study, scene, &single))

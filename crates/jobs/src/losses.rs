@@ -1,0 +1,244 @@
+//! `losses`: what a damper is worth when its contacts lose energy. One is tuned as if they lost nothing, one anew for each restitution, one for
+//! the worst of all at once, and the paper's is kept; each is evaluated at every restitution, and where the energy goes is told.
+
+mod draw;
+mod page;
+
+use crate::again::{Row, Source, broken};
+use crate::artefact::{Content, Kind, artefact};
+use crate::columns;
+use crate::contacts::Powers;
+use crate::job::{Done, Job, Made};
+use crate::resolved::{self, Resolved};
+use crate::searches::Searches;
+use crate::{Error, Observer, Request};
+use rayon::prelude::*;
+use retune_model::{Design, Parameter, Scene};
+use retune_optim::Unusable;
+use retune_report::cells;
+use retune_report::table::Table;
+use retune_solver::{collisions, losses as losses_of};
+use retune_study::{Rule, Setting, Study, clipped, read};
+use serde::Serialize;
+use serde_json::json;
+use std::path::Path;
+
+/// The table.
+const FILE: &str = "losses.csv";
+
+/// The files of the job.
+pub static KIND: Kind = Kind {
+    command: "losses",
+    answer: FILE,
+    artefacts: &[
+        artefact(resolved::SEVERAL, Content::Input),
+        artefact(FILE, Content::Rows(again)),
+        artefact("losses.svg", Content::Derived),
+        artefact("dashpot.svg", Content::Derived),
+        artefact("powers.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
+    ],
+};
+
+/// The paper's Table 2, the SSVI NES.
+const PAPER: [(Parameter, f64); 4] =
+    [(Parameter::K2, 215.0), (Parameter::C2, 232.0), (Parameter::D, 0.06), (Parameter::C, 0.36)];
+
+/// For what a damper was tuned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Tuning {
+    /// The paper's.
+    Paper,
+    /// For contacts that lose nothing.
+    Lossless,
+    /// For all restitutions at once.
+    Hedged,
+    /// For each restitution.
+    Anew,
+}
+
+impl Tuning {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Paper, Self::Lossless, Self::Hedged, Self::Anew];
+
+    /// Its name in the table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Lossless => "tuned without loss",
+            Self::Hedged => "tuned for all",
+            Self::Anew => "re-tuned",
+        }
+    }
+}
+
+/// A damper at a restitution.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// For what it was tuned.
+    pub tuning: Tuning,
+    /// The restitution.
+    pub restitution: f64,
+    /// The design.
+    pub design: Design,
+    /// What it is worth there.
+    pub worth: Worth,
+}
+
+/// What a damper is worth at a restitution.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Worth {
+    /// The value of the objective, worst over its band.
+    pub value: f64,
+    /// Where, rad/s.
+    pub omega: f64,
+    /// Mean powers lost in the window of that run, W.
+    pub powers: Powers,
+    /// Largest impact speed in that window, m/s.
+    pub impact_speed: f64,
+}
+
+/// All points.
+#[derive(Debug, Serialize)]
+pub struct Losses {
+    /// The points, by damper.
+    pub points: Vec<Point>,
+    /// The study.
+    #[serde(skip)]
+    pub study: Study,
+}
+
+impl Losses {
+    /// Those of a damper, by falling restitution.
+    pub fn of(&self, tuning: Tuning) -> impl Iterator<Item = &Point> {
+        self.points.iter().filter(move |point| point.tuning == tuning)
+    }
+
+    /// The table.
+    fn table(&self) -> Table {
+        let parameters = columns::of_designs(self.points.iter().map(|point| &point.design));
+        let quantity = self.study.quantity().name();
+        let last = [quantity, "omega", "power_structure", "power_damper", "power_impacts", "impact_speed"];
+        let mut table =
+            columns::table(&[&["damper", "restitution"], &*columns::symbols(&parameters), &last].concat());
+        for Point { tuning, restitution, design, worth } in &self.points {
+            let Worth { value, omega, powers, impact_speed } = worth;
+            let [structure, damper, impacts] = powers.parts();
+            table.push(
+                [
+                    cells![tuning.name(), *restitution],
+                    columns::cells_of(design, &parameters),
+                    cells![*value, *omega, structure, damper, impacts, *impact_speed],
+                ]
+                .concat(),
+            );
+        }
+        table
+    }
+}
+
+/// Tunes dampers for the restitutions of the objective of a study, and compares them.
+///
+/// # Errors
+/// The study is wrong or has no restitutions, nothing can be computed, or the results cannot be written.
+pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, Error> {
+    let study = read(&request.study)?;
+    let mut restitutions = restitutions(&study)?;
+    restitutions.sort_by(|a, b| b.total_cmp(a));
+    restitutions.dedup();
+    let job = Job::of_studies(&KIND, request, json!({}), [(study.name(), &study)].into_iter())?;
+    job.run(request, watch, |directory| {
+        let mut searches = Searches::new(directory, &job.order, watch);
+        let mut designs: Vec<(Tuning, f64, Design)> = Vec::new();
+        let mut before: Option<Design> = None;
+        for e in &restitutions {
+            watch.log(&format!("\nrestitution {e}"))?;
+            let mut alone = at(&study, *e)?;
+            if let (Some(optimize), Some(start)) = (&mut alone.optimize, before) {
+                optimize.starts.push(clipped(&start, optimize));
+            }
+            let found = searches.tune(&alone, &format!("restitution-{e}"))?.found().damper.design;
+            designs.push((Tuning::Anew, *e, found));
+            before = Some(found);
+        }
+        let lossless = designs[0].2;
+        watch.log("\nall restitutions at once")?;
+        let hedged = searches.tune(&study, "all")?.found().damper.design;
+        let of_paper = |parameter: Parameter| PAPER.into_iter().find(|(known, _)| *known == parameter);
+        let paper = Design::new(|parameter| of_paper(parameter).map_or(f64::NAN, |(_, value)| value));
+        let paper = paper.map_err(|(parameter, source)| {
+            Error::from(Unusable::Value { parameter, source: source.into() })
+        })?;
+        for (tuning, design) in
+            [(Tuning::Paper, paper), (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)]
+        {
+            designs.extend(restitutions.iter().map(|e| (tuning, *e, design)));
+        }
+        let point = |(tuning, restitution, design): &(Tuning, f64, Design)| {
+            let worth = worth(&study, *restitution, design)?;
+            Ok(Point { tuning: *tuning, restitution: *restitution, design: *design, worth })
+        };
+        let points: Result<Vec<Point>, Error> = designs.par_iter().map(point).collect();
+        let losses = Losses { points: points?, study: study.clone() };
+        directory.write(FILE, &losses.table().csv())?;
+        let report = page::write(&losses, directory)?;
+        Ok(Made { report: format!("\n{report}"), answer: losses, parts: searches.results })
+    })
+}
+
+/// The restitutions of the objective of a study.
+fn restitutions(study: &Study) -> Result<Vec<f64>, Error> {
+    let set = study.objective().restitution.filter(|_| study.optimize.is_some());
+    let set = set.ok_or_else(|| Error::rule(study)(Rule::NoRestitutions))?;
+    Ok(set.into_iter().map(|e| e.get()).collect())
+}
+
+/// The study for one restitution alone.
+fn at(study: &Study, e: f64) -> Result<Study, Error> {
+    let mut alone = study.with(&[Setting::new(Parameter::Restitution, e)])?;
+    if let Some(optimize) = &mut alone.optimize {
+        optimize.objective.restitution = None;
+    }
+    Ok(alone)
+}
+
+/// What a design is worth at a restitution.
+fn worth(study: &Study, e: f64, design: &Design) -> Result<Worth, Error> {
+    let alone = at(study, e)?;
+    let scene: Scene = alone.scene_at(design).ok_or_else(|| Error::rule(study)(Rule::NoDamper))?;
+    let (settings, window) = (alone.solver.settings(), alone.window.window());
+    let found = alone.goal().evaluate(&scene, &settings, f64::INFINITY)?;
+    let run = found.worst_run(scene, &alone.goal());
+    let lost = losses_of(&run, window, &settings)?;
+    let walls = collisions(&run, window, &settings)?;
+    Ok(Worth {
+        value: found.value,
+        omega: run.forcing.frequency.get(),
+        powers: Powers::new(lost, window.to - window.from),
+        impact_speed: walls.iter().map(|wall| wall.speed).fold(0.0, f64::max),
+    })
+}
+
+/// A row of the table, computed again from its design and its restitution.
+fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+    let studies = Resolved::read(place)?.studies()?;
+    let none = || broken(place, resolved::SEVERAL, "it names no study");
+    let (_, study) = studies.into_iter().next().ok_or_else(none)?;
+    let quantity = study.quantity().name();
+    Ok(Source::new(move |row: Row| {
+        let Worth { value, omega, powers, impact_speed } =
+            worth(&study, row.number("restitution"), &row.design()?).ok()?;
+        let [structure, damper, impacts] = powers.parts();
+        let numbers = [
+            (quantity, value),
+            ("omega", omega),
+            ("power_structure", structure),
+            ("power_damper", damper),
+            ("power_impacts", impacts),
+            ("impact_speed", impact_speed),
+        ];
+        Some(numbers.map(|(name, number)| (name.to_owned(), number)).into())
+    }))
+}
