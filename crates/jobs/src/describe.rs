@@ -49,13 +49,20 @@ pub fn study(study: &Study) -> String {
 
 /// The law of the walls.
 fn walls(contact: &Contact) -> String {
-    let stiffness = joined(&contact.stiffness().map(short), " and ");
+    let surfaces = match contact {
+        Contact::Hertz(surfaces) => surfaces,
+        Contact::Rigid(rigid) => {
+            let e = short(rigid.restitution.get());
+            return format!("rigid walls, restitution e = {e} at every speed");
+        }
+    };
+    let stiffness = joined(&surfaces.stiffness().map(short), " and ");
     let hertz = format!("contact stiffnesses {stiffness} N/m^1.5");
-    if contact.loss.is_none() {
+    if surfaces.loss.is_none() {
         return format!("{hertz}, Hertz without loss");
     }
-    let [slow, fast] = [0.1, 1.0].map(|speed| short(contact.loss.restitution(speed)));
-    let lambda = short(contact.loss.lambda.get());
+    let [slow, fast] = [0.1, 1.0].map(|speed| short(surfaces.loss.restitution(speed)));
+    let lambda = short(surfaces.loss.lambda.get());
     format!(
         "{hertz}, Hunt and Crossley's loss with lambda = {lambda} s/m: restitution {slow} at 0.1 m/s, {fast} at 1 m/s"
     )

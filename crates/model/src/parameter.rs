@@ -35,11 +35,12 @@ pub enum Parameter {
     E4,
     Nu4,
     Lambda,
+    E,
 }
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::K2,
         Self::C2,
         Self::D,
@@ -63,6 +64,7 @@ impl Parameter {
         Self::E4,
         Self::Nu4,
         Self::Lambda,
+        Self::E,
     ];
     /// Those that a search may vary, the first of [`Self::ALL`].
     pub const VARIED: [Self; 6] = [Self::K2, Self::C2, Self::D, Self::C, Self::M2, Self::R];
@@ -113,6 +115,7 @@ impl Parameter {
             Self::E4 => ("E4", "Young's modulus of the damper's surface that meets the obstacle", MODULUS),
             Self::Nu4 => ("nu4", "Poisson's ratio of the damper's surface that meets the obstacle", NONE),
             Self::Lambda => ("lambda", "damping factor of the contact force", LOSS),
+            Self::E => ("e", "restitution of an impact with a rigid wall", NONE),
         }
     }
 
@@ -152,7 +155,7 @@ impl Parameter {
         matches!(self, Self::D | Self::C)
     }
 
-    /// Whether it belongs to the surfaces in contact.
+    /// Whether it belongs to the law of the walls.
     pub const fn is_of_contact(self) -> bool {
         self as usize >= Self::Q as usize || matches!(self, Self::R)
     }
@@ -175,7 +178,8 @@ impl Parameter {
 
     /// Whether motions have derivatives by it.
     pub const fn has_derivative(self) -> bool {
-        !matches!(self, Self::M1) && (!self.is_of_contact() || matches!(self, Self::R | Self::Lambda))
+        !matches!(self, Self::M1)
+            && (!self.is_of_contact() || matches!(self, Self::R | Self::Lambda | Self::E))
     }
 
     /// The columns of a table of designs in which these are varied: the paper's, and what else is varied.

@@ -132,6 +132,8 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
         }
         SolverError::Unstable { t } => SolverError::Unstable { t: sound(t) },
         SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
+        SolverError::RigidWalls { t } => SolverError::RigidWalls { t: sound(t) },
+        SolverError::Grazing { t } => SolverError::Grazing { t: sound(t) },
         SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
         SolverError::Implausible { .. } => error,
     }

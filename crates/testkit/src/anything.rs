@@ -3,7 +3,9 @@
 //! it at random, the fuzzer where new code is reached.
 
 use crate::scenes::SSVI;
-use retune_model::{Contact, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary, Scene};
+use retune_model::{
+    Contact, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary, Scene, Surfaces,
+};
 use retune_solver::{Contacts, Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 
 /// Numbers in [0, 1] that make a run.
@@ -56,7 +58,7 @@ impl Anything {
             damping: not_negative(SSVI.c2, c2),
             rest_distance: not_negative(SSVI.d, d),
             clearance: not_negative(SSVI.c, c),
-            contact: Some(Contact {
+            contact: Some(Contact::Hertz(Surfaces {
                 radius: positive(SSVI.r, r),
                 coefficient: positive(SSVI.q, q),
                 young_1: positive(SSVI.young[0], e1),
@@ -69,7 +71,7 @@ impl Anything {
                 poisson_4: poisson(nu4),
                 // Two scenes of three lose nothing in contacts, the middle of the draws among them.
                 loss: Loss { lambda: not_negative(1.0, (3.0 * lambda - 2.0).max(0.0)) },
-            }),
+            })),
         };
         let scene = Scene {
             primary: Primary {
@@ -179,7 +181,9 @@ impl Anything {
             | SolverError::Unstable { t }
             | SolverError::NonFinite { t }
             | SolverError::Implausible { t, .. } => t,
-            SolverError::Missed { .. } => panic!("{error}: {self:?}"),
+            SolverError::Missed { .. } | SolverError::RigidWalls { .. } | SolverError::Grazing { .. } => {
+                panic!("{error}: {self:?}")
+            }
             SolverError::TooManySteps { t, limit, .. } | SolverError::TooSlow { t, limit, .. } => {
                 assert_eq!(limit, self.settings.max_steps);
                 t

@@ -2,8 +2,8 @@
 #![allow(clippy::approx_constant, reason = "the paper's 6.28 and 0.318 are not 2π and 1/π")]
 
 use retune_model::{
-    Bare, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
-    RegularisedContact, RegularisedState, Scene, Source,
+    Bare, Bounce, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
+    RegularisedContact, RegularisedState, Rigid, Scene, Source, Surfaces,
 };
 
 /// A scene as plain numbers in the paper's symbols and SI units, to be varied by `..`.
@@ -26,6 +26,8 @@ pub struct Numbers {
     pub young: [f64; 4],
     /// λ of contacts that lose energy, s/m.
     pub lambda: f64,
+    /// e of rigid walls in the place of the surfaces.
+    pub rigid: Option<f64>,
 }
 
 /// Table 2, the tuned single-sided vibro-impact damper.
@@ -44,6 +46,7 @@ pub const SSVI: Numbers = Numbers {
     q: 0.318,
     young: [2.1e11, 2.21e7, 2.1e11, 2.05e7],
     lambda: 0.0,
+    rigid: None,
 };
 
 /// Table 2, the tuned mass damper: its walls are out of reach.
@@ -63,6 +66,14 @@ pub const TWO_SIDED: Numbers = Numbers { k2: 2400.0, c2: 100.0, d: 0.1, c: 0.1, 
 
 /// The same with contacts that lose energy: at 1 m/s a restitution of 0.79.
 pub const LOSSY: Numbers = Numbers { lambda: 0.4, ..TWO_SIDED };
+
+/// Rigid walls with this restitution.
+///
+/// # Panics
+/// It is not in [0, 1].
+pub fn rigid(e: f64) -> Contact {
+    Contact::Rigid(Rigid { restitution: Bounce::new(e).expect("in [0, 1]") })
+}
 
 impl Numbers {
     /// The structure.
@@ -86,7 +97,7 @@ impl Numbers {
             damping: non_negative(self.c2),
             rest_distance: non_negative(self.d),
             clearance: non_negative(self.c),
-            contact: Some(Contact {
+            contact: Some(self.rigid.map(rigid).unwrap_or(Contact::Hertz(Surfaces {
                 radius: positive(self.r),
                 coefficient: positive(self.q),
                 young_1,
@@ -98,7 +109,7 @@ impl Numbers {
                 young_4,
                 poisson_4: rubber,
                 loss: Loss { lambda: non_negative(self.lambda) },
-            }),
+            }))),
         }
     }
 

@@ -1,7 +1,9 @@
 //! Where each parameter stands in a scene: its value, read and set.
 
 use super::Parameter;
-use crate::{Damper, Forcing, NonNegative, OutOfRange, PoissonRatio, Positive, Scene, Source};
+use crate::{
+    Bounce, Contact, Damper, Forcing, NonNegative, OutOfRange, PoissonRatio, Positive, Scene, Source,
+};
 use schemars::{Schema, json_schema};
 
 /// Why a scene has no such parameter.
@@ -13,6 +15,12 @@ pub enum Absent {
     /// The damper has no walls: no gaps, no surfaces.
     #[error("the damper has no walls")]
     NoWalls,
+    /// The walls are rigid: they have a restitution alone.
+    #[error("the walls are rigid: they have `e` alone")]
+    Rigid,
+    /// The walls have Hertz's surfaces.
+    #[error("the walls have Hertz's surfaces: only those of `contact.rigid` have it")]
+    Hertz,
     /// Another number gives the forcing.
     #[error("the forcing of the scene is given by `{0}`")]
     Forcing(&'static str),
@@ -34,6 +42,7 @@ enum Place<'a> {
     Positive(&'a mut Positive),
     NonNegative(&'a mut NonNegative),
     Poisson(&'a mut PoissonRatio),
+    Bounce(&'a mut Bounce),
 }
 
 impl Place<'_> {
@@ -42,6 +51,7 @@ impl Place<'_> {
             Self::Positive(at) => at.get(),
             Self::NonNegative(at) => at.get(),
             Self::Poisson(at) => at.get(),
+            Self::Bounce(at) => at.get(),
         }
     }
 
@@ -50,6 +60,7 @@ impl Place<'_> {
             Self::Positive(at) => *at = Positive::new(value)?,
             Self::NonNegative(at) => *at = NonNegative::new(value)?,
             Self::Poisson(at) => *at = PoissonRatio::new(value)?,
+            Self::Bounce(at) => *at = Bounce::new(value)?,
         }
         Ok(())
     }
@@ -86,9 +97,18 @@ impl Parameter {
             _ => {}
         }
         let contact = contact.as_mut().ok_or(Absent::NoWalls)?;
+        match self {
+            Self::D => return Ok(Place::NonNegative(rest_distance)),
+            Self::C => return Ok(Place::NonNegative(clearance)),
+            _ => {}
+        }
+        let contact = match (self, contact) {
+            (Self::E, Contact::Rigid(rigid)) => return Ok(Place::Bounce(&mut rigid.restitution)),
+            (Self::E, Contact::Hertz(_)) => return Err(Absent::Hertz),
+            (_, Contact::Rigid(_)) => return Err(Absent::Rigid),
+            (_, Contact::Hertz(surfaces)) => surfaces,
+        };
         let place = match self {
-            Self::D => Place::NonNegative(rest_distance),
-            Self::C => Place::NonNegative(clearance),
             Self::Q => Place::Positive(&mut contact.coefficient),
             Self::E1 => Place::Positive(&mut contact.young_1),
             Self::Nu1 => Place::Poisson(&mut contact.poisson_1),

@@ -1,7 +1,7 @@
 //! The range of the relative displacement, from which stroke and contact forces follow.
 
 use super::contact_forces::ContactForces;
-use super::observer::{Observer, Path};
+use super::observer::{Impact, Observer, Path};
 use super::quantity::RelativePosition;
 use super::running_maximum::RunningMaximum;
 use crate::linear::steps::Steps;
@@ -71,5 +71,8 @@ impl Observer<4> for DisplacementRange<'_> {
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         self.ends.steps(steps);
         self.forces.steps(steps);
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        self.ends.impact(impact);
     }
 }
