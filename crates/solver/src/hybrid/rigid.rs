@@ -107,7 +107,7 @@ impl Hybrid<'_> {
         let after = Knot { y, ..touch };
         // By how much a motion without a wall would pass it: less than the rounding of the places is a graze.
         let depth = 0.5 * closing * closing / -pressing;
-        let places = touch.y[0].abs() + touch.y[2].abs();
+        let places = touch.y[0].abs() + touch.y[2].abs() + self.system.rest_distance();
         let grazes = !caught && force < 0.0 && depth <= PARTED * f64::EPSILON * places;
         observer.impact(&Impact { side, before: touch, after, caught, grazes });
         (after, if caught { Phase::InContact(side) } else { Phase::Leaving(side) })

@@ -56,7 +56,7 @@ fn exact_the_determinant_is_that_of_dashpots_and_impacts() {
         assert!((found - expected).abs() < 1e-9, "{numbers:?}: {found} {expected}");
         struck += seen.0.len();
     }
-    assert!(struck > 100, "{struck}");
+    assert!(struck > 50, "{struck}");
 }
 
 /// Central differences of the state after a second.
@@ -112,11 +112,13 @@ fn reference_derivatives_are_the_limits_of_differences() {
 /// its derivative is the limit of differences.
 #[test]
 fn reference_derivatives_through_a_chatter_and_a_hold() {
-    for (e, to) in [(0.4, 2.2), (0.0, 2.2), (0.4, 3.3)] {
-        let numbers = Numbers { k2: 60.0, c2: 40.0, d: 0.02, c: 9.0, rigid: Some(e), ..SSVI };
+    for (e, omega, to) in
+        [(0.1, 9.0, 2.82), (0.1, 9.0, 3.6), (0.0, 9.0, 2.0), (0.1, 4.0, 0.2), (0.0, 4.0, 1.2)]
+    {
+        let numbers = Numbers { k2: 200.0, c2: 40.0, d: 0.005, c: 9.0, omega, rigid: Some(e), ..SSVI };
         let system = numbers.coupled();
         let (impacts, end) = run(&system, to);
-        assert!(impacts.iter().any(|impact| impact.caught), "{e}");
+        assert!(impacts.iter().any(|impact| impact.caught), "{e} {omega}");
         let start = Motion::start(&system);
         let mut tangent = Tangent::new(&system, &Settings::default(), to, &ALL);
         let found = tangent.propagate(start, to, &mut Unobserved).expect("a run");
@@ -199,7 +201,7 @@ fn contract_a_grazing_motion_has_no_derivative() {
     let from = |amplitude: f64| Motion { t: 0.0, y: [0.0, 0.0, 1.0 + amplitude, 0.0], phase: Phase::Flight };
     assert!(tangent.propagate(from(1.1), 4.0, &mut Unobserved).is_ok());
     assert!(tangent.propagate(from(0.9), 4.0, &mut Unobserved).is_ok());
-    let grazing = tangent.propagate(from(1.0 + 2e-16), 4.0, &mut Unobserved);
+    let grazing = tangent.propagate(from(1.0 + 4e-15), 4.0, &mut Unobserved);
     let t = std::f64::consts::PI / 2.0_f64.sqrt();
     assert!(matches!(grazing, Err(SolverError::Grazing { t: at }) if (at - t).abs() < 1e-7), "{grazing:?}");
 }
