@@ -5,7 +5,7 @@ use crate::motion::IMPACTS;
 use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
-use retune_model::{Contact, Damper, Measure, NonNegative, Parameter};
+use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces};
 use retune_study::{Rule, Setting, Study, StudyError};
 use serde::Serialize;
 use serde_json::json;
@@ -86,7 +86,7 @@ impl Start {
             own
         } else {
             let Damper { rest_distance, clearance, .. } = other;
-            let contact = Contact::for_mass(own.mass).ok();
+            let contact = Surfaces::for_mass(own.mass).ok().map(Contact::Hertz);
             Damper { rest_distance, clearance, contact, ..own }
         };
         Ok(Self { study, file, damper })

@@ -26,9 +26,9 @@ struct Wall {
     /// Duration of the shortest and of the longest contact, null if none has begun and ended.
     shortest: f64,
     longest: f64,
-    /// R, m.
+    /// R, m; none of a rigid wall.
     #[serde(skip)]
-    radius: f64,
+    radius: Option<f64>,
 }
 
 impl Contacts {
@@ -50,7 +50,10 @@ impl Contacts {
                 contact_pressure: system.wall_pressure(side, indentation),
                 shortest,
                 longest,
-                radius: damper.contact.map_or(0.0, |contact| contact.radius.get()),
+                radius: damper
+                    .contact
+                    .and_then(|contact| contact.surfaces().copied())
+                    .map(|of| of.radius.get()),
             })
         };
         let [structure, obstacle] = Side::BOTH.map(wall);
@@ -69,12 +72,15 @@ impl Contacts {
 
     /// Where the law of the contact is used outside of what it holds for.
     pub fn warnings(&self) -> Vec<String> {
-        let wide = self.walls().filter(|(_, wall)| wall.contact_radius > WIDE * wall.radius);
-        wide.map(|(name, wall)| {
+        let wide = self.walls().filter_map(|(name, wall)| {
+            let radius = wall.radius.filter(|radius| wall.contact_radius > WIDE * radius)?;
+            Some((name, wall, radius))
+        });
+        wide.map(|(name, wall, radius)| {
             format!(
                 "on the {name} the contact area has a radius of {}, more than a third of R = {}: Hertz's law holds for small areas",
                 millimetres(wall.contact_radius),
-                millimetres(wall.radius)
+                millimetres(radius)
             )
         })
         .collect()
@@ -94,10 +100,12 @@ impl Wall {
         } else {
             String::new()
         };
+        let impacts = format!("{} at up to {} m/s", counted(impacts, "impact"), rounded(impact_speed, 3));
+        if self.radius.is_none() {
+            return format!("{impacts} on a rigid wall");
+        }
         format!(
-            "{} at up to {} m/s, {lasting}{} deep, on a radius of {}, pressure {}",
-            counted(impacts, "impact"),
-            rounded(impact_speed, 3),
+            "{impacts}, {lasting}{} deep, on a radius of {}, pressure {}",
             millimetres(indentation),
             millimetres(contact_radius),
             pressure(contact_pressure)

@@ -49,13 +49,20 @@ pub fn study(study: &Study) -> String {
 
 /// The law of the walls.
 fn walls(contact: &Contact) -> String {
-    let stiffness = joined(&contact.stiffness().map(short), " and ");
+    let surfaces = match contact {
+        Contact::Hertz(surfaces) => surfaces,
+        Contact::Rigid(rigid) => {
+            let e = short(rigid.restitution.get());
+            return format!("rigid walls, restitution e = {e} at every speed");
+        }
+    };
+    let stiffness = joined(&surfaces.stiffness().map(short), " and ");
     let hertz = format!("contact stiffnesses {stiffness} N/m^1.5");
-    if contact.loss.is_none() {
+    if surfaces.loss.is_none() {
         return format!("{hertz}, Hertz without loss");
     }
-    let [slow, fast] = [0.1, 1.0].map(|speed| short(contact.loss.restitution(speed)));
-    match contact.loss {
+    let [slow, fast] = [0.1, 1.0].map(|speed| short(surfaces.loss.restitution(speed)));
+    match surfaces.loss {
         Loss::Damping(lambda) => {
             let lambda = short(lambda.get());
             format!(

@@ -135,7 +135,9 @@ impl Largest {
     /// The room and the strength that the damper needs.
     fn damper_words(&self) -> String {
         let stroke = self.words(Measure::Stroke);
-        if self.value(Measure::ContactForce) > 0.0 {
+        if self.value(Measure::ContactForce).is_infinite() {
+            format!("a stroke of {stroke}; the force of its impacts with rigid walls has no bound")
+        } else if self.value(Measure::ContactForce) > 0.0 {
             format!("a stroke of {stroke}, and walls for {}", self.words(Measure::ContactForce))
         } else {
             format!("a stroke of {stroke}; it touches no wall")

@@ -250,7 +250,14 @@ impl std::fmt::Display for Summary {
             self.impacts.primary, self.impacts.obstacle
         )?;
         let Walls { primary, obstacle } = self.force_max;
-        writeln!(f, "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle")?;
+        if primary.max(obstacle).is_infinite() {
+            writeln!(f, "force max   without bound: an impact with a rigid wall is an impulse")?;
+        } else {
+            writeln!(
+                f,
+                "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle"
+            )?;
+        }
         writeln!(
             f,
             "stroke      {:.6} m, the largest spring deflection |x2 - x1 - D|",

@@ -66,6 +66,11 @@ impl Bare {
         Self { phase, ..self }
     }
 
+    /// Another mass under the same force.
+    pub(crate) fn with_mass(self, m1: f64) -> Self {
+        Self { m1, ..self }
+    }
+
     /// m1, kg.
     pub fn mass(&self) -> f64 {
         self.m1

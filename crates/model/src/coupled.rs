@@ -1,12 +1,14 @@
-//! Equation (1): the primary structure and the damper in its cavity, with Hertz contact on both walls.
+//! Equation (1): the primary structure and the damper in its cavity, with Hertz contact on both walls, or rigid ones (`rigid`).
 
 mod energies;
+mod rigid;
 mod structure;
 
 use crate::bare::largest;
 use crate::loss::{Factor, Law};
 use crate::{
-    Bare, Damper, Excitation, Finite, Forcing, Primary, Start, hertz_force, hertz_force_slope, hertz_pressure,
+    Bare, Contact, Damper, Excitation, Finite, Forcing, Primary, Start, Surfaces, hertz_force,
+    hertz_force_slope, hertz_pressure,
 };
 use nalgebra::SMatrix;
 
@@ -45,13 +47,16 @@ pub struct Coupled {
     hertz: [f64; 2],
     /// What contacts lose.
     law: Law,
-    /// R, m; 0 of a damper without walls.
+    /// R, m; 0 of a damper without Hertz's surfaces.
     pub(crate) radius: f64,
+    /// e of rigid walls.
+    restitution: Option<f64>,
 }
 
 impl Coupled {
     /// Collects the numbers of a structure, its forcing and its damper.
     pub fn new(primary: &Primary, forcing: &Forcing, damper: &Damper) -> Self {
+        let surfaces = damper.contact.as_ref().and_then(Contact::surfaces);
         Self {
             bare: Bare::new(primary, forcing),
             m2: damper.mass.get(),
@@ -62,9 +67,13 @@ impl Coupled {
                 Some(_) => [0.0, damper.rest_distance.get() + damper.clearance.get()],
                 None => [f64::NEG_INFINITY, f64::INFINITY],
             },
-            hertz: damper.contact.map_or([0.0; 2], |contact| contact.stiffness()),
-            law: damper.contact.map_or(Law::NONE, |contact| contact.loss.into()),
-            radius: damper.contact.map_or(0.0, |contact| contact.radius.get()),
+            hertz: surfaces.map_or([0.0; 2], Surfaces::stiffness),
+            law: surfaces.map_or(Law::NONE, |surfaces| surfaces.loss.into()),
+            radius: surfaces.map_or(0.0, |surfaces| surfaces.radius.get()),
+            restitution: damper
+                .contact
+                .and_then(|contact| contact.rigid())
+                .map(|rigid| rigid.restitution.get()),
         }
     }
 
@@ -195,6 +204,10 @@ impl Coupled {
     /// Equation (1): `[v1, a1, v2, a2]`.
     #[inline]
     pub fn derivative(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 4] {
+        if self.holding(excitation, y).is_some() {
+            let a = self.held_acceleration(excitation, y);
+            return [y[1], a, y[3], a];
+        }
         let [f1, f2] = self.contact_forces(y);
         self.derivative_under(excitation, y, f1 - f2)
     }

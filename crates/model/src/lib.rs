@@ -57,11 +57,12 @@ mod settling;
 mod steady;
 pub mod unit;
 mod value;
+mod wall;
 
 pub use band::Worst;
 pub use bare::Bare;
 pub use coupled::{Coupled, Side};
-pub use damper::{Contact, Damper};
+pub use damper::Damper;
 pub use design::{Design, NoDesign};
 pub use forcing::{Excitation, Forcing, Source, Start};
 pub use hertz::{
@@ -77,7 +78,8 @@ pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene, den_hartog};
 pub use steady::Steady;
 pub use unit::Unit;
-pub use value::{Finite, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution};
+pub use value::{Bounce, Finite, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution};
+pub use wall::{Contact, Rigid, Surfaces};
 
 /// Energy ratios of section 3: `R1 = E1max / (E1max + E2max)` and `R2 = E2max / (E1max + E2max)`, dimensionless.
 ///

@@ -155,7 +155,7 @@ impl Parameter {
         matches!(self, Self::D | Self::C)
     }
 
-    /// Whether it belongs to the surfaces in contact.
+    /// Whether it belongs to the law of the walls.
     pub const fn is_of_contact(self) -> bool {
         self as usize >= Self::Q as usize || matches!(self, Self::R)
     }

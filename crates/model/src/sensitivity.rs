@@ -125,6 +125,14 @@ impl Coupled {
             Measure::Energy => k1 * y[0] * by[0] + m1 * y[1] * by[1] + 0.5 * y[0] * y[0] * is(Parameter::K1),
             Measure::Displacement => y[0].signum() * by[0],
             Measure::Velocity => y[1].signum() * by[1],
+            Measure::Acceleration if self.holding(self.excitation(t), y).is_some() => {
+                let excitation = self.excitation(t);
+                let [driven, _] = self.bare().excitation_by(parameter, t);
+                let [k1, c1] = self.bare().ground_force_weights();
+                let along = (driven - k1 * by[0] - c1 * by[1]) / self.masses().iter().sum::<f64>();
+                let own = self.held_acceleration_by(parameter, excitation, y);
+                self.held_acceleration(excitation, y).signum() * (along + own)
+            }
             Measure::Acceleration => {
                 let [own, _] = self.acceleration_by(parameter, y, contact);
                 let driven = self.bare().excitation_by(parameter, t)[0] / m1;

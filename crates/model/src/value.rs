@@ -69,7 +69,6 @@ range_type!(
     PoissonRatio, "a number above -1 and at most 0.5", ("exclusiveMinimum" = -1.0, "maximum" = 0.5),
     |v| v > -1.0 && v <= 0.5
 );
-
 range_type!(
     /// A coefficient of restitution, 0 < e <= 1.
     Restitution, "a number above 0 and at most 1", ("exclusiveMinimum" = 0.0, "maximum" = 1.0),
@@ -80,6 +79,11 @@ impl Restitution {
     /// That of a contact that loses nothing.
     pub const ONE: Self = Self(1.0);
 }
+
+range_type!(
+    /// The coefficient of restitution of an impact with a rigid wall, 0 <= e <= 1: at 0 the damper stays on the wall.
+    Bounce, "a number from 0 to 1", ("minimum" = 0.0, "maximum" = 1.0), |v| (0.0..=1.0).contains(&v)
+);
 
 impl Default for NonNegative {
     /// Zero.

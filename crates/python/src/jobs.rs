@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use retune_jobs::design::Requirements;
 use retune_jobs::job::Done;
 use retune_jobs::{Request, tune, verify as verification};
-use retune_model::{Contact, Parameter, Positive};
+use retune_model::{Parameter, Positive, Surfaces};
 use retune_store::Begin;
 use std::path::PathBuf;
 
@@ -183,7 +183,7 @@ pub fn parameters() -> Vec<(&'static str, &'static str, &'static str)> {
 /// The walls of a damper of so many kg for which none are given, as JSON.
 #[pyfunction]
 pub fn contact(mass: f64) -> PyResult<String> {
-    let contact = Positive::new(mass).and_then(Contact::for_mass);
+    let contact = Positive::new(mass).and_then(Surfaces::for_mass);
     let contact = contact.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
     Ok(json(&contact)?)
 }

@@ -101,7 +101,9 @@ pub fn response(
     }
     let numbers = [found.e2_max.value, found.relative_displacement_max, found.spring_deflection_max];
     let structure = found.structure.all().map(|largest| largest.value);
-    let all = numbers.iter().chain(&found.force_max).chain(&found.final_state).chain(&structure);
+    let rigid = scene.damper.and_then(|damper| damper.contact).is_some_and(|walls| walls.rigid().is_some());
+    let forces = found.force_max.iter().filter(|_| !rigid);
+    let all = numbers.iter().chain(forces).chain(&found.final_state).chain(&structure);
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }
 
@@ -132,6 +134,8 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
         }
         SolverError::Unstable { t } => SolverError::Unstable { t: sound(t) },
         SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
+        SolverError::RigidWalls { t } => SolverError::RigidWalls { t: sound(t) },
+        SolverError::Grazing { t } => SolverError::Grazing { t: sound(t) },
         SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
         SolverError::Implausible { .. } => error,
     }

@@ -99,6 +99,23 @@ pub enum SolverError {
         /// How far inside it is, m.
         depth: f64,
     },
+    /// A general method met rigid walls, whose impacts are jumps.
+    #[error(
+        "only the hybrid solver follows impacts with rigid walls: choose it, or give the walls Hertz's surfaces"
+    )]
+    RigidWalls {
+        /// Start of the run, s.
+        t: f64,
+    },
+    /// A motion that grazes a rigid wall has no derivative.
+    #[error(
+        "the motion has no derivative: at t = {} s the damper touches a rigid wall at almost no speed, and with a little less motion it does \
+         not strike it", plain(*.t)
+    )]
+    Grazing {
+        /// When it does, s.
+        t: f64,
+    },
     /// The state overflowed.
     #[error(
         "the motion is no longer a finite number at t = {} s; the parameters are beyond what can be computed", plain(*.t)
@@ -120,6 +137,8 @@ impl SolverError {
             | Self::TooSlow { t, .. }
             | Self::Unstable { t }
             | Self::Implausible { t, .. }
+            | Self::RigidWalls { t }
+            | Self::Grazing { t }
             | Self::Missed { t, .. }
             | Self::NonFinite { t } => t,
         }

@@ -8,7 +8,7 @@ use crate::motion::segment::Segment;
 use crate::observe::displacement_range::DisplacementRange;
 use crate::observe::largest_values::LargestValues;
 use crate::observe::magnitude::Magnitude;
-use crate::observe::observer::{Observer, Path, Unobserved};
+use crate::observe::observer::{Impact, Observer, Path, Unobserved};
 use crate::observe::quantity::{BareEnergy, PrimaryEnergy};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::since::Since;
@@ -250,6 +250,13 @@ impl Observer<4> for Peak<'_> {
             Self::Energy(e1) => e1.steps(steps),
             Self::Motion(size) => size.steps(steps),
             Self::Damper(range, _) => range.steps(steps),
+        }
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        match self {
+            Self::Energy(e1) => e1.impact(impact),
+            Self::Motion(size) => size.impact(impact),
+            Self::Damper(range, _) => range.impact(impact),
         }
     }
     fn satisfied(&self) -> bool {

@@ -4,7 +4,7 @@ use crate::contact::collocation::quadrature::gauss;
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Observer, Unobserved};
+use crate::observe::observer::{Impact, Observer, Unobserved};
 use crate::plan::{Plan, Request};
 use crate::run::Follow;
 use crate::settings::{Settings, Window};
@@ -60,11 +60,16 @@ fn of_system<S: Loses<N> + Follow<N>, const N: usize>(
 trait Loses<const N: usize> {
     /// The power, W, that goes into the structure's dashpot, into the damper's, and into a contact.
     fn powers(&self, knot: &Knot<N>) -> [f64; 3];
+    /// The kinetic energy of a state, J.
+    fn kinetic(&self, y: &[f64; N]) -> f64;
 }
 
 impl Loses<2> for Bare {
     fn powers(&self, knot: &Knot<2>) -> [f64; 3] {
         [self.dashpot_loss(knot.excitation, knot.y[1]), 0.0, 0.0]
+    }
+    fn kinetic(&self, y: &[f64; 2]) -> f64 {
+        0.5 * self.mass() * y[1] * y[1]
     }
 }
 
@@ -73,6 +78,10 @@ impl Loses<4> for Coupled {
         // A wall that would pull is left behind, still indented: what it holds is lost, too.
         let contact = self.contact_loss(&knot.y);
         [self.bare().dashpot_loss(knot.excitation, knot.y[1]), self.damper_loss(&knot.y), contact]
+    }
+    fn kinetic(&self, y: &[f64; 4]) -> f64 {
+        let [m1, m2] = self.masses();
+        0.5 * (m1 * y[1] * y[1] + m2 * y[3] * y[3])
     }
 }
 
@@ -91,5 +100,9 @@ impl<S: Loses<N>, const N: usize> Observer<N> for Observed<'_, S> {
             let powers = self.system.powers(&knot);
             self.lost.iter_mut().zip(powers).for_each(|(lost, power)| *lost += power * time);
         }
+    }
+    fn impact(&mut self, impact: &Impact<N>) {
+        let [before, after] = [impact.before, impact.after].map(|knot| self.system.kinetic(&knot.y));
+        self.lost[2] += before - after;
     }
 }

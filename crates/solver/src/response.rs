@@ -67,7 +67,7 @@ pub struct Response {
     pub structure: StructureMaxima,
     /// Touch-downs on the primary structure and on the obstacle.
     pub impacts: [u64; 2],
-    /// Largest contact forces on the primary structure and on the obstacle, N.
+    /// Largest contact forces on the primary structure and on the obstacle, N; infinite of a rigid wall that was struck.
     pub force_max: [f64; 2],
     /// Largest contact pressures on the primary structure and on the obstacle, N/m².
     pub pressure_max: [f64; 2],

@@ -72,6 +72,7 @@ impl Follow<4> for Coupled {
         observer: &mut impl Observer<4>,
     ) -> Followed<4> {
         match plan {
+            Plan::General(_) if self.is_rigid() => Err(SolverError::RigidWalls { t: 0.0 }),
             Plan::General(method) => follow_by(method, self, window, settings, before, observer),
             Plan::Closed | Plan::Free => follow_free(self, window, settings, before, observer),
             Plan::UntilItRepeats(late) => {
@@ -171,6 +172,7 @@ impl<'a> Follower<'a> {
                 free.propagate(to, observer)?;
                 Ok(Motion { t: to, y: free.state(), phase: Phase::Flight })
             }
+            Way::Steps(_) if self.system.is_rigid() => Err(SolverError::RigidWalls { t: from.t }),
             Way::Steps(method) => {
                 let longest = self.settings.longest_step(to - from.t);
                 let mut run = Run::new(self.system, &self.settings, from.t, from.y, longest);

@@ -154,10 +154,13 @@ fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Re
     }
     let force_max = match forces {
         Some(forces) => forces.records().map(|largest| largest.value.max(0.0)),
+        // The force of an impact has no bound.
+        None if system.is_rigid() => impacts.map(|count| if count > 0 { f64::INFINITY } else { 0.0 }),
         None => Side::BOTH.map(|side| hertz_force(system.hertz(side), depths[side as usize])),
     };
     // A damper that rests on a wall at t = 0 is in contact without a touch-down.
-    let touched = before.0 != [0; 2] || impacts != [0; 2] || force_max != [0.0; 2];
+    let rests = system.is_rigid() && Side::BOTH.iter().any(|&side| system.rests_on(side, &system.start()));
+    let touched = before.0 != [0; 2] || impacts != [0; 2] || force_max != [0.0; 2] || rests;
     Ok(Response {
         e1_max,
         e2_max: e2.record(),

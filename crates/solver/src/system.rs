@@ -59,6 +59,19 @@ pub struct Linear<const N: usize> {
     pub fastest: &'static str,
 }
 
+/// The flow while a rigid wall holds the damper: both bodies as one.
+pub(crate) fn held(system: &Coupled) -> Linear<4> {
+    let (a, input) = system.held_linear_part();
+    Linear {
+        columns: columns(&a),
+        input,
+        origin: [0.0; 4],
+        frequency: system.bare().frequency(),
+        rate: system.held_rate(),
+        fastest: system.fastest(),
+    }
+}
+
 fn columns<const N: usize>(a: &SMatrix<f64, N, N>) -> [[f64; N]; N] {
     std::array::from_fn(|j| std::array::from_fn(|i| a[(i, j)]))
 }

@@ -5,7 +5,7 @@ mod falls;
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Observer, Unobserved};
+use crate::observe::observer::{Impact, Observer, Unobserved};
 use crate::plan::{Plan, Request};
 use crate::run::Follow;
 use crate::settings::{Settings, Window};
@@ -139,7 +139,7 @@ impl Recorded<4> for Coupled {
             state: knot.y,
             e1: self.bare().primary_energy(knot.y[0], knot.y[1]),
             e2: self.damper_energy_rates(knot.excitation, &knot.y)[0],
-            forces: self.contact_forces(&knot.y),
+            forces: self.wall_reactions(knot.excitation, &knot.y),
             moment,
         }
     }
@@ -161,6 +161,8 @@ struct Recorder<'a, S, const N: usize> {
     last: Option<Knot<N>>,
     /// The wall in contact, and the largest indentation of this contact.
     contact: Option<(Side, f64)>,
+    /// Whether a rigid wall holds the damper.
+    held: bool,
 }
 
 /// Share of the largest indentation below which a contact has ended.
@@ -168,11 +170,18 @@ const LEFT: f64 = 1e-9;
 
 impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
     fn new(system: &'a S, start: f64, rows: Rows, visit: &'a mut dyn FnMut(&Sample)) -> Self {
-        Self { system, start, rows, next: 0.0, visit, last: None, contact: None }
+        Self { system, start, rows, next: 0.0, visit, last: None, contact: None, held: false }
     }
 
     fn show(&mut self, knot: &Knot<N>, moment: Moment) {
         (self.visit)(&self.system.sample(knot, moment));
+    }
+
+    /// Shows a moment that is no grid point, if they are asked for.
+    fn event(&mut self, knot: &Knot<N>, moment: Moment) {
+        if self.rows.events {
+            self.show(knot, moment);
+        }
     }
 
     /// The moments in a piece, in the order of time.
@@ -226,6 +235,10 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
 impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
     fn segment(&mut self, segment: &impl Segment<N>) {
         let [from, to] = segment.ends();
+        if self.held && segment.in_flight() {
+            self.held = false;
+            self.event(from, Moment::LiftOff);
+        }
         let moments = if self.rows.events { self.moments(segment) } else { Vec::new() };
         let mut moments = moments.into_iter().peekable();
         loop {
@@ -252,8 +265,16 @@ impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
 
     fn touch_down(&mut self, _t: f64, side: Side) {
         self.contact = Some((side, 0.0));
-        if let (true, Some(knot)) = (self.rows.events, self.last) {
-            self.show(&knot, Moment::TouchDown);
+        if let Some(knot) = self.last {
+            self.event(&knot, Moment::TouchDown);
+        }
+    }
+
+    fn impact(&mut self, impact: &Impact<N>) {
+        (self.contact, self.held) = (None, impact.caught);
+        self.last = Some(impact.after);
+        if !impact.caught {
+            self.event(&impact.after, Moment::LiftOff);
         }
     }
 }

@@ -34,6 +34,7 @@ mod global;
 mod kind;
 mod objective;
 pub mod read;
+mod rigid;
 mod rule;
 mod search;
 mod set;

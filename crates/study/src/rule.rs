@@ -41,7 +41,9 @@ pub enum Rule {
     #[error("optimize: missing; it says what to tune, for instance {{ \"vary\": [\"k2\", \"c2\"] }}")]
     NoOptimize,
     /// The objective has no restitutions to compare.
-    #[error("optimize.objective.restitution: missing; it lists the restitutions to compare, for instance [0.6, 0.8, 1]")]
+    #[error(
+        "optimize.objective.restitution: missing; it lists the restitutions to compare, for instance [0.6, 0.8, 1]"
+    )]
     NoRestitutions,
     /// There is no grid to divide into parts.
     #[error("optimize.surf: missing, but only the grid can be made in parts")]

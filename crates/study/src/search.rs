@@ -38,6 +38,7 @@ impl Study {
     /// The first [`Rule`] that is broken.
     pub fn check(&self) -> Result<(), Rule> {
         check_name(self.name())?;
+        self.check_rigid()?;
         let (t0, end) = (self.window.t0.get(), self.window.end.get());
         if t0 >= end {
             return Err(Rule::EmptyWindow { t0, end });
@@ -97,7 +98,10 @@ impl Study {
             return Err(Rule::NotAllowed {
                 field: "optimize.vary".to_owned(),
                 value: gap.to_string(),
-                allowed: "what the damper has: without D, C and contact it has no walls",
+                allowed: match damper.contact.and_then(|contact| contact.rigid()) {
+                    Some(_) => "what the damper has: its walls are rigid, without surfaces",
+                    None => "what the damper has: without D, C and contact it has no walls",
+                },
             });
         }
         let variables = varied(&optimize.vary)?;

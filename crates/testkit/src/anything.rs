@@ -5,6 +5,7 @@
 use crate::scenes::SSVI;
 use retune_model::{
     Contact, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary, Restitution, Scene,
+    Surfaces,
 };
 use retune_solver::{Contacts, Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 
@@ -67,7 +68,7 @@ impl Anything {
             damping: not_negative(SSVI.c2, c2),
             rest_distance: not_negative(SSVI.d, d),
             clearance: not_negative(SSVI.c, c),
-            contact: Some(Contact {
+            contact: Some(Contact::Hertz(Surfaces {
                 radius: positive(SSVI.r, r),
                 coefficient: positive(SSVI.q, q),
                 young_1: positive(SSVI.young[0], e1),
@@ -79,7 +80,7 @@ impl Anything {
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
                 loss: loss(lambda),
-            }),
+            })),
         };
         let scene = Scene {
             primary: Primary {
@@ -189,7 +190,9 @@ impl Anything {
             | SolverError::Unstable { t }
             | SolverError::NonFinite { t }
             | SolverError::Implausible { t, .. } => t,
-            SolverError::Missed { .. } => panic!("{error}: {self:?}"),
+            SolverError::Missed { .. } | SolverError::RigidWalls { .. } | SolverError::Grazing { .. } => {
+                panic!("{error}: {self:?}")
+            }
             SolverError::TooManySteps { t, limit, .. } | SolverError::TooSlow { t, limit, .. } => {
                 assert_eq!(limit, self.settings.max_steps);
                 t

@@ -2,8 +2,8 @@
 #![allow(clippy::approx_constant, reason = "the paper's 6.28 and 0.318 are not 2π and 1/π")]
 
 use retune_model::{
-    Bare, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
-    RegularisedContact, RegularisedState, Restitution, Scene, Source,
+    Bare, Bounce, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
+    RegularisedContact, RegularisedState, Restitution, Rigid, Scene, Source, Surfaces,
 };
 
 /// A scene as plain numbers in the paper's symbols and SI units, to be varied by `..`.
@@ -28,6 +28,8 @@ pub struct Numbers {
     pub lambda: f64,
     /// Restitution at every speed, 1 of those that λ is given for.
     pub e: f64,
+    /// e of rigid walls in the place of the surfaces.
+    pub rigid: Option<f64>,
 }
 
 /// Table 2, the tuned single-sided vibro-impact damper.
@@ -47,6 +49,7 @@ pub const SSVI: Numbers = Numbers {
     young: [2.1e11, 2.21e7, 2.1e11, 2.05e7],
     lambda: 0.0,
     e: 1.0,
+    rigid: None,
 };
 
 /// Table 2, the tuned mass damper: its walls are out of reach.
@@ -69,6 +72,14 @@ pub const LOSSY: Numbers = Numbers { lambda: 0.4, ..TWO_SIDED };
 
 /// The same with one restitution at every speed.
 pub const RESTORING: Numbers = Numbers { e: 0.7, ..TWO_SIDED };
+
+/// Rigid walls with this restitution.
+///
+/// # Panics
+/// It is not in [0, 1].
+pub fn rigid(e: f64) -> Contact {
+    Contact::Rigid(Rigid { restitution: Bounce::new(e).expect("in [0, 1]") })
+}
 
 impl Numbers {
     /// What contacts lose.
@@ -101,7 +112,7 @@ impl Numbers {
             damping: non_negative(self.c2),
             rest_distance: non_negative(self.d),
             clearance: non_negative(self.c),
-            contact: Some(Contact {
+            contact: Some(self.rigid.map(rigid).unwrap_or(Contact::Hertz(Surfaces {
                 radius: positive(self.r),
                 coefficient: positive(self.q),
                 young_1,
@@ -113,7 +124,7 @@ impl Numbers {
                 young_4,
                 poisson_4: rubber,
                 loss: self.loss(),
-            }),
+            }))),
         }
     }
 

@@ -28,6 +28,8 @@ const CONVERGENCE: [(Method, f64); 5] = [
     (Method::Dop853, 1e-12),
     (Method::Ode45, 1e-10),
 ];
+/// The angle, rad, by which the force is turned between rigid walls, as a share of the tolerance that would stand there.
+const TURNED: f64 = 1e-3;
 /// Time over which methods that step in time follow a steady motion, s, and the criterion by which it has settled.
 const LONG: f64 = 2000.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
@@ -41,8 +43,8 @@ pub(super) enum OtherStarts {
     WhereTheyDecide,
 }
 
-/// The parameters that a built scene has with an error; a loss where it has one.
-const INEXACT: [Parameter; 14] = [
+/// The parameters that a built scene has with an error; a loss or a restitution where it has one.
+const INEXACT: [Parameter; 15] = [
     Parameter::M1,
     Parameter::C1,
     Parameter::K1,
@@ -57,6 +59,7 @@ const INEXACT: [Parameter; 14] = [
     Parameter::Base,
     Parameter::Omega,
     Parameter::Lambda,
+    Parameter::Restitution,
 ];
 
 /// Makes all measurements and the certificate.
@@ -134,9 +137,13 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
     let (response, settle) =
         goal.term(worst.term).map_or((Response::Steady, STEADY), |term| (term.response, term.settle));
     let quantity = goal.objective.quantity();
+    let walls = worst.scene.damper.and_then(|damper| damper.contact);
+    let rigid = walls.is_some_and(|walls| walls.rigid().is_some());
     let run = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
-        let ask = Ask { measure: quantity, phase: worst.phase, ..Ask::default() };
+        // Between rigid walls there is no tolerance: the force is turned by as little, to tell whether the motion can be predicted.
+        let turned = if rigid { TURNED * rtol } else { 0.0 };
+        let ask = Ask { measure: quantity, phase: worst.phase + turned, ..Ask::default() };
         let found = match response {
             Response::Window => extremes(&worst.scene, goal.window, &settings, ask),
             Response::Settled => settled(&worst.scene, goal.window, settle, &settings, ask),
@@ -158,7 +165,7 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
         Ok(Run { method, rtol, value: Amount::new(quantity, value) })
     };
     // Motions are followed by the study's own method alone.
-    let other = |method: Method| response != Response::Motions || method == Method::Hybrid;
+    let other = |method: Method| (response != Response::Motions && !rigid) || method == Method::Hybrid;
     CONVERGENCE.par_iter().filter(|(method, _)| other(*method)).map(run).collect()
 }
 
@@ -174,11 +181,17 @@ fn sensitivities(
     let tried = INEXACT.into_iter().filter(|parameter| single || *parameter != Parameter::Omega);
     let known: Vec<(Parameter, f64)> = tried
         .filter_map(|parameter| Some((parameter, parameter.of(&study.scene)?)))
-        .filter(|(_, value)| *value != 0.0)
+        .filter(|(parameter, value)| {
+            *value != 0.0 && !(*parameter == Parameter::Restitution && *value == 1.0)
+        })
         .collect();
     let off: Vec<(Parameter, f64, f64)> = known
         .iter()
-        .flat_map(|&(parameter, value)| ERRORS.map(|error| (parameter, error, value * (1.0 + error))))
+        .flat_map(|&(parameter, value)| {
+            // No restitution is above 1.
+            let most = if parameter == Parameter::Restitution { 1.0 } else { f64::INFINITY };
+            ERRORS.map(|error| (parameter, error, (value * (1.0 + error)).min(most)))
+        })
         .collect();
     let at = |&(parameter, _, value): &(Parameter, f64, f64)| {
         parameter.at(study.scene, value).map_or(Outcome::NOTHING, |scene| outcome(&scene))

@@ -4,7 +4,7 @@
 //! structure without a damper.
 
 use crate::Error;
-use retune_model::{Bare, Contact, Positive, Scene, den_hartog};
+use retune_model::{Bare, Positive, Scene, Surfaces, den_hartog};
 use retune_study::read::from_text;
 use retune_study::{Rule, Study};
 use serde::{Deserialize, Serialize};
@@ -207,7 +207,7 @@ impl Requirements {
     ///
     /// # Errors
     /// There are none for its mass.
-    pub fn contact(&self) -> Result<Contact, Error> {
+    pub fn contact(&self) -> Result<Surfaces, Error> {
         let refuse = |_| Error::Rule {
             name: "design".to_owned(),
             rule: Rule::NotAllowed {
@@ -216,7 +216,7 @@ impl Requirements {
                 allowed: "a mass above 0",
             },
         };
-        Positive::new(self.mass).and_then(Contact::for_mass).map_err(refuse)
+        Positive::new(self.mass).and_then(Surfaces::for_mass).map_err(refuse)
     }
 
     /// A study of 100 periods of the structure, the first half of which passes before maxima are taken.

@@ -38,6 +38,7 @@ fn rules() -> Vec<Rule> {
         Rule::Atol { value },
         Rule::NoDamper,
         Rule::NoOptimize,
+        Rule::NoRestitutions,
         Rule::NoGrid,
         Rule::NothingVaried,
         Rule::VariedTwice { variable },
@@ -120,6 +121,8 @@ fn solvers() -> Vec<SolverError> {
         SolverError::Unstable { t: 1.5 },
         SolverError::Implausible { t: 4.0, value: 1e87, time: 2.5, most: 320.0 },
         SolverError::Missed { t: 4.0, depth: 1e-6 },
+        SolverError::RigidWalls { t: 0.0 },
+        SolverError::Grazing { t: 2.5 },
         SolverError::NonFinite { t: 1.5 },
     ]
 }
@@ -232,12 +235,12 @@ fn regress_the_words_of_every_error() {
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
-        each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoGrid NothingVaried VariedTwice EmptyBand
+        each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoRestitutions NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
             NotAllowed SumAndMore NoEnd),
         each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
-            NonFinite),
+            NonFinite RigidWalls Grazing),
         each!(lines(), LineError: Count Number Long Unusable),
     ]
     .concat();

@@ -1,7 +1,7 @@
 //! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
 
 use crate::{Error, Observer};
-use retune_model::{Damper, Design, Parameter, Scene};
+use retune_model::{Contact, Damper, Design, Parameter, Scene};
 use retune_optim::Failures;
 use retune_solver::{Settings, Window};
 use retune_study::{Kind, PaperStudy, Setting, Study, StudyError, read_paper, read_table2};
@@ -173,8 +173,9 @@ impl<'a> Plan<'a> {
     /// What made an item, in words.
     pub fn made_by(&self, more: &str) -> String {
         let contact = self.ssvi.scene.damper.and_then(|damper| damper.contact);
-        let radius = contact.map_or(String::new(), |contact| {
-            format!("R = {} m, q = {}; ", contact.radius.get(), contact.coefficient.get())
+        let surfaces = contact.as_ref().and_then(Contact::surfaces);
+        let radius = surfaces.map_or(String::new(), |surfaces| {
+            format!("R = {} m, q = {}; ", surfaces.radius.get(), surfaces.coefficient.get())
         });
         format!("{radius}{}. {more}", crate::summary::MadeBy::new(&self.ssvi))
     }

@@ -10,27 +10,21 @@ impl Coupled {
     #[inline]
     pub fn primary_energy_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
         at_one_moment(excitation, y, |excitation, y| {
-            self.primary_energy_rates_under(excitation, y, self.wall_forces(y))
+            self.primary_energy_rates_by(y, self.accelerations_at_walls(excitation, y))
         })
     }
 
     /// [`Self::primary_energy_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn primary_energy_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.primary_energy_rates_under(excitation, y, self.no_wall_forces())
+        self.primary_energy_rates_by(y, self.accelerations(excitation, y, self.no_wall_forces()))
     }
 
     #[inline(always)]
-    fn primary_energy_rates_under(
-        &self,
-        excitation: &[f64x4; 2],
-        y: &[f64x4; 4],
-        walls: WallForces,
-    ) -> [f64x4; 3] {
+    fn primary_energy_rates_by(&self, y: &[f64x4; 4], accelerations: Accelerations) -> [f64x4; 3] {
         let &[x1, v1, ..] = y;
         let Bare { m1, k1, .. } = self.bare;
-        let Accelerations { a: [a1, _], force: [g, _], force_rate: [g_rate, _] } =
-            self.accelerations(excitation, y, walls);
+        let Accelerations { a: [a1, _], force: [g, _], force_rate: [g_rate, _] } = accelerations;
         [(v1 * v1 * m1 + x1 * x1 * k1) * 0.5, v1 * g, a1 * g + v1 * g_rate]
     }
 
@@ -40,26 +34,20 @@ impl Coupled {
     #[inline]
     pub fn damper_energy_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
         at_one_moment(excitation, y, |excitation, y| {
-            self.damper_energy_rates_under(excitation, y, self.wall_forces(y))
+            self.damper_energy_rates_by(y, self.accelerations_at_walls(excitation, y))
         })
     }
 
     /// [`Self::damper_energy_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn damper_energy_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.damper_energy_rates_under(excitation, y, self.no_wall_forces())
+        self.damper_energy_rates_by(y, self.accelerations(excitation, y, self.no_wall_forces()))
     }
 
     #[inline(always)]
-    fn damper_energy_rates_under(
-        &self,
-        excitation: &[f64x4; 2],
-        y: &[f64x4; 4],
-        walls: WallForces,
-    ) -> [f64x4; 3] {
+    fn damper_energy_rates_by(&self, y: &[f64x4; 4], accelerations: Accelerations) -> [f64x4; 3] {
         let &[_, _, x2, v2] = y;
-        let Accelerations { a: [_, a2], force: [_, force], force_rate: [_, rate] } =
-            self.accelerations(excitation, y, walls);
+        let Accelerations { a: [_, a2], force: [_, force], force_rate: [_, rate] } = accelerations;
         let (m2, k2, x) = (self.m2, self.k2, x2 - self.d);
         let net = force + x * k2;
         [(v2 * v2 * m2 + x * x * k2) * 0.5, v2 * net, a2 * net + v2 * (rate + v2 * k2)]
@@ -79,26 +67,14 @@ impl Coupled {
     #[inline]
     pub fn relative_position_rates(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 3] {
         at_one_moment(excitation, y, |excitation, y| {
-            self.relative_position_rates_under(excitation, y, self.wall_forces(y))
+            relative_position_rates_by(y, self.accelerations_at_walls(excitation, y))
         })
     }
 
     /// [`Self::relative_position_rates`] of four moments side by side at which the damper touches no wall.
     #[inline(always)]
     pub fn relative_position_rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> [f64x4; 3] {
-        self.relative_position_rates_under(excitation, y, self.no_wall_forces())
-    }
-
-    #[inline(always)]
-    fn relative_position_rates_under(
-        &self,
-        excitation: &[f64x4; 2],
-        y: &[f64x4; 4],
-        walls: WallForces,
-    ) -> [f64x4; 3] {
-        let &[x1, v1, x2, v2] = y;
-        let Accelerations { a: [a1, a2], .. } = self.accelerations(excitation, y, walls);
-        [x2 - x1, v2 - v1, a2 - a1]
+        relative_position_rates_by(y, self.accelerations(excitation, y, self.no_wall_forces()))
     }
 
     /// Equation (1) and its time derivative.
@@ -117,6 +93,19 @@ impl Coupled {
         let on_damper_rate = -walls.slope * stretch_rate - (a2 - a1) * walls.drag - stretch_rate * self.k2;
         let g_rate = sin * -omega - a1 * c1 - on_damper_rate;
         Accelerations { a: [a1, a2], force: [g, on_damper], force_rate: [g_rate, on_damper_rate] }
+    }
+
+    /// [`Self::accelerations`] with the forces of walls: those of a contact, or of a rigid wall that holds the damper.
+    #[inline(always)]
+    pub(super) fn accelerations_at_walls(&self, excitation: &[f64x4; 2], y: &[f64x4; 4]) -> Accelerations {
+        if self.is_rigid() {
+            let (force, state) =
+                (excitation.map(|lanes| lanes.to_array()[0]), y.map(|lanes| lanes.to_array()[0]));
+            if self.holding(force, &state).is_some() {
+                return self.held_accelerations(force, &state);
+            }
+        }
+        self.accelerations(excitation, y, self.wall_forces(y))
     }
 
     /// The contact forces of both walls on the damper.
@@ -166,6 +155,12 @@ impl Coupled {
     pub fn momentum(&self, y: &[f64; 4]) -> f64 {
         self.bare.m1 * y[1] + self.m2 * y[3]
     }
+}
+
+#[inline(always)]
+fn relative_position_rates_by(&[x1, v1, x2, v2]: &[f64x4; 4], accelerations: Accelerations) -> [f64x4; 3] {
+    let Accelerations { a: [a1, a2], .. } = accelerations;
+    [x2 - x1, v2 - v1, a2 - a1]
 }
 
 /// The net contact force on the damper, N, the sum of the slopes of both contact forces, N/m, and that of their slopes by the speed and of

@@ -35,6 +35,9 @@ impl Coupled {
     /// the wall is taken to be out of reach.
     #[inline]
     pub fn primary_motion(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 5] {
+        if self.holding(excitation, y).is_some() {
+            return self.held_motion(excitation, y);
+        }
         at_one_moment(excitation, y, |excitation, lanes| {
             let bends = self.wall_bends(y).map(f64x4::splat);
             self.primary_motion_under(excitation, lanes, self.wall_forces(lanes), bends)

@@ -2,7 +2,8 @@
 
 use super::Parameter;
 use crate::{
-    Damper, Forcing, Loss, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution, Scene, Source,
+    Bounce, Contact, Damper, Forcing, Loss, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution,
+    Scene, Source,
 };
 use schemars::{Schema, json_schema};
 
@@ -15,6 +16,9 @@ pub enum Absent {
     /// The damper has no walls: no gaps, no surfaces.
     #[error("the damper has no walls")]
     NoWalls,
+    /// The walls are rigid: they have a restitution alone.
+    #[error("the walls are rigid: they have `e` alone")]
+    Rigid,
     /// Another number gives the forcing.
     #[error("the forcing of the scene is given by `{0}`")]
     Forcing(&'static str),
@@ -40,6 +44,7 @@ enum Place<'a> {
     NonNegative(&'a mut NonNegative),
     Poisson(&'a mut PoissonRatio),
     Restitution(&'a mut Restitution),
+    Bounce(&'a mut Bounce),
 }
 
 impl Place<'_> {
@@ -49,6 +54,7 @@ impl Place<'_> {
             Self::NonNegative(at) => at.get(),
             Self::Poisson(at) => at.get(),
             Self::Restitution(at) => at.get(),
+            Self::Bounce(at) => at.get(),
         }
     }
 
@@ -58,6 +64,7 @@ impl Place<'_> {
             Self::NonNegative(at) => *at = NonNegative::new(value)?,
             Self::Poisson(at) => *at = PoissonRatio::new(value)?,
             Self::Restitution(at) => *at = Restitution::new(value)?,
+            Self::Bounce(at) => *at = Bounce::new(value)?,
         }
         Ok(())
     }
@@ -94,9 +101,17 @@ impl Parameter {
             _ => {}
         }
         let contact = contact.as_mut().ok_or(Absent::NoWalls)?;
+        match self {
+            Self::D => return Ok(Place::NonNegative(rest_distance)),
+            Self::C => return Ok(Place::NonNegative(clearance)),
+            _ => {}
+        }
+        let contact = match (self, contact) {
+            (Self::Restitution, Contact::Rigid(rigid)) => return Ok(Place::Bounce(&mut rigid.restitution)),
+            (_, Contact::Rigid(_)) => return Err(Absent::Rigid),
+            (_, Contact::Hertz(surfaces)) => surfaces,
+        };
         let place = match self {
-            Self::D => Place::NonNegative(rest_distance),
-            Self::C => Place::NonNegative(clearance),
             Self::Q => Place::Positive(&mut contact.coefficient),
             Self::E1 => Place::Positive(&mut contact.young_1),
             Self::Nu1 => Place::Poisson(&mut contact.poisson_1),

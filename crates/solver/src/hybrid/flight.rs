@@ -143,6 +143,15 @@ impl Hybrid<'_> {
     fn gap_polynomial(&self, motion: &Expansion<4>, side: Side, leaving: Option<Side>) -> Polynomial<BLOCKS> {
         let gap = relative_position(motion, -side.sign());
         let now = gap.coefficient(0) + side.sign() * self.system.wall(side);
-        gap.with_constant(if leaving == Some(side) { 0.0 } else { now.max(0.0) })
+        if leaving != Some(side) {
+            return gap.with_constant(now.max(0.0));
+        }
+        let mut gap = gap.with_constant(0.0);
+        // A rigid wall lets go of the damper where the force between them is zero: the gap opens from rest, at first without acceleration.
+        if gap.coefficient(1) == 0.0 && self.system.is_rigid() {
+            let terms = gap.0[0].as_mut_array();
+            terms[2] = terms[2].max(0.0);
+        }
+        gap
     }
 }

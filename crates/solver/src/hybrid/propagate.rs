@@ -22,6 +22,11 @@ impl Hybrid<'_> {
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
         self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work, [from.t, to]);
+        if let Some(rigid) = self.rigid.take() {
+            let end = self.between_rigid(&rigid, from, to, observer);
+            self.rigid = Some(rigid);
+            return end;
+        }
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });

@@ -1,5 +1,6 @@
 //! The data of the hybrid propagator: prepared once for a system, then used for any stretch of its motion.
 
+use super::rigid::RigidWalls;
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};
@@ -17,13 +18,17 @@ pub enum Phase {
     Flight,
     /// Between the walls, having just left one, where the gap is zero by definition rather than by arithmetic.
     Leaving(Side),
-    /// In contact with a wall.
+    /// In contact with a wall; of a rigid one, held by it.
     InContact(Side),
 }
 
 impl Phase {
-    /// The phase of a state that was set rather than reached: in contact where the damper overlaps a wall.
+    /// The phase of a state that was set rather than reached: in contact where the damper overlaps a wall, or rests on a rigid one.
     pub fn of(system: &Coupled, y: &[f64; 4]) -> Self {
+        if system.is_rigid() {
+            let wall = Side::BOTH.into_iter().find(|&side| system.rests_on(side, y));
+            return wall.map_or(Self::Flight, Self::InContact);
+        }
         let overlaps = system.indentation(y);
         let contact = Side::BOTH.into_iter().find(|&side| overlaps[side as usize] > 0.0);
         contact.map_or(Self::Flight, Self::InContact)
@@ -55,6 +60,7 @@ pub struct Hybrid<'a> {
     pub(super) flow: Flow<4>,
     pub(super) contacts: [RegularisedContact; 2],
     pub(super) collisions: [Collisions; 2],
+    pub(super) rigid: Option<Box<RigidWalls>>,
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
     pub(super) fourth: [f64; 2],
     pub(super) rtol: f64,
@@ -77,6 +83,7 @@ impl<'a> Hybrid<'a> {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
             budget: Budget::new(flow.pace(), max_steps, Work::default(), [0.0; 2]),
+            rigid: RigidWalls::of(system, longest).map(Box::new),
             flow,
             contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],

@@ -1,7 +1,7 @@
 //! The range of the relative displacement, from which stroke and contact forces follow.
 
 use super::contact_forces::ContactForces;
-use super::observer::{Observer, Path};
+use super::observer::{Impact, Observer, Path};
 use super::quantity::RelativePosition;
 use super::running_maximum::RunningMaximum;
 use crate::linear::steps::Steps;
@@ -16,13 +16,15 @@ pub struct DisplacementRange<'a> {
     ends: [RunningMaximum<RelativePosition<'a>>; 2],
     /// The forces themselves, of walls that lose energy.
     forces: Option<ContactForces<'a>>,
+    /// When a rigid wall was first struck, s.
+    struck: Option<f64>,
 }
 
 impl<'a> DisplacementRange<'a> {
     /// Watches a damper; `cutoff` is for whoever reads it.
     pub fn new(system: &'a Coupled, cutoff: f64) -> Self {
         let end = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
-        Self { system, cutoff, ends: [1.0, -1.0].map(end), forces: ContactForces::of(system) }
+        Self { system, cutoff, ends: [1.0, -1.0].map(end), forces: ContactForces::of(system), struck: None }
     }
 
     /// The value above which its reader needs no more.
@@ -36,9 +38,13 @@ impl<'a> DisplacementRange<'a> {
         self.larger(|_, place| (place - rest).abs())
     }
 
-    /// The largest contact force on either wall, N, and when; `-∞` and NaN while no motion has been seen.
+    /// The largest contact force on either wall, N, and when; `-∞` and NaN while no motion has been seen. That of an impact with a rigid wall
+    /// is infinite.
     pub fn force(&self) -> Extreme {
         let system = self.system;
+        if let Some(time) = self.struck {
+            return Extreme { value: f64::INFINITY, time };
+        }
         if let Some(forces) = &self.forces {
             let [near, far] = forces.records();
             let larger = if near.value > far.value { near } else { far };
@@ -86,5 +92,9 @@ impl Observer<4> for DisplacementRange<'_> {
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         self.ends.steps(steps);
         self.forces.steps(steps);
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        self.ends.impact(impact);
+        self.struck.get_or_insert(impact.after.t);
     }
 }

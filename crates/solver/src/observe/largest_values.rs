@@ -2,7 +2,7 @@
 
 use super::displacement_range::DisplacementRange;
 use super::magnitude::Magnitude;
-use super::observer::{Observer, Path};
+use super::observer::{Impact, Observer, Path};
 use super::quantity::PrimaryEnergy;
 use super::running_maximum::RunningMaximum;
 use super::structure::StructureMotion;
@@ -66,5 +66,10 @@ impl Observer<4> for LargestValues<'_> {
         self.energy.steps(steps);
         self.motions.steps(steps);
         self.range.steps(steps);
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        self.energy.impact(impact);
+        self.motions.impact(impact);
+        self.range.impact(impact);
     }
 }

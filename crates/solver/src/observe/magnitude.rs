@@ -1,6 +1,6 @@
 //! The largest size of a quantity of either sign.
 
-use super::observer::{Observer, Path};
+use super::observer::{Impact, Observer, Path};
 use super::quantity::Quantity;
 use super::running_maximum::RunningMaximum;
 use crate::linear::steps::Steps;
@@ -49,6 +49,9 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
     }
     fn steps(&mut self, steps: &Steps<'_, N>) {
         self.each(|one| one.steps(steps));
+    }
+    fn impact(&mut self, impact: &Impact<N>) {
+        self.0.impact(impact);
     }
     fn satisfied(&self) -> bool {
         self.0.iter().any(Observer::satisfied)

@@ -2,6 +2,7 @@
 
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
+use crate::motion::knot::Knot;
 use crate::motion::linearised::LinearContact;
 use crate::motion::segment::Segment;
 use retune_model::Side;
@@ -29,6 +30,22 @@ pub trait Path<const N: usize> {
 
 /// Most knots of a [`Path`].
 pub const MOST_KNOTS: usize = 18;
+
+/// An impact with a rigid wall: the state jumps.
+#[derive(Clone, Copy, Debug)]
+pub struct Impact<const N: usize> {
+    /// The wall.
+    pub side: Side,
+    /// The moment before it.
+    pub before: Knot<N>,
+    /// The moment after it, at the same time.
+    pub after: Knot<N>,
+    /// Whether the wall holds the damper from now on.
+    pub caught: bool,
+    /// Whether the damper only grazes the wall: it touches it without a speed, and is not pressed on it.
+    pub grazes: bool,
+}
+
 /// Follows a run. A pair of observers, nested as deep as need be, is an observer; so are an array and an `Option` of one.
 pub trait Observer<const N: usize> {
     /// Whether it looks at the motion. An observer of events alone sets this to `false`, and no segment is computed for it.
@@ -61,6 +78,8 @@ pub trait Observer<const N: usize> {
     }
     /// The damper has touched a wall at time `t` (s).
     fn touch_down(&mut self, _t: f64, _side: Side) {}
+    /// The damper has struck a rigid wall: between two segments the state jumps.
+    fn impact(&mut self, _impact: &Impact<N>) {}
     /// Whether the run may stop here. It stops as soon as one of several observers says so.
     fn satisfied(&self) -> bool {
         false
@@ -92,6 +111,10 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
         self.0.touch_down(t, side);
         self.1.touch_down(t, side);
     }
+    fn impact(&mut self, impact: &Impact<N>) {
+        self.0.impact(impact);
+        self.1.impact(impact);
+    }
     fn satisfied(&self) -> bool {
         self.0.satisfied() || self.1.satisfied()
     }
@@ -110,6 +133,9 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
     }
     fn touch_down(&mut self, t: f64, side: Side) {
         (**self).touch_down(t, side);
+    }
+    fn impact(&mut self, impact: &Impact<N>) {
+        (**self).impact(impact);
     }
     fn satisfied(&self) -> bool {
         (**self).satisfied()
@@ -132,6 +158,9 @@ macro_rules! for_each_in {
             }
             fn touch_down(&mut self, t: f64, side: Side) {
                 self.iter_mut().for_each(|observer| observer.touch_down(t, side));
+            }
+            fn impact(&mut self, impact: &Impact<N>) {
+                self.iter_mut().for_each(|observer| observer.impact(impact));
             }
             fn satisfied(&self) -> bool {
                 self.iter().any(|observer| observer.satisfied())

@@ -1,6 +1,6 @@
 //! The running maximum of a quantity: the observer that most runs are made for.
 
-use super::observer::{MOST_KNOTS, Observer, Path};
+use super::observer::{Impact, MOST_KNOTS, Observer, Path};
 use super::quantity::Quantity;
 use super::quintic::{highest, quintic};
 use super::search::{Search, in_theta};
@@ -149,6 +149,14 @@ where
             let (from, to) = ((0.0, *begin, rates(begins)), (h, *end, rates(ends)));
             self.search.begin(&step, &from, &to, remainder);
         }
+    }
+
+    /// The rates before a jump are not those after it.
+    fn impact(&mut self, impact: &Impact<N>) {
+        self.last = None;
+        // The next segment may be none that is searched: the value counts all the same.
+        let rates = impact.after.rates(&self.search.quantity, !impact.caught);
+        self.search.note(rates[0], impact.after.t);
     }
 
     fn satisfied(&self) -> bool {

@@ -1,6 +1,6 @@
 //! An observer that looks from a time on.
 
-use super::observer::{Observer, Path};
+use super::observer::{Impact, Observer, Path};
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
@@ -52,6 +52,11 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
     fn touch_down(&mut self, t: f64, side: Side) {
         if t >= self.from {
             self.observer.touch_down(t, side);
+        }
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        if impact.after.t >= self.from {
+            self.observer.impact(impact);
         }
     }
 }

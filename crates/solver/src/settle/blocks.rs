@@ -3,7 +3,7 @@
 use crate::extremes::{Also, Ask, Extremes, Maxima, maxima, read};
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Observer, Path};
+use crate::observe::observer::{Impact, Observer, Path};
 use crate::recurrence::section::PoincareSection;
 use crate::recurrence::test::{Recurrence, Settle};
 use crate::settings::Settings;
@@ -127,6 +127,9 @@ impl Observer<4> for Blocks<'_> {
         } else {
             (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
         }
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        self.now.impact(impact);
     }
     fn satisfied(&self) -> bool {
         self.settled.is_some()

@@ -72,6 +72,9 @@ pub(crate) fn gradient_at(
     parameters: &[Parameter],
 ) -> Result<Gradient, SolverError> {
     let start = Motion::start(system);
+    if let Some(by) = at_impact(system, tangent, last, measure, at, parameters)? {
+        return Ok(Gradient { at, by });
+    }
     let mut found = tangent.propagate(start, at.time, &mut Unobserved)?;
     let late = lateness(system, measure, &found.end);
     if late != 0.0 && late.abs() <= LATE && at.time - late <= last {
@@ -80,34 +83,80 @@ pub(crate) fn gradient_at(
     Ok(Gradient { at, by: derivatives(system, measure, &found, parameters) })
 }
 
+/// An impact as near to the time of a largest value as this, s, is where it is reached, if the value there is the largest to this share.
+const AT_IMPACT: f64 = 1e-9;
+const SAME: f64 = 1e-12;
+
+/// The derivatives of a largest value that is reached at an impact with a rigid wall, just before or just after it: those at the time of the
+/// impact, which moves; none if it is reached elsewhere.
+fn at_impact(
+    system: &Coupled,
+    tangent: &mut Tangent<'_>,
+    last: f64,
+    measure: Measure,
+    at: Extreme,
+    parameters: &[Parameter],
+) -> Result<Option<Vec<f64>>, SolverError> {
+    if !system.is_rigid() {
+        return Ok(None);
+    }
+    let within = AT_IMPACT * at.time.max(1.0);
+    let struck = tangent.strike(Motion::start(system), at.time - within, last.min(at.time + within))?;
+    let Some(struck) = struck else { return Ok(None) };
+    let [before, after] = struck.sides.each_ref().map(|side| rates(system, measure, &side.end)[0].abs());
+    let side = if before > after { &struck.sides[0] } else { &struck.sides[1] };
+    if before.max(after) < at.value * (1.0 - SAME) {
+        return Ok(None);
+    }
+    let mut by = derivatives(system, measure, side, parameters);
+    if measure == Measure::Acceleration {
+        // It depends on the force, too, which goes on while the impact is late.
+        let (t, y) = (side.end.t, &side.end.y);
+        let (now, [a, ..]) = (system.excitation(t), rates(system, measure, &side.end));
+        let turned = [-system.bare().frequency() * now[1], 0.0];
+        let pushed = system.derivative(turned, y)[1] - system.derivative([0.0; 2], y)[1];
+        for ((by, late), &parameter) in by.iter_mut().zip(&struck.late).zip(parameters) {
+            let moves = parameter == Parameter::D && system.starts_at_rest_distance();
+            let late = late + if moves { struck.late_by_state[2] } else { 0.0 };
+            *by += a.signum() * pushed * late;
+        }
+    }
+    Ok(Some(by))
+}
+
 /// By how much (s) a moment is later than the maximum beside it: the slope of the measured quantity over its curvature.
 fn lateness(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
+    let [_, slope, curvature] = rates(system, measure, now);
+    if curvature == 0.0 { 0.0 } else { slope / curvature }
+}
+
+/// The quantity whose size is measured, with its slope and curvature in time.
+fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
     let excitation = system.excitation(now.t);
     let motion = || system.primary_motion(excitation, &now.y);
-    let [slope, curvature] = match measure {
-        Measure::Energy => {
-            let [_, slope, curvature] = system.primary_energy_rates(excitation, &now.y);
-            [slope, curvature]
-        }
-        Measure::Displacement => [motion()[1], motion()[2]],
-        Measure::Velocity => [motion()[2], motion()[3]],
-        Measure::Acceleration => [motion()[3], motion()[4]],
+    let of_motion = |i: usize| {
+        let motion = motion();
+        [motion[i], motion[i + 1], motion[i + 2]]
+    };
+    match measure {
+        Measure::Energy => system.primary_energy_rates(excitation, &now.y),
+        Measure::Displacement => of_motion(0),
+        Measure::Velocity => of_motion(1),
+        Measure::Acceleration => of_motion(2),
         Measure::GroundForce => {
             let [k1, c1] = system.bare().ground_force_weights();
-            let [_, v1, a1, jerk, _] = motion();
-            [k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk]
+            let [x1, v1, a1, jerk, _] = motion();
+            [k1 * x1 + c1 * v1, k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk]
         }
         Measure::ContactForce if system.is_lossy() => {
             let [near, far] = Side::BOTH.map(|side| system.contact_force_rates(excitation, &now.y, side));
-            let [_, slope, curvature] = if near[0] > far[0] { near } else { far };
-            [slope, curvature]
+            if near[0] > far[0] { near } else { far }
         }
         Measure::Stroke | Measure::ContactForce | Measure::ContactPressure => {
-            let [_, slope, curvature] = system.relative_position_rates(excitation, &now.y);
-            [slope, curvature]
+            let [place, slope, curvature] = system.relative_position_rates(excitation, &now.y);
+            [place - system.rest_distance(), slope, curvature]
         }
-    };
-    if curvature == 0.0 { 0.0 } else { slope / curvature }
+    }
 }
 
 /// The derivatives of a measure's value at the end of a run, per unit of each parameter.

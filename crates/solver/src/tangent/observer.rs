@@ -3,13 +3,15 @@
 use super::collision::{Change, Crossing, Kicks};
 use super::contact::{Nodes, carry, nodes};
 use super::flight::Flight;
+use super::rigid::{Jump, hold};
 use super::series::Moment;
 use crate::error::SolverError;
-use crate::hybrid::propagator::Motion;
+use crate::hybrid::propagator::{Motion, Phase};
 use crate::linear::steps::Steps;
+use crate::motion::knot::Knot;
 use crate::motion::linearised::LinearContact;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Observer, Path};
+use crate::observe::observer::{Impact, Observer, Path, Unobserved};
 use crate::run::Follower;
 use crate::settings::Settings;
 use retune_model::{Coupled, Excitation, Parameter, Side};
@@ -25,10 +27,24 @@ pub struct Transition {
     pub by: Vec<[f64; 4]>,
 }
 
+/// An impact with a rigid wall, and the derivatives at its own time, which moves.
+pub(super) struct Struck {
+    /// Just before and just after it.
+    pub sides: [Transition; 2],
+    /// By how much later it is by each parameter, and by each component of the first state, s per unit.
+    pub late: Vec<f64>,
+    pub late_by_state: [f64; 4],
+}
+
 /// Follows motions of one system with their derivatives.
 pub struct Tangent<'a> {
-    system: &'a Coupled,
     follower: Follower<'a>,
+    prepared: Prepared<'a>,
+}
+
+/// What the derivatives of one system need for any stretch of its motion.
+struct Prepared<'a> {
+    system: &'a Coupled,
     flight: Flight,
     kicks: [Kicks; 2],
     parameters: Vec<Parameter>,
@@ -44,14 +60,14 @@ impl<'a> Tangent<'a> {
         let forces =
             |&parameter: &Parameter| [0.0, 1.0].iter().any(|t| bare.excitation_by(parameter, *t) != [0.0; 2]);
         let flight = Flight::new(system, parameters);
-        Self {
+        let prepared = Prepared {
             system,
             kicks: Side::BOTH.map(|side| Kicks::new(system, &flight, side, parameters)),
-            follower: Follower::new(system, &settings.exact(), longest),
             flight,
             parameters: parameters.to_vec(),
             forces: parameters.iter().map(forces).collect(),
-        }
+        };
+        Self { follower: Follower::new(system, &settings.exact(), longest), prepared }
     }
 
     /// Follows the motion to time `to` (s), or until the observer is satisfied, with its derivatives by the state in `from` and by the
@@ -65,21 +81,25 @@ impl<'a> Tangent<'a> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<Transition, SolverError> {
-        let mut course = Course {
-            system: self.system,
-            flight: &self.flight,
-            kicks: &self.kicks,
-            parameters: &self.parameters,
-            forces: &self.forces,
-            t: from.t,
-            y: from.y,
-            by_state: std::array::from_fn(|j| std::array::from_fn(|i| f64::from(u8::from(i == j)))),
-            by: vec![[0.0; 4]; self.parameters.len()],
-        };
+        let mut course = Course::new(&self.prepared, from);
         let end = self.follower.propagate(from, to, &mut (&mut course, observer))?;
         course.fly(end.t);
-        let Course { by_state, by, .. } = course;
-        Ok(Transition { end, by_state, by })
+        let Course { by_state, by, grazed, .. } = course;
+        match grazed {
+            Some(t) => Err(SolverError::Grazing { t }),
+            None => Ok(Transition { end, by_state, by }),
+        }
+    }
+
+    /// The first impact with a rigid wall at `near` (s) or later, up to time `to`: the derivatives just before and after it.
+    ///
+    /// # Errors
+    /// [`SolverError`] with the time reached.
+    pub(super) fn strike(&mut self, from: Motion, near: f64, to: f64) -> Result<Option<Struck>, SolverError> {
+        let mut course = Course::new(&self.prepared, from);
+        course.near = near;
+        self.follower.propagate(from, to, &mut (&mut course, Unobserved))?;
+        Ok(course.struck)
     }
 }
 
@@ -94,9 +114,31 @@ struct Course<'a> {
     y: [f64; 4],
     by_state: [[f64; 4]; 4],
     by: Vec<[f64; 4]>,
+    /// When the damper first grazed a rigid wall, s.
+    grazed: Option<f64>,
+    /// From when on an impact is kept, s, and the derivatives at its own time, which moves, before and after it.
+    near: f64,
+    struck: Option<Struck>,
 }
 
-impl Course<'_> {
+impl<'a> Course<'a> {
+    fn new(prepared: &'a Prepared<'_>, from: Motion) -> Self {
+        Self {
+            system: prepared.system,
+            flight: &prepared.flight,
+            kicks: &prepared.kicks,
+            parameters: &prepared.parameters,
+            forces: &prepared.forces,
+            t: from.t,
+            y: from.y,
+            by_state: std::array::from_fn(|j| std::array::from_fn(|i| f64::from(u8::from(i == j)))),
+            by: vec![[0.0; 4]; prepared.parameters.len()],
+            grazed: None,
+            near: f64::INFINITY,
+            struck: None,
+        }
+    }
+
     /// The derivative of the force by the parameter of this number at `t` (s).
     fn force_by(&self, number: usize, t: f64) -> Excitation {
         if self.forces[number] {
@@ -129,6 +171,34 @@ impl Course<'_> {
         (self.t, self.y, self.by_state, self.by) = (nodes.span[1], nodes.end, by_state, by);
     }
 
+    /// The derivatives at the time of an impact, which moves; `by_state` and `by` are those after it.
+    fn struck(
+        &self,
+        impact: &Impact<4>,
+        jump: &Jump<'_>,
+        by_state: &[[f64; 4]; 4],
+        by: &[[f64; 4]],
+    ) -> Struck {
+        let delays = self.by_state.map(|change| jump.delay(&change, None));
+        let numbered = self.by.iter().zip(self.parameters);
+        let late: Vec<f64> =
+            numbered.map(|(change, &parameter)| jump.delay(change, Some(parameter))).collect();
+        let moved = |change: &[f64; 4], rate: &[f64; 4], late: f64| -> [f64; 4] {
+            std::array::from_fn(|i| change[i] + rate[i] * late)
+        };
+        let side = |knot: &Knot<4>, rate: &[f64; 4], by_state: &[[f64; 4]; 4], by: &[[f64; 4]]| Transition {
+            end: Motion { t: knot.t, y: knot.y, phase: Phase::Flight },
+            by_state: std::array::from_fn(|j| moved(&by_state[j], rate, delays[j])),
+            by: by.iter().zip(&late).map(|(change, &late)| moved(change, rate, late)).collect(),
+        };
+        let [before, after] = &jump.rates;
+        let sides = [
+            side(&impact.before, before, &self.by_state, &self.by),
+            side(&impact.after, after, by_state, by),
+        ];
+        Struck { sides, late, late_by_state: delays }
+    }
+
     /// Goes on through a contact that was computed at once.
     fn cross(&mut self, contact: LinearContact) {
         let (t, side) = (contact.touch.t, contact.side);
@@ -156,9 +226,37 @@ impl Course<'_> {
 
 impl Observer<4> for Course<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
-        if !segment.in_flight() {
-            self.follow(&nodes(segment));
+        if segment.in_flight() {
+            return;
         }
+        if !self.system.is_rigid() {
+            return self.follow(&nodes(segment));
+        }
+        let [begin, end] = segment.ends();
+        self.fly(begin.t);
+        let (from, seconds) = ((begin.t, begin.y), segment.length());
+        let (mut by_state, mut by) = (self.by_state, std::mem::take(&mut self.by));
+        let force_by = |number: usize, elapsed: f64| self.force_by(number, begin.t + elapsed);
+        hold(self.system, from, seconds, &mut by_state, &mut by, self.parameters, force_by);
+        (self.t, self.y, self.by_state, self.by) = (end.t, end.y, by_state, by);
+    }
+    fn impact(&mut self, impact: &Impact<4>) {
+        self.fly(impact.before.t);
+        if impact.grazes {
+            self.grazed.get_or_insert(impact.before.t);
+        }
+        let jump = Jump::new(self.system, impact);
+        let by_state = self.by_state.map(|change| jump.carry(&change, None));
+        let numbered = self.by.iter().zip(self.parameters);
+        let by: Vec<[f64; 4]> =
+            numbered.map(|(change, &parameter)| jump.carry(change, Some(parameter))).collect();
+        if impact.before.t >= self.near && self.struck.is_none() {
+            self.struck = Some(self.struck(impact, &jump, &by_state, &by));
+        }
+        (self.t, self.y, self.by_state, self.by) = (impact.after.t, impact.after.y, by_state, by);
+    }
+    fn satisfied(&self) -> bool {
+        self.struck.is_some()
     }
     fn path(&mut self, path: &impl Path<4>) {
         self.cross(path.linearised(self.parameters.contains(&Parameter::Lambda)));

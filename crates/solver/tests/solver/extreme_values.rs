@@ -77,7 +77,9 @@ fn check_advice(name: &str, numbers: &Numbers, window: Window, settings: &Settin
             by_hybrid();
         }
         SolverError::NonFinite { .. } | SolverError::Implausible { .. } => assert!(!hybrid, "{what}"),
-        SolverError::Missed { .. } => panic!("{what}"),
+        SolverError::Missed { .. } | SolverError::RigidWalls { .. } | SolverError::Grazing { .. } => {
+            panic!("{what}")
+        }
     }
 }
 

@@ -63,3 +63,20 @@ fn exact_powers_of_a_steady_motion() {
         }
     }
 }
+
+/// Impacts with rigid walls lose `μ w² (1 - e²) / 2` each; with e = 1 nothing.
+#[test]
+fn exact_impacts_with_rigid_walls_lose_what_is_missing() {
+    let number = |value: f64| Finite::new(value).expect("a number");
+    let start = Start { v1: number(1.0), x2: Some(number(0.05)), v2: number(-1.0), ..Start::default() };
+    for e in [0.0, 0.3, 0.7, 1.0] {
+        let scene = decay(Numbers { rigid: Some(e), ..TWO_SIDED }, start);
+        let system = Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper"));
+        let window = Window { from: 0.0, to: 8.0 };
+        let end = simulate(&scene, window, &tight()).expect("a run").final_state;
+        let [before, after] = [system.start(), end].map(|y| system.total_energy(&y));
+        let lost = losses(&scene, window, &tight()).expect("a run");
+        let error = (lost.total() - (before - after)).abs() / before;
+        assert!(error < 1e-12 && (lost.impacts > 1e-9) == (e < 1.0), "{e}: {error:e} {lost:?}");
+    }
+}

@@ -22,6 +22,8 @@ mod paper;
 mod problems;
 mod reference;
 mod repeats;
+mod rigid;
+mod rigid_derivatives;
 mod running_maximum;
 mod settled;
 mod structure;

@@ -1,0 +1,252 @@
+//! The walls that a damper may strike, by one of two laws: Hertz's surfaces, or rigid walls.
+
+use crate::{Bounce, Loss, OutOfRange, PoissonRatio, Positive, hertz_stiffness};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The law of both walls.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(try_from = "InFile", into = "Written")]
+#[schemars(with = "Written")]
+pub enum Contact {
+    /// Elastic surfaces that indent one another.
+    Hertz(Surfaces),
+    /// Rigid walls.
+    Rigid(Rigid),
+}
+
+/// Rigid walls: impacts take no time, and a damper at rest on a wall is held by it as long as it is pressed on it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rigid {
+    /// e, restitution of an impact: relative speed after over that before it.
+    pub restitution: Bounce,
+}
+
+/// The walls as a file has them: the surfaces, or `rigid`.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Contact")]
+enum Written {
+    Hertz(Surfaces),
+    Rigid(RigidWalls),
+}
+
+/// Rigid walls in the place of colliding surfaces.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct RigidWalls {
+    /// Impacts that take no time.
+    rigid: Rigid,
+}
+
+/// What a file may say of the walls; `Written` is what it may say together.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[rustfmt::skip]
+struct InFile {
+    #[serde(rename = "R")] radius: Option<Positive>,
+    #[serde(rename = "q")] coefficient: Option<Positive>,
+    #[serde(rename = "E1")] young_1: Option<Positive>,
+    #[serde(rename = "nu1")] poisson_1: Option<PoissonRatio>,
+    #[serde(rename = "E2")] young_2: Option<Positive>,
+    #[serde(rename = "nu2")] poisson_2: Option<PoissonRatio>,
+    #[serde(rename = "E3")] young_3: Option<Positive>,
+    #[serde(rename = "nu3")] poisson_3: Option<PoissonRatio>,
+    #[serde(rename = "E4")] young_4: Option<Positive>,
+    #[serde(rename = "nu4")] poisson_4: Option<PoissonRatio>,
+    loss: Option<Loss>,
+    rigid: Option<Rigid>,
+}
+
+/// Why what a file says is no law of the walls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+enum Refused {
+    #[error("missing field `{0}`: give all of R, q, E1, nu1 to E4, nu4 (Hertz's surfaces), or `rigid` alone")]
+    Missing(&'static str),
+    #[error(
+        "two laws: `rigid` and `{0}`: give `rigid` alone, or Hertz's surfaces (R, q, E1, nu1 to E4, nu4, loss) without it"
+    )]
+    Both(&'static str),
+}
+
+impl TryFrom<InFile> for Contact {
+    type Error = Refused;
+
+    #[rustfmt::skip]
+    fn try_from(file: InFile) -> Result<Self, Refused> {
+        if let Some(rigid) = file.rigid {
+            let given = [
+                ("R", file.radius.is_some()), ("q", file.coefficient.is_some()),
+                ("E1", file.young_1.is_some()), ("nu1", file.poisson_1.is_some()),
+                ("E2", file.young_2.is_some()), ("nu2", file.poisson_2.is_some()),
+                ("E3", file.young_3.is_some()), ("nu3", file.poisson_3.is_some()),
+                ("E4", file.young_4.is_some()), ("nu4", file.poisson_4.is_some()),
+                ("loss", file.loss.is_some()),
+            ];
+            return match given.into_iter().find(|(_, given)| *given) {
+                Some((name, _)) => Err(Refused::Both(name)),
+                None => Ok(Self::Rigid(rigid)),
+            };
+        }
+        Ok(Self::Hertz(Surfaces {
+            radius: file.radius.ok_or(Refused::Missing("R"))?,
+            coefficient: file.coefficient.ok_or(Refused::Missing("q"))?,
+            young_1: file.young_1.ok_or(Refused::Missing("E1"))?,
+            poisson_1: file.poisson_1.ok_or(Refused::Missing("nu1"))?,
+            young_2: file.young_2.ok_or(Refused::Missing("E2"))?,
+            poisson_2: file.poisson_2.ok_or(Refused::Missing("nu2"))?,
+            young_3: file.young_3.ok_or(Refused::Missing("E3"))?,
+            poisson_3: file.poisson_3.ok_or(Refused::Missing("nu3"))?,
+            young_4: file.young_4.ok_or(Refused::Missing("E4"))?,
+            poisson_4: file.poisson_4.ok_or(Refused::Missing("nu4"))?,
+            loss: file.loss.unwrap_or_default(),
+        }))
+    }
+}
+
+impl From<Contact> for Written {
+    fn from(contact: Contact) -> Self {
+        match contact {
+            Contact::Hertz(surfaces) => Self::Hertz(surfaces),
+            Contact::Rigid(rigid) => Self::Rigid(RigidWalls { rigid }),
+        }
+    }
+}
+
+impl Contact {
+    /// Hertz's surfaces, where that is the law.
+    pub fn surfaces(&self) -> Option<&Surfaces> {
+        match self {
+            Self::Hertz(surfaces) => Some(surfaces),
+            Self::Rigid(_) => None,
+        }
+    }
+
+    /// The restitution of rigid walls, where they are.
+    pub fn rigid(&self) -> Option<Rigid> {
+        match self {
+            Self::Hertz(_) => None,
+            Self::Rigid(rigid) => Some(*rigid),
+        }
+    }
+}
+
+/// The four colliding surfaces: the damper's are spheres of one large radius, the structure's and the obstacle's are flat.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Surfaces {
+    /// R, radius of the damper's surfaces, m (not given in the paper).
+    #[serde(rename = "R")]
+    pub radius: Positive,
+    /// q, geometrical coefficient of Hertz's theory; 0.318 for a sphere on a plane (not given in the paper).
+    #[serde(rename = "q")]
+    pub coefficient: Positive,
+    /// E1, Young's modulus of the primary structure's surface, N/m².
+    #[serde(rename = "E1")]
+    pub young_1: Positive,
+    /// nu1, Poisson's ratio of the primary structure's surface.
+    #[serde(rename = "nu1")]
+    pub poisson_1: PoissonRatio,
+    /// E2, Young's modulus of the damper's surface that meets the primary structure, N/m².
+    #[serde(rename = "E2")]
+    pub young_2: Positive,
+    /// nu2, Poisson's ratio of the damper's surface that meets the primary structure.
+    #[serde(rename = "nu2")]
+    pub poisson_2: PoissonRatio,
+    /// E3, Young's modulus of the obstacle's surface, N/m².
+    #[serde(rename = "E3")]
+    pub young_3: Positive,
+    /// nu3, Poisson's ratio of the obstacle's surface.
+    #[serde(rename = "nu3")]
+    pub poisson_3: PoissonRatio,
+    /// E4, Young's modulus of the damper's surface that meets the obstacle, N/m².
+    #[serde(rename = "E4")]
+    pub young_4: Positive,
+    /// nu4, Poisson's ratio of the damper's surface that meets the obstacle.
+    #[serde(rename = "nu4")]
+    pub poisson_4: PoissonRatio,
+    /// What a contact loses; left out, contacts lose nothing.
+    #[serde(default, skip_serializing_if = "Loss::is_none")]
+    pub loss: Loss,
+}
+
+impl Surfaces {
+    /// The walls of a damper for which none are given: the surfaces of the paper's damper of 60 kg, their moduli in proportion to the mass
+    /// (kg). A contact then lasts as long, and is as deep, as one of the paper's at the same speed.
+    ///
+    /// # Errors
+    /// A modulus is beyond the numbers.
+    #[expect(clippy::approx_constant, reason = "the paper's studies have 0.318, not 1/π")]
+    pub fn for_mass(mass: Positive) -> Result<Self, OutOfRange> {
+        let young = |paper: f64| Positive::new(paper * (mass.get() / 60.0));
+        let (steel, soft) = (PoissonRatio::new(0.3)?, PoissonRatio::new(0.4)?);
+        Ok(Self {
+            radius: Positive::new(2.0)?,
+            coefficient: Positive::new(0.318)?,
+            young_1: young(2.1e11)?,
+            poisson_1: steel,
+            young_2: young(2.21e7)?,
+            poisson_2: soft,
+            young_3: young(2.1e11)?,
+            poisson_3: steel,
+            young_4: young(2.05e7)?,
+            poisson_4: soft,
+            loss: Loss::default(),
+        })
+    }
+
+    /// Hertz stiffnesses `[K1, K3]` of the contacts with the primary structure and with the obstacle, N/m^1.5.
+    pub fn stiffness(&self) -> [f64; 2] {
+        let pair =
+            |young_a: Positive, poisson_a: PoissonRatio, young_b: Positive, poisson_b: PoissonRatio| {
+                hertz_stiffness(
+                    self.coefficient.get(),
+                    self.radius.get(),
+                    [(young_a.get(), poisson_a.get()), (young_b.get(), poisson_b.get())],
+                )
+            };
+        [
+            pair(self.young_1, self.poisson_1, self.young_2, self.poisson_2),
+            pair(self.young_3, self.poisson_3, self.young_4, self.poisson_4),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERTZ: &str = r#"{"R":2.0,"q":0.318,"E1":210000000000.0,"nu1":0.3,"E2":22100000.0,"nu2":0.4,"E3":210000000000.0,"nu3":0.3,"E4":20500000.0,"nu4":0.4}"#;
+
+    #[test]
+    fn contract_the_walls_have_one_of_two_laws() {
+        let read = |text: &str| serde_json::from_str::<Contact>(text).map_err(|error| error.to_string());
+        for text in [HERTZ, r#"{"rigid":{"restitution":0.7}}"#] {
+            let contact = read(text).expect("a law");
+            assert_eq!(serde_json::to_string(&contact).expect("JSON"), text);
+            assert_eq!(contact.rigid().is_some(), contact.surfaces().is_none());
+        }
+        for end in ["0", "1"] {
+            assert!(read(&format!(r#"{{"rigid":{{"restitution":{end}}}}}"#)).is_ok(), "{end}");
+        }
+        for (text, said) in [
+            (
+                "{}",
+                "missing field `R`: give all of R, q, E1, nu1 to E4, nu4 (Hertz's surfaces), or `rigid` alone",
+            ),
+            (&HERTZ.replace(r#","nu4":0.4"#, ""), "missing field `nu4`"),
+            (r#"{"rigid":{"restitution":0.7},"R":2}"#, "two laws: `rigid` and `R`: give `rigid` alone, or"),
+            (r#"{"rigid":{"restitution":0.7},"loss":{"lambda":0.1}}"#, "two laws: `rigid` and `loss`"),
+            (&HERTZ.replace('{', r#"{"rigid":{"restitution":1},"#), "two laws: `rigid` and `R`"),
+            (r#"{"rigid":{"restitution":1.1}}"#, "1.1 is not allowed here: give a number from 0 to 1"),
+            (r#"{"rigid":{"restitution":-0.1}}"#, "-0.1 is not allowed here: give a number from 0 to 1"),
+            (r#"{"rigid":{}}"#, "missing field `restitution`"),
+            (r#"{"rigid":{"e":0.7}}"#, "unknown field `e`"),
+            (r#"{"stiff":1}"#, "unknown field `stiff`"),
+        ] {
+            let error = read(text).expect_err(text);
+            assert!(error.contains(said), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Rigid walls: an impact is a jump of the state, and a damper that a wall holds moves with the structure as one body.
+//!
+//! Flight is the same as between Hertz contacts. A bounce that does not part the bodies faster than rounding lets them be parted is the end
+//! of a chatter, or of none: the wall then holds the damper if it is pressed on it (`docs/theory.md`, "Rigid walls").
+
+use super::flight::FlightEnd;
+use super::propagator::{Hybrid, Motion, Phase};
+use crate::error::SolverError;
+use crate::linear::flow::{Expansion, Flow};
+use crate::linear::gap::{Lost, first_contact};
+use crate::linear::steps::{Step, StepClock};
+use crate::motion::form::Form;
+use crate::motion::knot::Knot;
+use crate::motion::polynomial::{BLOCKS, Polynomial};
+use crate::motion::segment::Segment;
+use crate::observe::observer::{Impact, Observer};
+use crate::system::held;
+use retune_model::{Coupled, Side};
+
+/// Units in the last place of the speeds by which a rebound must part the bodies. A slower one is none: it is less than the rounding errors
+/// of a flight.
+const PARTED: f64 = 64.0;
+
+/// Rigid walls, prepared for a system.
+pub(super) struct RigidWalls {
+    restitution: f64,
+    /// Both bodies as one.
+    held: Flow<4>,
+}
+
+impl RigidWalls {
+    /// Those of a system, in steps of at most `longest` seconds; none if it has no rigid walls.
+    pub(super) fn of(system: &Coupled, longest: f64) -> Option<Self> {
+        let restitution = system.restitution()?;
+        Some(Self { restitution, held: Flow::new(held(system), longest) })
+    }
+}
+
+/// How a stretch on a wall ended.
+enum HoldEnd {
+    /// The force between wall and damper has come to zero.
+    Released(Knot<4>),
+    /// The run ends here.
+    Stopped(Knot<4>),
+}
+
+impl Hybrid<'_> {
+    /// [`Self::propagate`] between rigid walls.
+    pub(super) fn between_rigid(
+        &mut self,
+        walls: &RigidWalls,
+        from: Motion,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<Motion, SolverError> {
+        let mut phase = from.phase;
+        let mut now = self.knot(from.t, from.y);
+        let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
+        loop {
+            if let Phase::InContact(side) = phase {
+                match self.hold(walls, side, now, to, observer)? {
+                    HoldEnd::Stopped(end) => return stopped(end, phase),
+                    HoldEnd::Released(end) => now = end,
+                }
+                phase = Phase::Leaving(side);
+            }
+            match self.flight(now, phase, to, observer)? {
+                FlightEnd::Stopped(end) => return stopped(end, Phase::Flight),
+                FlightEnd::TouchDown(side, touch) => {
+                    (now, phase) = self.strike(walls, side, touch, from.t, observer);
+                    self.work.steps += 1;
+                    self.budget.check(&self.work, now.t)?;
+                }
+            }
+            if observer.satisfied() || now.t >= to {
+                return stopped(now, phase);
+            }
+        }
+    }
+
+    /// A touch-down on a wall: the moment after it, and what follows.
+    fn strike(
+        &self,
+        walls: &RigidWalls,
+        side: Side,
+        touch: Knot<4>,
+        begun: f64,
+        observer: &mut impl Observer<4>,
+    ) -> (Knot<4>, Phase) {
+        let [_, v1, _, v2] = touch.y;
+        let closing = side.sign() * (v2 - v1);
+        // A damper that rests on a wall from the start makes no touch-down.
+        if touch.t > begun || closing > 0.0 {
+            observer.touch_down(touch.t, side);
+        }
+        let force =
+            self.system.holding_force(side, self.system.held_acceleration(touch.excitation, &touch.y));
+        let pressing = force * self.system.inverse_effective_mass();
+        let rounding = PARTED * f64::EPSILON * (v1.abs() + v2.abs() + pressing.abs() * touch.t);
+        let slow = walls.restitution * closing <= rounding;
+        let caught = slow && force >= 0.0;
+        let y = match caught {
+            true => self.system.caught(side, &touch.y),
+            false if closing > 0.0 => self.system.struck(walls.restitution, &touch.y),
+            false => touch.y,
+        };
+        let after = Knot { y, ..touch };
+        // By how much a motion without a wall would pass it: less than the rounding of the places is a graze.
+        let depth = 0.5 * closing * closing / -pressing;
+        let places = touch.y[0].abs() + touch.y[2].abs() + self.system.rest_distance();
+        let grazes = !caught && force < 0.0 && depth <= PARTED * f64::EPSILON * places;
+        observer.impact(&Impact { side, before: touch, after, caught, grazes });
+        (after, if caught { Phase::InContact(side) } else { Phase::Leaving(side) })
+    }
+
+    /// Follows a damper that a wall holds until the force between them is zero, until `to`, or until the observer is satisfied.
+    fn hold(
+        &mut self,
+        RigidWalls { held, .. }: &RigidWalls,
+        side: Side,
+        mut now: Knot<4>,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<HoldEnd, SolverError> {
+        let (wall, [weight, constant]) = (self.system.wall(side), self.system.holding_force_weights(side));
+        let mut clock = StepClock::new(now.t, held.step());
+        loop {
+            let remaining = to - now.t;
+            if remaining <= 0.0 {
+                return Ok(HoldEnd::Stopped(now));
+            }
+            if !now.y.iter().all(|v| v.is_finite()) {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+            let motion: Expansion<4> = held.expand(now.excitation, &now.y);
+            let [_, v, ..] = motion.0;
+            let inertia = Polynomial::<BLOCKS>(v.derivative().0.map(|terms| terms * weight));
+            let force = inertia.with_constant(inertia.coefficient(0) + constant);
+            let longest = held.step().min(remaining);
+            let end = first_contact(force, longest).map_err(|Lost| SolverError::NonFinite { t: now.t })?;
+            let mut step = Held::new(held, now, &motion, end.unwrap_or(longest), wall);
+            match end {
+                Some(_) => {}
+                None if longest < held.step() => step.step.end().t = to,
+                None => step.step.end().t = clock.after(1),
+            }
+            if step.length() > 0.0 {
+                observer.segment(&step);
+            }
+            now = *step.ends()[1];
+            self.work.steps += 1;
+            self.budget.check(&self.work, now.t)?;
+            if end.is_some() {
+                return Ok(HoldEnd::Released(now));
+            }
+            if observer.satisfied() || now.t >= to {
+                return Ok(HoldEnd::Stopped(now));
+            }
+            clock.count(1);
+        }
+    }
+}
+
+/// A step of the motion in which a wall holds the damper.
+struct Held<'a> {
+    step: Step<'a, 4>,
+    wall: f64,
+}
+
+impl<'a> Held<'a> {
+    fn new(flow: &'a Flow<4>, from: Knot<4>, motion: &Expansion<4>, length: f64, wall: f64) -> Self {
+        // Its bounds are those of its Taylor polynomial: those by the energy are of flight.
+        let mut step = Step::part(flow, from, motion, length, f64::INFINITY);
+        *step.end() = on_wall(*step.ends()[1], wall);
+        Self { step, wall }
+    }
+}
+
+/// A moment on a wall: its place and speed are those of the structure by definition rather than by arithmetic.
+fn on_wall(knot: Knot<4>, wall: f64) -> Knot<4> {
+    let [x, v, ..] = knot.y;
+    Knot { y: [x, v, x + wall, v], ..knot }
+}
+
+impl Segment<4> for Held<'_> {
+    fn ends(&self) -> [&Knot<4>; 2] {
+        self.step.ends()
+    }
+    fn length(&self) -> f64 {
+        self.step.length()
+    }
+    fn at(&self, theta: f64) -> Knot<4> {
+        on_wall(self.step.at(theta), self.wall)
+    }
+    fn at_time(&self, t: f64) -> Knot<4> {
+        on_wall(self.step.at_time(t), self.wall)
+    }
+    fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
+        self.step.quintic_error(form, ends, h, true)
+    }
+}
