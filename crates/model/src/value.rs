@@ -81,7 +81,7 @@ impl Restitution {
 }
 
 range_type!(
-    /// The coefficient of restitution of an impact with a rigid wall, 0 <= e <= 1: at 0 the damper stays on the wall.
+    /// The coefficient of restitution of an impact with a rigid wall, 0 <= e <= 1: at 0 there is no rebound.
     Bounce, "a number from 0 to 1", ("minimum" = 0.0, "maximum" = 1.0), |v| (0.0..=1.0).contains(&v)
 );
 

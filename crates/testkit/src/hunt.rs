@@ -17,6 +17,8 @@ pub mod peaks;
 #[cfg(feature = "anything")]
 pub mod repeats;
 #[cfg(feature = "anything")]
+pub mod rigid;
+#[cfg(feature = "anything")]
 pub mod scenes;
 #[cfg(feature = "anything")]
 pub mod settled;

@@ -6,11 +6,13 @@ use retune_lab::Any;
 use retune_lab::hunts::{robust, scenes, walk};
 use retune_testkit::hunt as hunts;
 use retune_testkit::hunt::largest::Scenes;
-use retune_testkit::hunt::{Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, settled};
+use retune_testkit::hunt::{
+    Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, rigid, settled,
+};
 use std::path::Path;
 use std::process::ExitCode;
 
-const USAGE: &str = "hunt NAME [DRAWS]: largest, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
+const USAGE: &str = "hunt NAME [DRAWS]: largest, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
                      steps), scenes, settled, bands, kills";
 
 fn main() -> Any<ExitCode> {
@@ -38,6 +40,7 @@ fn main() -> Any<ExitCode> {
             show("", largest::beside_dop853(Scenes::Any, count));
             show("", largest::beside_dop853(Scenes::Lossy, count));
         }
+        "rigid" => show(include_str!("../hunts/rigid.md"), rigid::rigid(number(40_000)?.into())),
         "repeats" => show(include_str!("../hunts/repeats.md"), repeats::repeats(number(42_000)?.into())),
         "peaks" => show(include_str!("../hunts/peaks.md"), peaks::peaks(number(3000)?)),
         "needs" => {

@@ -18,6 +18,11 @@ fn invariant_nor_where_contacts_lose_energy() {
 }
 
 #[test]
+fn reference_rigid_walls_beside_a_path_that_trusts_nothing() {
+    retune_testkit::hunt::rigid::rigid(60).passes();
+}
+
+#[test]
 fn reference_the_hybrid_sees_what_dop853_sees() {
     beside_dop853(Scenes::Any, 75).passes();
 }
