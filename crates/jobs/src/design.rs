@@ -25,6 +25,7 @@ use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Done, Job, Made};
 use crate::{Error, Observer, Request, pages, resolved};
 use serde_json::json;
+use std::path::{Path, PathBuf};
 
 /// The files of an answer.
 pub static KIND: Kind = Kind {
@@ -42,6 +43,26 @@ pub static KIND: Kind = Kind {
         artefact("report.html", Content::Derived),
     ],
 };
+
+/// A directory for the results of a design: `results/<name>`, or, where other results or unfinished work stand there, the next of
+/// `results/<name>-2`, `-3` that is free, so that nothing is discarded. To be resumed, the last with unfinished work.
+pub fn place(requirements: &Requirements, name: &str, resume: bool) -> PathBuf {
+    let of = |number: u32| {
+        let ending = if number == 1 { String::new() } else { format!("-{number}") };
+        Path::new("results").join(format!("{name}{ending}"))
+    };
+    let is_unfinished = |place: &Path| place.join("unfinished").exists();
+    let all = || (1..).map(of);
+    if resume {
+        let begun = all().take_while(|place| place.exists()).filter(|place| is_unfinished(place)).last();
+        return begun.unwrap_or_else(|| of(1));
+    }
+    let is_ours = |place: &PathBuf| {
+        let same = resolved::Resolved::read(place).is_ok_and(|known| known.plan == json!(requirements));
+        !place.exists() || same && !is_unfinished(place)
+    };
+    all().find(is_ours).unwrap_or_else(|| of(1))
+}
 
 /// Designs dampers for a structure, and compares them.
 ///
@@ -68,7 +89,8 @@ pub fn design(
             directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
         }
         let answer = answer::answer(requirements, &compared, &job.out);
-        directory.write("answer.txt", &(answer.clone() + "\n"))?;
+        let question = answer::question(requirements).join("\n");
+        directory.write("answer.txt", &format!("{question}\n\n{answer}\n"))?;
         pages::write(&page::page(requirements, &compared), directory)?;
         Ok(Made { answer: compared, report: format!("\n{answer}"), parts: Vec::new() })
     })

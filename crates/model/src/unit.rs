@@ -27,8 +27,15 @@ pub(crate) const FORCE: &[Unit] = &[("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("mN",
 /// Units of energy, J.
 pub(crate) const ENERGY: &[Unit] = &[("J", 1.0), ("mJ", 1e-3), ("kJ", 1e3), ("MJ", 1e6), ("µJ", 1e-6)];
 /// Units of an imbalance, kg·m.
-pub(crate) const IMBALANCE: &[Unit] =
-    &[("kg·m", 1.0), ("kg m", 1.0), ("kgm", 1.0), ("g·mm", 1e-6), ("kg·mm", 1e-3), ("kg mm", 1e-3), ("kgmm", 1e-3)];
+pub(crate) const IMBALANCE: &[Unit] = &[
+    ("kg·m", 1.0),
+    ("kg m", 1.0),
+    ("kgm", 1.0),
+    ("g·mm", 1e-6),
+    ("kg·mm", 1e-3),
+    ("kg mm", 1e-3),
+    ("kgmm", 1e-3),
+];
 /// Units of a Young's modulus, N/m².
 pub const MODULUS: &[Unit] = &[("N/m²", 1.0), ("Pa", 1.0), ("MPa", 1e6), ("GPa", 1e9)];
 /// Units of the damping factor of a contact, s/m.
@@ -65,7 +72,7 @@ pub fn readable(value: f64, si: &'static str) -> Unit {
     let units: &[Unit] = match si {
         "m" => &[("µm", 1e-6), ("mm", 1e-3), ("m", 1.0)],
         "m/s" => &[("mm/s", 1e-3), ("m/s", 1.0)],
-        "m/s²" => &[("mm/s²", 1e-3), ("m/s²", 1.0)],
+        "m/s²" if value.abs() < 0.1 => &[("mm/s²", 1e-3)],
         "N" => &[("mN", 1e-3), ("N", 1.0), ("kN", 1e3), ("MN", 1e6)],
         "J" => &[("µJ", 1e-6), ("mJ", 1e-3), ("J", 1.0), ("kJ", 1e3), ("MJ", 1e6)],
         "kg" => &[("g", 1e-3), ("kg", 1.0), ("t", 1e3)],
@@ -75,7 +82,7 @@ pub fn readable(value: f64, si: &'static str) -> Unit {
     };
     // What is rounded to 1000 of a unit is 1 of the next.
     let fits = |&&(_, size): &&Unit| value.abs() >= 0.99995 * size;
-    let plain = units.iter().find(|unit| unit.1 == 1.0);
+    let plain = units.iter().find(|unit| unit.1 == if si == "m" { 1e-3 } else { 1.0 });
     let unit = if value == 0.0 { plain } else { units.iter().rev().find(fits).or(units.first()) };
     unit.map_or((si, value), |(name, size)| (name, value / size))
 }
@@ -118,7 +125,8 @@ mod tests {
             (0.5533, "J", ENERGY, (553.3, "mJ")),
             (0.0, "J", ENERGY, (0.0, "J")),
             (f64::INFINITY, "N·s/m", DAMPING, (f64::INFINITY, "kN·s/m")),
-            (0.5, "m/s²", ACCELERATION, (500.0, "mm/s²")),
+            (0.05, "m/s²", ACCELERATION, (50.0, "mm/s²")),
+            (0.5, "m/s²", ACCELERATION, (0.5, "m/s²")),
             (0.2, "m/s", VELOCITY, (200.0, "mm/s")),
             (3.0, "rad/s", FREQUENCY, (3.0, "rad/s")),
         ] {

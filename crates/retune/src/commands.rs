@@ -87,9 +87,10 @@ fn design(arguments: &cli::Design) -> Result<(), Error> {
         None => given,
     };
     let requirements = wishes.requirements()?;
-    let name = file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
-    let out = Path::new("results").join(name.map_or("design".to_owned(), |name| format!("design-{name}")));
-    let out = running.out.clone().unwrap_or(out);
+    let stem = file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
+    let name = stem.map_or("design".to_owned(), |stem| format!("design-{stem}"));
+    let out = || retune_jobs::design::place(&requirements, &name, running.resume);
+    let out = running.out.clone().unwrap_or_else(out);
     let (mut request, screen) = running.request(&out);
     request.out = Some(out);
     let designed = retune_jobs::design::design(&requirements, &request, &screen)?;

@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, What};
 use super::comparison::{Comparison, percent};
 use super::requirements::{Dampers, Driving, Requirements, Wish};
-use super::words::{frequency, natural, parameters, sized, tuning};
+use super::words::{alike, frequency, legible, natural, parameters, sized, tuning};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};
@@ -16,12 +16,11 @@ const ABOVE: f64 = 1e-3;
 pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
     let broken = textwrap::Options::new(80).subsequent_indent("  ");
     let fill = |line: String| textwrap::fill(&line, &broken);
-    let question: Vec<String> = question(requirements).into_iter().map(fill).collect();
     let words = build(requirements, compared).into_iter().chain(findings(requirements, compared));
     let out = out.display();
     let next = format!("Open {out}/report.html. Go on: `retune explore {out}/{}`.", next(compared));
     let words: Vec<String> = words.chain([next]).map(fill).collect();
-    format!("{}\n\n{}\n\n{}", question.join("\n"), table(requirements, compared), words.join("\n"))
+    format!("{}\n\n{}", table(requirements, compared), words.join("\n"))
 }
 
 /// The study with which one goes on.
@@ -29,8 +28,14 @@ fn next(compared: &Comparison) -> String {
     format!("studies-{}.json", compared.chosen().unwrap_or(&compared.tmd).study.name())
 }
 
-/// What was asked.
+/// What was asked, broken into lines for the screen.
 pub(super) fn question(requirements: &Requirements) -> Vec<String> {
+    let broken = textwrap::Options::new(80).subsequent_indent("  ");
+    asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
+}
+
+/// What was asked.
+pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let own = natural(requirements);
     let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
     let driving = match requirements.source {
@@ -48,7 +53,8 @@ pub(super) fn question(requirements: &Requirements) -> Vec<String> {
     let unit = requirements.frequencies;
     let [from, to] = requirements.band.map(|end| frequency(end, unit));
     let from = from.trim_end_matches(unit).trim_end();
-    let limits: Vec<String> = requirements.wishes().into_iter().map(|wish| limit(requirements, wish)).collect();
+    let limits: Vec<String> =
+        requirements.wishes().into_iter().map(|wish| limit(requirements, wish)).collect();
     let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
     vec![
         format!(
@@ -72,20 +78,22 @@ fn limit(requirements: &Requirements, wish: Wish) -> String {
 
 /// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
 pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Vec<String>> {
-    let cell = |of: &Candidate, measure: Measure| {
-        let Need { value, omega, .. } = of.steady.get(measure);
-        if of.what == What::None && measure.is_of_damper() || value == 0.0 {
-            return "-".to_owned();
-        }
-        let place = if value.is_finite() { format!(", {}", frequency(omega, requirements.frequencies)) } else { String::new() };
-        format!("{}{place}", sized(value, measure.unit()))
-    };
     let row = |measure: Measure| {
         let wish = Wish::Of(Limit::Of(measure));
         let allowed = requirements.allowed(wish);
-        let allowed = if allowed.is_nan() { String::new() } else { format!(" <= {}", sized(allowed, wish.unit())) };
+        let allowed =
+            if allowed.is_nan() { String::new() } else { format!(" <= {}", sized(allowed, wish.unit())) };
         let first = format!("{}{allowed}", measure.name().replace('_', " "));
-        std::iter::once(first).chain(compared.all().map(|of| cell(of, measure))).collect()
+        let values: Vec<f64> = compared.all().map(|of| of.value(measure)).collect();
+        let cell = |(of, value): (&Candidate, String)| {
+            let Need { value: own, omega, .. } = of.steady.get(measure);
+            match own {
+                0.0 => "-".to_owned(),
+                _ if !own.is_finite() => value,
+                _ => format!("{value}, {}", frequency(omega, requirements.frequencies)),
+            }
+        };
+        std::iter::once(first).chain(compared.all().zip(alike(&values, measure.unit())).map(cell)).collect()
     };
     let mut rows: Vec<Vec<String>> = Measure::ALL.into_iter().map(row).collect();
     if let Some(error) = requirements.k1_error {
@@ -100,11 +108,14 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
 
 /// The comparison on screen.
 fn table(requirements: &Requirements, compared: &Comparison) -> String {
-    let head: Vec<String> =
-        std::iter::once("largest, where".to_owned()).chain(compared.all().map(|of| of.what.name().to_owned())).collect();
+    let head: Vec<String> = std::iter::once("largest, where".to_owned())
+        .chain(compared.all().map(|of| of.what.name().to_owned()))
+        .collect();
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows(requirements, compared)).collect();
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let wide = |i: usize| rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0);
+    let wide = |i: usize| {
+        rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
     let widths: Vec<usize> = (0..columns).map(wide).collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().enumerate().map(|(i, cell)| {
@@ -122,41 +133,66 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
     let Some(chosen) = compared.chosen() else { return infeasible(requirements, compared) };
     let times = compared.none.goal / chosen.goal;
     let reduction = if times.is_finite() {
-        format!("{} falls from {} to {}, {} times less", goal.name(), sized(compared.none.goal, goal.unit()), sized(chosen.goal, goal.unit()), rounded(times, 3))
+        format!(
+            "{} falls from {} to {}, {} times less",
+            goal.name(),
+            sized(compared.none.goal, goal.unit()),
+            sized(chosen.goal, goal.unit()),
+            rounded(times, 3)
+        )
     } else {
         format!("{} is {}, and has no bound without a damper", goal.name(), sized(chosen.goal, goal.unit()))
     };
     let why = match (chosen.what, &compared.ssvi, requirements.dampers) {
         (_, _, Dampers::Tmd) => String::new(),
-        (What::Tmd, Some(ssvi), _) if !ssvi.feasible => "; no SSVI NES was found that keeps the limits".to_owned(),
+        (What::Tmd, Some(ssvi), _) if !ssvi.feasible => {
+            "; no SSVI NES was found that keeps the limits".to_owned()
+        }
+        (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
+            let why = compared
+                .ssvi_certificate
+                .as_ref()
+                .map_or(String::new(), |certificate| legible(certificate.reason()));
+            format!("; an SSVI NES has {}, but cannot be trusted: {why}", sized(ssvi.goal, goal.unit()))
+        }
         (What::Tmd, Some(ssvi), _) => format!(
             "; the best SSVI NES that was found has {}, {} times as much, and strikes its walls with {}",
             sized(ssvi.goal, goal.unit()),
             rounded(ssvi.goal / chosen.goal, 3),
             sized(ssvi.value(Measure::ContactForce), "N")
         ),
-        (What::Tmd, None, _) => "; no SSVI NES was found that comes near without being a TMD itself".to_owned(),
+        (What::Tmd, None, _) => {
+            "; of the SSVI NES that were tried, none that strikes its walls comes near".to_owned()
+        }
         (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", sized(compared.tmd.goal, goal.unit())),
         _ if compared.tmd.feasible => {
-            format!("; the best TMD has {}, {} times as much", sized(compared.tmd.goal, goal.unit()), rounded(compared.tmd.goal / chosen.goal, 3))
+            format!(
+                "; the best TMD has {}, {} times as much",
+                sized(compared.tmd.goal, goal.unit()),
+                rounded(compared.tmd.goal / chosen.goal, 3)
+            )
         }
         _ => "; no TMD of this mass keeps the limits".to_owned(),
     };
     let name = chosen.what.name();
     let mut lines = vec![
         format!("Build the {name}: {}.", parameters(chosen)),
-        format!("  It is tuned to {}. {reduction}{why}.", tuning(chosen, requirements)),
+        format!("  Alone, on a rigid support, it has {}. {reduction}{why}.", tuning(chosen, requirements)),
     ];
     let (formula, value) = &compared.formula;
     if chosen.what == What::Tmd {
-        let more = value / chosen.goal - 1.0;
+        let more = value.goal / chosen.goal - 1.0;
+        let beside = match value.feasible {
+            false => ", but breaks a limit".to_owned(),
+            true if more > 5e-4 => format!(", {} more", percent(more)),
+            true => String::new(),
+        };
         lines.push(format!(
-            "  {} (k2 = {}, c2 = {}) gives {}{}.",
+            "  {} (k2 = {}, c2 = {}) gives {}{beside}.",
             formula.name,
             sized(formula.k2, "N/m"),
             sized(formula.c2, "N·s/m"),
-            sized(*value, goal.unit()),
-            if more > 0.0005 { format!(", {} more", percent(more)) } else if more < -0.0005 { ", and breaks a limit".to_owned() } else { String::new() }
+            sized(value.goal, goal.unit()),
         ));
     }
     lines
@@ -172,10 +208,18 @@ fn infeasible(requirements: &Requirements, compared: &Comparison) -> Vec<String>
         format!("{} has {}", of.what.name(), words.collect::<Vec<_>>().join(" and "))
     };
     let nearest: Vec<String> = compared.dampers().map(broken).collect();
-    let mut lines = vec![format!("None was found that keeps the limits. The nearest {}.", nearest.join("; the nearest "))];
+    let mut lines = vec![format!(
+        "None was found that keeps the limits. The nearest {}.",
+        nearest.join("; the nearest ")
+    )];
     let share = |mass: f64| percent(mass / requirements.m1);
     lines.push(match compared.lightest {
-        Some(mass) => format!("  A TMD of {} ({}) keeps them: give --mass {}.", sized(mass, "kg"), share(mass), share(mass * 1.01).replace(' ', "")),
+        Some(mass) => format!(
+            "  A TMD of {} ({}) keeps them: give --mass {}.",
+            sized(mass, "kg"),
+            share(mass),
+            share(mass * 1.01).replace(' ', "")
+        ),
         None => "  Nor does a TMD of up to 30 % of the structure: loosen a limit.".to_owned(),
     });
     lines
@@ -186,22 +230,22 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
     let mut lines: Vec<String> = costs(requirements, compared);
     lines.extend(from_rest(requirements, compared));
     if let Some(certificate) = &compared.certificate {
-        let words = certificate.reason().trim_end_matches("; other starts not looked at");
+        let words = legible(certificate.reason().trim_end_matches("; other starts not looked at"));
         let name = compared.chosen().map_or("", |chosen| chosen.what.name());
-        lines.push(format!("How sure: {name} {words}."));
+        lines.push(format!("How sure: the {name} is {words}."));
     }
     if let Some(tried) = compared.tried {
-        lines.push(match requirements.wall {
-            Some(_) => format!("{} of an SSVI NES evaluated, none by chance: `retune optimize` looks further.", counted(tried as u64, "design")),
-            None => {
-                let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| rounded(k, 3)));
-                let [k1, k3] = walls.unwrap_or_default();
-                format!(
-                    "The walls of the SSVI NES were not given (--wall): the paper's, scaled to mass and frequency, K = {k1} and {k3} N/m^1.5. {} evaluated; `retune optimize` of the study looks further.",
-                    counted(tried as u64, "design")
-                )
-            }
-        });
+        let tried = counted(tried as u64, "SSVI NES");
+        let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| rounded(k, 3)));
+        let [k1, k3] = walls.unwrap_or_default();
+        let origin = if requirements.wall.is_some() {
+            "as given"
+        } else {
+            "not given (--wall): the paper's, scaled to mass and frequency"
+        };
+        lines.push(format!(
+            "Walls of the SSVI NES: {origin}, K = {k1} and {k3} N/m^1.5. {tried} evaluated; `retune optimize` of its study looks further."
+        ));
     }
     lines
 }
@@ -210,8 +254,22 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let goal = compared.goal;
     let cost = |own: &Candidate, free: &Candidate| {
         let more = own.goal / free.goal - 1.0;
-        if more > 1e-6 {
-            format!("costs the {} {} ({} instead of {})", own.what.name(), percent(more), sized(own.goal, goal.unit()), sized(free.goal, goal.unit()))
+        if more >= 1.0 {
+            format!(
+                "makes that of the {} {} times as large ({} instead of {})",
+                own.what.name(),
+                rounded(1.0 + more, 3),
+                sized(own.goal, goal.unit()),
+                sized(free.goal, goal.unit())
+            )
+        } else if more > 1e-6 {
+            format!(
+                "costs the {} {} ({} instead of {})",
+                own.what.name(),
+                percent(more),
+                sized(own.goal, goal.unit()),
+                sized(free.goal, goal.unit())
+            )
         } else {
             format!("costs the {} nothing", own.what.name())
         }
@@ -245,6 +303,9 @@ fn from_rest(requirements: &Requirements, compared: &Comparison) -> Option<Strin
     });
     let above: Vec<String> = above.collect();
     (!above.is_empty()).then(|| {
-        format!("Limits hold for the steady motion; just after the force sets in, from rest: {}.", above.join(", "))
+        format!(
+            "Limits hold for the steady motion; just after the force sets in, from rest: {}.",
+            above.join(", ")
+        )
     })
 }

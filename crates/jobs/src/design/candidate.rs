@@ -2,7 +2,7 @@
 
 use crate::tune::band::at;
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Measure, PerMeasure, Scene};
+use retune_model::{Bare, Coupled, Damper, Measure, PerMeasure, Scene, Source};
 use retune_optim::{Limit, Need, Unusable};
 use retune_study::Study;
 use serde::Serialize;
@@ -65,11 +65,13 @@ impl Candidate {
         let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
         let limits = study.goal().limits;
         let is_damper = study.scene.damper.is_some();
-        let binding = limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
+        let binding =
+            limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
         let (mut steady, mut from_rest) = (needs.own, needs.whole);
         for measure in Measure::ALL {
             let own = steady.get(measure);
-            if !own.value.is_finite() && measure == Measure::GroundForce && study.goal().objective.is_steady() {
+            let based = matches!(study.scene.forcing.source, Source::Base(_));
+            if based && measure == Measure::GroundForce && study.goal().objective.is_steady() {
                 let sampled = sampled(study, measure);
                 steady.set(measure, sampled);
                 let whole = from_rest.get(measure);
@@ -80,10 +82,12 @@ impl Candidate {
                 steady.set(measure, Need { value: 0.0, ..own });
             }
         }
+        // Peaks between samples are told apart a little better here than in a search.
+        let best = steady.get(study.quantity()).value;
         Ok(Self {
             what,
             study: study.clone(),
-            goal: found.value,
+            goal: if best.is_finite() && best > 0.0 { best } else { found.value },
             feasible: is_damper && found.violation == 0.0,
             binding: binding.collect(),
             steady,
@@ -136,5 +140,8 @@ fn sampled(study: &Study, measure: Measure) -> Need {
         Need { value, omega, k1: primary.stiffness.get() }
     };
     let all: Vec<Need> = (0..SAMPLES).into_par_iter().map(value).collect();
-    all.into_iter().filter(|need| need.value.is_finite()).max_by(|a, b| a.value.total_cmp(&b.value)).unwrap_or(none)
+    all.into_iter()
+        .filter(|need| need.value.is_finite())
+        .max_by(|a, b| a.value.total_cmp(&b.value))
+        .unwrap_or(none)
 }

@@ -1,10 +1,11 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
+use super::answer::question;
 use super::candidate::{Candidate, What};
 use super::requirements::{Dampers, Requirements, Wish};
 use super::words::{parameters, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::{Short, judge};
+use crate::certify::{Certificate, Short, Verdict, judge};
 use crate::{Error, Observer};
 use retune_model::{Design, Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
@@ -15,6 +16,10 @@ use serde_json::{Map, Value, json};
 
 /// A goal that is larger by less than this share is as good: the damper without walls is recommended.
 const SAME: f64 = 0.05;
+/// Designs whose goal is larger by less than this share are nearly as good: of them the best certificate counts.
+const NEARLY: f64 = 0.15;
+/// At most so many are certified: a certificate with motions from other starts takes seconds.
+const JUDGED: usize = 2;
 /// Halvings of the mass that would keep the limits, as a share of the structure's, and the largest that is looked at.
 const HALVINGS: usize = 12;
 const HEAVIEST: f64 = 0.3;
@@ -27,7 +32,7 @@ pub struct Comparison {
     /// The structure alone.
     pub none: Candidate,
     /// The formula of a textbook, and what its TMD has of the goal.
-    pub formula: (Formula, f64),
+    pub formula: (Formula, Candidate),
     /// The best TMD.
     pub tmd: Candidate,
     /// The best SSVI NES that was found that strikes its walls.
@@ -44,6 +49,8 @@ pub struct Comparison {
     pub lightest: Option<f64>,
     /// How sure the one to build is.
     pub certificate: Option<Short>,
+    /// How sure the SSVI NES is, where it would be better than the TMD.
+    pub ssvi_certificate: Option<Short>,
 }
 
 /// What a limit costs.
@@ -106,12 +113,44 @@ fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
     Ok(Candidate::new(What::Tmd, &study)?)
 }
 
-/// The SSVI NES of a search; none where it cannot be run, or strikes nothing: then it is a TMD.
-fn ssvi_of(study: &Study, found: &ssvi::Found) -> Result<Option<Candidate>, Error> {
-    let Some(best) = &found.best else { return Ok(None) };
-    let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
-    let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| best[i]))?;
-    Ok(Candidate::new(What::Ssvi, &study).ok().filter(Candidate::strikes))
+/// The SSVI NES that the ends of a search are, the best first: those that can be run and strike. One that strikes nothing is a TMD.
+fn striking(study: &Study, found: &ssvi::Found) -> Result<Vec<Candidate>, Error> {
+    let mut all: Vec<Candidate> = Vec::new();
+    for end in &found.ends {
+        let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
+        let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
+        all.extend(Candidate::new(What::Ssvi, &study).ok().filter(Candidate::strikes));
+    }
+    all.sort_by(|a, b| b.feasible.cmp(&a.feasible).then(a.goal.total_cmp(&b.goal)));
+    Ok(all)
+}
+
+/// How much a damper may be trusted: 0 of the best verdict.
+fn doubt(certificate: &Certificate) -> u8 {
+    match certificate.verdict {
+        Some(Verdict::Robust) => 0,
+        Some(Verdict::Edge) => 1,
+        Some(Verdict::FromRest) => 2,
+        Some(Verdict::Sensitive) => 3,
+        Some(Verdict::SingleChaoticRealisation) | None => 4,
+    }
+}
+
+/// Of designs that are nearly as good the one with the best certificate.
+fn trusted(all: Vec<Candidate>) -> Result<Option<(Candidate, Certificate)>, Error> {
+    let least = all.first().map_or(f64::NAN, |best| best.goal);
+    let mut best: Option<(Candidate, Certificate)> = None;
+    let nearly = |candidate: &Candidate| candidate.feasible && candidate.goal <= (1.0 + NEARLY) * least;
+    for candidate in all.into_iter().filter(nearly).take(JUDGED) {
+        let certificate = judge(&candidate.study)?;
+        if best.as_ref().is_none_or(|(_, other)| doubt(&certificate) < doubt(other)) {
+            best = Some((candidate, certificate));
+        }
+        if best.as_ref().is_some_and(|(_, certificate)| doubt(certificate) == 0) {
+            break;
+        }
+    }
+    Ok(best)
 }
 
 /// Makes the whole comparison; what is known is told at once.
@@ -125,25 +164,37 @@ pub(super) fn compare(
     watch: &dyn Observer,
 ) -> Result<Comparison, Error> {
     let goal = requirements.goal;
+    for line in question(requirements) {
+        watch.result(&line)?;
+    }
     let bare = Study { scene: Scene { damper: None, ..tmd_study.scene }, ..tmd_study.clone() };
     let none = Candidate::new(What::None, &bare)?;
     let formula = Formula::of(requirements, &tmd_study.scene);
     let tmd = tmd_of(tmd_study, tmd::best(tmd_study, formula)?)?;
-    let formula = (formula, tmd_of(tmd_study, [formula.k2, formula.c2])?.goal);
+    let mut textbook = tmd_of(tmd_study, [formula.k2, formula.c2])?;
+    textbook.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
+    let formula = (formula, textbook);
     let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
     watch.result(&format!(
-        "TMD, closed form: {} {}{kept}, {}",
+        "\nTMD, exact: {} {}{kept}, {}",
         goal.name(),
         sized(tmd.goal, goal.unit()),
         parameters(&tmd)
     ))?;
-    let (mut ssvi, mut tried) = (None, None);
+    let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
-        watch.result("SSVI NES: from known designs, some seconds; Ctrl-C keeps what is printed above")?;
+        watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves the TMD above)")?;
         let found = ssvi::best(ssvi_study, &tmd, &[], (journal, "ssvi"), watch)?;
-        (ssvi, tried) = (ssvi_of(ssvi_study, &found)?, Some(found.tried));
+        tried = Some(found.tried);
+        let all = striking(ssvi_study, &found)?;
+        let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
+        if all.first().is_some_and(|best| best.feasible && (rival || tmd.goal > (1.0 + SAME) * best.goal)) {
+            (ssvi, judged) = trusted(all)?.unzip();
+        } else {
+            ssvi = all.into_iter().next();
+        }
     }
-    let choice = choice(requirements, &tmd, ssvi.as_ref());
+    let choice = choice(requirements, &tmd, ssvi.as_ref(), judged.as_ref());
     let costs = costs(requirements, [&tmd, ssvi.as_ref().unwrap_or(&tmd)], journal, watch)?;
     let dampers = [Some(&tmd), ssvi.as_ref()];
     let detuned = match requirements.k1_error {
@@ -152,16 +203,40 @@ pub(super) fn compare(
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements)? };
     let chosen = dampers.into_iter().flatten().find(|damper| Some(damper.what) == choice);
-    let certificate = chosen.map(|damper| judge(&damper.study)).transpose()?.map(|certificate| certificate.short());
-    Ok(Comparison { goal, none, formula, tmd, ssvi, tried, choice, costs, detuned, lightest, certificate })
+    let ssvi_certificate = judged.as_ref().map(Certificate::short);
+    let certificate = match choice {
+        Some(What::Ssvi) => ssvi_certificate.clone(),
+        _ => chosen.map(|damper| judge(&damper.study)).transpose()?.map(|certificate| certificate.short()),
+    };
+    Ok(Comparison {
+        goal,
+        none,
+        formula,
+        tmd,
+        ssvi,
+        tried,
+        choice,
+        costs,
+        detuned,
+        lightest,
+        certificate,
+        ssvi_certificate,
+    })
 }
 
-/// The one to build: a damper without walls is simpler to build and easier to trust.
-fn choice(requirements: &Requirements, tmd: &Candidate, ssvi: Option<&Candidate>) -> Option<What> {
+/// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
+/// is a little off.
+fn choice(
+    requirements: &Requirements,
+    tmd: &Candidate,
+    ssvi: Option<&Candidate>,
+    judged: Option<&Certificate>,
+) -> Option<What> {
     let ssvi = ssvi.filter(|ssvi| ssvi.feasible);
+    let is_trusted = judged.is_some_and(|certificate| doubt(certificate) <= 1);
     match (requirements.dampers, tmd.feasible, ssvi) {
         (Dampers::Ssvi, _, Some(_)) => Some(What::Ssvi),
-        (_, true, Some(ssvi)) if tmd.goal > (1.0 + SAME) * ssvi.goal => Some(What::Ssvi),
+        (_, true, Some(ssvi)) if is_trusted && tmd.goal > (1.0 + SAME) * ssvi.goal => Some(What::Ssvi),
         (_, true, _) => Some(What::Tmd),
         (_, false, Some(_)) => Some(What::Ssvi),
         (_, false, None) => None,
@@ -186,10 +261,11 @@ fn costs(
         };
         let free_ssvi = if ssvi.what == What::Ssvi && binds {
             let study = free.ssvi()?;
-            let start = Parameter::PAPER.map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
+            let start = Parameter::PAPER
+                .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
             let stage = format!("ssvi without {}", wish.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
-            ssvi_of(&study, &found)?
+            striking(&study, &found)?.into_iter().next()
         } else {
             None
         };
@@ -254,14 +330,20 @@ impl Serialize for Comparison {
         let costs: Map<String, Value> = self
             .costs
             .iter()
-            .map(|cost| (cost.wish.name().to_owned(), json!({ "TMD_without": cost.tmd, "SSVI_NES_without": cost.ssvi })))
+            .map(|cost| {
+                (
+                    cost.wish.name().to_owned(),
+                    json!({ "TMD_without": cost.tmd, "SSVI_NES_without": cost.ssvi }),
+                )
+            })
             .collect();
         json!({
             "goal": self.goal,
             "build": self.choice,
             "certificate": self.certificate,
+            "SSVI_NES_certificate": self.ssvi_certificate,
             "candidates": self.all().collect::<Vec<_>>(),
-            "formula": { "name": formula.name, "k2": formula.k2, "c2": formula.c2, self.goal.name(): value },
+            "formula": { "name": formula.name, "damper": value },
             "limits": costs,
             "k1_off": self.detuned,
             "lightest_TMD": self.lightest,

@@ -61,27 +61,51 @@ pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Draw
     let strikes = compared.dampers().any(Candidate::strikes);
     let shown = Measure::ALL.into_iter().filter(|measure| *measure != Measure::ContactForce || strikes);
     let chart = |measure: Measure| {
-        let all: Vec<f64> = curves.iter().flat_map(|(_, points)| points.iter().map(|(_, values)| values.get(measure))).collect();
+        let all: Vec<f64> = curves
+            .iter()
+            .flat_map(|(_, points)| points.iter().map(|(_, values)| values.get(measure)))
+            .collect();
         let largest = all.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
-        // On a logarithmic scale the chart is told in the unit of its middle.
-        let (name, number) = unit::readable(0.05 * largest, measure.unit());
-        let scale = if number == 0.0 { 1.0 } else { number / (0.05 * largest) };
+        let (name, number) = unit::readable(largest, measure.unit());
+        let scale = if number == 0.0 { 1.0 } else { number / largest };
         let scaled: Vec<f64> = all.iter().map(|value| scale * value).filter(|value| *value > 0.0).collect();
-        let y = Axis::around(format!("{}, {name}", measure.name().replace('_', " ")), Scale::Log, scaled);
+        let label = format!("{}, {name}", measure.name().replace('_', " "));
+        // A contact force is zero where nothing is struck.
+        let force = measure == Measure::ContactForce;
+        let y = if force { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
         let allowed = requirements.allowed(Wish::Of(Limit::Of(measure)));
         let mut layers = Vec::new();
         if allowed.is_finite() {
-            layers.push(Layer::Band { x: (f64::NEG_INFINITY, f64::INFINITY), y: (scale * allowed, f64::INFINITY), colour: GREY, opacity: 0.25 });
+            layers.push(Layer::Band {
+                x: (f64::NEG_INFINITY, f64::INFINITY),
+                y: (scale * allowed, f64::INFINITY),
+                colour: GREY,
+                opacity: 0.25,
+            });
         }
         for (what, points) in &curves {
             let points = points.iter().map(|(omega, values)| (omega / size, scale * values.get(measure)));
-            layers.push(Layer::line(points.filter(|(_, value)| *value > 0.0), line(*what)));
+            layers.push(Layer::line(points.filter(|(_, value)| force || *value > 0.0), line(*what)));
         }
-        Chart::of(Axis::linear(format!("frequency, {}", requirements.frequencies), (ends[0], ends[1])), y, layers, 130.0)
+        Chart::of(
+            Axis::linear(format!("frequency, {}", requirements.frequencies), (ends[0], ends[1])),
+            y,
+            layers,
+            130.0,
+        )
     };
     let charts: Vec<Chart> = shown.map(chart).collect();
     let legend = compared.all().map(|of| (Key::Line(line(of.what)), of.what.name().to_owned())).collect();
     let sheet = Sheet::of("All candidates over the band", charts);
-    let description = "Each quantity against the frequency of the forcing, for the structure alone and with each damper.".to_owned();
-    drawing(&Sheet { description, width: Width::Page, columns: 2, legend, caption: vec![made_by(None)], ..sheet })
+    let description =
+        "Each quantity against the frequency of the forcing, for the structure alone and with each damper."
+            .to_owned();
+    drawing(&Sheet {
+        description,
+        width: Width::Page,
+        columns: 2,
+        legend,
+        caption: vec![made_by(None)],
+        ..sheet
+    })
 }

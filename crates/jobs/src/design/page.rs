@@ -1,6 +1,6 @@
 //! The page of a design: the answer, all candidates over the band, the damper to scale, what was asked.
 
-use super::answer::{build, findings, question, rows};
+use super::answer::{asked, build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::requirements::Requirements;
@@ -21,20 +21,29 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
     let answer = build(requirements, compared).into_iter().map(|line| Block::words(line.trim().to_owned()));
     let sure = findings(requirements, compared);
     let mut opening: Vec<Block> = answer.collect();
-    opening.extend(question(requirements).into_iter().map(Block::words));
+    opening.extend(asked(requirements).into_iter().map(Block::words));
     let limits: Vec<Vec<String>> = compared
         .costs
         .iter()
         .map(|cost| {
             let allowed = sized(requirements.allowed(cost.wish), cost.wish.unit());
-            let value = |of: Option<&Candidate>| of.map_or("-".to_owned(), |of| sized(of.goal, compared.goal.unit()));
+            let value =
+                |of: Option<&Candidate>| of.map_or("-".to_owned(), |of| sized(of.goal, compared.goal.unit()));
             let own = [Some(&compared.tmd), Some(&cost.tmd), compared.ssvi.as_ref(), cost.ssvi.as_ref()];
             [format!("{} at most {allowed}", cost.wish.name())].into_iter().chain(own.map(value)).collect()
         })
         .collect();
     let mut compare = vec![
-        Block::table("The largest value of each quantity in the steady motion, and its frequency", head, rows),
-        Block::table("The dampers", ["damper", "parameters", "tuned to"], compared.dampers().map(damper).collect()),
+        Block::table(
+            "The largest value of each quantity in the steady motion, and its frequency",
+            head,
+            rows,
+        ),
+        Block::table(
+            "The dampers",
+            ["damper", "parameters", "alone, on a rigid support"],
+            compared.dampers().map(damper).collect(),
+        ),
     ];
     if !limits.is_empty() {
         let goal = compared.goal.name();
@@ -61,12 +70,20 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             (
                 "band",
                 "Over the band",
-                vec![Block::figure("band.svg", curves::curves(requirements, compared), "Each quantity against frequency, once the motion is steady. Grey: what a limit forbids.")],
+                vec![Block::figure(
+                    "band.svg",
+                    curves::curves(requirements, compared),
+                    "Each quantity against frequency, once the motion is steady. Grey: what a limit forbids.",
+                )],
             ),
             (
                 "damper",
                 "The damper to scale",
-                vec![Block::figure("damper.svg", drawing::drawing(chosen), format!("{kind}: positions relative to the structure, in mm."))],
+                vec![Block::figure(
+                    "damper.svg",
+                    drawing::drawing(chosen),
+                    format!("{kind}: positions relative to the structure, in mm."),
+                )],
             ),
             ("sure", "How sure, and what limits cost", vec![Block::List(sure)]),
             ("files", "Files", vec![Block::files(&["designs.csv", "design.json", "answer.txt"])]),

@@ -77,35 +77,42 @@ fn share(typed: &Typed, field: &str, most: f64) -> Result<f64, Error> {
         ));
     }
     if value >= most {
-        return Err(typed.refused(field, format!("{percent} % is not allowed here: give less than 100 %, for instance 10%")));
+        return Err(typed.refused(
+            field,
+            format!("{percent} % is not allowed here: give less than 100 %, for instance 10%"),
+        ));
     }
     Ok(value)
 }
 
 /// `[m1, k1]`, kg and N/m.
 fn structure(wishes: &Wishes) -> Result<[f64; 2], Error> {
-    let [m1, k1, f1] = [(&wishes.m1, Parameter::M1), (&wishes.k1, Parameter::K1), (&wishes.f1, Parameter::Omega)]
-        .map(|(typed, parameter)| {
-            let name = if parameter == Parameter::Omega { "f1" } else { parameter.symbol() };
-            typed.as_ref().map(|typed| -> Result<f64, Error> {
-                let value = positive(typed, name, parameter.units())?;
-                // A bare number is a frequency in Hz: nobody names a natural frequency f1 in rad/s.
-                Ok(if name == "f1" && is_bare(&typed.text) { TAU * value } else { value })
-            })
-        });
+    let [m1, k1, f1] =
+        [(&wishes.m1, Parameter::M1), (&wishes.k1, Parameter::K1), (&wishes.f1, Parameter::Omega)].map(
+            |(typed, parameter)| {
+                let name = if parameter == Parameter::Omega { "f1" } else { parameter.symbol() };
+                typed.as_ref().map(|typed| -> Result<f64, Error> {
+                    let value = positive(typed, name, parameter.units())?;
+                    // A bare number is a frequency in Hz: nobody names a natural frequency f1 in rad/s.
+                    Ok(if name == "f1" && is_bare(&typed.text) { TAU * value } else { value })
+                })
+            },
+        );
     match (m1.transpose()?, k1.transpose()?, f1.transpose()?) {
         (Some(m1), Some(k1), None) => Ok([m1, k1]),
         (Some(m1), None, Some(omega)) => Ok([m1, m1 * omega * omega]),
         (None, Some(k1), Some(omega)) => Ok([k1 / (omega * omega), k1]),
         (Some(m1), Some(k1), Some(_)) => {
             let natural = rounded((k1 / m1).sqrt() / TAU, 4);
-            let problem = format!("m1 and k1 are given too, which make it {natural} Hz: leave one of the three out");
+            let problem =
+                format!("m1 and k1 are given too, which make it {natural} Hz: leave one of the three out");
             Err(wishes.f1.as_ref().map_or_else(|| missing("--f1", ""), |typed| typed.refused("f1", problem)))
         }
         (None, _, _) => Err(missing("--m1", "the mass of the structure, for instance --m1 40t")),
-        (Some(_), None, None) => {
-            Err(missing("--f1", "the natural frequency of the structure, for instance --f1 2Hz, or its stiffness, --k1 6.3MN/m"))
-        }
+        (Some(_), None, None) => Err(missing(
+            "--f1",
+            "the natural frequency of the structure, for instance --f1 2Hz, or its stiffness, --k1 6.3MN/m",
+        )),
     }
 }
 
@@ -159,7 +166,8 @@ fn driving(wishes: &Wishes, natural: f64) -> Result<(Driving, Option<f64>), Erro
         ("base", &wishes.base, Parameter::Base.units()),
         ("base_acceleration", &wishes.base_acceleration, unit::ACCELERATION),
     ];
-    let given: Vec<_> = all.iter().filter_map(|(name, typed, units)| Some((*name, typed.as_ref()?, *units))).collect();
+    let given: Vec<_> =
+        all.iter().filter_map(|(name, typed, units)| Some((*name, typed.as_ref()?, *units))).collect();
     match given.as_slice() {
         [] => Err(missing(
             "--force",
@@ -176,7 +184,8 @@ fn driving(wishes: &Wishes, natural: f64) -> Result<(Driving, Option<f64>), Erro
             })
         }
         [(first, ..), (name, typed, _), ..] => {
-            Err(typed.refused(name, format!("{} is given too: leave one of them out", first.replace('_', "-"))))
+            Err(typed
+                .refused(name, format!("{} is given too: leave one of them out", first.replace('_', "-"))))
         }
     }
 }
@@ -208,7 +217,9 @@ fn band(wishes: &Wishes, natural: f64) -> Result<([f64; 2], &'static str), Error
             None => number(width)?,
         };
         [middle - half, middle + half]
-    } else if let Some((from, to)) = text.split_once("..").or_else(|| text.split_once('–')).or_else(|| text.split_once(" to ")) {
+    } else if let Some((from, to)) =
+        text.split_once("..").or_else(|| text.split_once('–')).or_else(|| text.split_once(" to "))
+    {
         [number(from)?, number(to)?]
     } else {
         let problem = format!(
@@ -312,7 +323,9 @@ fn wall(typed: &Typed) -> Result<Wall, Error> {
             Some(("R", value)) => radius = Some(value),
             Some(("E", value)) => modulus = Some(value),
             _ => {
-                let problem = format!("\"{part}\" is not known: give the radius and Young's modulus of the damper's surfaces, for instance R=20mm,E=5MPa");
+                let problem = format!(
+                    "\"{part}\" is not known: give the radius and Young's modulus of the damper's surfaces, for instance R=20mm,E=5MPa"
+                );
                 return Err(typed.refused("wall", problem));
             }
         }

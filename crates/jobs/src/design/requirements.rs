@@ -280,8 +280,7 @@ impl Requirements {
         let scale = (self.natural_frequency() / PAPER).powi(2);
         let paper = Contact::for_mass(Positive::new(self.mass * scale)?)?;
         let Some(Wall { radius, modulus }) = self.wall else { return Ok(paper) };
-        let (radius, soft, steel) =
-            (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
+        let (radius, soft, steel) = (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
         Ok(Contact { radius, young_1: steel, young_2: soft, young_3: steel, young_4: soft, ..paper })
     }
 

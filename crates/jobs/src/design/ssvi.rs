@@ -9,7 +9,7 @@ use crate::tune::objective::{coarse, kept, searched};
 use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_model::{Measure, Scene};
-use retune_optim::Parameter;
+use retune_optim::{Bounds, Parameter};
 use retune_store::Journal;
 use retune_study::{Search, Study};
 
@@ -31,35 +31,41 @@ const DASHPOTS: [f64; 3] = [0.6, 1.0, 1.7];
 const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
 /// A design with this many times the value of the TMD is not worth its runs.
 const WORTH: f64 = 4.0;
-/// Descents, from the best that were tried.
-const DESCENTS: usize = 2;
+/// Descents: from the best of each of so many families of designs, those that came nearest.
+const DESCENTS: usize = 4;
 
 /// What a search for an SSVI NES comes to.
 pub(super) struct Found {
-    /// Its `[k2, c2, D, C]`; none where nothing that was tried has a value.
-    pub best: Option<Vec<f64>>,
+    /// Its ends, `[k2, c2, D, C]` each, the best first; none where nothing that was tried comes near the TMD.
+    pub ends: Vec<Vec<f64>>,
     /// Designs that were evaluated.
     pub tried: usize,
 }
 
+/// A start with the number of its family.
+type Start = (usize, Vec<f64>);
+
 /// The starts: known designs and the TMD, within the bounds of the search.
-fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Vec<f64>> {
+fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
     let Scene { primary, .. } = study.scene;
     let (m2, natural) = (search.damper.mass.get(), primary.natural_frequency());
     let stroke = tmd.value(Measure::Stroke);
     let more = (m2 / primary.mass.get() / RATIO).sqrt();
-    let mut all: Vec<[f64; 4]> = NEAR.iter().map(|share| [tmd.k2(), tmd.c2(), share * stroke, share * stroke]).collect();
-    for [k2, c2, d, c] in KNOWN {
+    let near = |share: &f64| (0, [tmd.k2(), tmd.c2(), share * stroke, share * stroke]);
+    let mut all: Vec<(usize, [f64; 4])> = NEAR.iter().map(near).collect();
+    for (number, [k2, c2, d, c]) in KNOWN.into_iter().enumerate() {
         for dashpot in DASHPOTS {
             for gap in GAPS {
                 let c2 = dashpot * c2 * more * 2.0 * m2 * natural;
-                all.push([k2 * m2 * natural * natural, c2, gap * d * stroke, gap * c * stroke]);
+                all.push((number + 1, [k2 * m2 * natural * natural, c2, gap * d * stroke, gap * c * stroke]));
             }
         }
     }
-    let within = |x: [f64; 4]| {
+    let within = |(family, x): (usize, [f64; 4])| {
         let bounds = search.options.bounds.iter().zip(x);
-        bounds.map(|(own, x)| x.clamp(own.lower.unwrap_or(0.0), own.upper.unwrap_or(f64::INFINITY))).collect()
+        let one =
+            |(own, x): (&Bounds, f64)| x.clamp(own.lower.unwrap_or(0.0), own.upper.unwrap_or(f64::INFINITY));
+        (family, bounds.map(one).collect())
     };
     all.into_iter().map(within).collect()
 }
@@ -79,23 +85,30 @@ pub(super) fn best(
     debug_assert_eq!(search.variables, Parameter::PAPER);
     let objective = searched(study, &search, &search.variables);
     let loose = coarse(study, &search, &search.variables);
-    let starts = if beside.is_empty() { starts(study, &search, tmd) } else { beside.to_vec() };
+    let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
+    let starts = if beside.is_empty() { starts(study, &search, tmd) } else { beside };
     let most = if tmd.feasible { WORTH * tmd.goal } else { f64::INFINITY };
     let name = format!("{stage} known");
     let value = kept(&loose, journal, &name, || ());
-    let bar = watch.progress("SSVI NES, designs that are known", starts.len() as u64);
-    let tried = |x: &Vec<f64>| {
-        let value = value(x, most);
+    let bar = watch.progress("SSVI NES, known designs", starts.len() as u64);
+    let tried = |start: &Start| {
+        let value = value(&start.1, most);
         bar.inc(1);
-        (value, x.clone())
+        value
     };
-    let mut all: Vec<(f64, Vec<f64>)> = starts.par_iter().map(tried).collect();
+    let values: Vec<f64> = starts.par_iter().map(tried).collect();
+    let mut all: Vec<(f64, &Start)> = values.into_iter().zip(&starts).collect();
     bar.finish();
     journal.check()?;
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let worth: Vec<Vec<f64>> = all.iter().filter(|(value, _)| *value < most).take(DESCENTS).map(|(_, x)| x.clone()).collect();
+    let mut worth: Vec<&Start> = Vec::new();
+    for (_, start) in all.iter().filter(|(value, _)| *value < most) {
+        if worth.len() < DESCENTS && worth.iter().all(|(known, _)| *known != start.0) {
+            worth.push(start);
+        }
+    }
     let bar = watch.progress("SSVI NES, descents", worth.len() as u64);
-    let descent = |x: &Vec<f64>| {
+    let descent = |(_, x): &&Start| {
         let foot = descend(&objective, &search, x, journal, &format!("{stage} descent"));
         bar.inc(1);
         (foot.end.value, foot.end.x)
@@ -104,6 +117,6 @@ pub(super) fn best(
     bar.finish();
     journal.check()?;
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let counts = objective.counts().evaluations + loose.counts().evaluations;
-    Ok(Found { best: ends.into_iter().next().map(|(_, x)| x), tried: counts as usize })
+    let tried = objective.counts().evaluations + loose.counts().evaluations;
+    Ok(Found { ends: ends.into_iter().map(|(_, x)| x).collect(), tried: tried as usize })
 }

@@ -2,10 +2,10 @@
 
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
+use crate::Error;
 use crate::again::{Row, Source};
 use crate::columns;
 use crate::resolved::Resolved;
-use crate::Error;
 use retune_model::{Measure, Parameter, Scene};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
@@ -14,7 +14,10 @@ use std::path::Path;
 
 /// A column for each quantity and its frequency.
 fn names() -> Vec<String> {
-    Measure::ALL.iter().flat_map(|measure| [measure.name().to_owned(), format!("omega_{}", measure.name())]).collect()
+    Measure::ALL
+        .iter()
+        .flat_map(|measure| [measure.name().to_owned(), format!("omega_{}", measure.name())])
+        .collect()
 }
 
 /// What a candidate has of each quantity, and where.
@@ -36,7 +39,8 @@ pub(super) fn table(compared: &Comparison) -> Table {
     let mut table = columns::table(&all);
     let mut push = |limits: String, of: &Candidate| {
         let damper = of.damper();
-        let own = |parameter: Parameter| damper.and_then(|damper| parameter.of_damper(&damper)).unwrap_or(f64::NAN);
+        let own =
+            |parameter: Parameter| damper.and_then(|damper| parameter.of_damper(&damper)).unwrap_or(f64::NAN);
         let design = Parameter::PAPER.map(|parameter| Cell::from(own(parameter)));
         let first = cells![limits, of.what.name(), own(Parameter::M2)];
         table.push([first, design.to_vec(), numbers(of).into_iter().map(Cell::from).collect()].concat());

@@ -29,7 +29,8 @@ impl Formula {
     /// The formula that fits what is asked: Den Hartog's where the displacement under a constant force or on a moving base counts,
     /// Warburton's where it is the displacement under an imbalance, or the acceleration under a constant force.
     pub fn of(requirements: &Requirements, scene: &Scene) -> Self {
-        let squared = matches!(requirements.source, Driving::Imbalance(_)) != (requirements.goal == Measure::Acceleration);
+        let squared = matches!(requirements.source, Driving::Imbalance(_))
+            != (requirements.goal == Measure::Acceleration);
         let (name, formula): (_, fn(&_, f64) -> [f64; 2]) =
             if squared { ("Warburton's formula", warburton) } else { ("Den Hartog's formula", den_hartog) };
         let [k2, c2] = formula(&scene.primary, requirements.mass);
@@ -47,7 +48,8 @@ pub(super) fn best(study: &Study, formula: Formula) -> Result<[f64; 2], Error> {
     let bounds = &search.options.bounds;
     let scales = den_hartog(&study.scene.primary, search.damper.mass.get());
     let within = |x: [f64; 2]| {
-        let one = |i: usize| x[i].clamp(bounds[i].lower.unwrap_or(0.0), bounds[i].upper.unwrap_or(f64::INFINITY));
+        let one =
+            |i: usize| x[i].clamp(bounds[i].lower.unwrap_or(0.0), bounds[i].upper.unwrap_or(f64::INFINITY));
         [one(0), one(1)]
     };
     let at = |number: usize| {
@@ -60,8 +62,10 @@ pub(super) fn best(study: &Study, formula: Formula) -> Result<[f64; 2], Error> {
     };
     let mut grid: Vec<(f64, [f64; 2])> = (0..POINTS * POINTS).into_par_iter().map(at).collect();
     grid.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let starts: Vec<[f64; 2]> =
-        [within(scales), within([formula.k2, formula.c2])].into_iter().chain(grid.iter().take(BEST).map(|(_, x)| *x)).collect();
+    let starts: Vec<[f64; 2]> = [within(scales), within([formula.k2, formula.c2])]
+        .into_iter()
+        .chain(grid.iter().take(BEST).map(|(_, x)| *x))
+        .collect();
     let ends: Vec<_> = starts.par_iter().map(|start| objective.descend(bounds, start).end).collect();
     let best = ends.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
     Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))

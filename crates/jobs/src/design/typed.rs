@@ -98,10 +98,16 @@ impl Wishes {
         let file = path.display().to_string();
         let text = retune_store::plain::text(path)
             .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
-        let mut wishes: Self = serde_json::from_str(&text)
+        let wishes: Self = serde_json::from_str(&text)
             .map_err(|error| Error::Requirement { place: file.clone(), problem: error.to_string() })?;
-        wishes.fields().into_iter().flatten().for_each(|typed| typed.file = Some(file.clone()));
-        Ok(Self { file: Some(file), ..wishes })
+        Ok(wishes.within(&file))
+    }
+
+    /// The same, said of a file in messages.
+    #[must_use]
+    pub fn within(mut self, file: &str) -> Self {
+        self.fields().into_iter().flatten().for_each(|typed| typed.file = Some(file.to_owned()));
+        Self { file: Some(file.to_owned()), ..self }
     }
 
     /// The same with what `other` gives in the place of its own.
@@ -168,7 +174,8 @@ impl Wishes {
         }
         for typed in &self.limit {
             let Some((name, value)) = typed.text.split_once('=') else {
-                let problem = format!("\"{}\" is not of the form NAME=VALUE, for instance stroke=15mm", typed.text);
+                let problem =
+                    format!("\"{}\" is not of the form NAME=VALUE, for instance stroke=15mm", typed.text);
                 return Err(typed.refused("limit", problem));
             };
             all.push((name.trim().to_owned(), Typed { text: value.trim().to_owned(), ..typed.clone() }));
@@ -192,7 +199,7 @@ impl Typed {
     /// The error that this value of a field is.
     pub(super) fn refused(&self, field: &str, problem: impl Into<String>) -> Error {
         let place = match &self.file {
-            Some(file) => format!("{file}: {field}"),
+            Some(file) => format!("{file}: {}", field.replace("limit ", "limits.")),
             None => format!("--{}", field.replace('_', "-")),
         };
         Error::Requirement { place, problem: problem.into() }

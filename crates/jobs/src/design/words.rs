@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::requirements::Requirements;
-use retune_model::{Parameter, unit};
+use retune_model::{Measure, Parameter, unit};
 use retune_study::rounded;
 use std::f64::consts::TAU;
 
@@ -15,6 +15,45 @@ pub(super) fn sized(value: f64, si: &'static str) -> String {
     format!("{} {unit}", rounded(number, 4))
 }
 
+/// Values in an SI unit, to four digits, in the unit in which the largest of them reads best.
+pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
+    let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let (unit, number) = unit::readable(largest, si);
+    let scale = if largest > 0.0 { number / largest } else { 1.0 };
+    let one = |value: &f64| match value.is_finite() {
+        true => format!("{} {unit}", rounded(scale * value, 4)),
+        false => "no bound".to_owned(),
+    };
+    values.iter().map(one).collect()
+}
+
+/// Words with numbers of all their digits in SI units, as a person reads them: `0.000306354 m` is `0.3064 mm`.
+pub(super) fn legible(words: &str) -> String {
+    let all: Vec<&str> = words.split(' ').collect();
+    let mut said: Vec<String> = Vec::new();
+    let mut skip = false;
+    for (i, word) in all.iter().enumerate() {
+        if std::mem::take(&mut skip) {
+            continue;
+        }
+        let Some(value) = word.parse::<f64>().ok().filter(|_| word.contains(['.', 'e'])) else {
+            said.push((*word).to_owned());
+            continue;
+        };
+        let next = all.get(i + 1).copied().unwrap_or_default();
+        let unit = next.trim_end_matches([',', ';', '.', ')']);
+        let known = Measure::ALL.into_iter().map(Measure::unit).find(|known| *known == unit);
+        match known {
+            Some(known) => {
+                said.push(format!("{}{}", sized(value, known), &next[unit.len()..]));
+                skip = true;
+            }
+            None => said.push(rounded(value, if unit == "%" { 3 } else { 4 })),
+        }
+    }
+    said.join(" ")
+}
+
 /// An angular frequency, rad/s, in a unit.
 pub(super) fn frequency(omega: f64, unit: &'static str) -> String {
     let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
@@ -25,7 +64,8 @@ pub(super) fn frequency(omega: f64, unit: &'static str) -> String {
 pub(super) fn parameters(of: &Candidate) -> String {
     let Some(damper) = of.damper() else { return "no damper".to_owned() };
     let gaps = if damper.contact.is_some() { &Parameter::PAPER[..] } else { &Parameter::PAPER[..2] };
-    let one = |parameter: &Parameter| format!("{parameter} = {}", sized(parameter.get(&damper), parameter.unit()));
+    let one =
+        |parameter: &Parameter| format!("{parameter} = {}", sized(parameter.get(&damper), parameter.unit()));
     let mass = format!("m2 = {}", sized(damper.mass.get(), "kg"));
     std::iter::once(mass).chain(gaps.iter().map(one)).collect::<Vec<_>>().join(", ")
 }
@@ -40,7 +80,7 @@ pub(super) fn tuning(of: &Candidate, requirements: &Requirements) -> String {
     }
     let zeta = damper.damping.get() / (2.0 * m2 * natural);
     let unit = if requirements.frequencies == "rpm" { "Hz" } else { requirements.frequencies };
-    format!("alone {}, damping {} %", frequency(natural, unit), rounded(100.0 * zeta, 3))
+    format!("{}, damping {} %", frequency(natural, unit), rounded(100.0 * zeta, 3))
 }
 
 /// The natural frequency of the structure, in words.

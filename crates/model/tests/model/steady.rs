@@ -112,9 +112,7 @@ fn exact_warburtons_damper_levels_the_fixed_points_of_the_acceleration() {
     let height = numbers.p / numbers.m1 * (2.0 / (mu * (1.0 + mu))).sqrt();
     let omega_n = (numbers.k1 / numbers.m1).sqrt();
     let highest = |c2: f64| {
-        let at = |omega: f64| {
-            omega * omega * Numbers { k2, c2, ..numbers }.coupled().steady(omega).x1.norm()
-        };
+        let at = |omega: f64| omega * omega * Numbers { k2, c2, ..numbers }.coupled().steady(omega).x1.norm();
         (0..4000).map(|i| at(omega_n * (0.6 + 2e-4 * f64::from(i)))).fold(0.0, f64::max)
     };
     let own = highest(c2);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
@@ -56,22 +56,36 @@ def design(
     structure: Structure,
     out: Directory = "results/design",
     *,
-    P: float,
-    band: tuple[float, float],
-    mass: float,
-    stroke: float | None = None,
-    k2_max: float | None = None,
-    k1_error: float | None = None,
+    P: float | str,
+    band: tuple[float, float] | str,
+    mass: float | str,
+    stroke: float | str | None = None,
+    k2_max: float | str | None = None,
+    k1_error: float | str | None = None,
+    goal: str = "E1max",
+    limits: Mapping[str, float | str] | None = None,
+    damper: str = "both",
     **options: Unpack[Options],
 ) -> Design:
     """Designs a damper for a structure, as `retune design` does: the better of a TMD and an SSVI NES, what each limit costs, how sure that is.
 
     ``P`` is the amplitude of the force (N), ``band`` its range of angular frequencies (rad/s), ``mass`` that of the damper (kg),
     ``stroke`` the largest deflection of its spring (m), ``k2_max`` the largest stiffness of its spring (N/m), ``k1_error`` the share by
-    which the stiffness of the structure may be off.
+    which the stiffness of the structure may be off. ``goal`` is what is made small, ``limits`` has the largest value allowed of other
+    quantities, ``damper`` is "tmd", "ssvi" or "both". Each number may be a text with a unit: ``band="1.8Hz..2.2Hz", mass="2 %"``.
     """
-    limits = {"stroke": stroke, "k2_max": k2_max, "k1_error": k1_error}
-    wishes = {**asdict(structure), "P": P, "band": band, "mass": mass, **limits}
+    wishes = {
+        **asdict(structure),
+        "P": P,
+        "band": band,
+        "mass": mass,
+        "stroke": stroke,
+        "k2_max": k2_max,
+        "k1_error": k1_error,
+        "goal": goal,
+        "limits": dict(limits or {}),
+        "damper": damper,
+    }
     return Design(Path(_job(out, {"design": wishes}, out, options)))
 
 

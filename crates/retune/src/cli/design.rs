@@ -80,7 +80,9 @@ impl Design {
     /// What is asked.
     pub fn wishes(&self) -> Wishes {
         let band = if self.band.is_empty() { None } else { Some(self.band.join(" .. ").into()) };
-        let Self { m1, k1, f1, c1, zeta, force, imbalance, base, base_acceleration, mass, goal, limit, .. } = self;
+        let Self {
+            m1, k1, f1, c1, zeta, force, imbalance, base, base_acceleration, mass, goal, limit, ..
+        } = self;
         let Self { stroke, k2_max, k1_error, damper, wall, .. } = self;
         Wishes {
             m1: m1.clone(),
