@@ -34,7 +34,7 @@ pub static KIND: Kind = Kind {
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
         artefact("design.json", Content::Derived),
-        artefact("designs.csv", Content::Rows(table::again)),
+        artefact("comparison.csv", Content::Rows(table::again)),
         artefact("answer.txt", Content::Derived),
         artefact("studies-*.json", Content::Derived),
         artefact("band.svg", Content::Derived),
@@ -82,7 +82,7 @@ pub fn design(
     job.run(request, watch, |directory| {
         let compared = comparison::compare(requirements, [&tmd, &ssvi], directory.journal(), watch)?;
         directory.journal().check()?;
-        directory.write("designs.csv", &table::table(&compared).csv())?;
+        directory.write("comparison.csv", &table::table(&compared).csv())?;
         directory.write_json("design.json", &compared)?;
         for candidate in compared.dampers() {
             let study = &candidate.study;

@@ -12,7 +12,8 @@ use crate::again::Made;
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
 use crate::{
-    Error, Observer, branches, certify, fronts, methods, paper, resolved, retention, sweep, table2, tune,
+    Error, Observer, branches, certify, design, fronts, methods, paper, resolved, retention, sweep, table2,
+    tune,
 };
 use report::Report;
 use retune_store::manifest::Manifest;
@@ -46,7 +47,7 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
 }
 
 /// The kinds of jobs.
-static KINDS: [&Kind; 8] = [
+static KINDS: [&Kind; 9] = [
     &tune::KIND,
     &certify::KIND,
     &table2::KIND,
@@ -55,6 +56,7 @@ static KINDS: [&Kind; 8] = [
     &fronts::KIND,
     &branches::KIND,
     &paper::KIND,
+    &design::KIND,
 ];
 /// Those of the comparison of methods, whose files have names that say little: only where their manifest names them.
 static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];

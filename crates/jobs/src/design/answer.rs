@@ -235,7 +235,7 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         lines.push(format!("How sure: the {name} is {words}."));
     }
     if let Some(tried) = compared.tried {
-        let tried = counted(tried as u64, "SSVI NES");
+        let tried = counted(tried as u64, "design");
         let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| rounded(k, 3)));
         let [k1, k3] = walls.unwrap_or_default();
         let origin = if requirements.wall.is_some() {
@@ -244,7 +244,7 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
             "not given (--wall): the paper's, scaled to mass and frequency"
         };
         lines.push(format!(
-            "Walls of the SSVI NES: {origin}, K = {k1} and {k3} N/m^1.5. {tried} evaluated; `retune optimize` of its study looks further."
+            "Walls of the SSVI NES: {origin}, K = {k1} and {k3} N/m^1.5. {tried} with walls evaluated; `retune optimize` of the study looks further."
         ));
     }
     lines

@@ -86,7 +86,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
                 )],
             ),
             ("sure", "How sure, and what limits cost", vec![Block::List(sure)]),
-            ("files", "Files", vec![Block::files(&["designs.csv", "design.json", "answer.txt"])]),
+            ("files", "Files", vec![Block::files(&["comparison.csv", "design.json", "answer.txt"])]),
         ],
     }
 }

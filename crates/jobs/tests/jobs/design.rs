@@ -80,7 +80,7 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
     }
 }
 
-/// On an undamped structure the exact optimum is that of the textbooks but for a few thousandths: √(1 + 2/μ) static deflections under a
+/// On an undamped structure no damper is below the fixed points, and the exact optimum is above them by less than one per cent: √(1 + 2/μ) static deflections under a
 /// force (Den Hartog), √(2 / (μ (1 + μ))) times m e / m1 under an imbalance (Warburton). The formula's own damper is no better.
 #[test]
 fn reference_the_formulas_of_textbooks_are_met_on_undamped_structures() {
@@ -93,9 +93,9 @@ fn reference_the_formulas_of_textbooks_are_met_on_undamped_structures() {
             "m1": 1000, "f1": "2 Hz", "zeta": 0, source: 10, "band": "1 .. 3 Hz", "mass": "5 %", "goal": "x1max"
         }));
         let own = largest(&found, 1, "x1max") / size / height;
-        assert!((0.996..1.0005).contains(&own), "{source}: {own}");
+        assert!((1.0 - 1e-9..1.01).contains(&own), "{source}: {own}");
         let formula = found["formula"]["damper"]["steady"]["x1max"]["value"].as_f64().expect("a number");
-        assert!((1.0..1.01).contains(&(formula / size / height / own)), "{source}: {formula}");
+        assert!((1.0 - 1e-9..1.01).contains(&(formula / size / height / own)), "{source}: {formula}");
         assert!(found["candidates"][0]["steady"]["x1max"]["value"].is_null(), "no bound without a damper");
     }
 }
@@ -133,9 +133,8 @@ fn exact_the_values_of_the_comparison_are_amplitudes_of_the_closed_form() {
     let stroke = largest(&found, 1, "stroke");
     assert!((0.2999..=0.3).contains(&stroke), "the limit binds: {stroke}");
     assert_eq!(found["candidates"][1]["binding"], json!(["stroke"]));
-    assert!(
-        largest(&found["limits"]["stroke"]["TMD_without"], 0, "a1max").is_nan() || found["build"] == "TMD"
-    );
+    let free = &found["limits"]["stroke"]["TMD_without"]["steady"]["a1max"]["value"];
+    assert!(free.as_f64().expect("a value") < 0.5 * largest(&found, 1, "a1max"), "the limit costs: {free}");
 }
 
 /// A unit more or less is the same structure.

@@ -31,17 +31,17 @@ class Options(TypedDict, total=False):
 class Design:
     """What ``retune.design`` found: the answer in words, and every damper that was tuned for it."""
 
-    #: The directory of the results; `designs.csv` is the table, `studies-tmd.json` and `studies-ssvi.json` are the studies.
+    #: The directory of the results; `comparison.csv` is the table, `studies-tmd.json` and `studies-ssvi.json` are the studies.
     out: Path
     #: The better damper, what it does, and what each limit costs.
     answer: str
-    #: The rows of `designs.csv`: each damper under all limits, and without each of them.
+    #: The rows of `comparison.csv`: no damper, each damper under all limits, and without each of them.
     rows: list[dict[str, float | str]]
 
     def __init__(self, out: Path) -> None:
         self.out = out
         self.answer = (out / "answer.txt").read_text(encoding="utf-8").strip()
-        with open(out / "designs.csv", newline="", encoding="utf-8") as file:
+        with open(out / "comparison.csv", newline="", encoding="utf-8") as file:
             self.rows = [{name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)]
 
     def __repr__(self) -> str:
