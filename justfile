@@ -28,7 +28,7 @@ optimize-tmd *OPTIONS:
 optimize STUDY *OPTIONS:
     {{retune}} optimize "$@"
 
-# Design a damper for your own structure, e.g. `just design --m1 500 --k1 20000 --c1 100 --P 800 --band 5 8 --mass 25`
+# Design a damper for your own structure, e.g. `just design --m1 40t --f1 2Hz --zeta 0.5% --force 280N --mass 2%`
 [group('tune')]
 design *OPTIONS:
     {{retune}} design "$@"

@@ -1,100 +1,97 @@
-//! `design`: from a structure and what its damper may be to an answer. Both dampers are tuned for their worst E1max over a band of
-//! frequencies, compared with none, certified, and tuned once more without each limit, which says what the limit costs.
+//! `design`: from a structure and what its damper may be to an answer. First the closed form: no damper, the formula of a textbook, the best
+//! TMD. Then an SSVI NES, from good designs that are known. All are compared by every quantity over the band, and the better one is certified.
 
 mod answer;
-mod designed;
+mod candidate;
+mod comparison;
+mod curves;
+mod drawing;
+mod page;
+mod reading;
 mod requirements;
+mod ssvi;
+mod table;
+mod tmd;
+mod typed;
+mod words;
 
-pub use designed::Designed;
-pub use requirements::{Requirements, Wish};
+pub use candidate::{Candidate, What};
+pub use comparison::{Comparison, Cost};
+pub use requirements::{Dampers, Driving, Requirements, Wall, Wish};
+pub use tmd::Formula;
+pub use typed::{Typed, Wishes};
 
 use crate::artefact::{Content, Kind, artefact};
-use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
-use crate::searches::Searches;
-use crate::{Error, Observer, Request, resolved};
-use retune_model::{Measure, Parameter};
-use retune_study::{Rule, Setting, Study, clipped};
+use crate::{Error, Observer, Request, pages, resolved};
 use serde_json::json;
+use std::path::{Path, PathBuf};
 
 /// The files of an answer.
 pub static KIND: Kind = Kind {
     command: "design",
-    answer: "designs.csv",
+    answer: "design.json",
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
-        artefact("designs.csv", Content::Rows(crate::designs::again)),
-        artefact("designs.txt", Content::Derived),
+        artefact("design.json", Content::Derived),
+        artefact("comparison.csv", Content::Rows(table::again)),
         artefact("answer.txt", Content::Derived),
         artefact("studies-*.json", Content::Derived),
+        artefact("band.svg", Content::Derived),
+        artefact("damper.svg", Content::Derived),
+        artefact("README.md", Content::Derived),
+        artefact("report.html", Content::Derived),
     ],
 };
 
-/// Tunes both dampers for a structure, and compares them.
+/// A directory for the results of a design: `results/<name>`, or, where other results or unfinished work stand there, the next of
+/// `results/<name>-2`, `-3` that is free, so that nothing is discarded. To be resumed, the last with unfinished work.
+pub fn place(requirements: &Requirements, name: &str, resume: bool) -> PathBuf {
+    let of = |number: u32| {
+        let ending = if number == 1 { String::new() } else { format!("-{number}") };
+        Path::new("results").join(format!("{name}{ending}"))
+    };
+    let is_unfinished = |place: &Path| place.join("unfinished").exists();
+    let all = || (1..).map(of);
+    if resume {
+        let begun = all().take_while(|place| place.exists()).filter(|place| is_unfinished(place)).last();
+        return begun.unwrap_or_else(|| of(1));
+    }
+    let is_ours = |place: &PathBuf| {
+        let same = resolved::Resolved::read(place).is_ok_and(|known| known.plan == json!(requirements));
+        !place.exists() || same && !is_unfinished(place)
+    };
+    all().find(is_ours).unwrap_or_else(|| of(1))
+}
+
+/// Designs dampers for a structure, and compares them.
 ///
 /// # Errors
-/// A wish cannot be fulfilled, nothing can be computed, or the results cannot be written.
+/// A number is beyond what a study may hold, nothing can be computed, or the results cannot be written.
 pub fn design(
     requirements: &Requirements,
     request: &Request,
     watch: &dyn Observer,
-) -> Result<Done<Vec<Designed>>, Error> {
-    requirements.check()?;
-    let dampers = [("TMD", requirements.tmd()?), ("SSVI NES", requirements.ssvi()?)];
-    let studies = dampers.iter().map(|(name, study)| (*name, study));
-    let job = Job::of_studies(&KIND, request, json!(requirements), studies)?;
+) -> Result<Done<Comparison>, Error> {
+    let (tmd, ssvi) = (requirements.tmd()?, requirements.ssvi()?);
+    let mut studies = vec![("TMD", &tmd)];
+    if requirements.dampers != Dampers::Tmd {
+        studies.push(("SSVI NES", &ssvi));
+    }
+    let job = Job::of_studies(&KIND, request, json!(requirements), studies.iter().copied())?;
     job.run(request, watch, |directory| {
-        let mut searches = Searches::new(directory, &job.order, watch);
-        let designed = dampers
-            .iter()
-            .map(|(name, study)| one(requirements, name, study, &mut searches, watch))
-            .collect::<Result<Vec<Designed>, Error>>()?;
-        let rows = designed.iter().flat_map(|damper| damper.rows.clone()).collect();
-        Designs { column: "limits", rows, infeasible: None }.write("designs", directory)?;
-        for Designed { study, .. } in &designed {
+        let compared = comparison::compare(requirements, [&tmd, &ssvi], directory.journal(), watch)?;
+        directory.journal().check()?;
+        directory.write("comparison.csv", &table::table(&compared).csv())?;
+        directory.write_json("design.json", &compared)?;
+        for candidate in compared.dampers() {
+            let study = &candidate.study;
             directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
         }
-        let answer = answer::answer(requirements, &designed, &job.out);
-        directory.write("answer.txt", &(answer.clone() + "\n"))?;
-        Ok(Made { answer: designed, report: format!("\n{answer}"), parts: searches.results })
+        let answer = answer::answer(requirements, &compared, &job.out);
+        let question = answer::question(requirements).join("\n");
+        directory.write("answer.txt", &format!("{question}\n\n{answer}\n"))?;
+        pages::write(&page::page(requirements, &compared), directory)?;
+        Ok(Made { answer: compared, report: format!("\n{answer}"), parts: Vec::new() })
     })
-}
-
-/// Tunes one damper under all limits, then without each of them.
-fn one(
-    requirements: &Requirements,
-    name: &'static str,
-    study: &Study,
-    searches: &mut Searches,
-    watch: &dyn Observer,
-) -> Result<Designed, Error> {
-    watch.log(&format!("\n{name}"))?;
-    let found = searches.tune(study, "")?;
-    let mut rows = vec![Row::of_optimum("all", name, study, &found)];
-    for limit in requirements.limits() {
-        let free = requirements.without(limit);
-        let mut free = if name == "TMD" { free.tmd()? } else { free.ssvi()? };
-        // What a limit costs is measured from a search that is at least as good as that under it.
-        if let Some(optimize) = &mut free.optimize {
-            let start = clipped(&found.found().damper.design, optimize);
-            optimize.starts.push(start);
-        }
-        watch.log(&format!("\n{name}, without the limit on {}", limit.words()))?;
-        let optimum = searches.tune(&free, &format!("without-{}", limit.name()))?;
-        rows.push(Row::of_optimum(&format!("no {}", limit.name()), name, study, &optimum));
-    }
-    let scene = study
-        .scene_at(&found.found().damper.design)
-        .ok_or_else(|| Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper })?;
-    let tuned = Study { scene, ..study.clone() };
-    let off = |share: f64| -> Result<f64, Error> {
-        let k1 = study.scene.primary.stiffness.get() * (1.0 + share);
-        Ok(study.energy(&tuned.scene_with(&[Setting::new(Parameter::K1, k1)])?).unwrap_or(f64::NAN))
-    };
-    let detuned =
-        requirements.k1_error.map(|error| Ok::<_, Error>([off(-error)?, off(error)?])).transpose()?;
-    let needs = found.needs.as_ref().map_or([f64::NAN; 2], |needs| {
-        [Measure::Stroke, Measure::ContactForce].map(|measure| needs.damper.value(measure))
-    });
-    Ok(Designed { name, study: study.clone(), rows, needs, feasible: found.check_limits().is_ok(), detuned })
 }

@@ -34,6 +34,14 @@ pub enum Error {
         /// What is wrong, and what to give.
         problem: String,
     },
+    /// What is asked of a design is missing, or cannot be.
+    #[error("{place}: {problem}")]
+    Requirement {
+        /// The option, or the file and its field.
+        place: String,
+        /// What is wrong, and what to give.
+        problem: String,
+    },
     /// The interval of a trajectory is invalid, or gives too many rows.
     #[error(
         "--interval: {value} s is not allowed here: give a number above 0 that makes at most {most} rows"

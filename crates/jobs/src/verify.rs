@@ -12,7 +12,7 @@ use crate::again::Made;
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
 use crate::{
-    Error, Observer, branches, certify, fronts, losses, methods, paper, resolved, retention, sweep, table2,
+    Error, Observer, branches, certify, design, fronts, losses, methods, paper, resolved, retention, sweep, table2,
     tune,
 };
 use report::Report;
@@ -47,7 +47,7 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
 }
 
 /// The kinds of jobs.
-static KINDS: [&Kind; 9] = [
+static KINDS: [&Kind; 10] = [
     &tune::KIND,
     &certify::KIND,
     &table2::KIND,
@@ -57,6 +57,7 @@ static KINDS: [&Kind; 9] = [
     &fronts::KIND,
     &branches::KIND,
     &paper::KIND,
+    &design::KIND,
 ];
 /// Those of the comparison of methods, whose files have names that say little: only where their manifest names them.
 static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];

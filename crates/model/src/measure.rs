@@ -1,5 +1,7 @@
 //! The catalogue of quantities: each largest value of a motion once, with its name, words and unit.
 
+use crate::Unit;
+use crate::unit::{ACCELERATION, ENERGY, FORCE, LENGTH, VELOCITY};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -78,6 +80,17 @@ impl Measure {
     /// The SI unit.
     pub const fn unit(self) -> &'static str {
         self.entry()[3]
+    }
+
+    /// Units in which it may be given, the SI unit first.
+    pub const fn units(self) -> &'static [Unit] {
+        match self {
+            Self::Energy => ENERGY,
+            Self::Displacement | Self::Stroke => LENGTH,
+            Self::Velocity => VELOCITY,
+            Self::Acceleration => ACCELERATION,
+            Self::GroundForce | Self::ContactForce => FORCE,
+        }
     }
 
     /// Whether only a motion with a damper has it.

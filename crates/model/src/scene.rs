@@ -55,3 +55,16 @@ pub fn den_hartog(primary: &Primary, mass: f64) -> [f64; 2] {
     let zeta = (3.0 * ratio / (8.0 * (1.0 + ratio))).sqrt();
     [mass * frequency * frequency, 2.0 * mass * frequency * zeta]
 }
+
+/// Warburton's optimum for the acceleration of an undamped structure under a harmonic force, or for its displacement under a rotating
+/// imbalance: `[k2, c2]`, N/m and N·s/m, of a damper of `mass` (kg). With `μ = m2/m1` and `ω2 = √(k1/m1) / √(1 + μ)` they are `k2 = m2 ω2²`
+/// and `c2 = 2 m2 ω2 √(3μ / (8 (1 + μ/2)))`.
+///
+/// G. B. Warburton, Optimum absorber parameters for various combinations of response and excitation parameters, Earthq. Eng. Struct. Dyn.
+/// 10 (1982) 381, Table 1.
+pub fn warburton(primary: &Primary, mass: f64) -> [f64; 2] {
+    let ratio = mass / primary.mass.get();
+    let frequency = primary.natural_frequency() / (1.0 + ratio).sqrt();
+    let zeta = (3.0 * ratio / (8.0 * (1.0 + 0.5 * ratio))).sqrt();
+    [mass * frequency * frequency, 2.0 * mass * frequency * zeta]
+}

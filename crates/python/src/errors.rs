@@ -126,6 +126,10 @@ impl From<retune_jobs::Error> for Fault {
             Error::Setting(error) => error.into(),
             Error::Rule { rule, .. } => Self::of_rule(&rule),
             Error::Study(error) => Self::of_study(&error, "", true),
+            Error::Requirement { place, problem } => {
+                let field = place.rsplit(": ").next().unwrap_or_default();
+                Self::study(format!("{field}: {problem}"), Given::Nothing)
+            }
             error => Self::Other(error.to_string()),
         }
     }

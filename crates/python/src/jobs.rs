@@ -5,7 +5,7 @@ use crate::monitor::{caught, monitored, on_pool};
 use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use pyo3::prelude::*;
-use retune_jobs::design::Requirements;
+use retune_jobs::design::Wishes;
 use retune_jobs::job::Done;
 use retune_jobs::{Request, tune, verify as verification};
 use retune_model::{Parameter, Positive, Surfaces};
@@ -117,9 +117,9 @@ pub fn verify(
 #[pyfunction]
 pub fn design_study(requirements: &str, kind: &str) -> PyResult<String> {
     let made = || {
-        let requirements: Requirements =
+        let wishes: Wishes =
             serde_json::from_str(requirements).map_err(|error| Fault::Other(error.to_string()))?;
-        requirements.check()?;
+        let requirements = wishes.within("damper").requirements()?;
         json(&if kind == "TMD" { requirements.tmd()? } else { requirements.ssvi()? })
     };
     Ok(caught(made)?)

@@ -3,7 +3,7 @@
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
-use retune_jobs::design::Requirements;
+use retune_jobs::design::Wishes;
 use retune_jobs::designs::Designs;
 use retune_jobs::evaluate::Streams;
 use retune_jobs::simulate::Trajectory;
@@ -84,13 +84,21 @@ pub fn run(command: Command) -> Result<(), Error> {
 }
 
 fn design(arguments: &cli::Design) -> Result<(), Error> {
-    let &cli::Design { m1, k1, c1, force, ref band, mass, stroke, k2_max, k1_error, ref running } = arguments;
-    let out = running.out.clone().unwrap_or_else(|| "results/design".into());
+    let cli::Design { file, running, .. } = arguments;
+    let given = arguments.wishes();
+    let wishes = match file {
+        Some(file) => Wishes::read(file)?.with(given),
+        None => given,
+    };
+    let requirements = wishes.requirements()?;
+    let stem = file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
+    let name = stem.map_or("design".to_owned(), |stem| format!("design-{stem}"));
+    let out = || retune_jobs::design::place(&requirements, &name, running.resume);
+    let out = running.out.clone().unwrap_or_else(out);
     let (mut request, screen) = running.request(&out);
     request.out = Some(out);
-    let band = [band.first(), band.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-    let requirements = Requirements { m1, k1, c1, force, band, mass, stroke, k2_max, k1_error };
-    retune_jobs::design::design(&requirements, &request, &screen).map(drop)
+    let designed = retune_jobs::design::design(&requirements, &request, &screen)?;
+    made(designed, |compared| compared.check_limits())
 }
 
 /// A design that breaks the limits of its study has an exit code of its own.

@@ -22,6 +22,7 @@ pub fn code_of(error: &Error) -> u8 {
         | Error::Setting(_)
         | Error::Rule { .. }
         | Error::Argument { .. }
+        | Error::Requirement { .. }
         | Error::Interval { .. }
         | Error::Part { .. }
         | Error::MissingParts { .. } => WRONG,

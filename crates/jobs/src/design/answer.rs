@@ -1,163 +1,311 @@
-//! The answer of `design` in words. Lines fit 80 columns.
+//! The answer of `design` in words, on screen and on its page. Lines on screen fit 80 columns.
 
-use super::designed::Designed;
-use super::requirements::Requirements;
-use crate::designs::Row;
-use retune_study::rounded;
-use std::f64::consts::TAU;
+use super::candidate::{Candidate, What};
+use super::comparison::{Comparison, percent};
+use super::requirements::{Dampers, Driving, Requirements, Wish};
+use super::words::{alike, frequency, legible, natural, parameters, sized, tuning};
+use retune_model::Measure;
+use retune_optim::{Limit, Need};
+use retune_study::{counted, rounded};
 use std::path::Path;
 
-/// E1max that differs by less than this share is as good.
-const SAME: f64 = 0.05;
+/// A value from rest on that exceeds a limit by more than this share is told.
+const ABOVE: f64 = 1e-3;
 
-/// The whole answer.
-pub(super) fn answer(requirements: &Requirements, designed: &[Designed], out: &Path) -> String {
-    let none = designed.first().and_then(|first| first.rows.first()).map_or(f64::NAN, |row| row.none);
-    let table = [header(requirements), format!("{:<9}{:>9}", "none", number(none))];
-    let table = table.into_iter().chain(designed.iter().map(|damper| line(requirements, damper)));
-    let out = out.display();
-    let studies = format!("Go on with {out}/studies-tmd.json and {out}/studies-ssvi.json.");
-    let words = build(designed)
-        .into_iter()
-        .chain(costs(requirements, designed))
-        .chain(designed.iter().filter_map(sure))
-        .chain(walls(requirements))
-        .chain([studies]);
+/// The whole answer on screen.
+pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
     let broken = textwrap::Options::new(80).subsequent_indent("  ");
-    let words: Vec<String> = words.map(|line| textwrap::fill(&line, &broken)).collect();
-    let structure = textwrap::fill(&structure(requirements), &broken);
-    let table: Vec<String> = table.collect();
-    format!("{structure}\n\n{}\n\n{}", table.join("\n"), words.join("\n"))
+    let fill = |line: String| textwrap::fill(&line, &broken);
+    let words = build(requirements, compared).into_iter().chain(findings(requirements, compared));
+    let out = out.display();
+    let next = format!("Open {out}/report.html. Go on: `retune explore {out}/{}`.", next(compared));
+    let words: Vec<String> = words.chain([next]).map(fill).collect();
+    format!("{}\n\n{}", table(requirements, compared), words.join("\n"))
 }
 
-/// The walls that were chosen: whoever builds the damper has others.
-fn walls(requirements: &Requirements) -> Option<String> {
-    let [k1, k3] = requirements.contact().ok()?.stiffness().map(|stiffness| rounded(stiffness, 3));
-    Some(format!(
-        "Walls were not given: the paper's, in proportion to the mass (K = {k1} and {k3} N/m^1.5); write your own into the studies."
-    ))
+/// The study with which one goes on.
+fn next(compared: &Comparison) -> String {
+    format!("studies-{}.json", compared.chosen().unwrap_or(&compared.tmd).study.name())
 }
 
-fn structure(requirements: &Requirements) -> String {
-    let natural = requirements.natural_frequency();
-    let [from, to] = requirements.band;
-    format!(
-        "Structure of {} kg at {} rad/s ({} Hz), damping {} %, {} N from {} to {} rad/s ({} to {} Hz)",
-        short(requirements.m1),
-        short(natural),
-        short(natural / TAU),
-        short(50.0 * requirements.c1 / (requirements.m1 * natural)),
-        short(requirements.force),
-        short(from),
-        short(to),
-        short(from / TAU),
-        short(to / TAU)
-    )
+/// What was asked, broken into lines for the screen.
+pub(super) fn question(requirements: &Requirements) -> Vec<String> {
+    let broken = textwrap::Options::new(80).subsequent_indent("  ");
+    asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
 }
 
-fn header(requirements: &Requirements) -> String {
-    let mut text = format!(
-        "{:<10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>8}",
-        "damper", "E1max, J", "k2, N/m", "c2", "stroke", "D, m", "C, m"
-    );
+/// What was asked.
+pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
+    let own = natural(requirements);
+    let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
+    let driving = match requirements.source {
+        Driving::Force(force) => format!("a force of {}", sized(force, "N")),
+        Driving::Imbalance(imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
+        Driving::Base(base) => match requirements.accelerated {
+            Some(acceleration) => format!(
+                "a base that moves by {} ({} at {own}; over the band the motion, not the acceleration, is held)",
+                sized(base, "m"),
+                sized(acceleration, "m/s²")
+            ),
+            None => format!("a base that moves by {}", sized(base, "m")),
+        },
+    };
+    let unit = requirements.frequencies;
+    let [from, to] = requirements.band.map(|end| frequency(end, unit));
+    let from = from.trim_end_matches(unit).trim_end();
+    let limits: Vec<String> =
+        requirements.wishes().into_iter().map(|wish| limit(requirements, wish)).collect();
+    let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
+    vec![
+        format!(
+            "Structure: {} on {}, {own}, damping {}; {driving}, {from} to {to}.",
+            sized(requirements.m1, "kg"),
+            sized(requirements.k1, "N/m"),
+            percent(requirements.c1 / critical)
+        ),
+        format!(
+            "Asked for: a damper of {} ({}) with the least {}{limits}.",
+            sized(requirements.mass, "kg"),
+            percent(requirements.mass / requirements.m1),
+            requirements.goal.name()
+        ),
+    ]
+}
+
+fn limit(requirements: &Requirements, wish: Wish) -> String {
+    format!("{} at most {}", wish.name(), sized(requirements.allowed(wish), wish.unit()))
+}
+
+/// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
+pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Vec<String>> {
+    let row = |measure: Measure| {
+        let wish = Wish::Of(Limit::Of(measure));
+        let allowed = requirements.allowed(wish);
+        let allowed =
+            if allowed.is_nan() { String::new() } else { format!(" <= {}", sized(allowed, wish.unit())) };
+        let first = format!("{}{allowed}", measure.name().replace('_', " "));
+        let values: Vec<f64> = compared.all().map(|of| of.value(measure)).collect();
+        let cell = |(of, value): (&Candidate, String)| {
+            let Need { value: own, omega, .. } = of.steady.get(measure);
+            match own {
+                0.0 => "-".to_owned(),
+                _ if !own.is_finite() => value,
+                _ => format!("{value}, {}", frequency(omega, requirements.frequencies)),
+            }
+        };
+        std::iter::once(first).chain(compared.all().zip(alike(&values, measure.unit())).map(cell)).collect()
+    };
+    let mut rows: Vec<Vec<String>> = Measure::ALL.into_iter().map(row).collect();
     if let Some(error) = requirements.k1_error {
-        let percent = short(100.0 * error);
-        text += &format!("{:>8}{:>8}", format!("k1-{percent}%"), format!("k1+{percent}%"));
+        for (place, sign) in ["-", "+"].into_iter().enumerate() {
+            let first = format!("{}, k1 {sign}{}", compared.goal.name(), percent(error));
+            let values = compared.detuned.iter().map(|values| sized(values[place], compared.goal.unit()));
+            rows.push([first, String::new()].into_iter().chain(values).collect());
+        }
     }
-    text
+    rows
 }
 
-fn line(requirements: &Requirements, damper: &Designed) -> String {
-    let Some(row) = damper.rows.first() else { return String::new() };
-    let [_, k2, c2, d, c] = row.found.values();
-    let gaps = if touches(damper) { [metres(d), metres(c)] } else { ["-".to_owned(), "-".to_owned()] };
-    let mut text = format!(
-        "{:<9}{:>9}{:>9}{:>10}{:>10}{:>8}{:>8}",
-        damper.name,
-        number(row.e1_max),
-        number(k2),
-        number(c2),
-        metres(damper.needs[0]),
-        gaps[0],
-        gaps[1]
-    );
-    if let (Some(_), Some([less, more])) = (requirements.k1_error, damper.detuned) {
-        text += &format!("{:>8}{:>8}", number(less), number(more));
-    }
-    text
-}
-
-fn touches(damper: &Designed) -> bool {
-    damper.needs[1] > 0.0
+/// The comparison on screen.
+fn table(requirements: &Requirements, compared: &Comparison) -> String {
+    let head: Vec<String> = std::iter::once("largest, where".to_owned())
+        .chain(compared.all().map(|of| of.what.name().to_owned()))
+        .collect();
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows(requirements, compared)).collect();
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let wide = |i: usize| {
+        rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(wide).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().enumerate().map(|(i, cell)| {
+            let width = widths[i];
+            if i == 0 { format!("{cell:<width$}") } else { format!("  {cell:>width$}") }
+        });
+        cells.collect::<String>().trim_end().to_owned()
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// Which damper to build, and why.
-fn build(designed: &[Designed]) -> Vec<String> {
-    let best = |damper: &&Designed| damper.rows.first().map_or(f64::INFINITY, |row| row.e1_max);
-    let feasible: Vec<&Designed> = designed.iter().filter(|damper| damper.feasible).collect();
-    let Some(least) = feasible.iter().min_by(|a, b| best(a).total_cmp(&best(b))) else {
-        return vec![
-            "None found that keeps the limits, of either damper: loosen one of them, or give the damper more mass."
-                .to_owned(),
-        ];
-    };
-    // A damper without walls is simpler to build and easier to trust.
-    let plain = feasible.iter().find(|damper| !touches(damper) && best(damper) <= (1.0 + SAME) * best(least));
-    let (choice, why) = match plain {
-        Some(plain) if plain.name != least.name => (plain, " it is as good to 5 %, and strikes nothing"),
-        Some(plain) => (plain, " it is the best, and strikes nothing"),
-        None => (least, " it is the best"),
-    };
-    let reduction = choice.rows.first().map_or(f64::NAN, |row| row.none / row.e1_max);
-    let other = feasible.iter().find(|damper| damper.name != choice.name);
-    let beside = other.map_or(String::new(), |other| {
-        let idle = other.name == "SSVI NES" && !touches(other);
-        let idle = if idle { ", and strikes nothing either: it has become a TMD" } else { "" };
-        format!("; the {} has {} J{idle}", other.name, number(best(other)))
-    });
-    let touching = if choice.name == "SSVI NES" && !touches(choice) {
-        " Its walls are out of reach: it has become a TMD."
+pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
+    let goal = compared.goal;
+    let Some(chosen) = compared.chosen() else { return infeasible(requirements, compared) };
+    let times = compared.none.goal / chosen.goal;
+    let reduction = if times.is_finite() {
+        format!(
+            "{} falls from {} to {}, {} times less",
+            goal.name(),
+            sized(compared.none.goal, goal.unit()),
+            sized(chosen.goal, goal.unit()),
+            rounded(times, 3)
+        )
     } else {
-        ""
+        format!("{} is {}, and has no bound without a damper", goal.name(), sized(chosen.goal, goal.unit()))
     };
-    vec![format!(
-        "Build the {}:{why}. E1max is {} times smaller than without a damper{beside}.{touching}",
-        choice.name,
-        short(reduction)
-    )]
-}
-
-/// What each limit costs.
-fn costs(requirements: &Requirements, designed: &[Designed]) -> Vec<String> {
-    let mut lines = Vec::new();
-    for (number_of, limit) in requirements.limits().into_iter().enumerate() {
-        let cost = |damper: &Designed| {
-            let [own, free] =
-                [0, number_of + 1].map(|i| damper.rows.get(i).map_or(f64::NAN, |row: &Row| row.e1_max));
-            format!("{} J for the {}", number((own - free).max(0.0)), damper.name)
+    let why = match (chosen.what, &compared.ssvi, requirements.dampers) {
+        (_, _, Dampers::Tmd) => String::new(),
+        (What::Tmd, Some(ssvi), _) if !ssvi.feasible => {
+            "; no SSVI NES was found that keeps the limits".to_owned()
+        }
+        (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
+            let why = compared
+                .ssvi_certificate
+                .as_ref()
+                .map_or(String::new(), |certificate| legible(certificate.reason()));
+            format!("; an SSVI NES has {}, but cannot be trusted: {why}", sized(ssvi.goal, goal.unit()))
+        }
+        (What::Tmd, Some(ssvi), _) => format!(
+            "; the best SSVI NES that was found has {}, {} times as much, and strikes its walls with {}",
+            sized(ssvi.goal, goal.unit()),
+            rounded(ssvi.goal / chosen.goal, 3),
+            sized(ssvi.value(Measure::ContactForce), "N")
+        ),
+        (What::Tmd, None, _) => {
+            "; of the SSVI NES that were tried, none that strikes its walls comes near".to_owned()
+        }
+        (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", sized(compared.tmd.goal, goal.unit())),
+        _ if compared.tmd.feasible => {
+            format!(
+                "; the best TMD has {}, {} times as much",
+                sized(compared.tmd.goal, goal.unit()),
+                rounded(compared.tmd.goal / chosen.goal, 3)
+            )
+        }
+        _ => "; no TMD of this mass keeps the limits".to_owned(),
+    };
+    let name = chosen.what.name();
+    let mut lines = vec![
+        format!("Build the {name}: {}.", parameters(chosen)),
+        format!("  Alone, on a rigid support, it has {}. {reduction}{why}.", tuning(chosen, requirements)),
+    ];
+    let (formula, value) = &compared.formula;
+    if chosen.what == What::Tmd {
+        let more = value.goal / chosen.goal - 1.0;
+        let beside = match value.feasible {
+            false => ", but breaks a limit".to_owned(),
+            true if more > 5e-4 => format!(", {} more", percent(more)),
+            true => String::new(),
         };
-        let costs: Vec<String> = designed.iter().map(cost).collect();
-        lines.push(format!("The limit on {} costs {}.", limit.words(), costs.join(", ")));
+        lines.push(format!(
+            "  {} (k2 = {}, c2 = {}) gives {}{beside}.",
+            formula.name,
+            sized(formula.k2, "N/m"),
+            sized(formula.c2, "N·s/m"),
+            sized(value.goal, goal.unit()),
+        ));
     }
     lines
 }
 
-/// How sure a design is.
-fn sure(damper: &Designed) -> Option<String> {
-    let row = damper.rows.first()?;
-    let kept = if damper.feasible { "" } else { "; none found that keeps the limits, this is the nearest" };
-    Some(format!("Certificate of the {}: {}{kept}.", damper.name, row.reason))
+/// That nothing keeps the limits, and what would.
+fn infeasible(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
+    let broken = |of: &Candidate| {
+        let all = of.binding.iter().filter(|(limit, value)| {
+            of.study.goal().limits.get(*limit).is_some_and(|allowed| *value > allowed)
+        });
+        let words = all.map(|(limit, value)| format!("{} {}", limit.name(), sized(*value, limit.unit())));
+        format!("{} has {}", of.what.name(), words.collect::<Vec<_>>().join(" and "))
+    };
+    let nearest: Vec<String> = compared.dampers().map(broken).collect();
+    let mut lines = vec![format!(
+        "None was found that keeps the limits. The nearest {}.",
+        nearest.join("; the nearest ")
+    )];
+    let share = |mass: f64| percent(mass / requirements.m1);
+    lines.push(match compared.lightest {
+        Some(mass) => format!(
+            "  A TMD of {} ({}) keeps them: give --mass {}.",
+            sized(mass, "kg"),
+            share(mass),
+            share(mass * 1.01).replace(' ', "")
+        ),
+        None => "  Nor does a TMD of up to 30 % of the structure: loosen a limit.".to_owned(),
+    });
+    lines
 }
 
-fn short(value: f64) -> String {
-    rounded(value, 3)
+/// What each limit costs, how sure the answer is, and what was assumed.
+pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
+    let mut lines: Vec<String> = costs(requirements, compared);
+    lines.extend(from_rest(requirements, compared));
+    if let Some(certificate) = &compared.certificate {
+        let words = legible(certificate.reason().trim_end_matches("; other starts not looked at"));
+        let name = compared.chosen().map_or("", |chosen| chosen.what.name());
+        lines.push(format!("How sure: the {name} is {words}."));
+    }
+    if let Some(tried) = compared.tried {
+        let tried = counted(tried as u64, "design");
+        let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| rounded(k, 3)));
+        let [k1, k3] = walls.unwrap_or_default();
+        let origin = if requirements.wall.is_some() {
+            "as given"
+        } else {
+            "not given (--wall): the paper's, scaled to mass and frequency"
+        };
+        lines.push(format!(
+            "Walls of the SSVI NES: {origin}, K = {k1} and {k3} N/m^1.5. {tried} with walls evaluated; `retune optimize` of the study looks further."
+        ));
+    }
+    lines
 }
 
-fn number(value: f64) -> String {
-    if value.is_finite() { rounded(value, 4) } else { "no bound".to_owned() }
+fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
+    let goal = compared.goal;
+    let cost = |own: &Candidate, free: &Candidate| {
+        let more = own.goal / free.goal - 1.0;
+        if more >= 1.0 {
+            format!(
+                "makes that of the {} {} times as large ({} instead of {})",
+                own.what.name(),
+                rounded(1.0 + more, 3),
+                sized(own.goal, goal.unit()),
+                sized(free.goal, goal.unit())
+            )
+        } else if more > 1e-6 {
+            format!(
+                "costs the {} {} ({} instead of {})",
+                own.what.name(),
+                percent(more),
+                sized(own.goal, goal.unit()),
+                sized(free.goal, goal.unit())
+            )
+        } else {
+            format!("costs the {} nothing", own.what.name())
+        }
+    };
+    let line = |of: &super::comparison::Cost| {
+        let mut words = Vec::new();
+        if compared.tmd.feasible {
+            words.push(cost(&compared.tmd, &of.tmd));
+        } else if of.tmd.feasible {
+            words.push(format!("is what no TMD keeps: without it {}", sized(of.tmd.goal, goal.unit())));
+        }
+        match (&compared.ssvi, &of.ssvi) {
+            (Some(own), Some(free)) if own.feasible => words.push(cost(own, free)),
+            (Some(own), None) if own.feasible => words.push("holds no SSVI NES back".to_owned()),
+            _ => {}
+        }
+        let name = limit(requirements, of.wish);
+        (!words.is_empty()).then(|| format!("The limit {name} {}.", words.join("; ")))
+    };
+    compared.costs.iter().filter_map(line).collect()
 }
 
-/// A length, m, to a tenth of a millimetre.
-fn metres(value: f64) -> String {
-    format!("{value:.4}")
+/// Limits that are exceeded while the motion begins.
+fn from_rest(requirements: &Requirements, compared: &Comparison) -> Option<String> {
+    let chosen = compared.chosen()?;
+    let above = requirements.limits.set().filter_map(|limit| {
+        let Limit::Of(measure) = limit else { return None };
+        let (value, allowed) = (chosen.from_rest.get(measure).value, requirements.limits.get(limit)?);
+        (value > (1.0 + ABOVE) * allowed)
+            .then(|| format!("{} {}", measure.name().replace('_', " "), sized(value, measure.unit())))
+    });
+    let above: Vec<String> = above.collect();
+    (!above.is_empty()).then(|| {
+        format!(
+            "Limits hold for the steady motion; just after the force sets in, from rest: {}.",
+            above.join(", ")
+        )
+    })
 }

@@ -1,18 +1,19 @@
-//! What is asked of a design, and the studies that follow from it.
+//! What is asked of a design, in SI units, and the studies that follow from it.
 //!
 //! Bounds and grids scale with the structure: stiffnesses and dampings with those of Den Hartog's damper, gaps with the amplitude of the
 //! structure without a damper.
 
 use crate::Error;
-use retune_model::{Bare, Positive, Scene, Surfaces, den_hartog};
+use retune_model::{Bare, Surfaces, Forcing, Measure, NonNegative, Positive, Primary, Source, den_hartog};
+use retune_optim::{Limit, Limits};
+use retune_study::Study;
 use retune_study::read::from_text;
-use retune_study::{Rule, Study};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
 /// What is asked of a design. SI units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Requirements {
     /// Mass of the structure, kg.
     pub m1: f64,
@@ -20,118 +21,147 @@ pub struct Requirements {
     pub k1: f64,
     /// Its damping, N·s/m.
     pub c1: f64,
-    /// Amplitude of the force on it, N.
-    #[serde(rename = "P")]
-    pub force: f64,
-    /// The angular frequencies of the force, rad/s.
+    /// What moves it.
+    #[serde(flatten)]
+    pub source: Driving,
+    /// The acceleration at the natural frequency by which a moving base is given, m/s².
+    #[serde(rename = "base_acceleration", skip_serializing_if = "Option::is_none")]
+    pub accelerated: Option<f64>,
+    /// The angular frequencies of the forcing, rad/s.
     pub band: [f64; 2],
+    /// The unit in which frequencies are told: Hz, rpm or rad/s.
+    pub frequencies: &'static str,
     /// Mass of the damper, kg.
     pub mass: f64,
-    /// Largest stroke of its spring, m.
-    pub stroke: Option<f64>,
-    /// Largest stiffness of its spring, N/m.
+    /// What is made small.
+    pub goal: Measure,
+    /// The largest value allowed of quantities.
+    pub limits: Limits,
+    /// Largest stiffness of the damper's spring, N/m.
     pub k2_max: Option<f64>,
     /// Share by which k1 may be off.
     pub k1_error: Option<f64>,
+    /// The dampers that are compared.
+    pub dampers: Dampers,
+    /// The walls of an SSVI NES.
+    pub wall: Option<Wall>,
 }
 
-/// A limit that is wished.
+/// What moves the structure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Driving {
+    /// A force of this amplitude, N.
+    #[serde(rename = "P")]
+    Force(f64),
+    /// A rotating imbalance, kg·m.
+    #[serde(rename = "imbalance")]
+    Imbalance(f64),
+    /// A base that moves by this amplitude, m.
+    #[serde(rename = "base")]
+    Base(f64),
+}
+
+/// The dampers that are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Dampers {
+    /// The TMD alone.
+    Tmd,
+    /// The SSVI NES, beside the TMD from which its search begins.
+    Ssvi,
+    /// Both, and the better one is recommended.
+    Both,
+}
+
+impl Dampers {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Tmd, Self::Ssvi, Self::Both];
+
+    /// Its word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tmd => "tmd",
+            Self::Ssvi => "ssvi",
+            Self::Both => "both",
+        }
+    }
+}
+
+/// The damper's surfaces at its walls, which are of steel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Wall {
+    /// Radius, m.
+    #[serde(rename = "R")]
+    pub radius: f64,
+    /// Young's modulus, N/m².
+    #[serde(rename = "E")]
+    pub modulus: f64,
+}
+
+/// A limit that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
-    /// On the stroke.
-    Stroke,
-    /// On the stiffness.
+    /// On a quantity.
+    Of(Limit),
+    /// On the stiffness of the damper's spring.
     K2,
 }
 
 impl Wish {
-    /// Its name in tables and directories.
+    /// Its name in tables.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Stroke => "stroke-limit",
-            Self::K2 => "k2-limit",
+            Self::Of(limit) => limit.name(),
+            Self::K2 => "k2",
         }
     }
 
-    /// Its name in a sentence.
-    pub const fn words(self) -> &'static str {
+    /// Its SI unit.
+    pub const fn unit(self) -> &'static str {
         match self {
-            Self::Stroke => "the stroke",
-            Self::K2 => "k2",
+            Self::Of(limit) => limit.unit(),
+            Self::K2 => "N/m",
         }
     }
 }
 
+/// √(k1/m1) of the paper's structure, rad/s, whose walls are scaled.
+const PAPER: f64 = 6.285;
+/// Periods of the natural frequency before a run of an SSVI NES counts, and all of them.
+const PASSED: f64 = 50.0;
+const PERIODS: f64 = 100.0;
+/// Damping that an undamped structure counts as when gaps and tolerances are scaled.
+const LEAST_DAMPING: f64 = 0.01;
+
 impl Requirements {
-    /// Checks the requirements one by one.
-    ///
-    /// # Errors
-    /// The first that cannot be fulfilled, by its name on the command line.
-    pub fn check(&self) -> Result<(), Error> {
-        let refuse = |field: &str, value: String, allowed: &'static str| {
-            let rule = Rule::NotAllowed { field: format!("--{field}"), value, allowed };
-            Err(Error::Rule { name: "design".to_owned(), rule })
-        };
-        let positive = [
-            ("m1", Some(self.m1)),
-            ("k1", Some(self.k1)),
-            ("P", Some(self.force)),
-            ("mass", Some(self.mass)),
-            ("stroke", self.stroke),
-            ("k2-max", self.k2_max),
-        ];
-        for (field, value) in positive {
-            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-                return refuse(field, value.to_string(), "a number above 0");
-            }
-        }
-        if !(self.c1 >= 0.0 && self.c1.is_finite()) {
-            return refuse("c1", self.c1.to_string(), "a number not below 0");
-        }
-        let [from, to] = self.band;
-        if !(from > 0.0 && from < to && to.is_finite()) {
-            let band = format!("{from} to {to} rad/s");
-            return refuse("band", band, "two frequencies above 0, the lower one first");
-        }
-        if let Some(error) = self.k1_error.filter(|error| !(*error > 0.0 && *error < 1.0)) {
-            return refuse("k1-error", error.to_string(), "a share above 0 and below 1, for instance 0.1");
-        }
-        if self.mass > self.m1 {
-            let mass = self.mass.to_string();
-            return refuse("mass", mass, "a mass no larger than m1: a damper is lighter than its structure");
-        }
-        Ok(())
+    /// The limits that are asked for, in the order of the catalogue.
+    pub fn wishes(&self) -> Vec<Wish> {
+        self.limits.set().map(Wish::Of).chain(self.k2_max.map(|_| Wish::K2)).collect()
     }
 
-    /// The limits that are wished.
-    pub fn limits(&self) -> Vec<Wish> {
-        let stroke = self.stroke.map(|_| Wish::Stroke);
-        stroke.into_iter().chain(self.k2_max.map(|_| Wish::K2)).collect()
+    /// The largest value that a limit allows, in its SI unit; NaN where there is no such limit.
+    pub fn allowed(&self, wish: Wish) -> f64 {
+        match wish {
+            Wish::Of(limit) => self.limits.get(limit).unwrap_or(f64::NAN),
+            Wish::K2 => self.k2_max.unwrap_or(f64::NAN),
+        }
     }
 
     /// The same without one limit.
     #[must_use]
-    pub fn without(&self, limit: Wish) -> Self {
-        let mut requirements = self.clone();
-        match limit {
-            Wish::Stroke => requirements.stroke = None,
-            Wish::K2 => requirements.k2_max = None,
+    pub fn without(&self, wish: Wish) -> Self {
+        let mut free = self.clone();
+        match wish {
+            Wish::K2 => free.k2_max = None,
+            Wish::Of(limit) => {
+                let kept = self.limits.set().filter(|other| *other != limit);
+                free.limits = kept.fold(Limits::default(), |limits, other| {
+                    let most = self.limits.get(other).and_then(|most| Positive::new(most).ok());
+                    most.map_or(limits, |most| limits.with(other, most))
+                });
+            }
         }
-        requirements
-    }
-
-    /// The structure and the force on it, at the frequency of the band that is nearest to its own.
-    fn bare(&self) -> Result<Scene, Error> {
-        let natural = self.natural_frequency();
-        let study = json!({
-            "name": "bare",
-            "scene": {
-                "primary": { "m1": self.m1, "c1": self.c1, "k1": self.k1 },
-                "forcing": { "P": self.force, "omega": natural.clamp(self.band[0], self.band[1]) }
-            },
-            "window": { "t0": 0, "T": 1 }
-        });
-        Ok(from_text(&study.to_string(), "design")?.scene)
+        free
     }
 
     /// √(k1/m1), rad/s.
@@ -139,33 +169,63 @@ impl Requirements {
         (self.k1 / self.m1).sqrt()
     }
 
-    /// Den Hartog's k2 (N/m) and c2 (N·s/m), and the largest steady displacement (m) of the structure alone over the band. An undamped
-    /// structure counts as damped by 1 %.
-    fn scales(&self) -> Result<([f64; 2], f64), Error> {
-        let damped = Self { c1: self.c1.max(0.02 * self.m1 * self.natural_frequency()), ..self.clone() };
-        let Scene { primary, forcing, .. } = damped.bare()?;
-        let response = Bare::new(&primary, &forcing).steady(forcing.frequency.get());
-        Ok((den_hartog(&primary, self.mass), response.x1.norm()))
+    /// The structure; an undamped one counts as damped where `damped`.
+    fn primary(&self, damped: bool) -> Result<Primary, Error> {
+        let least = if damped { 2.0 * LEAST_DAMPING * self.m1 * self.natural_frequency() } else { 0.0 };
+        Ok(Primary {
+            mass: Positive::new(self.m1)?,
+            damping: NonNegative::new(self.c1.max(least))?,
+            stiffness: NonNegative::new(self.k1)?,
+        })
     }
 
-    /// The study of the TMD: steady, in closed form, k2 and c2 free. Its walls are out of reach.
+    /// What moves it, at the frequency of the band that is nearest to its own.
+    fn forcing(&self) -> Result<Forcing, Error> {
+        let source = match self.source {
+            Driving::Force(amplitude) => Source::Force(NonNegative::new(amplitude)?),
+            Driving::Imbalance(amplitude) => Source::Imbalance(NonNegative::new(amplitude)?),
+            Driving::Base(amplitude) => Source::Base(NonNegative::new(amplitude)?),
+        };
+        let frequency = self.natural_frequency().clamp(self.band[0], self.band[1]);
+        Ok(Forcing { source, frequency: NonNegative::new(frequency)?, start: None })
+    }
+
+    /// Den Hartog's k2 (N/m) and c2 (N·s/m), the largest steady displacement (m) of the structure alone over the band, and the same of
+    /// the goal.
+    fn scales(&self) -> Result<([f64; 2], f64, f64), Error> {
+        let primary = self.primary(true)?;
+        let bare = Bare::new(&primary, &self.forcing()?);
+        let reach = bare.steady_max(Measure::Displacement, self.band).value;
+        Ok((den_hartog(&primary, self.mass), reach, bare.steady_max(self.goal, self.band).value))
+    }
+
+    /// The study of the TMD: steady, in closed form, k2 and c2 free, without walls.
     ///
     /// # Errors
     /// A number is beyond what a study may hold.
     pub fn tmd(&self) -> Result<Study, Error> {
-        let ([k2, c2], reach) = self.scales()?;
-        let far = 1e3 * reach.max(self.stroke.unwrap_or(0.0));
+        let ([k2, c2], _, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(20.0 * k2);
-        let start = [k2.min(most), c2];
         let axis = |from: f64, to: f64| json!({ "from": from, "to": to, "points": 21, "scale": "log" });
+        // A TMD touches nothing; of a cavity its stroke takes half.
+        let mut limits = self.limits;
+        let half = limits.get(Limit::Cavity).map(|cavity| 0.5 * cavity);
+        let stroke = Limit::Of(Measure::Stroke);
+        let least = limits.get(stroke).into_iter().chain(half).fold(f64::INFINITY, f64::min);
+        if let Ok(least) = Positive::new(least) {
+            limits = limits.with(stroke, least);
+        }
+        let walls = [Limit::Cavity, Limit::Of(Measure::ContactForce)];
+        let kept: Vec<Limit> = limits.set().filter(|limit| !walls.contains(limit)).collect();
         let optimize = json!({
             "vary": ["k2", "c2"],
-            "objective": { "omega": self.omega(), "response": "steady" },
+            "objective": { "quantity": self.goal, "omega": self.omega(), "response": "steady" },
             "bounds": { "k2": [0, most], "c2": [0, 200.0 * c2] },
+            "limits": kept.into_iter().map(|limit| (limit.name().to_owned(), json!(limits.get(limit)))).collect::<serde_json::Map<_, _>>(),
             "surf": { "k2": axis(0.05 * k2.min(most), (4.0 * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
-            "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * self.energy(reach) }
+            "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * size }
         });
-        self.study("tmd", start, [far; 2], optimize)
+        self.study("tmd", json!({ "m2": self.mass, "k2": k2.min(most), "c2": c2 }), optimize)
     }
 
     /// The study of the SSVI NES: runs from rest, all four parameters free.
@@ -173,15 +233,19 @@ impl Requirements {
     /// # Errors
     /// As [`Self::tmd`].
     pub fn ssvi(&self) -> Result<Study, Error> {
-        let ([k2, c2], reach) = self.scales()?;
+        let ([k2, c2], reach, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(4.0 * k2);
-        let start = [(0.1 * k2).min(most), c2];
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
         let stiffest = k2.min(most);
+        let mut limits = json!(self.limits);
+        if !self.limits.is_empty() {
+            limits["from"] = json!(PASSED * self.period());
+        }
         let optimize = json!({
             "vary": ["k2", "c2", "D", "C"],
-            "objective": { "omega": self.omega() },
+            "objective": { "quantity": self.goal, "omega": self.omega() },
             "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 4.0 * reach], "C": [0, 8.0 * reach] },
+            "limits": limits,
             "surf": {
                 "k2": axis(0.08 * stiffest, stiffest, "log", 6),
                 "c2": axis(0.2 * c2, 4.0 * c2, "log", 6),
@@ -189,62 +253,48 @@ impl Requirements {
                 "C": axis(0.2 * reach, 2.6 * reach, "linear", 5)
             },
             "coarse": { "rtol": 1e-4, "peaks": false },
-            "refine": { "starts": 2, "scaled": true, "TolX": 1e-3, "TolFun": 1e-5 * self.energy(reach), "MaxFunEvals": 300 }
+            "refine": { "starts": 2, "scaled": true, "TolX": 1e-3, "TolFun": 1e-5 * size, "MaxFunEvals": 300 }
         });
-        self.study("ssvi", start, [0.2 * reach, reach], optimize)
-    }
-
-    /// The energy that the structure's spring stores at a displacement of `reach` (m), J: the scale of tolerances.
-    fn energy(&self, reach: f64) -> f64 {
-        0.5 * self.k1 * reach.powi(2)
+        let damper = json!({
+            "m2": self.mass, "k2": (0.1 * k2).min(most), "c2": c2, "D": 0.2 * reach, "C": reach,
+            "contact": self.contact()?
+        });
+        self.study("ssvi", damper, optimize)
     }
 
     fn omega(&self) -> Value {
         json!({ "from": self.band[0], "to": self.band[1], "samples": 31 })
     }
 
-    /// The walls of the damper: nobody who asks for a design has them yet.
+    /// The natural period, s.
+    fn period(&self) -> f64 {
+        TAU / self.natural_frequency()
+    }
+
+    /// The walls of the damper. Where none are given they are the paper's, in proportion to the mass and to the square of the natural
+    /// frequency: a contact then takes about the same share of a period.
     ///
     /// # Errors
     /// There are none for its mass.
     pub fn contact(&self) -> Result<Surfaces, Error> {
-        let refuse = |_| Error::Rule {
-            name: "design".to_owned(),
-            rule: Rule::NotAllowed {
-                field: "--mass".to_owned(),
-                value: self.mass.to_string(),
-                allowed: "a mass above 0",
-            },
-        };
-        Positive::new(self.mass).and_then(Surfaces::for_mass).map_err(refuse)
+        let scale = (self.natural_frequency() / PAPER).powi(2);
+        let paper = Surfaces::for_mass(Positive::new(self.mass * scale)?)?;
+        let Some(Wall { radius, modulus }) = self.wall else { return Ok(paper) };
+        let (radius, soft, steel) = (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
+        Ok(Surfaces { radius, young_1: steel, young_2: soft, young_3: steel, young_4: soft, ..paper })
     }
 
     /// A study of 100 periods of the structure, the first half of which passes before maxima are taken.
-    fn study(
-        &self,
-        name: &str,
-        [k2, c2]: [f64; 2],
-        [d, c]: [f64; 2],
-        mut optimize: Value,
-    ) -> Result<Study, Error> {
-        let period = TAU / self.natural_frequency();
-        if let Some(stroke) = self.stroke {
-            optimize["limits"] = json!({ "stroke": stroke, "from": 50.0 * period });
-        }
-        let bare = self.bare()?;
+    fn study(&self, name: &str, damper: Value, optimize: Value) -> Result<Study, Error> {
         let study = json!({
             "name": name,
-            "scene": {
-                "primary": bare.primary,
-                "forcing": bare.forcing,
-                "damper": {
-                    "m2": self.mass, "k2": k2, "c2": c2, "D": d, "C": c,
-                    "contact": self.contact()?
-                }
-            },
-            "window": { "t0": 50.0 * period, "T": 100.0 * period },
+            "scene": { "primary": self.primary(false)?, "forcing": self.forcing()?, "damper": damper },
+            "window": { "t0": PASSED * self.period(), "T": PERIODS * self.period() },
             "optimize": optimize
         });
         Ok(from_text(&study.to_string(), "design")?)
     }
 }
+
+/// Young's modulus of steel, N/m².
+const STEEL: f64 = 2.1e11;

@@ -195,6 +195,7 @@ fn errors() -> Vec<Error> {
         Error::Study(StudyError::List { file: "study.json".into(), field: "window".into() }),
         Error::Setting(SettingError::Absent { name: Parameter::K2, source: Absent::NoDamper }),
         Error::Rule { name: "ssvi".into(), rule: Rule::NoOptimize },
+        Error::Requirement { place: "--mass".into(), problem: "missing: the mass of the damper".into() },
         Error::Argument { option: "--to", problem: "5 is not above --from 8".into() },
         Error::Interval { value: 0.0, most: 100 },
         Error::Part { path: path.clone(), problem: "it is damaged at point 23: make it again".into() },

@@ -1,9 +1,9 @@
 //! `design`: from a structure to two dampers, on structures of very different size.
 
-use retune_jobs::design::{Requirements, design};
+use retune_jobs::design::{Requirements, Typed, Wishes, design};
 use retune_jobs::tune::optimize;
 use retune_jobs::{Error, Request, Silent};
-use retune_model::{Coupled, Design, Parameter};
+use retune_model::{Coupled, Design, Measure, NonNegative, Parameter};
 use retune_optim::{Options, Scaling, minimize};
 use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
@@ -12,43 +12,42 @@ use retune_testkit::observers::{good, refused};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
+use std::path::Path;
 
-/// The example of the README, a machine foundation of 5 t at 12 Hz, a bench model of 2 kg at 25 Hz.
-fn structures() -> [Requirements; 3] {
-    let example = Requirements {
-        m1: 500.0,
-        k1: 2e4,
-        c1: 100.0,
-        force: 800.0,
-        band: [5.0, 8.0],
-        mass: 25.0,
-        stroke: None,
-        k2_max: None,
-        k1_error: None,
-    };
-    let at = |m1: f64, hertz: f64, share: f64| {
-        let natural = TAU * hertz;
-        let k1 = m1 * natural * natural;
-        let band = [0.8 * natural, 1.25 * natural];
-        Requirements {
-            m1,
-            k1,
-            c1: 0.02 * m1 * natural,
-            force: 0.01 * k1 * 1e-3,
-            band,
-            mass: share * m1,
-            ..example.clone()
-        }
-    };
-    [example.clone(), at(5000.0, 12.0, 0.05), at(2.0, 25.0, 0.1)]
+fn asked(wishes: Value) -> Wishes {
+    serde_json::from_value(wishes).expect("wishes")
 }
 
-fn searched(study: &Study) -> Value {
+/// A structure of 500 kg, a machine foundation of 5 t at 12 Hz, a bench model of 2 kg at 25 Hz.
+fn structures() -> [Requirements; 3] {
+    let example =
+        json!({ "m1": 500, "k1": "20 kN/m", "c1": 100, "P": "0.8 kN", "band": [5, 8], "mass": "5 %" });
+    let at = |m1: f64, hertz: f64, share: &str| {
+        let force = 1e-5 * m1 * (TAU * hertz).powi(2);
+        json!({ "m1": m1, "f1": format!("{hertz} Hz"), "zeta": "1 %", "force": force, "band": "0.8 .. 1.25", "mass": share })
+    };
+    [example, at(5000.0, 12.0, "5 %"), at(2.0, 25.0, "10%")].map(|mut wishes| {
+        if wishes["band"] == "0.8 .. 1.25" {
+            let hertz: f64 =
+                wishes["f1"].as_str().and_then(|text| text.strip_suffix(" Hz")?.parse().ok()).expect("Hz");
+            wishes["band"] = json!(format!("{} .. {} Hz", 0.8 * hertz, 1.25 * hertz));
+        }
+        good(asked(wishes).requirements())
+    })
+}
+
+/// The answer with TMDs alone.
+fn with_tmd(wishes: Value) -> Value {
     let desk = Desk::new();
-    let order = Request::new(&desk.path("none.json")).order("design");
-    let (optimum, results) = good(optimize(study, &desk.path("out"), &order, &Silent));
-    drop(results);
-    json!(optimum)
+    let requirements =
+        good(Wishes { damper: Some(Typed::from("tmd".to_owned())), ..asked(wishes) }.requirements());
+    let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
+    drop(good(design(&requirements, &request, &Silent)));
+    desk.read_json("out/design.json")
+}
+
+fn largest(answer: &Value, candidate: usize, name: &str) -> f64 {
+    answer["candidates"][candidate]["steady"][name]["value"].as_f64().expect("a number")
 }
 
 /// The worst steady energy over the band is a closed form; another search of it, from Den Hartog's damper, finds the same optimum.
@@ -56,11 +55,10 @@ fn searched(study: &Study) -> Value {
 fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
     for requirements in structures() {
         let study = good(requirements.tmd());
-        let found = searched(&study);
         let damper = study.scene.damper.expect("a damper");
         let worst = |x: &[f64], _: f64| {
             let mut damper = damper;
-            let [k2, c2] = [x[0], x[1]].map(retune_model::NonNegative::new);
+            let [k2, c2] = [x[0], x[1]].map(NonNegative::new);
             let (Ok(k2), Ok(c2)) = (k2, c2) else { return f64::INFINITY };
             (damper.stiffness, damper.damping) = (k2, c2);
             Coupled::new(&study.scene.primary, &study.scene.forcing, &damper)
@@ -70,13 +68,176 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
         let start = [damper.stiffness.get(), damper.damping.get()];
         let options = Options { scaling: Scaling::Start, tol_x: 1e-9, tol_fun: 1e-15, ..Options::default() };
         let own = minimize(worst, &start, options, |_| ControlFlow::Continue(())).expect("an optimum");
-        let e1_max = found["E1max"].as_f64().expect("a number");
+        let Requirements { m1, k1, c1, band, mass, .. } = requirements.clone();
+        let retune_jobs::design::Driving::Force(force) = requirements.source else { panic!("a force") };
+        let found = with_tmd(json!({ "m1": m1, "k1": k1, "c1": c1, "P": force, "band": band, "mass": mass }));
+        let e1_max = largest(&found, 1, "E1max");
         assert!((e1_max / own.value - 1.0).abs() < 1e-8, "{e1_max} {} {requirements:?}", own.value);
         for (name, value) in [("k2", own.x[0]), ("c2", own.x[1])] {
-            let found = found[name].as_f64().expect("a number");
+            let found = found["candidates"][1]["design"][name].as_f64().expect("a number");
             assert!((found / value - 1.0).abs() < 1e-3, "{name} {found} {value} {requirements:?}");
         }
     }
+}
+
+/// On an undamped structure no damper is below the fixed points, and the exact optimum is above them by less than one per cent: √(1 + 2/μ) static deflections under a
+/// force (Den Hartog), √(2 / (μ (1 + μ))) times m e / m1 under an imbalance (Warburton). The formula's own damper is no better.
+#[test]
+fn reference_the_formulas_of_textbooks_are_met_on_undamped_structures() {
+    let mu: f64 = 0.05;
+    for (source, size, height) in [
+        ("force", 10.0 / (1000.0 * (TAU * 2.0).powi(2)), (1.0 + 2.0 / mu).sqrt()),
+        ("imbalance", 10.0 / 1000.0, (2.0 / (mu * (1.0 + mu))).sqrt()),
+    ] {
+        let found = with_tmd(json!({
+            "m1": 1000, "f1": "2 Hz", "zeta": 0, source: 10, "band": "1 .. 3 Hz", "mass": "5 %", "goal": "x1max"
+        }));
+        let own = largest(&found, 1, "x1max") / size / height;
+        assert!((1.0 - 1e-9..1.01).contains(&own), "{source}: {own}");
+        let formula = found["formula"]["damper"]["steady"]["x1max"]["value"].as_f64().expect("a number");
+        assert!((1.0 - 1e-9..1.01).contains(&(formula / size / height / own)), "{source}: {formula}");
+        assert!(found["candidates"][0]["steady"]["x1max"]["value"].is_null(), "no bound without a damper");
+    }
+}
+
+/// Every quantity of a TMD is the amplitude of the closed form at the frequency that is told, and none is larger nearby.
+#[test]
+fn exact_the_values_of_the_comparison_are_amplitudes_of_the_closed_form() {
+    let found = with_tmd(json!({
+        "m1": "120 t", "f1": "0.3 Hz", "zeta": "1 %", "base": "10 mm", "band": "0.25..0.35Hz", "mass": "2%",
+        "goal": "a1max", "limits": { "stroke": "300 mm" }
+    }));
+    let requirements = good(
+        asked(json!({
+            "m1": "120 t", "f1": "0.3 Hz", "zeta": "1 %", "base": "10 mm", "band": "0.25..0.35Hz", "mass": "2%"
+        }))
+        .requirements(),
+    );
+    let scene = good(requirements.tmd()).scene;
+    let design = &found["candidates"][1]["design"];
+    let value = |parameter: Parameter| design[parameter.symbol()].as_f64().unwrap_or(f64::NAN);
+    let damper = Design::new(value).expect("a design").on(scene.damper.expect("a damper"));
+    let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
+    for measure in Measure::ALL {
+        let told = &found["candidates"][1]["steady"][measure.name()];
+        let (own, omega) =
+            (told["value"].as_f64().expect("a value"), told["omega"].as_f64().expect("a frequency"));
+        let at = |omega: f64| system.steady(omega).largest(system.bare(), omega, measure);
+        assert!((own - at(omega)).abs() <= 1e-9 * own, "{measure:?}: {own} {}", at(omega));
+        let [from, to] = requirements.band;
+        for i in 0..=1000 {
+            let other = at(from + (to - from) * f64::from(i) * 1e-3);
+            assert!(other <= (1.0 + 1e-5) * own, "{measure:?}: {other} {own}");
+        }
+    }
+    let stroke = largest(&found, 1, "stroke");
+    assert!((0.2999..=0.3).contains(&stroke), "the limit binds: {stroke}");
+    assert_eq!(found["candidates"][1]["binding"], json!(["stroke"]));
+    let free = &found["limits"]["stroke"]["TMD_without"]["steady"]["a1max"]["value"];
+    assert!(free.as_f64().expect("a value") < 0.5 * largest(&found, 1, "a1max"), "the limit costs: {free}");
+}
+
+/// A unit more or less is the same structure.
+#[test]
+fn exact_requirements_are_the_same_in_every_unit() {
+    let one = json!({ "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "force": "280N", "band": "1.8Hz..2.2Hz", "mass": "2%" });
+    let one = good(asked(one).requirements());
+    for other in [
+        json!({ "m1": 40000, "f1": 2, "zeta": 0.005, "P": "0.28 kN", "band": "2Hz±10%", "mass": "800 kg" }),
+        json!({ "m1": "40 t", "f1": "120 rpm", "c1": "5.026548 kN·s/m", "force": 280, "band": "108..132rpm", "mass": "0.8t" }),
+        json!({ "m1": "4e7 g", "k1": "6.3165468 MN/m", "zeta": "0.5 %", "force": 280, "band": [11.309734, 13.823008], "mass": 800 }),
+        json!({ "k1": "6316.5468 N/mm", "f1": "2 Hz", "zeta": "0.5 %", "force": 280, "mass": "2 %" }),
+    ] {
+        let other = good(asked(other).requirements());
+        let numbers = |of: &Requirements| [of.m1, of.k1, of.c1, of.band[0], of.band[1], of.mass];
+        for (own, other) in numbers(&one).into_iter().zip(numbers(&other)) {
+            assert!((other / own - 1.0).abs() < 1e-6, "{own} {other}");
+        }
+        assert_eq!(one.source, other.source);
+    }
+}
+
+#[test]
+fn contract_the_examples_are_requirements_and_options_replace_their_fields() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/examples");
+    let mut count = 0;
+    for entry in std::fs::read_dir(examples).expect("the examples") {
+        let wishes = good(Wishes::read(&entry.expect("an entry").path()));
+        let own = good(wishes.requirements());
+        let other = asked(json!({ "k1": 2.0 * own.k1, "base": "1 mm", "stroke": "7 mm" }));
+        let other = good(wishes.with(other).requirements());
+        assert_eq!((other.m1, other.k1, other.mass), (own.m1, 2.0 * own.k1, own.mass));
+        assert_eq!(json!(other)["base"], 0.001);
+        assert_eq!(json!(other)["limits"]["stroke"], 0.007);
+        count += 1;
+    }
+    assert_eq!(count, 4);
+}
+
+#[test]
+fn contract_slips_are_refused_with_what_to_give() {
+    let good_ones = json!({ "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "force": "280N", "mass": "2%" });
+    for (change, words) in [
+        (json!({ "m1": null }), "--m1: missing: the mass of the structure, for instance --m1 40t"),
+        (json!({ "m1": -1 }), "--m1: -1 is not allowed here: give a number above 0"),
+        (json!({ "m1": "40 kN" }), "--m1: \"40 kN\" is not a number in kg, nor one with its unit: kg, g, t"),
+        (json!({ "k1": "6 MN/m" }), "--f1: m1 and k1 are given too, which make it 1.949 Hz"),
+        (json!({ "zeta": null }), "--zeta: missing: "),
+        (json!({ "zeta": 0.5 }), "--zeta: 0.5 is 50 %: write 0.5% if that is what is meant, else 50%"),
+        (
+            json!({ "zeta": "120 %" }),
+            "--zeta: 120 % is 120 % of critical damping: such a structure does not vibrate",
+        ),
+        (json!({ "force": null }), "--force: missing: what moves the structure"),
+        (json!({ "base": "1 mm" }), "--base: force is given too: leave one of them out"),
+        (json!({ "band": "2.2Hz..1.8Hz" }), "--band: the lower end comes first: write 1.8..2.2Hz"),
+        (json!({ "band": "2 Hz" }), "--band: \"2 Hz\" is no band: give its ends, for instance 1.8Hz..2.2Hz"),
+        (json!({ "mass": "50 t" }), "--mass: 50 t is more than the structure's 40000 kg"),
+        (json!({ "k1_error": 10 }), "--k1-error: 10 is 1000 %: write 10% if that is what is meant"),
+        (json!({ "goal": "stroke" }), "--goal: \"stroke\" is none: give one of E1max, x1max"),
+        (json!({ "limits": { "x2max": 1 } }), "--limit: there is no quantity \"x2max\": give one of E1max"),
+        (json!({ "limits": { "stroke": "15 N" } }), "--limit stroke: \"15 N\" is not a number in m"),
+        (json!({ "damper": "nes" }), "--damper: \"nes\" is none: give tmd, ssvi or both"),
+        (json!({ "wall": "R=20mm" }), "--wall: E is missing: for instance R=20mm,E=5MPa"),
+    ] {
+        let mut wishes = good_ones.clone();
+        wishes.as_object_mut().expect("an object").extend(change.as_object().cloned().expect("an object"));
+        match refused(asked(wishes.clone()).requirements()) {
+            error @ Error::Requirement { .. } => {
+                let sentence = error.to_string();
+                assert!(sentence.starts_with(words), "{sentence}");
+            }
+            other => panic!("{other}"),
+        }
+        let sentence = refused(asked(wishes).within("a.json").requirements()).to_string();
+        assert!(sentence.starts_with("a.json: ") || words.contains("missing: "), "{sentence}");
+    }
+}
+
+/// What no TMD of this mass keeps is told, with a mass that does.
+#[test]
+fn contract_limits_that_are_not_kept_are_answered_with_a_mass_that_keeps_them() {
+    let tight = json!({
+        "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "force": "280N", "mass": "1%",
+        "limits": { "stroke": "2 mm", "x1max": "0.5 mm" }
+    });
+    let found = with_tmd(tight.clone());
+    assert_eq!(found["build"], Value::Null);
+    let mass = found["lightest_TMD"].as_f64().expect("a mass");
+    assert!(mass > 400.0 && mass < 12e3, "{mass}");
+    for (share, build) in [(0.99, Value::Null), (1.01, json!("TMD"))] {
+        let mut other = tight.clone();
+        other["mass"] = json!(share * mass);
+        assert_eq!(with_tmd(other)["build"], build, "{share}");
+    }
+}
+
+fn searched(study: &Study) -> Value {
+    let desk = Desk::new();
+    let order = Request::new(&desk.path("none.json")).order("design");
+    let (optimum, results) = good(optimize(study, &desk.path("out"), &order, &Silent));
+    drop(results);
+    json!(optimum)
 }
 
 /// The worst run of the SSVI NES by methods that share nothing with the hybrid but the equations.
@@ -91,7 +252,7 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         optimize.objective.starts = Some(1);
         // A fifth of the run: descents from a damper that rests on a wall are long.
         let fifth = |x: f64| 0.2 * x;
-        study.window.t0 = retune_model::NonNegative::new(fifth(study.window.t0.get())).expect("a time");
+        study.window.t0 = NonNegative::new(fifth(study.window.t0.get())).expect("a time");
         study.window.end = retune_model::Positive::new(fifth(study.window.end.get())).expect("a time");
         study.solver.search_rtol = Some(1e-6);
         let found = searched(&study);
@@ -108,7 +269,7 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         for (mut scene, omega) in
             [found_scene, study.scene].into_iter().flat_map(|scene| omegas.map(|omega| (scene, omega)))
         {
-            scene.forcing.frequency = retune_model::NonNegative::new(omega).expect("a frequency");
+            scene.forcing.frequency = NonNegative::new(omega).expect("a frequency");
             let window = Window { from: 0.0, to: 20.0 * TAU / requirements.natural_frequency() };
             let [own, other] = [(Method::Hybrid, 1e-10), (Method::Dop853, 1e-12)].map(|(method, rtol)| {
                 let settings = Settings { method, rtol, atol: 1e-14, ..Settings::default() };
@@ -120,37 +281,4 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         }
         assert!(impacts > 3, "{impacts}: {requirements:?}");
     }
-}
-
-#[test]
-fn contract_wishes_that_cannot_be_are_refused_by_name() {
-    let [requirements, ..] = structures();
-    let desk = Desk::new();
-    let said = |requirements: &Requirements| {
-        let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
-        match refused(design(requirements, &request, &Silent)) {
-            Error::Rule { name, rule } => format!("{name}: {rule}"),
-            other => panic!("{other}"),
-        }
-    };
-    for (requirements, words) in [
-        (Requirements { m1: -1.0, ..requirements.clone() }, "design: --m1: -1 is not allowed here"),
-        (
-            Requirements { band: [8.0, 5.0], ..requirements.clone() },
-            "design: --band: 8 to 5 rad/s is not allowed here",
-        ),
-        (Requirements { mass: 501.0, ..requirements.clone() }, "design: --mass: 501 is not allowed here"),
-        (
-            Requirements { k1_error: Some(10.0), ..requirements.clone() },
-            "design: --k1-error: 10 is not allowed here",
-        ),
-        (
-            Requirements { stroke: Some(f64::NAN), ..requirements.clone() },
-            "design: --stroke: NaN is not allowed here",
-        ),
-    ] {
-        let sentence = said(&requirements);
-        assert!(sentence.starts_with(words), "{sentence}");
-    }
-    assert!(desk.names(".").is_empty(), "nothing is left behind");
 }

@@ -103,6 +103,23 @@ fn exact_den_hartogs_damper_levels_the_fixed_points() {
     assert!(highest(0.7 * c2) > 1.01 * height && highest(1.4 * c2) > 1.01 * height);
 }
 
+/// With Warburton's damper the acceleration is hardly above its two fixed points, which are √(2 / (μ (1 + μ))) times P/m1 high.
+#[test]
+fn exact_warburtons_damper_levels_the_fixed_points_of_the_acceleration() {
+    let numbers = Numbers { c1: 0.0, ..TMD };
+    let [k2, c2] = retune_model::warburton(&numbers.scene().primary, numbers.m2);
+    let mu = numbers.m2 / numbers.m1;
+    let height = numbers.p / numbers.m1 * (2.0 / (mu * (1.0 + mu))).sqrt();
+    let omega_n = (numbers.k1 / numbers.m1).sqrt();
+    let highest = |c2: f64| {
+        let at = |omega: f64| omega * omega * Numbers { k2, c2, ..numbers }.coupled().steady(omega).x1.norm();
+        (0..4000).map(|i| at(omega_n * (0.6 + 2e-4 * f64::from(i)))).fold(0.0, f64::max)
+    };
+    let own = highest(c2);
+    assert!((1.0 - 1e-6..1.01).contains(&(own / height)), "{own} {height}");
+    assert!(highest(0.7 * c2) > 1.01 * height && highest(1.4 * c2) > 1.01 * height);
+}
+
 /// An undamped absorber tuned to the force holds an undamped structure still.
 #[test]
 fn exact_undamped_absorber() {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
@@ -31,17 +31,17 @@ class Options(TypedDict, total=False):
 class Design:
     """What ``retune.design`` found: the answer in words, and every damper that was tuned for it."""
 
-    #: The directory of the results; `designs.csv` is the table, `studies-tmd.json` and `studies-ssvi.json` are the studies.
+    #: The directory of the results; `comparison.csv` is the table, `studies-tmd.json` and `studies-ssvi.json` are the studies.
     out: Path
     #: The better damper, what it does, and what each limit costs.
     answer: str
-    #: The rows of `designs.csv`: each damper under all limits, and without each of them.
+    #: The rows of `comparison.csv`: no damper, each damper under all limits, and without each of them.
     rows: list[dict[str, float | str]]
 
     def __init__(self, out: Path) -> None:
         self.out = out
         self.answer = (out / "answer.txt").read_text(encoding="utf-8").strip()
-        with open(out / "designs.csv", newline="", encoding="utf-8") as file:
+        with open(out / "comparison.csv", newline="", encoding="utf-8") as file:
             self.rows = [{name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)]
 
     def __repr__(self) -> str:
@@ -56,22 +56,36 @@ def design(
     structure: Structure,
     out: Directory = "results/design",
     *,
-    P: float,
-    band: tuple[float, float],
-    mass: float,
-    stroke: float | None = None,
-    k2_max: float | None = None,
-    k1_error: float | None = None,
+    P: float | str,
+    band: tuple[float, float] | str,
+    mass: float | str,
+    stroke: float | str | None = None,
+    k2_max: float | str | None = None,
+    k1_error: float | str | None = None,
+    goal: str = "E1max",
+    limits: Mapping[str, float | str] | None = None,
+    damper: str = "both",
     **options: Unpack[Options],
 ) -> Design:
     """Designs a damper for a structure, as `retune design` does: the better of a TMD and an SSVI NES, what each limit costs, how sure that is.
 
     ``P`` is the amplitude of the force (N), ``band`` its range of angular frequencies (rad/s), ``mass`` that of the damper (kg),
     ``stroke`` the largest deflection of its spring (m), ``k2_max`` the largest stiffness of its spring (N/m), ``k1_error`` the share by
-    which the stiffness of the structure may be off.
+    which the stiffness of the structure may be off. ``goal`` is what is made small, ``limits`` has the largest value allowed of other
+    quantities, ``damper`` is "tmd", "ssvi" or "both". Each number may be a text with a unit: ``band="1.8Hz..2.2Hz", mass="2 %"``.
     """
-    limits = {"stroke": stroke, "k2_max": k2_max, "k1_error": k1_error}
-    wishes = {**asdict(structure), "P": P, "band": band, "mass": mass, **limits}
+    wishes = {
+        **asdict(structure),
+        "P": P,
+        "band": band,
+        "mass": mass,
+        "stroke": stroke,
+        "k2_max": k2_max,
+        "k1_error": k1_error,
+        "goal": goal,
+        "limits": dict(limits or {}),
+        "damper": damper,
+    }
     return Design(Path(_job(out, {"design": wishes}, out, options)))
 
 

@@ -2,39 +2,108 @@
 
 use super::running::Running;
 use clap::Args;
-use retune_model::Parameter;
+use retune_jobs::design::{Typed, Wishes};
+use std::path::PathBuf;
 
-/// `design`.
+/// What is typed after most options: a number in the SI unit, or one with its unit.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Design {
-    /// Mass of the structure: kg, or with its unit, for instance `--m1 40t`
-    #[arg(long, value_name = "KG", value_parser = |text: &str| Parameter::M1.read(text))]
-    pub m1: f64,
-    /// Stiffness of the structure: N/m, or with its unit, for instance `--k1 20kN/m`
-    #[arg(long, value_name = "N/m", value_parser = |text: &str| Parameter::K1.read(text))]
-    pub k1: f64,
-    /// Damping of the structure, N·s/m
-    #[arg(long, value_name = "N·s/m", value_parser = |text: &str| Parameter::C1.read(text))]
-    pub c1: f64,
-    /// Amplitude of the force, N
-    #[arg(long = "P", value_name = "N", value_parser = |text: &str| Parameter::P.read(text))]
-    pub force: f64,
-    /// Lowest and highest frequency of the force: rad/s, or with its unit, for instance `--band 10Hz 14Hz` or `--band 600rpm 840rpm`
-    #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = |text: &str| Parameter::Omega.read(text))]
-    pub band: Vec<f64>,
-    /// Mass of the damper, kg
-    #[arg(long, value_name = "KG", value_parser = |text: &str| Parameter::M2.read(text))]
-    pub mass: f64,
-    /// Largest stroke of the damper's spring: m, or with its unit, for instance `--stroke 15mm`
-    #[arg(long, value_name = "M", value_parser = |text: &str| Parameter::D.read(text))]
-    pub stroke: Option<f64>,
-    /// Largest stiffness of the damper's spring, N/m
-    #[arg(long, value_name = "N/m", value_parser = |text: &str| Parameter::K2.read(text))]
-    pub k2_max: Option<f64>,
-    /// Share by which k1 may be off, for instance 0.1
+    /// A file of requirements, whose fields are the options below; options replace its fields
+    pub file: Option<PathBuf>,
+    /// Mass of the structure, e.g. 40t
+    #[arg(long, value_name = "MASS")]
+    pub m1: Option<Typed>,
+    /// Its natural frequency, e.g. 2Hz; or --k1
+    #[arg(long, value_name = "FREQUENCY")]
+    pub f1: Option<Typed>,
+    /// Its stiffness, e.g. 20kN/m; or --f1
+    #[arg(long, value_name = "STIFFNESS")]
+    pub k1: Option<Typed>,
+    /// Its damping as a share of critical, e.g. 0.5%; or --c1
     #[arg(long, value_name = "SHARE")]
-    pub k1_error: Option<f64>,
+    pub zeta: Option<Typed>,
+    /// Its damping, N·s/m; or --zeta
+    #[arg(long, value_name = "DAMPING")]
+    pub c1: Option<Typed>,
+    /// Amplitude of a force on it, e.g. 280N
+    #[arg(long, visible_alias = "P", value_name = "FORCE")]
+    pub force: Option<Typed>,
+    /// A rotating imbalance, mass times radius, e.g. 0.02kg·m: its force grows with the square of the frequency
+    #[arg(long, value_name = "IMBALANCE")]
+    pub imbalance: Option<Typed>,
+    /// Amplitude of a moving base, e.g. 1mm
+    #[arg(long, value_name = "LENGTH")]
+    pub base: Option<Typed>,
+    /// The same by its acceleration at the natural frequency, e.g. 0.1g
+    #[arg(long, value_name = "ACCELERATION")]
+    pub base_acceleration: Option<Typed>,
+    /// The frequencies of the forcing, e.g. 1.8Hz..2.2Hz, 1500rpm±5%, ±10% [default: within 10 % of the natural frequency]
+    #[arg(long, num_args = 1..=2, value_name = "BAND")]
+    pub band: Vec<String>,
+    /// Mass of the damper, e.g. 2% (of the structure's) or 800kg
+    #[arg(long, value_name = "MASS")]
+    pub mass: Option<Typed>,
+    /// What is made small: E1max, x1max, v1max, a1max, ground-force [default: E1max]
+    #[arg(long, value_name = "NAME")]
+    pub goal: Option<Typed>,
+    /// The largest value allowed of a quantity (repeatable), e.g. stroke=15mm, x1max=2mm, a1max=0.5m/s2, ground-force=2kN, k2=600N/m
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub limit: Vec<Typed>,
+    /// The same as --limit stroke=...
+    #[arg(long, value_name = "LENGTH", hide = true)]
+    pub stroke: Option<Typed>,
+    /// The same as --limit k2=...
+    #[arg(long, value_name = "STIFFNESS", hide = true)]
+    pub k2_max: Option<Typed>,
+    /// Share by which k1 may be off, e.g. 10%
+    #[arg(long, value_name = "SHARE")]
+    pub k1_error: Option<Typed>,
+    /// Which dampers: tmd (at once), ssvi, both [default: both, and the better one is recommended]
+    #[arg(long, value_name = "WHICH")]
+    pub damper: Option<Typed>,
+    /// The walls of an SSVI NES: radius and Young's modulus of the damper's surfaces, e.g. R=20mm,E=5MPa [default: scaled from the paper's]
+    #[arg(long, value_name = "R=..,E=..")]
+    pub wall: Option<Typed>,
     /// The options of the run.
     #[command(flatten)]
     pub running: Running,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  retune design --m1 40t --f1 2Hz --zeta 0.5% --force 280N --mass 2%
+  retune design --m1 2t --f1 24.5Hz --zeta 1% --imbalance 0.02kg·m --band 1350rpm..1650rpm --mass 60kg --limit stroke=0.5mm
+  retune design studies/examples/building.json --limit stroke=250mm";
+
+impl Design {
+    /// What is asked.
+    pub fn wishes(&self) -> Wishes {
+        let band = if self.band.is_empty() { None } else { Some(self.band.join(" .. ").into()) };
+        let Self {
+            m1, k1, f1, c1, zeta, force, imbalance, base, base_acceleration, mass, goal, limit, ..
+        } = self;
+        let Self { stroke, k2_max, k1_error, damper, wall, .. } = self;
+        Wishes {
+            m1: m1.clone(),
+            k1: k1.clone(),
+            f1: f1.clone(),
+            c1: c1.clone(),
+            zeta: zeta.clone(),
+            force: force.clone(),
+            imbalance: imbalance.clone(),
+            base: base.clone(),
+            base_acceleration: base_acceleration.clone(),
+            band,
+            mass: mass.clone(),
+            goal: goal.clone(),
+            limit: limit.clone(),
+            stroke: stroke.clone(),
+            k2_max: k2_max.clone(),
+            k1_error: k1_error.clone(),
+            damper: damper.clone(),
+            wall: wall.clone(),
+            ..Wishes::default()
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod anywhere;
 mod catalogue;
 mod commands;
 mod common;
+mod design;
 mod documents;
 mod evaluate;
 mod interrupted;

@@ -1,0 +1,147 @@
+//! A damper that may be built, or none: what it has of each quantity over the whole band.
+
+use crate::tune::band::at;
+use rayon::prelude::*;
+use retune_model::{Bare, Coupled, Damper, Measure, PerMeasure, Scene, Source};
+use retune_optim::{Limit, Need, Unusable};
+use retune_study::Study;
+use serde::Serialize;
+
+/// What a candidate is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum What {
+    /// The structure alone.
+    #[serde(rename = "no damper")]
+    None,
+    /// A damper that touches nothing.
+    #[serde(rename = "TMD")]
+    Tmd,
+    /// A damper that strikes its walls.
+    #[serde(rename = "SSVI NES")]
+    Ssvi,
+}
+
+impl What {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "no damper",
+            Self::Tmd => "TMD",
+            Self::Ssvi => "SSVI NES",
+        }
+    }
+}
+
+/// A candidate: its scene, and its largest values over the band.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What it is.
+    pub what: What,
+    /// The study by which it is measured, with it in its scene.
+    pub study: Study,
+    /// The value of the goal, in its unit.
+    pub goal: f64,
+    /// Whether it keeps the limits.
+    pub feasible: bool,
+    /// Limits that it reaches to 1 %, or breaks, with what it has.
+    pub binding: Vec<(Limit, f64)>,
+    /// Largest values once the motion is steady, each with its place.
+    pub steady: PerMeasure<Need>,
+    /// The same from rest on.
+    pub from_rest: PerMeasure<Need>,
+}
+
+/// Frequencies at which what has no closed form over a band is looked at.
+const SAMPLES: usize = 2001;
+
+impl Candidate {
+    /// Measures the scene of a study, with its damper or without.
+    ///
+    /// # Errors
+    /// It cannot be run.
+    pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
+        let settings = study.solver.settings();
+        let needs = study.goal().needs(&study.scene, &settings, &|| true)?;
+        let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
+        let limits = study.goal().limits;
+        let is_damper = study.scene.damper.is_some();
+        let binding =
+            limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
+        let (mut steady, mut from_rest) = (needs.own, needs.whole);
+        for measure in Measure::ALL {
+            let own = steady.get(measure);
+            let based = matches!(study.scene.forcing.source, Source::Base(_));
+            if based && measure == Measure::GroundForce && study.goal().objective.is_steady() {
+                let sampled = sampled(study, measure);
+                steady.set(measure, sampled);
+                let whole = from_rest.get(measure);
+                if sampled.value > whole.value || !whole.value.is_finite() {
+                    from_rest.set(measure, sampled);
+                }
+            } else if own.value == f64::NEG_INFINITY {
+                steady.set(measure, Need { value: 0.0, ..own });
+            }
+        }
+        // Peaks between samples are told apart a little better here than in a search.
+        let best = steady.get(study.quantity()).value;
+        Ok(Self {
+            what,
+            study: study.clone(),
+            goal: if best.is_finite() && best > 0.0 { best } else { found.value },
+            feasible: is_damper && found.violation == 0.0,
+            binding: binding.collect(),
+            steady,
+            from_rest,
+        })
+    }
+
+    /// The largest steady value of a quantity, in its SI unit.
+    pub fn value(&self, measure: Measure) -> f64 {
+        self.steady.get(measure).value
+    }
+
+    /// Its damper.
+    pub fn damper(&self) -> Option<Damper> {
+        self.study.scene.damper
+    }
+
+    /// k2, N/m; zero without a damper.
+    pub fn k2(&self) -> f64 {
+        self.damper().map_or(0.0, |damper| damper.stiffness.get())
+    }
+
+    /// c2, N·s/m; zero without a damper.
+    pub fn c2(&self) -> f64 {
+        self.damper().map_or(0.0, |damper| damper.damping.get())
+    }
+
+    /// Whether it touches a wall, from rest on.
+    pub fn strikes(&self) -> bool {
+        self.from_rest.get(Measure::ContactForce).value > 0.0
+    }
+}
+
+/// The largest steady amplitude of a quantity on samples of the band.
+fn sampled(study: &Study, measure: Measure) -> Need {
+    let Scene { primary, damper, .. } = study.scene;
+    let band = study.objective().omega.map(|band| band.of(&primary));
+    let none = Need { value: f64::NAN, ..Need::default() };
+    let Some(band) = band else { return none };
+    let value = |i: usize| {
+        let omega = band.from + (band.to - band.from) * i as f64 / (SAMPLES - 1) as f64;
+        let value = at(omega, study.scene).map_or(f64::NAN, |scene| {
+            let bare = Bare::new(&primary, &scene.forcing);
+            let steady = damper.map_or_else(
+                || bare.steady(omega),
+                |damper| Coupled::new(&primary, &scene.forcing, &damper).steady(omega),
+            );
+            steady.largest(&bare, omega, measure)
+        });
+        Need { value, omega, k1: primary.stiffness.get() }
+    };
+    let all: Vec<Need> = (0..SAMPLES).into_par_iter().map(value).collect();
+    all.into_iter()
+        .filter(|need| need.value.is_finite())
+        .max_by(|a, b| a.value.total_cmp(&b.value))
+        .unwrap_or(none)
+}

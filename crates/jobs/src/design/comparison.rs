@@ -1,0 +1,359 @@
+//! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
+
+use super::answer::question;
+use super::candidate::{Candidate, What};
+use super::requirements::{Dampers, Requirements, Wish};
+use super::words::{parameters, sized};
+use super::{Formula, ssvi, tmd};
+use crate::certify::{Certificate, Short, Verdict, judge};
+use crate::{Error, Observer};
+use retune_model::{Design, Measure, Parameter, Scene};
+use retune_optim::{Limit, Need};
+use retune_store::Journal;
+use retune_study::{Rule, Setting, Study, rounded};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
+
+/// A goal that is larger by less than this share is as good: the damper without walls is recommended.
+const SAME: f64 = 0.05;
+/// Designs whose goal is larger by less than this share are nearly as good: of them the best certificate counts.
+const NEARLY: f64 = 0.15;
+/// At most so many are certified: a certificate with motions from other starts takes seconds.
+const JUDGED: usize = 2;
+/// Halvings of the mass that would keep the limits, as a share of the structure's, and the largest that is looked at.
+const HALVINGS: usize = 12;
+const HEAVIEST: f64 = 0.3;
+
+/// What is compared, and what follows.
+#[derive(Debug)]
+pub struct Comparison {
+    /// What is made small.
+    pub goal: Measure,
+    /// The structure alone.
+    pub none: Candidate,
+    /// The formula of a textbook, and what its TMD has of the goal.
+    pub formula: (Formula, Candidate),
+    /// The best TMD.
+    pub tmd: Candidate,
+    /// The best SSVI NES that was found that strikes its walls.
+    pub ssvi: Option<Candidate>,
+    /// Designs of an SSVI NES that were evaluated; none where that was not wanted.
+    pub tried: Option<usize>,
+    /// The one to build; none where none keeps the limits.
+    pub choice: Option<What>,
+    /// What each limit costs.
+    pub costs: Vec<Cost>,
+    /// The goal with k1 off by minus and plus its error, of each damper in the order of [`Self::dampers`].
+    pub detuned: Vec<[f64; 2]>,
+    /// Mass of the lightest TMD that would keep the limits, kg, where that of the mass that is given does not.
+    pub lightest: Option<f64>,
+    /// How sure the one to build is.
+    pub certificate: Option<Short>,
+    /// How sure the SSVI NES is, where it would be better than the TMD.
+    pub ssvi_certificate: Option<Short>,
+}
+
+/// What a limit costs.
+#[derive(Debug)]
+pub struct Cost {
+    /// The limit.
+    pub wish: Wish,
+    /// The best TMD without it.
+    pub tmd: Candidate,
+    /// The best SSVI NES without it, where the limit holds that under all limits back.
+    pub ssvi: Option<Candidate>,
+}
+
+impl Comparison {
+    /// The dampers that were designed, the TMD first.
+    pub fn dampers(&self) -> impl Iterator<Item = &Candidate> + Clone {
+        std::iter::once(&self.tmd).chain(&self.ssvi)
+    }
+
+    /// All candidates, no damper first.
+    pub fn all(&self) -> impl Iterator<Item = &Candidate> + Clone {
+        std::iter::once(&self.none).chain(self.dampers())
+    }
+
+    /// Refuses a comparison of which no damper keeps the limits.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`].
+    pub fn check_limits(&self) -> Result<(), Error> {
+        match self.choice {
+            Some(_) => Ok(()),
+            None => Err(Error::Infeasible {
+                name: "design".to_owned(),
+                words: "none was found that keeps them".to_owned(),
+            }),
+        }
+    }
+
+    /// The one to build.
+    pub fn chosen(&self) -> Option<&Candidate> {
+        self.choice.and_then(|what| self.dampers().find(|damper| damper.what == what))
+    }
+}
+
+/// A study with a design in its scene.
+fn with(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
+    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
+    let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
+    let scene = study.scene_at(&design).ok_or_else(no_damper)?;
+    Ok(Study { scene, ..study.clone() })
+}
+
+/// The TMD with this spring and dashpot.
+fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
+    let study = with(study, |parameter| match parameter {
+        Parameter::K2 => k2,
+        Parameter::C2 => c2,
+        _ => f64::NAN,
+    })?;
+    Ok(Candidate::new(What::Tmd, &study)?)
+}
+
+/// The SSVI NES that the ends of a search are, the best first: those that can be run and strike. One that strikes nothing is a TMD.
+fn striking(study: &Study, found: &ssvi::Found) -> Result<Vec<Candidate>, Error> {
+    let mut all: Vec<Candidate> = Vec::new();
+    for end in &found.ends {
+        let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
+        let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
+        all.extend(Candidate::new(What::Ssvi, &study).ok().filter(Candidate::strikes));
+    }
+    all.sort_by(|a, b| b.feasible.cmp(&a.feasible).then(a.goal.total_cmp(&b.goal)));
+    Ok(all)
+}
+
+/// How much a damper may be trusted: 0 of the best verdict.
+fn doubt(certificate: &Certificate) -> u8 {
+    match certificate.verdict {
+        Some(Verdict::Robust) => 0,
+        Some(Verdict::Edge) => 1,
+        Some(Verdict::FromRest) => 2,
+        Some(Verdict::Sensitive) => 3,
+        Some(Verdict::SingleChaoticRealisation) | None => 4,
+    }
+}
+
+/// Of designs that are nearly as good the one with the best certificate.
+fn trusted(all: Vec<Candidate>) -> Result<Option<(Candidate, Certificate)>, Error> {
+    let least = all.first().map_or(f64::NAN, |best| best.goal);
+    let mut best: Option<(Candidate, Certificate)> = None;
+    let nearly = |candidate: &Candidate| candidate.feasible && candidate.goal <= (1.0 + NEARLY) * least;
+    for candidate in all.into_iter().filter(nearly).take(JUDGED) {
+        let certificate = judge(&candidate.study)?;
+        if best.as_ref().is_none_or(|(_, other)| doubt(&certificate) < doubt(other)) {
+            best = Some((candidate, certificate));
+        }
+        if best.as_ref().is_some_and(|(_, certificate)| doubt(certificate) == 0) {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// Makes the whole comparison; what is known is told at once.
+///
+/// # Errors
+/// As of the searches, the runs and the journal.
+pub(super) fn compare(
+    requirements: &Requirements,
+    [tmd_study, ssvi_study]: [&Study; 2],
+    journal: &Journal,
+    watch: &dyn Observer,
+) -> Result<Comparison, Error> {
+    let goal = requirements.goal;
+    for line in question(requirements) {
+        watch.result(&line)?;
+    }
+    let bare = Study { scene: Scene { damper: None, ..tmd_study.scene }, ..tmd_study.clone() };
+    let none = Candidate::new(What::None, &bare)?;
+    let formula = Formula::of(requirements, &tmd_study.scene);
+    let tmd = tmd_of(tmd_study, tmd::best(tmd_study, formula)?)?;
+    let mut textbook = tmd_of(tmd_study, [formula.k2, formula.c2])?;
+    textbook.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
+    let formula = (formula, textbook);
+    let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
+    watch.result(&format!(
+        "\nTMD, exact: {} {}{kept}, {}",
+        goal.name(),
+        sized(tmd.goal, goal.unit()),
+        parameters(&tmd)
+    ))?;
+    let (mut ssvi, mut tried, mut judged) = (None, None, None);
+    if requirements.dampers != Dampers::Tmd {
+        watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves the TMD above)")?;
+        let found = ssvi::best(ssvi_study, &tmd, &[], (journal, "ssvi"), watch)?;
+        tried = Some(found.tried);
+        let all = striking(ssvi_study, &found)?;
+        let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
+        if all.first().is_some_and(|best| best.feasible && (rival || tmd.goal > (1.0 + SAME) * best.goal)) {
+            (ssvi, judged) = trusted(all)?.unzip();
+        } else {
+            ssvi = all.into_iter().next();
+        }
+    }
+    let choice = choice(requirements, &tmd, ssvi.as_ref(), judged.as_ref());
+    let costs = costs(requirements, [&tmd, ssvi.as_ref().unwrap_or(&tmd)], journal, watch)?;
+    let dampers = [Some(&tmd), ssvi.as_ref()];
+    let detuned = match requirements.k1_error {
+        Some(error) => dampers.iter().flatten().map(|damper| off(damper, error)).collect::<Result<_, _>>()?,
+        None => Vec::new(),
+    };
+    let lightest = if tmd.feasible { None } else { lightest(requirements)? };
+    let chosen = dampers.into_iter().flatten().find(|damper| Some(damper.what) == choice);
+    let ssvi_certificate = judged.as_ref().map(Certificate::short);
+    let certificate = match choice {
+        Some(What::Ssvi) => ssvi_certificate.clone(),
+        _ => chosen.map(|damper| judge(&damper.study)).transpose()?.map(|certificate| certificate.short()),
+    };
+    Ok(Comparison {
+        goal,
+        none,
+        formula,
+        tmd,
+        ssvi,
+        tried,
+        choice,
+        costs,
+        detuned,
+        lightest,
+        certificate,
+        ssvi_certificate,
+    })
+}
+
+/// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
+/// is a little off.
+fn choice(
+    requirements: &Requirements,
+    tmd: &Candidate,
+    ssvi: Option<&Candidate>,
+    judged: Option<&Certificate>,
+) -> Option<What> {
+    let ssvi = ssvi.filter(|ssvi| ssvi.feasible);
+    let is_trusted = judged.is_some_and(|certificate| doubt(certificate) <= 1);
+    match (requirements.dampers, tmd.feasible, ssvi) {
+        (Dampers::Ssvi, _, Some(_)) => Some(What::Ssvi),
+        (_, true, Some(ssvi)) if is_trusted && tmd.goal > (1.0 + SAME) * ssvi.goal => Some(What::Ssvi),
+        (_, true, _) => Some(What::Tmd),
+        (_, false, Some(_)) => Some(What::Ssvi),
+        (_, false, None) => None,
+    }
+}
+
+/// What each limit costs: the search without it goes on from the end of that with it.
+fn costs(
+    requirements: &Requirements,
+    [tmd, ssvi]: [&Candidate; 2],
+    journal: &Journal,
+    watch: &dyn Observer,
+) -> Result<Vec<Cost>, Error> {
+    let cost = |wish: Wish| {
+        let free = requirements.without(wish);
+        let study = free.tmd()?;
+        let formula = Formula::of(&free, &study.scene);
+        let free_tmd = tmd_of(&study, tmd::best(&study, formula)?)?;
+        let binds = match wish {
+            Wish::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
+            Wish::K2 => ssvi.k2() > 0.99 * requirements.allowed(wish),
+        };
+        let free_ssvi = if ssvi.what == What::Ssvi && binds {
+            let study = free.ssvi()?;
+            let start = Parameter::PAPER
+                .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
+            let stage = format!("ssvi without {}", wish.name());
+            let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
+            striking(&study, &found)?.into_iter().next()
+        } else {
+            None
+        };
+        Ok(Cost { wish, tmd: free_tmd, ssvi: free_ssvi })
+    };
+    requirements.wishes().into_iter().map(cost).collect()
+}
+
+/// The goal of a damper with k1 off by minus and plus a share.
+fn off(damper: &Candidate, error: f64) -> Result<[f64; 2], Error> {
+    let k1 = damper.study.scene.primary.stiffness.get();
+    let at = |share: f64| -> Result<f64, Error> {
+        let scene = damper.study.scene_with(&[Setting::new(Parameter::K1, k1 * (1.0 + share))])?;
+        Ok(damper.study.energy(&scene).unwrap_or(f64::NAN))
+    };
+    Ok([at(-error)?, at(error)?])
+}
+
+/// Mass of the lightest TMD that keeps the limits, kg; none up to [`HEAVIEST`].
+fn lightest(requirements: &Requirements) -> Result<Option<f64>, Error> {
+    let keeps = |mass: f64| -> Result<bool, Error> {
+        let heavier = Requirements { mass, ..requirements.clone() };
+        let study = heavier.tmd()?;
+        Ok(tmd_of(&study, tmd::best(&study, Formula::of(&heavier, &study.scene))?)?.feasible)
+    };
+    let (mut low, mut high) = (requirements.mass, HEAVIEST * requirements.m1);
+    if high <= low || !keeps(high)? {
+        return Ok(None);
+    }
+    for _ in 0..HALVINGS {
+        let middle = (low * high).sqrt();
+        if keeps(middle)? { high = middle } else { low = middle }
+    }
+    Ok(Some(high))
+}
+
+impl Serialize for Candidate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let largest = |of: &dyn Fn(Measure) -> Need| -> Map<String, Value> {
+            let one = |measure: Measure| {
+                let Need { value, omega, .. } = of(measure);
+                (measure.name().to_owned(), json!({ "value": value, "omega": omega }))
+            };
+            Measure::ALL.into_iter().map(one).collect()
+        };
+        let binding: Vec<Limit> = self.binding.iter().map(|(limit, _)| *limit).collect();
+        json!({
+            "damper": self.what,
+            "design": self.damper(),
+            "keeps_limits": self.feasible,
+            "binding": binding,
+            "steady": largest(&|measure| self.steady.get(measure)),
+            "from_rest": largest(&|measure| self.from_rest.get(measure)),
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Serialize for Comparison {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (formula, value) = &self.formula;
+        let costs: Map<String, Value> = self
+            .costs
+            .iter()
+            .map(|cost| {
+                (
+                    cost.wish.name().to_owned(),
+                    json!({ "TMD_without": cost.tmd, "SSVI_NES_without": cost.ssvi }),
+                )
+            })
+            .collect();
+        json!({
+            "goal": self.goal,
+            "build": self.choice,
+            "certificate": self.certificate,
+            "SSVI_NES_certificate": self.ssvi_certificate,
+            "candidates": self.all().collect::<Vec<_>>(),
+            "formula": { "name": formula.name, "damper": value },
+            "limits": costs,
+            "k1_off": self.detuned,
+            "lightest_TMD": self.lightest,
+            "designs_evaluated": self.tried,
+        })
+        .serialize(serializer)
+    }
+}
+
+/// A share in percent, to three digits.
+pub(super) fn percent(share: f64) -> String {
+    format!("{} %", rounded(100.0 * share, 3))
+}

@@ -1,0 +1,341 @@
+//! From requirements as given to requirements in SI units: what is missing, contradicts itself or cannot be is refused with what to give.
+
+use super::requirements::{Dampers, Driving, Requirements, Wall};
+use super::typed::{Typed, Wishes};
+use crate::Error;
+use retune_model::{Measure, Parameter, Positive, Unit, unit};
+use retune_optim::{Limit, Limits};
+use retune_study::rounded;
+use std::f64::consts::TAU;
+
+/// The band where none is given: natural frequency ± this share.
+const BAND: f64 = 0.1;
+/// A share without `%` from here on is taken for a slip: 0.5 % is meant, not half.
+const SLIP: f64 = 0.2;
+
+/// The requirements in SI units.
+///
+/// # Errors
+/// The first that is missing or cannot be.
+pub(super) fn requirements(wishes: &Wishes) -> Result<Requirements, Error> {
+    let [m1, k1] = structure(wishes)?;
+    let natural = (k1 / m1).sqrt();
+    let c1 = damping(wishes, 2.0 * m1 * natural)?;
+    let (source, accelerated) = driving(wishes, natural)?;
+    let (band, hertz) = band(wishes, natural)?;
+    let mass = mass(wishes, m1)?;
+    let goal = goal(wishes, source)?;
+    let (limits, k2_max) = limits(wishes, source)?;
+    let k1_error = wishes.k1_error.as_ref().map(|typed| share(typed, "k1_error", 1.0)).transpose()?;
+    let dampers = wishes.damper.as_ref().map_or(Ok(Dampers::Both), |typed| {
+        let known = Dampers::ALL.into_iter().find(|dampers| dampers.name() == typed.text);
+        known.ok_or_else(|| {
+            typed.refused("damper", format!("\"{}\" is none: give tmd, ssvi or both", typed.text))
+        })
+    })?;
+    let wall = wishes.wall.as_ref().map(wall).transpose()?;
+    Ok(Requirements {
+        m1,
+        k1,
+        c1,
+        source,
+        accelerated,
+        band,
+        frequencies: hertz,
+        mass,
+        goal,
+        limits,
+        k2_max,
+        k1_error,
+        dampers,
+        wall,
+    })
+}
+
+/// The error that something is missing.
+fn missing(option: &str, problem: &str) -> Error {
+    Error::Requirement { place: option.to_owned(), problem: format!("missing: {problem}") }
+}
+
+fn positive(typed: &Typed, field: &str, units: &[Unit]) -> Result<f64, Error> {
+    let value = typed.number(field, units)?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(typed.refused(field, format!("{} is not allowed here: give a number above 0", typed.text)))
+    }
+}
+
+/// A share below `most`; one without `%` that is taken for a slip is refused.
+fn share(typed: &Typed, field: &str, most: f64) -> Result<f64, Error> {
+    let value = positive(typed, field, unit::SHARE)?;
+    let (text, percent) = (typed.text.trim(), rounded(100.0 * value, 4));
+    if !text.ends_with('%') && value >= SLIP {
+        return Err(typed.refused(
+            field,
+            format!("{text} is {percent} %: write {text}% if that is what is meant, else {percent}%"),
+        ));
+    }
+    if value >= most {
+        return Err(typed.refused(
+            field,
+            format!("{percent} % is not allowed here: give less than 100 %, for instance 10%"),
+        ));
+    }
+    Ok(value)
+}
+
+/// `[m1, k1]`, kg and N/m.
+fn structure(wishes: &Wishes) -> Result<[f64; 2], Error> {
+    let [m1, k1, f1] =
+        [(&wishes.m1, Parameter::M1), (&wishes.k1, Parameter::K1), (&wishes.f1, Parameter::Omega)].map(
+            |(typed, parameter)| {
+                let name = if parameter == Parameter::Omega { "f1" } else { parameter.symbol() };
+                typed.as_ref().map(|typed| -> Result<f64, Error> {
+                    let value = positive(typed, name, parameter.units())?;
+                    // A bare number is a frequency in Hz: nobody names a natural frequency f1 in rad/s.
+                    Ok(if name == "f1" && is_bare(&typed.text) { TAU * value } else { value })
+                })
+            },
+        );
+    match (m1.transpose()?, k1.transpose()?, f1.transpose()?) {
+        (Some(m1), Some(k1), None) => Ok([m1, k1]),
+        (Some(m1), None, Some(omega)) => Ok([m1, m1 * omega * omega]),
+        (None, Some(k1), Some(omega)) => Ok([k1 / (omega * omega), k1]),
+        (Some(m1), Some(k1), Some(_)) => {
+            let natural = rounded((k1 / m1).sqrt() / TAU, 4);
+            let problem =
+                format!("m1 and k1 are given too, which make it {natural} Hz: leave one of the three out");
+            Err(wishes.f1.as_ref().map_or_else(|| missing("--f1", ""), |typed| typed.refused("f1", problem)))
+        }
+        (None, _, _) => Err(missing("--m1", "the mass of the structure, for instance --m1 40t")),
+        (Some(_), None, None) => Err(missing(
+            "--f1",
+            "the natural frequency of the structure, for instance --f1 2Hz, or its stiffness, --k1 6.3MN/m",
+        )),
+    }
+}
+
+fn is_bare(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok()
+}
+
+/// c1, N·s/m; `critical` is twice the mass times the natural frequency.
+fn damping(wishes: &Wishes, critical: f64) -> Result<f64, Error> {
+    let c1 = match (&wishes.c1, &wishes.zeta) {
+        (Some(typed), None) => {
+            let c1 = typed.number("c1", Parameter::C1.units())?;
+            if !(c1 >= 0.0 && c1.is_finite()) {
+                let problem = format!("{} is not allowed here: give a number not below 0", typed.text);
+                return Err(typed.refused("c1", problem));
+            }
+            (c1, typed, "c1")
+        }
+        (None, Some(typed)) => {
+            let zeta = typed.number("zeta", unit::SHARE)?;
+            let zeta = if zeta == 0.0 { 0.0 } else { share(typed, "zeta", f64::INFINITY)? };
+            (zeta * critical, typed, "zeta")
+        }
+        (Some(_), Some(typed)) => {
+            return Err(typed.refused("zeta", "c1 is given too: leave one of them out"));
+        }
+        (None, None) => {
+            let words = "the damping of the structure as a share of critical, for instance --zeta 1% (steel 0.2 to 1 %, concrete 1 to 2 %), or --c1";
+            return Err(missing("--zeta", words));
+        }
+    };
+    let (c1, typed, field) = c1;
+    if c1 >= critical {
+        let percent = rounded(100.0 * c1 / critical, 3);
+        let most = rounded(critical, 3);
+        let problem = format!(
+            "{} is {percent} % of critical damping: such a structure does not vibrate, and needs no damper; \
+             check the unit (critical is {most} N·s/m)",
+            typed.text
+        );
+        return Err(typed.refused(field, problem));
+    }
+    Ok(c1)
+}
+
+/// What moves the structure; and the acceleration of a base that is given by it, m/s².
+fn driving(wishes: &Wishes, natural: f64) -> Result<(Driving, Option<f64>), Error> {
+    let all = [
+        ("force", &wishes.force, Parameter::P.units()),
+        ("imbalance", &wishes.imbalance, Parameter::Imbalance.units()),
+        ("base", &wishes.base, Parameter::Base.units()),
+        ("base_acceleration", &wishes.base_acceleration, unit::ACCELERATION),
+    ];
+    let given: Vec<_> =
+        all.iter().filter_map(|(name, typed, units)| Some((*name, typed.as_ref()?, *units))).collect();
+    match given.as_slice() {
+        [] => Err(missing(
+            "--force",
+            "what moves the structure: --force 280N, --imbalance 0.02kg·m, --base 1mm or --base-acceleration 0.1g",
+        )),
+        [(name, typed, units)] => {
+            let value = positive(typed, name, units)?;
+            Ok(match *name {
+                "force" => (Driving::Force(value), None),
+                "imbalance" => (Driving::Imbalance(value), None),
+                "base" => (Driving::Base(value), None),
+                // A base of constant acceleration is not modelled: one of the amplitude that this is at the natural frequency is.
+                _ => (Driving::Base(value / (natural * natural)), Some(value)),
+            })
+        }
+        [(first, ..), (name, typed, _), ..] => {
+            Err(typed
+                .refused(name, format!("{} is given too: leave one of them out", first.replace('_', "-"))))
+        }
+    }
+}
+
+/// The band, rad/s, and the unit in which frequencies are told.
+fn band(wishes: &Wishes, natural: f64) -> Result<([f64; 2], &'static str), Error> {
+    let told = |text: &str| {
+        let unit = unit::FREQUENCY.iter().rev().find(|(name, _)| text.contains(name));
+        unit.map(|(name, _)| *name)
+    };
+    let by_f1 = wishes.f1.as_ref().map(|typed| told(&typed.text).unwrap_or("Hz"));
+    let Some(typed) = &wishes.band else {
+        return Ok(([(1.0 - BAND) * natural, (1.0 + BAND) * natural], by_f1.unwrap_or("Hz")));
+    };
+    let text = typed.text.replace("+-", "±").replace("+/-", "±");
+    let own = told(&text);
+    let number = |text: &str| {
+        // A number takes the unit of its neighbour: 1.8..2.2Hz.
+        let text = if is_bare(text) { format!("{text} {}", own.unwrap_or("rad/s")) } else { text.to_owned() };
+        unit::read(&text, unit::FREQUENCY).map_err(|problem| typed.refused("band", problem))
+    };
+    let ends = if let Some((middle, width)) = text.split_once('±') {
+        let middle = if middle.trim().is_empty() { natural } else { number(middle)? };
+        let width = width.trim();
+        let half = match width.strip_suffix('%') {
+            Some(percent) => {
+                middle * 0.01 * unit::read(percent, &[]).map_err(|problem| typed.refused("band", problem))?
+            }
+            None => number(width)?,
+        };
+        [middle - half, middle + half]
+    } else if let Some((from, to)) =
+        text.split_once("..").or_else(|| text.split_once('–')).or_else(|| text.split_once(" to "))
+    {
+        [number(from)?, number(to)?]
+    } else {
+        let problem = format!(
+            "\"{}\" is no band: give its ends, {}; a damper that is tuned for one frequency alone fails beside it",
+            typed.text, "for instance 1.8Hz..2.2Hz, or 1500rpm±5%"
+        );
+        return Err(typed.refused("band", problem));
+    };
+    let [from, to] = ends;
+    let unit = own.or(by_f1).unwrap_or("rad/s");
+    if from > 0.0 && from < to && to.is_finite() {
+        return Ok((ends, unit));
+    }
+    let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
+    let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / size, 6));
+    let problem = if from > to && to > 0.0 {
+        format!("the lower end comes first: write {low}..{high}{unit}")
+    } else {
+        format!("from {low} to {high} {unit} is not allowed here: give two different frequencies above 0")
+    };
+    Err(typed.refused("band", problem))
+}
+
+/// Mass of the damper, kg.
+fn mass(wishes: &Wishes, m1: f64) -> Result<f64, Error> {
+    let Some(typed) = &wishes.mass else {
+        let words = "the mass of the damper, for instance --mass 2% (of the structure) or --mass 800kg";
+        return Err(missing("--mass", words));
+    };
+    let mass = if typed.text.trim().ends_with('%') {
+        m1 * positive(typed, "mass", unit::SHARE)?
+    } else {
+        positive(typed, "mass", unit::MASS)?
+    };
+    if mass > m1 {
+        let problem = format!(
+            "{} is more than the structure's {} kg: a damper is lighter; 1 to 5 % are usual, for instance --mass 2%",
+            typed.text,
+            rounded(m1, 6)
+        );
+        return Err(typed.refused("mass", problem));
+    }
+    Ok(mass)
+}
+
+/// Names as people write them: `ground-force`.
+fn measure(name: &str) -> Option<Measure> {
+    let name = name.replace('-', "_");
+    Measure::ALL.into_iter().find(|measure| measure.name() == name)
+}
+
+/// On a moving base the force on the ground has no closed form over a band.
+const ON_BASE: &str = "on a moving base there is no closed form of it; a1max bounds it: the force on the ground is that of the accelerated masses";
+
+fn goal(wishes: &Wishes, source: Driving) -> Result<Measure, Error> {
+    let Some(typed) = &wishes.goal else { return Ok(Measure::Energy) };
+    let known = measure(&typed.text).filter(|measure| !measure.is_of_damper());
+    let goal = known.ok_or_else(|| {
+        let all = Measure::OF_STRUCTURE.map(Measure::name).join(", ");
+        typed.refused("goal", format!("\"{}\" is none: give one of {all}", typed.text))
+    })?;
+    if goal == Measure::GroundForce && matches!(source, Driving::Base(_)) {
+        return Err(typed.refused("goal", ON_BASE));
+    }
+    Ok(goal)
+}
+
+/// The limits, and the largest k2.
+fn limits(wishes: &Wishes, source: Driving) -> Result<(Limits, Option<f64>), Error> {
+    let (mut limits, mut k2) = (Limits::default(), None);
+    for (name, typed) in wishes.all_limits()? {
+        let field = format!("limit {name}");
+        let own = |limit: Limit| match limit {
+            Limit::Of(measure) => measure.units(),
+            Limit::Cavity => unit::LENGTH,
+        };
+        if name == "k2" {
+            k2 = Some(positive(&typed, &field, Parameter::K2.units())?);
+            continue;
+        }
+        let known = measure(&name).map(Limit::Of).or((name == "cavity").then_some(Limit::Cavity));
+        let Some(limit) = known else {
+            let all = Limit::ALL.map(Limit::name).join(", ");
+            let problem = format!("there is no quantity \"{name}\": give one of {all}, k2");
+            return Err(typed.refused("limit", problem));
+        };
+        if limit == Limit::Of(Measure::GroundForce) && matches!(source, Driving::Base(_)) {
+            return Err(typed.refused(&field, ON_BASE));
+        }
+        let value = positive(&typed, &field, own(limit))?;
+        limits = limits.with(limit, Positive::new(value)?);
+    }
+    Ok((limits, k2))
+}
+
+/// The walls: radius and Young's modulus of the damper's surfaces.
+fn wall(typed: &Typed) -> Result<Wall, Error> {
+    let (mut radius, mut modulus) = (None, None);
+    for part in typed.text.split(',') {
+        match part.split_once('=').map(|(name, value)| (name.trim(), value)) {
+            Some(("R", value)) => radius = Some(value),
+            Some(("E", value)) => modulus = Some(value),
+            _ => {
+                let problem = format!(
+                    "\"{part}\" is not known: give the radius and Young's modulus of the damper's surfaces, for instance R=20mm,E=5MPa"
+                );
+                return Err(typed.refused("wall", problem));
+            }
+        }
+    }
+    let read = |text: Option<&str>, units: &[Unit], name: &str| {
+        let Some(text) = text else {
+            return Err(typed.refused("wall", format!("{name} is missing: for instance R=20mm,E=5MPa")));
+        };
+        let typed = Typed { text: text.to_owned(), ..typed.clone() };
+        positive(&typed, "wall", units)
+    };
+    Ok(Wall { radius: read(radius, unit::LENGTH, "R")?, modulus: read(modulus, unit::MODULUS, "E")? })
+}

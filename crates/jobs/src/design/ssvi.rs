@@ -1,0 +1,122 @@
+//! The best SSVI NES near what is known: good designs of the studies of this repository, in dimensionless form, and the best TMD with its
+//! walls within reach. Those that can come near the TMD are told by a few runs each, and descents go on from the best.
+//!
+//! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
+
+use super::candidate::Candidate;
+use crate::tune::descent::descend;
+use crate::tune::objective::{coarse, kept, searched};
+use crate::{Error, Observer};
+use rayon::prelude::*;
+use retune_model::{Measure, Scene};
+use retune_optim::{Bounds, Parameter};
+use retune_store::Journal;
+use retune_study::{Search, Study};
+
+/// Good designs, dimensionless: k2/(m2 ω1²); c2/(2 m2 ω1) times √(0.06/μ) of a mass ratio μ; D and C as shares of the stroke of the best TMD.
+/// From `results`: `ssvi`, `ssvi-global`, `ssvi-robust`, `ssvi-loss`, `table2` and the softest of `fronts`, each for μ = 0.06.
+const KNOWN: [[f64; 4]; 6] = [
+    [0.246, 0.126, 0.106, 4.05],
+    [0.246, 0.126, 2.81, 0.101],
+    [0.246, 0.129, 0.110, 3.99],
+    [0.253, 0.056, 0.060, 4.84],
+    [0.094, 0.304, 0.228, 1.37],
+    [0.042, 0.321, 1.46, 0.0],
+];
+const RATIO: f64 = 0.06;
+/// The best TMD with both gaps these shares of its stroke.
+const NEAR: [f64; 3] = [0.5, 0.75, 0.95];
+/// Dashpots and gaps of known designs are tried at these multiples.
+const DASHPOTS: [f64; 3] = [0.6, 1.0, 1.7];
+const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
+/// A design with this many times the value of the TMD is not worth its runs.
+const WORTH: f64 = 4.0;
+/// Descents: from the best of each of so many families of designs, those that came nearest.
+const DESCENTS: usize = 4;
+
+/// What a search for an SSVI NES comes to.
+pub(super) struct Found {
+    /// Its ends, `[k2, c2, D, C]` each, the best first; none where nothing that was tried comes near the TMD.
+    pub ends: Vec<Vec<f64>>,
+    /// Designs that were evaluated.
+    pub tried: usize,
+}
+
+/// A start with the number of its family.
+type Start = (usize, Vec<f64>);
+
+/// The starts: known designs and the TMD, within the bounds of the search.
+fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
+    let Scene { primary, .. } = study.scene;
+    let (m2, natural) = (search.damper.mass.get(), primary.natural_frequency());
+    let stroke = tmd.value(Measure::Stroke);
+    let more = (m2 / primary.mass.get() / RATIO).sqrt();
+    let near = |share: &f64| (0, [tmd.k2(), tmd.c2(), share * stroke, share * stroke]);
+    let mut all: Vec<(usize, [f64; 4])> = NEAR.iter().map(near).collect();
+    for (number, [k2, c2, d, c]) in KNOWN.into_iter().enumerate() {
+        for dashpot in DASHPOTS {
+            for gap in GAPS {
+                let c2 = dashpot * c2 * more * 2.0 * m2 * natural;
+                all.push((number + 1, [k2 * m2 * natural * natural, c2, gap * d * stroke, gap * c * stroke]));
+            }
+        }
+    }
+    let within = |(family, x): (usize, [f64; 4])| {
+        let bounds = search.options.bounds.iter().zip(x);
+        let one =
+            |(own, x): (&Bounds, f64)| x.clamp(own.lower.unwrap_or(0.0), own.upper.unwrap_or(f64::INFINITY));
+        (family, bounds.map(one).collect())
+    };
+    all.into_iter().map(within).collect()
+}
+
+/// Searches from what is known; `beside` more starts, as the end of a search under other limits.
+///
+/// # Errors
+/// The study has nothing to tune, or the journal cannot be written.
+pub(super) fn best(
+    study: &Study,
+    tmd: &Candidate,
+    beside: &[Vec<f64>],
+    (journal, stage): (&Journal, &str),
+    watch: &dyn Observer,
+) -> Result<Found, Error> {
+    let search = study.search().map_err(Error::rule(study))?;
+    debug_assert_eq!(search.variables, Parameter::PAPER);
+    let objective = searched(study, &search, &search.variables);
+    let loose = coarse(study, &search, &search.variables);
+    let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
+    let starts = if beside.is_empty() { starts(study, &search, tmd) } else { beside };
+    let most = if tmd.feasible { WORTH * tmd.goal } else { f64::INFINITY };
+    let name = format!("{stage} known");
+    let value = kept(&loose, journal, &name, || ());
+    let bar = watch.progress("SSVI NES, known designs", starts.len() as u64);
+    let tried = |start: &Start| {
+        let value = value(&start.1, most);
+        bar.inc(1);
+        value
+    };
+    let values: Vec<f64> = starts.par_iter().map(tried).collect();
+    let mut all: Vec<(f64, &Start)> = values.into_iter().zip(&starts).collect();
+    bar.finish();
+    journal.check()?;
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut worth: Vec<&Start> = Vec::new();
+    for (_, start) in all.iter().filter(|(value, _)| *value < most) {
+        if worth.len() < DESCENTS && worth.iter().all(|(known, _)| *known != start.0) {
+            worth.push(start);
+        }
+    }
+    let bar = watch.progress("SSVI NES, descents", worth.len() as u64);
+    let descent = |(_, x): &&Start| {
+        let foot = descend(&objective, &search, x, journal, &format!("{stage} descent"));
+        bar.inc(1);
+        (foot.end.value, foot.end.x)
+    };
+    let mut ends: Vec<(f64, Vec<f64>)> = worth.par_iter().map(descent).collect();
+    bar.finish();
+    journal.check()?;
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let tried = objective.counts().evaluations + loose.counts().evaluations;
+    Ok(Found { ends: ends.into_iter().map(|(_, x)| x).collect(), tried: tried as usize })
+}

@@ -1,0 +1,76 @@
+//! The designs as a table of numbers in SI units, and their rows computed again.
+
+use super::candidate::{Candidate, What};
+use super::comparison::Comparison;
+use crate::Error;
+use crate::again::{Row, Source};
+use crate::columns;
+use crate::resolved::Resolved;
+use retune_model::{Measure, Parameter, Scene};
+use retune_report::cells;
+use retune_report::table::{Cell, Table};
+use retune_study::Study;
+use std::path::Path;
+
+/// A column for each quantity and its frequency.
+fn names() -> Vec<String> {
+    Measure::ALL
+        .iter()
+        .flat_map(|measure| [measure.name().to_owned(), format!("omega_{}", measure.name())])
+        .collect()
+}
+
+/// What a candidate has of each quantity, and where.
+fn numbers(of: &Candidate) -> Vec<f64> {
+    Measure::ALL
+        .iter()
+        .flat_map(|measure| {
+            let need = of.steady.get(*measure);
+            [need.value, need.omega]
+        })
+        .collect()
+}
+
+/// All candidates under all limits, and the dampers without each of them.
+pub(super) fn table(compared: &Comparison) -> Table {
+    let measures = names();
+    let head = ["limits", "damper", "m2", "k2", "c2", "D", "C"];
+    let all: Vec<&str> = head.into_iter().chain(measures.iter().map(String::as_str)).collect();
+    let mut table = columns::table(&all);
+    let mut push = |limits: String, of: &Candidate| {
+        let damper = of.damper();
+        let own =
+            |parameter: Parameter| damper.and_then(|damper| parameter.of_damper(&damper)).unwrap_or(f64::NAN);
+        let design = Parameter::PAPER.map(|parameter| Cell::from(own(parameter)));
+        let first = cells![limits, of.what.name(), own(Parameter::M2)];
+        table.push([first, design.to_vec(), numbers(of).into_iter().map(Cell::from).collect()].concat());
+    };
+    compared.all().for_each(|of| push("all".to_owned(), of));
+    for cost in &compared.costs {
+        for of in std::iter::once(&cost.tmd).chain(&cost.ssvi) {
+            push(format!("no {}", cost.wish.name()), of);
+        }
+    }
+    table
+}
+
+/// The numbers of a row, computed again.
+///
+/// # Errors
+/// The input of the results cannot be read.
+pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+    let studies = Resolved::read(place)?.studies()?;
+    Ok(Source::new(move |row: Row| {
+        let what = row.text("damper");
+        let name = if what == What::None.name() { What::Tmd.name() } else { what };
+        let (_, study) = studies.iter().find(|(known, _)| known == name)?;
+        let scene = if what == What::None.name() {
+            Scene { damper: None, ..study.scene }
+        } else {
+            study.scene_at(&row.design()?)?
+        };
+        let of = if what == What::Ssvi.name() { What::Ssvi } else { What::Tmd };
+        let found = Candidate::new(of, &Study { scene, ..study.clone() }).ok()?;
+        Some(names().into_iter().zip(numbers(&found)).collect())
+    }))
+}

@@ -1,0 +1,212 @@
+//! Requirements as a person gives them: on the command line, in a file, from Python. Each is a number in its SI unit, or a text with a unit.
+
+use super::requirements::Requirements;
+use crate::Error;
+use retune_model::{Unit, unit};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// A number in its SI unit, or a text with a unit.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(try_from = "Value")]
+pub struct Typed {
+    /// As given.
+    pub text: String,
+    /// The file it stands in; none of the command line.
+    pub(super) file: Option<String>,
+}
+
+impl From<String> for Typed {
+    fn from(text: String) -> Self {
+        Self { text, file: None }
+    }
+}
+
+impl TryFrom<Value> for Typed {
+    type Error = String;
+
+    fn try_from(value: Value) -> Result<Self, String> {
+        match value {
+            Value::String(text) => Ok(text.into()),
+            Value::Number(number) => Ok(number.to_string().into()),
+            Value::Array(ends) if ends.len() == 2 => {
+                let [from, to] = [&ends[0], &ends[1]].map(|end| Self::try_from(end.clone()));
+                Ok(format!("{} .. {}", from?.text, to?.text).into())
+            }
+            other => Err(format!("{other} is neither a number nor a text with a unit, as \"20 kN/m\"")),
+        }
+    }
+}
+
+/// What is asked of a design, as given. Nothing is checked yet: [`Wishes::requirements`] does that.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Wishes {
+    /// Mass of the structure.
+    pub m1: Option<Typed>,
+    /// Its stiffness; or `f1`.
+    pub k1: Option<Typed>,
+    /// Its natural frequency without damping; or `k1`.
+    pub f1: Option<Typed>,
+    /// Its damping; or `zeta`.
+    pub c1: Option<Typed>,
+    /// Its share of critical damping; or `c1`.
+    pub zeta: Option<Typed>,
+    /// Amplitude of a force on it.
+    #[serde(alias = "P")]
+    pub force: Option<Typed>,
+    /// A rotating imbalance.
+    pub imbalance: Option<Typed>,
+    /// Amplitude of a moving base.
+    pub base: Option<Typed>,
+    /// Acceleration of a moving base at the natural frequency.
+    pub base_acceleration: Option<Typed>,
+    /// The frequencies of the forcing; by default those within 10 % of the natural frequency.
+    pub band: Option<Typed>,
+    /// Mass of the damper, or its share of the structure's.
+    pub mass: Option<Typed>,
+    /// What is made small.
+    pub goal: Option<Typed>,
+    /// The largest value allowed of quantities, by name.
+    pub limits: Map<String, Value>,
+    /// Largest stroke: a limit.
+    pub stroke: Option<Typed>,
+    /// Largest k2: a limit.
+    #[serde(alias = "k2-max")]
+    pub k2_max: Option<Typed>,
+    /// Limits as typed, `stroke=15mm`.
+    #[serde(skip)]
+    pub limit: Vec<Typed>,
+    /// Share by which k1 may be off.
+    pub k1_error: Option<Typed>,
+    /// The dampers that are compared: tmd, ssvi, both.
+    pub damper: Option<Typed>,
+    /// The walls of an SSVI NES, `R=20mm,E=5MPa`.
+    pub wall: Option<Typed>,
+    /// The file that all this stands in, if any.
+    #[serde(skip)]
+    pub file: Option<String>,
+}
+
+impl Wishes {
+    /// Reads a file of requirements.
+    ///
+    /// # Errors
+    /// It cannot be read, or holds a field that is not known.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let file = path.display().to_string();
+        let text = retune_store::plain::text(path)
+            .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
+        let wishes: Self = serde_json::from_str(&text)
+            .map_err(|error| Error::Requirement { place: file.clone(), problem: error.to_string() })?;
+        Ok(wishes.within(&file))
+    }
+
+    /// The same, said of a file in messages.
+    #[must_use]
+    pub fn within(mut self, file: &str) -> Self {
+        self.fields().into_iter().flatten().for_each(|typed| typed.file = Some(file.to_owned()));
+        Self { file: Some(file.to_owned()), ..self }
+    }
+
+    /// The same with what `other` gives in the place of its own.
+    #[must_use]
+    pub fn with(mut self, other: Self) -> Self {
+        // One way to say a thing replaces the other.
+        let replaces = |own: &[&Option<Typed>]| own.iter().any(|typed| typed.is_some());
+        if replaces(&[&other.k1, &other.f1]) {
+            (self.k1, self.f1) = (None, None);
+        }
+        if replaces(&[&other.c1, &other.zeta]) {
+            (self.c1, self.zeta) = (None, None);
+        }
+        if replaces(&[&other.force, &other.imbalance, &other.base, &other.base_acceleration]) {
+            (self.force, self.imbalance, self.base, self.base_acceleration) = (None, None, None, None);
+        }
+        let limits = std::mem::take(&mut self.limits);
+        let limit = [std::mem::take(&mut self.limit), other.limit.clone()].concat();
+        let mut given = other;
+        let mut all = self;
+        for (own, new) in all.fields().into_iter().zip(given.fields()) {
+            if new.is_some() {
+                *own = new.take();
+            }
+        }
+        Self { limits, limit, ..all }
+    }
+
+    /// The fields that hold one value each.
+    fn fields(&mut self) -> [&mut Option<Typed>; 17] {
+        [
+            &mut self.m1,
+            &mut self.k1,
+            &mut self.f1,
+            &mut self.c1,
+            &mut self.zeta,
+            &mut self.force,
+            &mut self.imbalance,
+            &mut self.base,
+            &mut self.base_acceleration,
+            &mut self.band,
+            &mut self.mass,
+            &mut self.goal,
+            &mut self.stroke,
+            &mut self.k2_max,
+            &mut self.k1_error,
+            &mut self.damper,
+            &mut self.wall,
+        ]
+    }
+
+    /// The limits in the order in which they are given, each with its name: those of the file, then those as typed, which replace them.
+    ///
+    /// # Errors
+    /// One of them has no name or no value.
+    pub(super) fn all_limits(&self) -> Result<Vec<(String, Typed)>, Error> {
+        let mut all = Vec::new();
+        for (name, value) in &self.limits {
+            let typed = Typed::try_from(value.clone());
+            let file = self.file.clone();
+            let nothing = Typed { file: file.clone(), ..Typed::default() };
+            let typed = typed.map_err(|problem| nothing.refused(&format!("limits.{name}"), problem))?;
+            all.push((name.clone(), Typed { file, ..typed }));
+        }
+        for typed in &self.limit {
+            let Some((name, value)) = typed.text.split_once('=') else {
+                let problem =
+                    format!("\"{}\" is not of the form NAME=VALUE, for instance stroke=15mm", typed.text);
+                return Err(typed.refused("limit", problem));
+            };
+            all.push((name.trim().to_owned(), Typed { text: value.trim().to_owned(), ..typed.clone() }));
+        }
+        for (name, typed) in [("stroke", &self.stroke), ("k2", &self.k2_max)] {
+            all.extend(typed.clone().map(|typed| (name.to_owned(), typed)));
+        }
+        Ok(all)
+    }
+
+    /// The requirements in SI units.
+    ///
+    /// # Errors
+    /// The first that is missing or cannot be, by its name, with what to give.
+    pub fn requirements(&self) -> Result<Requirements, Error> {
+        super::reading::requirements(self)
+    }
+}
+
+impl Typed {
+    /// The error that this value of a field is.
+    pub(super) fn refused(&self, field: &str, problem: impl Into<String>) -> Error {
+        let place = match &self.file {
+            Some(file) => format!("{file}: {}", field.replace("limit ", "limits.")),
+            None => format!("--{}", field.replace('_', "-")),
+        };
+        Error::Requirement { place, problem: problem.into() }
+    }
+
+    /// As a number in the SI unit.
+    pub(super) fn number(&self, field: &str, units: &[Unit]) -> Result<f64, Error> {
+        unit::read(&self.text, units).map_err(|problem| self.refused(field, problem))
+    }
+}

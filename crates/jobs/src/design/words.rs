@@ -1,0 +1,93 @@
+//! Numbers of a design as a person reads them.
+
+use super::candidate::Candidate;
+use super::requirements::Requirements;
+use retune_model::{Measure, Parameter, unit};
+use retune_study::rounded;
+use std::f64::consts::TAU;
+
+/// A value in an SI unit, to four digits, in the unit in which it reads best.
+pub(super) fn sized(value: f64, si: &'static str) -> String {
+    if !value.is_finite() {
+        return "no bound".to_owned();
+    }
+    let (unit, number) = unit::readable(value, si);
+    format!("{} {unit}", rounded(number, 4))
+}
+
+/// Values in an SI unit, to four digits, in the unit in which the largest of them reads best.
+pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
+    let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let (unit, number) = unit::readable(largest, si);
+    let scale = if largest > 0.0 { number / largest } else { 1.0 };
+    let one = |value: &f64| match value.is_finite() {
+        true => format!("{} {unit}", rounded(scale * value, 4)),
+        false => "no bound".to_owned(),
+    };
+    values.iter().map(one).collect()
+}
+
+/// Words with numbers of all their digits in SI units, as a person reads them: `0.000306354 m` is `0.3064 mm`.
+pub(super) fn legible(words: &str) -> String {
+    let all: Vec<&str> = words.split(' ').collect();
+    let mut said: Vec<String> = Vec::new();
+    let mut skip = false;
+    for (i, word) in all.iter().enumerate() {
+        if std::mem::take(&mut skip) {
+            continue;
+        }
+        let Some(value) = word.parse::<f64>().ok().filter(|_| word.contains(['.', 'e'])) else {
+            said.push((*word).to_owned());
+            continue;
+        };
+        let next = all.get(i + 1).copied().unwrap_or_default();
+        let unit = next.trim_end_matches([',', ';', '.', ')']);
+        let known = Measure::ALL.into_iter().map(Measure::unit).find(|known| *known == unit);
+        match known {
+            Some(known) => {
+                said.push(format!("{}{}", sized(value, known), &next[unit.len()..]));
+                skip = true;
+            }
+            None => said.push(rounded(value, if unit == "%" { 3 } else { 4 })),
+        }
+    }
+    said.join(" ")
+}
+
+/// An angular frequency, rad/s, in a unit.
+pub(super) fn frequency(omega: f64, unit: &'static str) -> String {
+    let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
+    format!("{} {unit}", rounded(omega / size, 4))
+}
+
+/// The parameters of a damper to build.
+pub(super) fn parameters(of: &Candidate) -> String {
+    let Some(damper) = of.damper() else { return "no damper".to_owned() };
+    let gaps = if damper.contact.is_some() { &Parameter::PAPER[..] } else { &Parameter::PAPER[..2] };
+    let one =
+        |parameter: &Parameter| format!("{parameter} = {}", sized(parameter.get(&damper), parameter.unit()));
+    let mass = format!("m2 = {}", sized(damper.mass.get(), "kg"));
+    std::iter::once(mass).chain(gaps.iter().map(one)).collect::<Vec<_>>().join(", ")
+}
+
+/// The frequency of a damper alone, and its damping as a share of critical.
+pub(super) fn tuning(of: &Candidate, requirements: &Requirements) -> String {
+    let Some(damper) = of.damper() else { return String::new() };
+    let (m2, k2) = (damper.mass.get(), damper.stiffness.get());
+    let natural = (k2 / m2).sqrt();
+    if natural == 0.0 {
+        return "no spring".to_owned();
+    }
+    let zeta = damper.damping.get() / (2.0 * m2 * natural);
+    let unit = if requirements.frequencies == "rpm" { "Hz" } else { requirements.frequencies };
+    format!("{}, damping {} %", frequency(natural, unit), rounded(100.0 * zeta, 3))
+}
+
+/// The natural frequency of the structure, in words.
+pub(super) fn natural(requirements: &Requirements) -> String {
+    let omega = requirements.natural_frequency();
+    match requirements.frequencies {
+        "rad/s" => frequency(omega, "rad/s"),
+        _ => format!("{} Hz", rounded(omega / TAU, 4)),
+    }
+}
