@@ -1,9 +1,10 @@
 //! The answer of `design` in words, on screen and on its page. Lines on screen fit 80 columns.
 
 use super::candidate::{Candidate, What};
-use super::comparison::{Comparison, percent};
-use super::requirements::{Dampers, Driving, Requirements, Wish};
-use super::words::{alike, frequency, legible, natural, parameters, sized, tuning};
+use super::comparison::Comparison;
+use super::question::limit;
+use super::requirements::{Dampers, Requirements, Wish};
+use super::words::{alike, frequency, legible, parameters, percent, sized, tuning};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};
@@ -26,54 +27,6 @@ pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &P
 /// The study with which one goes on.
 fn next(compared: &Comparison) -> String {
     format!("studies-{}.json", compared.chosen().unwrap_or(&compared.tmd).study.name())
-}
-
-/// What was asked, broken into lines for the screen.
-pub(super) fn question(requirements: &Requirements) -> Vec<String> {
-    let broken = textwrap::Options::new(80).subsequent_indent("  ");
-    asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
-}
-
-/// What was asked.
-pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
-    let own = natural(requirements);
-    let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
-    let driving = match requirements.source {
-        Driving::Force(force) => format!("a force of {}", sized(force, "N")),
-        Driving::Imbalance(imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
-        Driving::Base(base) => match requirements.accelerated {
-            Some(acceleration) => format!(
-                "a base that moves by {} ({} at {own}; over the band the motion, not the acceleration, is held)",
-                sized(base, "m"),
-                sized(acceleration, "m/s²")
-            ),
-            None => format!("a base that moves by {}", sized(base, "m")),
-        },
-    };
-    let unit = requirements.frequencies;
-    let [from, to] = requirements.band.map(|end| frequency(end, unit));
-    let from = from.trim_end_matches(unit).trim_end();
-    let limits: Vec<String> =
-        requirements.wishes().into_iter().map(|wish| limit(requirements, wish)).collect();
-    let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
-    vec![
-        format!(
-            "Structure: {} on {}, {own}, damping {}; {driving}, {from} to {to}.",
-            sized(requirements.m1, "kg"),
-            sized(requirements.k1, "N/m"),
-            percent(requirements.c1 / critical)
-        ),
-        format!(
-            "Asked for: a damper of {} ({}) with the least {}{limits}.",
-            sized(requirements.mass, "kg"),
-            percent(requirements.mass / requirements.m1),
-            requirements.goal.name()
-        ),
-    ]
-}
-
-fn limit(requirements: &Requirements, wish: Wish) -> String {
-    format!("{} at most {}", wish.name(), sized(requirements.allowed(wish), wish.unit()))
 }
 
 /// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
