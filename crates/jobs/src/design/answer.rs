@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::question::limit;
+use super::question::{broken_at_spaces, limit};
 use super::requirements::{Dampers, Requirements, Wish};
 use super::words::{alike, frequency, legible, parameters, percent, sized, tuning};
 use retune_model::Measure;
@@ -15,13 +15,13 @@ const ABOVE: f64 = 1e-3;
 
 /// The whole answer on screen.
 pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
-    let broken = textwrap::Options::new(80).subsequent_indent("  ");
+    let broken = broken_at_spaces();
     let fill = |line: String| textwrap::fill(&line, &broken);
     let words = build(requirements, compared).into_iter().chain(findings(requirements, compared));
     let out = out.display();
-    let next = format!("Open {out}/report.html. Go on: `retune explore {out}/{}`.", next(compared));
-    let words: Vec<String> = words.chain([next]).map(fill).collect();
-    format!("{}\n\n{}", table(requirements, compared), words.join("\n"))
+    let words: Vec<String> = words.map(fill).collect();
+    let next = format!("Open {out}/report.html. Go on:\n  `retune explore {out}/{}`", next(compared));
+    format!("{}\n\n{}\n{next}", table(requirements, compared), words.join("\n"))
 }
 
 /// The study with which one goes on.
@@ -232,7 +232,11 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
         if compared.tmd.feasible {
             words.push(cost(&compared.tmd, &of.tmd));
         } else if of.tmd.feasible {
-            words.push(format!("is what no TMD keeps: without it {}", sized(of.tmd.goal, goal.unit())));
+            words.push(format!(
+                "is one that no TMD of this mass keeps: without it {} is {}",
+                goal.name(),
+                sized(of.tmd.goal, goal.unit())
+            ));
         }
         match (&compared.ssvi, &of.ssvi) {
             (Some(own), Some(free)) if own.feasible => words.push(cost(own, free)),

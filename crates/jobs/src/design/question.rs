@@ -6,7 +6,7 @@ use retune_study::rounded;
 
 /// What was asked, broken into lines for the screen.
 pub(super) fn question(requirements: &Requirements) -> Vec<String> {
-    let broken = textwrap::Options::new(80).subsequent_indent("  ");
+    let broken = broken_at_spaces();
     asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
 }
 
@@ -51,4 +51,9 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
 /// A limit in words.
 pub(super) fn limit(requirements: &Requirements, wish: Wish) -> String {
     format!("{} at most {}", wish.name(), sized(requirements.allowed(wish), wish.unit()))
+}
+
+/// Lines of at most 80 columns that are broken at spaces alone, so that no name of a file is.
+pub(super) fn broken_at_spaces() -> textwrap::Options<'static> {
+    textwrap::Options::new(80).subsequent_indent("  ").word_splitter(textwrap::WordSplitter::NoHyphenation)
 }
