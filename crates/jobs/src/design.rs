@@ -7,6 +7,7 @@ mod comparison;
 mod curves;
 mod drawing;
 mod page;
+mod question;
 mod reading;
 mod requirements;
 mod ssvi;
@@ -89,7 +90,7 @@ pub fn design(
             directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
         }
         let answer = answer::answer(requirements, &compared, &job.out);
-        let question = answer::question(requirements).join("\n");
+        let question = question::question(requirements).join("\n");
         directory.write("answer.txt", &format!("{question}\n\n{answer}\n"))?;
         pages::write(&page::page(requirements, &compared), directory)?;
         Ok(Made { answer: compared, report: format!("\n{answer}"), parts: Vec::new() })

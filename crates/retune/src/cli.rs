@@ -41,7 +41,7 @@ pub enum Command {
     },
     /// Design a damper: from a structure and limits to the better of a TMD and an SSVI NES, what each limit costs, and how sure that is
     #[command(allow_negative_numbers = true)]
-    Design(Design),
+    Design(Box<Design>),
     /// Merge the parts of a grid made by `optimize --shard`, and continue with the search
     Merge {
         /// The study file

@@ -1,9 +1,10 @@
 //! The answer of `design` in words, on screen and on its page. Lines on screen fit 80 columns.
 
 use super::candidate::{Candidate, What};
-use super::comparison::{Comparison, percent};
-use super::requirements::{Dampers, Driving, Requirements, Wish};
-use super::words::{alike, frequency, legible, natural, parameters, sized, tuning};
+use super::comparison::Comparison;
+use super::question::{broken_at_spaces, limit};
+use super::requirements::{Dampers, Requirements, Wish};
+use super::words::{alike, frequency, legible, parameters, percent, sized, tuning};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};
@@ -14,66 +15,18 @@ const ABOVE: f64 = 1e-3;
 
 /// The whole answer on screen.
 pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
-    let broken = textwrap::Options::new(80).subsequent_indent("  ");
+    let broken = broken_at_spaces();
     let fill = |line: String| textwrap::fill(&line, &broken);
     let words = build(requirements, compared).into_iter().chain(findings(requirements, compared));
     let out = out.display();
-    let next = format!("Open {out}/report.html. Go on: `retune explore {out}/{}`.", next(compared));
-    let words: Vec<String> = words.chain([next]).map(fill).collect();
-    format!("{}\n\n{}", table(requirements, compared), words.join("\n"))
+    let words: Vec<String> = words.map(fill).collect();
+    let next = format!("Open {out}/report.html. Go on:\n  `retune explore {out}/{}`", next(compared));
+    format!("{}\n\n{}\n{next}", table(requirements, compared), words.join("\n"))
 }
 
 /// The study with which one goes on.
 fn next(compared: &Comparison) -> String {
     format!("studies-{}.json", compared.chosen().unwrap_or(&compared.tmd).study.name())
-}
-
-/// What was asked, broken into lines for the screen.
-pub(super) fn question(requirements: &Requirements) -> Vec<String> {
-    let broken = textwrap::Options::new(80).subsequent_indent("  ");
-    asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
-}
-
-/// What was asked.
-pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
-    let own = natural(requirements);
-    let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
-    let driving = match requirements.source {
-        Driving::Force(force) => format!("a force of {}", sized(force, "N")),
-        Driving::Imbalance(imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
-        Driving::Base(base) => match requirements.accelerated {
-            Some(acceleration) => format!(
-                "a base that moves by {} ({} at {own}; over the band the motion, not the acceleration, is held)",
-                sized(base, "m"),
-                sized(acceleration, "m/s²")
-            ),
-            None => format!("a base that moves by {}", sized(base, "m")),
-        },
-    };
-    let unit = requirements.frequencies;
-    let [from, to] = requirements.band.map(|end| frequency(end, unit));
-    let from = from.trim_end_matches(unit).trim_end();
-    let limits: Vec<String> =
-        requirements.wishes().into_iter().map(|wish| limit(requirements, wish)).collect();
-    let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
-    vec![
-        format!(
-            "Structure: {} on {}, {own}, damping {}; {driving}, {from} to {to}.",
-            sized(requirements.m1, "kg"),
-            sized(requirements.k1, "N/m"),
-            percent(requirements.c1 / critical)
-        ),
-        format!(
-            "Asked for: a damper of {} ({}) with the least {}{limits}.",
-            sized(requirements.mass, "kg"),
-            percent(requirements.mass / requirements.m1),
-            requirements.goal.name()
-        ),
-    ]
-}
-
-fn limit(requirements: &Requirements, wish: Wish) -> String {
-    format!("{} at most {}", wish.name(), sized(requirements.allowed(wish), wish.unit()))
 }
 
 /// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
@@ -279,7 +232,11 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
         if compared.tmd.feasible {
             words.push(cost(&compared.tmd, &of.tmd));
         } else if of.tmd.feasible {
-            words.push(format!("is what no TMD keeps: without it {}", sized(of.tmd.goal, goal.unit())));
+            words.push(format!(
+                "is one that no TMD of this mass keeps: without it {} is {}",
+                goal.name(),
+                sized(of.tmd.goal, goal.unit())
+            ));
         }
         match (&compared.ssvi, &of.ssvi) {
             (Some(own), Some(free)) if own.feasible => words.push(cost(own, free)),

@@ -1,7 +1,7 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
-use super::answer::question;
 use super::candidate::{Candidate, What};
+use super::question::question;
 use super::requirements::{Dampers, Requirements, Wish};
 use super::words::{parameters, sized};
 use super::{Formula, ssvi, tmd};
@@ -10,7 +10,7 @@ use crate::{Error, Observer};
 use retune_model::{Design, Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
 use retune_store::Journal;
-use retune_study::{Rule, Setting, Study, rounded};
+use retune_study::{Rule, Setting, Study};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
@@ -351,9 +351,4 @@ impl Serialize for Comparison {
         })
         .serialize(serializer)
     }
-}
-
-/// A share in percent, to three digits.
-pub(super) fn percent(share: f64) -> String {
-    format!("{} %", rounded(100.0 * share, 3))
 }

@@ -24,8 +24,11 @@ const fn line(what: What) -> Stroke {
     }
 }
 
+/// A frequency, rad/s, and the quantities there, in SI units.
+type Curve = Vec<(f64, PerMeasure<f64>)>;
+
 /// Every quantity of a candidate at frequencies of the band (rad/s), once its motion is steady; NaN where a run fails.
-fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Vec<(f64, PerMeasure<f64>)> {
+fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let study = &of.study;
     let closed = study.goal().objective.is_steady();
     let points = if closed { FINE } else { RUNS };
@@ -55,7 +58,7 @@ pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Draw
         .iter()
         .find(|(name, _)| *name == requirements.frequencies)
         .map_or(1.0, |(_, size)| *size);
-    let curves: Vec<(What, Vec<(f64, PerMeasure<f64>)>)> =
+    let curves: Vec<(What, Curve)> =
         compared.all().map(|of| (of.what, curve(of, requirements.band))).collect();
     let ends = requirements.band.map(|end| end / size);
     let strikes = compared.dampers().any(Candidate::strikes);

@@ -1,8 +1,9 @@
 //! The page of a design: the answer, all candidates over the band, the damper to scale, what was asked.
 
-use super::answer::{asked, build, findings, rows};
+use super::answer::{build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
+use super::question::asked;
 use super::requirements::Requirements;
 use super::words::{parameters, sized, tuning};
 use super::{curves, drawing};

@@ -13,11 +13,17 @@ const BAND: f64 = 0.1;
 /// A share without `%` from here on is taken for a slip: 0.5 % is meant, not half.
 const SLIP: f64 = 0.2;
 
-/// The requirements in SI units.
-///
-/// # Errors
-/// The first that is missing or cannot be.
-pub(super) fn requirements(wishes: &Wishes) -> Result<Requirements, Error> {
+impl Wishes {
+    /// The requirements in SI units.
+    ///
+    /// # Errors
+    /// The first that is missing or cannot be, by its name, with what to give.
+    pub fn requirements(&self) -> Result<Requirements, Error> {
+        checked(self)
+    }
+}
+
+fn checked(wishes: &Wishes) -> Result<Requirements, Error> {
     let [m1, k1] = structure(wishes)?;
     let natural = (k1 / m1).sqrt();
     let c1 = damping(wishes, 2.0 * m1 * natural)?;

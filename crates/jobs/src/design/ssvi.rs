@@ -101,9 +101,11 @@ pub(super) fn best(
     bar.finish();
     journal.check()?;
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Descents from outside limits are long.
+    let descents = if tmd.feasible { DESCENTS } else { DESCENTS / 2 };
     let mut worth: Vec<&Start> = Vec::new();
     for (_, start) in all.iter().filter(|(value, _)| *value < most) {
-        if worth.len() < DESCENTS && worth.iter().all(|(known, _)| *known != start.0) {
+        if worth.len() < descents && worth.iter().all(|(known, _)| *known != start.0) {
             worth.push(start);
         }
     }

@@ -1,6 +1,5 @@
 //! Requirements as a person gives them: on the command line, in a file, from Python. Each is a number in its SI unit, or a text with a unit.
 
-use super::requirements::Requirements;
 use crate::Error;
 use retune_model::{Unit, unit};
 use serde::Deserialize;
@@ -39,7 +38,7 @@ impl TryFrom<Value> for Typed {
     }
 }
 
-/// What is asked of a design, as given. Nothing is checked yet: [`Wishes::requirements`] does that.
+/// What is asked of a design, as given. Nothing is checked yet: `requirements` does that.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Wishes {
@@ -184,14 +183,6 @@ impl Wishes {
             all.extend(typed.clone().map(|typed| (name.to_owned(), typed)));
         }
         Ok(all)
-    }
-
-    /// The requirements in SI units.
-    ///
-    /// # Errors
-    /// The first that is missing or cannot be, by its name, with what to give.
-    pub fn requirements(&self) -> Result<Requirements, Error> {
-        super::reading::requirements(self)
     }
 }
 

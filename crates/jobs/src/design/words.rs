@@ -91,3 +91,8 @@ pub(super) fn natural(requirements: &Requirements) -> String {
         _ => format!("{} Hz", rounded(omega / TAU, 4)),
     }
 }
+
+/// A share in percent, to three digits.
+pub(super) fn percent(share: f64) -> String {
+    format!("{} %", rounded(100.0 * share, 3))
+}

@@ -232,7 +232,7 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
-        each!(errors(), Error: Store Study Setting Rule Argument Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
+        each!(errors(), Error: Store Study Setting Rule Requirement Argument Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
