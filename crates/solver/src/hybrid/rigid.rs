@@ -93,14 +93,16 @@ impl Hybrid<'_> {
         if touch.t > begun || closing > 0.0 {
             observer.touch_down(touch.t, side);
         }
+        // What holds it is the force after the impact: before it the structure may be faster or slower.
+        let at_rest = self.system.caught(side, &touch.y);
         let force =
-            self.system.holding_force(side, self.system.held_acceleration(touch.excitation, &touch.y));
+            self.system.holding_force(side, self.system.held_acceleration(touch.excitation, &at_rest));
         let pressing = force * self.system.inverse_effective_mass();
         let rounding = PARTED * f64::EPSILON * (v1.abs() + v2.abs() + pressing.abs() * touch.t);
         let slow = walls.restitution * closing <= rounding;
         let caught = slow && force >= 0.0;
         let y = match caught {
-            true => self.system.caught(side, &touch.y),
+            true => at_rest,
             false if closing > 0.0 => self.system.struck(walls.restitution, &touch.y),
             false => touch.y,
         };
