@@ -3,17 +3,20 @@
 use retune_model::{
     Absent, Damper, Design, Finite, NonNegative, Parameter, PerVariable, Scene, Source, Start, Unsettable,
 };
-use retune_testkit::scenes::SSVI;
+use retune_testkit::scenes::{Numbers, SSVI};
 
-/// The scenes of the three forcings.
-fn scenes() -> [Scene; 3] {
+/// The scenes of the three forcings with Hertz's surfaces, and one with rigid walls.
+fn scenes() -> [Scene; 4] {
     let amplitude = NonNegative::new(0.5).expect("a number");
-    [Source::Force(amplitude), Source::Imbalance(amplitude), Source::Base(amplitude)].map(|source| {
-        let mut scene = SSVI.scene();
-        scene.forcing.source = source;
-        Parameter::Lambda.set(&mut scene, 0.3).expect("in range");
-        scene
-    })
+    let rigid = Numbers { rigid: Some(0.7), ..SSVI }.scene();
+    let [a, b, c] =
+        [Source::Force(amplitude), Source::Imbalance(amplitude), Source::Base(amplitude)].map(|source| {
+            let mut scene = SSVI.scene();
+            scene.forcing.source = source;
+            Parameter::Lambda.set(&mut scene, 0.3).expect("in range");
+            scene
+        });
+    [a, b, c, rigid]
 }
 
 #[test]
@@ -32,8 +35,13 @@ fn exact_a_parameter_is_read_where_it_was_set_and_nothing_else_changes() {
             let back = parameter.at(moved, own).expect("in range");
             assert_eq!(back, scene, "{parameter}");
         }
-        let once = Parameter::AMPLITUDES.contains(&parameter);
-        assert_eq!(found, if once { 1 } else { 3 }, "{parameter}");
+        let expected = match parameter {
+            Parameter::P => 2,
+            Parameter::Imbalance | Parameter::Base | Parameter::E => 1,
+            _ if parameter.is_of_contact() => 3,
+            _ => 4,
+        };
+        assert_eq!(found, expected, "{parameter}");
     }
 }
 
@@ -47,11 +55,13 @@ fn exact_parameters_stand_in_files_under_their_symbols() {
             }
         }
         let file = serde_json::to_value(scene).expect("JSON");
-        let parts = ["/primary", "/forcing", "/damper", "/damper/contact", "/damper/contact/loss"]
-            .map(|part| file.pointer(part));
+        let places = ["/primary", "/forcing", "/damper", "/damper/contact"];
+        let laws = ["/damper/contact/loss", "/damper/contact/rigid"];
+        let parts: Vec<_> = places.iter().chain(&laws).map(|part| file.pointer(part)).collect();
         let mut count = 0;
         for parameter in Parameter::ALL {
-            let found = parts.iter().flatten().find_map(|part| part.get(parameter.symbol())?.as_f64());
+            let field = if parameter == Parameter::E { "restitution" } else { parameter.symbol() };
+            let found = parts.iter().flatten().find_map(|part| part.get(field)?.as_f64());
             assert_eq!(found, parameter.of(&scene), "{parameter}");
             count += usize::from(found.is_some());
         }
@@ -71,7 +81,10 @@ fn contract_values_out_of_range_are_refused_and_leave_the_scene_as_it_is() {
             for mut scene in scenes() {
                 let before = scene;
                 match parameter.set(&mut scene, bad) {
-                    Err(Unsettable::OutOfRange(_) | Unsettable::Absent(Absent::Forcing(_))) => {}
+                    Err(
+                        Unsettable::OutOfRange(_)
+                        | Unsettable::Absent(Absent::Forcing(_) | Absent::Rigid | Absent::Hertz),
+                    ) => {}
                     other => panic!("{parameter} = {bad}: {other:?}"),
                 }
                 assert_eq!(scene, before, "{parameter}");
@@ -108,7 +121,15 @@ fn contract_a_scene_says_what_it_does_not_have() {
         assert_eq!(absent(parameter, bare), of_damper.or(other), "{parameter}");
         assert_eq!(absent(parameter, open), of_walls.or(other), "{parameter}");
         let forced = parameter.is_frequency() || Parameter::AMPLITUDES.contains(&parameter);
-        assert_eq!(absent(parameter, free), forced.then_some(Absent::Forcing("start")), "{parameter}");
+        let hertz = (parameter == Parameter::E).then_some(Absent::Hertz);
+        assert_eq!(
+            absent(parameter, free),
+            forced.then_some(Absent::Forcing("start")).or(hertz),
+            "{parameter}"
+        );
+        let rigid = (parameter.is_of_contact() && parameter != Parameter::E).then_some(Absent::Rigid);
+        let walls = Numbers { rigid: Some(0.7), ..SSVI }.scene();
+        assert_eq!(absent(parameter, walls), rigid.or(other), "{parameter}");
     }
 }
 
