@@ -1,30 +1,27 @@
 //! `losses`: what a damper is worth when its contacts lose energy. One is tuned as if they lost nothing, one anew for each restitution, one for
 //! the worst of all at once, and the paper's is kept; each is evaluated at every restitution, and where the energy goes is told.
 
+mod compared;
 mod draw;
 mod page;
 
+pub use compared::{Losses, Point, Tuning, Worth};
+
 use crate::again::{Row, Source, broken};
 use crate::artefact::{Content, Kind, artefact};
-use crate::columns;
 use crate::contacts::Powers;
 use crate::job::{Done, Job, Made};
 use crate::resolved::{self, Resolved};
 use crate::searches::Searches;
 use crate::{Error, Observer, Request};
+use compared::FILE;
 use rayon::prelude::*;
 use retune_model::{Design, Parameter, Scene};
 use retune_optim::Unusable;
-use retune_report::cells;
-use retune_report::table::Table;
 use retune_solver::{collisions, losses as losses_of};
 use retune_study::{Rule, Setting, Study, clipped, read};
-use serde::Serialize;
 use serde_json::json;
 use std::path::Path;
-
-/// The table.
-const FILE: &str = "losses.csv";
 
 /// The files of the job.
 pub static KIND: Kind = Kind {
@@ -44,100 +41,6 @@ pub static KIND: Kind = Kind {
 /// The paper's Table 2, the SSVI NES.
 const PAPER: [(Parameter, f64); 4] =
     [(Parameter::K2, 215.0), (Parameter::C2, 232.0), (Parameter::D, 0.06), (Parameter::C, 0.36)];
-
-/// For what a damper was tuned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Tuning {
-    /// The paper's.
-    Paper,
-    /// For contacts that lose nothing.
-    Lossless,
-    /// For all restitutions at once.
-    Hedged,
-    /// For each restitution.
-    Anew,
-}
-
-impl Tuning {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Paper, Self::Lossless, Self::Hedged, Self::Anew];
-
-    /// Its name in the table.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::Lossless => "tuned without loss",
-            Self::Hedged => "tuned for all",
-            Self::Anew => "re-tuned",
-        }
-    }
-}
-
-/// A damper at a restitution.
-#[derive(Clone, Debug, Serialize)]
-pub struct Point {
-    /// For what it was tuned.
-    pub tuning: Tuning,
-    /// The restitution.
-    pub restitution: f64,
-    /// The design.
-    pub design: Design,
-    /// What it is worth there.
-    pub worth: Worth,
-}
-
-/// What a damper is worth at a restitution.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Worth {
-    /// The value of the objective, worst over its band.
-    pub value: f64,
-    /// Where, rad/s.
-    pub omega: f64,
-    /// Mean powers lost in the window of that run, W.
-    pub powers: Powers,
-    /// Largest impact speed in that window, m/s.
-    pub impact_speed: f64,
-}
-
-/// All points.
-#[derive(Debug, Serialize)]
-pub struct Losses {
-    /// The points, by damper.
-    pub points: Vec<Point>,
-    /// The study.
-    #[serde(skip)]
-    pub study: Study,
-}
-
-impl Losses {
-    /// Those of a damper, by falling restitution.
-    pub fn of(&self, tuning: Tuning) -> impl Iterator<Item = &Point> {
-        self.points.iter().filter(move |point| point.tuning == tuning)
-    }
-
-    /// The table.
-    fn table(&self) -> Table {
-        let parameters = columns::of_designs(self.points.iter().map(|point| &point.design));
-        let quantity = self.study.quantity().name();
-        let last = [quantity, "omega", "power_structure", "power_damper", "power_impacts", "impact_speed"];
-        let mut table =
-            columns::table(&[&["damper", "restitution"], &*columns::symbols(&parameters), &last].concat());
-        for Point { tuning, restitution, design, worth } in &self.points {
-            let Worth { value, omega, powers, impact_speed } = worth;
-            let [structure, damper, impacts] = powers.parts();
-            table.push(
-                [
-                    cells![tuning.name(), *restitution],
-                    columns::cells_of(design, &parameters),
-                    cells![*value, *omega, structure, damper, impacts, *impact_speed],
-                ]
-                .concat(),
-            );
-        }
-        table
-    }
-}
 
 /// Tunes dampers for the restitutions of the objective of a study, and compares them.
 ///

@@ -12,8 +12,8 @@ use crate::again::Made;
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
 use crate::{
-    Error, Observer, branches, certify, design, fronts, losses, methods, paper, resolved, retention, sweep, table2,
-    tune,
+    Error, Observer, branches, certify, design, fronts, losses, methods, paper, resolved, retention, sweep,
+    table2, tune,
 };
 use report::Report;
 use retune_store::manifest::Manifest;

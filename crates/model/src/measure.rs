@@ -1,7 +1,7 @@
 //! The catalogue of quantities: each largest value of a motion once, with its name, words and unit.
 
 use crate::Unit;
-use crate::unit::{ACCELERATION, ENERGY, FORCE, MODULUS, LENGTH, VELOCITY};
+use crate::unit::{ACCELERATION, ENERGY, FORCE, LENGTH, MODULUS, VELOCITY};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;

@@ -53,6 +53,16 @@ def test_contract_contacts_that_lose_energy(ssvi: rt.Problem) -> None:
         rt.Contact(loss={"restitution": 1.2, "at": 1})
 
 
+def test_contract_rigid_walls() -> None:
+    study = rt.Problem.from_study(STUDIES / "ssvi-rigid.json")
+    damper = rt.SSVI(60, k2=583.9, c2=94.97, D=0.02885, C=1.105, contact=rt.Contact(rigid=0.7))
+    own = rt.Problem(rt.Structure(m1=1000, c1=452, k1=39500), damper, P=800, omega=6.28, window=(50, 100))
+    assert own.simulate().maxima["E1max"] == study.simulate().maxima["E1max"]
+    assert study.simulate(e=0.0).maxima["E1max"] > study.simulate().maxima["E1max"]
+    with pytest.raises(rt.StudyError, match="restitution"):
+        rt.Contact(rigid=1.2)
+
+
 def test_contract_results_are_shown_as_tables(ssvi: rt.Problem) -> None:
     assert "stroke" in repr(ssvi.evaluate(ssvi.start)) and "k2" in repr(ssvi) and "E1max" in repr(ssvi)
     run = ssvi.simulate()

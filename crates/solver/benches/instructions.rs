@@ -11,7 +11,15 @@ use std::process::Command;
 use std::time::Instant;
 
 const WHOLE: Window = Window { from: 0.0, to: 100.0 };
-const SCENES: [(&str, Numbers); 3] = [("SSVI, Table 2", SSVI), ("SSVI, Table 1 row 3", ROW3), ("TMD", TMD)];
+const SCENES: [(&str, Numbers); 5] = [
+    ("SSVI, Table 2", SSVI),
+    ("SSVI, Table 1 row 3", ROW3),
+    ("TMD", TMD),
+    ("SSVI, tuned", TUNED),
+    ("the same, rigid", Numbers { rigid: Some(0.7), ..TUNED }),
+];
+/// The damper of `results/ssvi`.
+const TUNED: Numbers = Numbers { k2: 583.9, c2: 94.97, d: 0.02885, c: 1.105, ..SSVI };
 const RTOLS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 /// The two numbers of runs whose difference is taken. The first run of a program also computes the rules for contacts.
 const FEW: u64 = 2;

@@ -137,7 +137,7 @@ fn sampled(study: &Study, measure: Measure) -> Need {
             );
             steady.largest(&bare, omega, measure)
         });
-        Need { value, omega, k1: primary.stiffness.get() }
+        Need { value, omega, k1: primary.stiffness.get(), restitution: 1.0 }
     };
     let all: Vec<Need> = (0..SAMPLES).into_par_iter().map(value).collect();
     all.into_iter()

@@ -34,7 +34,7 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let points = if closed { FINE } else { RUNS };
     let value = |i: usize| {
         let omega = from + (to - from) * i as f64 / (points - 1) as f64;
-        let none = PerMeasure([f64::NAN; 7]);
+        let none = PerMeasure::all(f64::NAN);
         let Some(scene) = at(omega, study.scene) else { return (omega, none) };
         if closed {
             let bare = Bare::new(&scene.primary, &scene.forcing);

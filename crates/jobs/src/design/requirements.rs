@@ -4,7 +4,7 @@
 //! structure without a damper.
 
 use crate::Error;
-use retune_model::{Bare, Surfaces, Forcing, Measure, NonNegative, Positive, Primary, Source, den_hartog};
+use retune_model::{Bare, Forcing, Measure, NonNegative, Positive, Primary, Source, Surfaces, den_hartog};
 use retune_optim::{Limit, Limits};
 use retune_study::Study;
 use retune_study::read::from_text;

@@ -122,7 +122,7 @@ fn solvers() -> Vec<SolverError> {
         SolverError::Implausible { t: 4.0, value: 1e87, time: 2.5, most: 320.0 },
         SolverError::Missed { t: 4.0, depth: 1e-6 },
         SolverError::RigidWalls { t: 0.0 },
-        SolverError::Grazing { t: 2.5 },
+        SolverError::Grazing { t: 1.5 },
         SolverError::NonFinite { t: 1.5 },
     ]
 }
@@ -241,7 +241,7 @@ fn regress_the_words_of_every_error() {
             NotAllowed SumAndMore NoEnd),
         each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
-            NonFinite RigidWalls Grazing),
+            RigidWalls Grazing NonFinite),
         each!(lines(), LineError: Count Number Long Unusable),
     ]
     .concat();

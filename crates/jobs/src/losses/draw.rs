@@ -1,6 +1,6 @@
 //! The figures of `losses`: the value of each damper over the restitution, the re-tuned dashpot, and where the energy goes.
 
-use super::{Losses, Point, Tuning};
+use super::compared::{Losses, Point, Tuning};
 use crate::pages::figure;
 use retune_model::Parameter;
 use retune_report::colour::{BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION};

@@ -1,6 +1,7 @@
 //! The page of `losses`, which begins with its answer. Every number on it is one of the table beside it.
 
-use super::{FILE, Losses, Point, Tuning, draw};
+use super::compared::{FILE, Losses, Point, Tuning};
+use super::draw;
 use crate::{Error, pages};
 use retune_model::Parameter;
 use retune_report::document::{Block, Document};

@@ -24,6 +24,8 @@ fn contract_the_objective_is_described() {
 fn contract_the_law_of_the_walls_is_described() {
     let without = said(&committed("ssvi.json"));
     assert!(without.contains("4.95558e7 and 4.59684e7 N/m^1.5, Hertz without loss"), "{without}");
+    let rigid = said(&committed("ssvi-rigid.json"));
+    assert!(rigid.contains("damper of 60 kg; rigid walls, restitution e = 0.7 at every speed"), "{rigid}");
     let with = said(&committed("ssvi-loss.json"));
     assert!(
         with.contains("Hunt and Crossley's loss with lambda = 0.453449 s/m: restitution 0.970655 at 0.1 m/s"),

@@ -3,18 +3,22 @@
 use retune_model::{
     Absent, Damper, Design, Finite, NonNegative, Parameter, PerVariable, Scene, Source, Start, Unsettable,
 };
-use retune_testkit::scenes::SSVI;
+use retune_testkit::scenes::{Numbers, SSVI};
 
-/// The scenes of the three forcings, one of them with contacts that have a restitution.
-fn scenes() -> [Scene; 3] {
+/// The scenes of the three forcings with Hertz's surfaces, one of them with a restitution, and one with rigid walls.
+fn scenes() -> [Scene; 4] {
     let amplitude = NonNegative::new(0.5).expect("a number");
-    [Source::Force(amplitude), Source::Imbalance(amplitude), Source::Base(amplitude)].map(|source| {
-        let mut scene = SSVI.scene();
-        scene.forcing.source = source;
-        let loss = if matches!(source, Source::Base(_)) { Parameter::Restitution } else { Parameter::Lambda };
-        loss.set(&mut scene, 0.3).expect("in range");
-        scene
-    })
+    let rigid = Numbers { rigid: Some(0.7), ..SSVI }.scene();
+    let [a, b, c] =
+        [Source::Force(amplitude), Source::Imbalance(amplitude), Source::Base(amplitude)].map(|source| {
+            let mut scene = SSVI.scene();
+            scene.forcing.source = source;
+            let loss =
+                if matches!(source, Source::Base(_)) { Parameter::Restitution } else { Parameter::Lambda };
+            loss.set(&mut scene, 0.3).expect("in range");
+            scene
+        });
+    [a, b, c, rigid]
 }
 
 #[test]
@@ -33,12 +37,13 @@ fn exact_a_parameter_is_read_where_it_was_set_and_nothing_else_changes() {
             let back = parameter.at(moved, own).expect("in range");
             assert_eq!(back, scene, "{parameter}");
         }
-        let scenes = match parameter {
-            Parameter::P | Parameter::Imbalance | Parameter::Base | Parameter::Restitution => 1,
-            Parameter::Lambda => 2,
-            _ => 3,
+        let expected = match parameter {
+            Parameter::P | Parameter::Lambda | Parameter::Restitution => 2,
+            Parameter::Imbalance | Parameter::Base => 1,
+            _ if parameter.is_of_contact() => 3,
+            _ => 4,
         };
-        assert_eq!(found, scenes, "{parameter}");
+        assert_eq!(found, expected, "{parameter}");
     }
 }
 
@@ -52,11 +57,13 @@ fn exact_parameters_stand_in_files_under_their_symbols() {
             }
         }
         let file = serde_json::to_value(scene).expect("JSON");
-        let parts = ["/primary", "/forcing", "/damper", "/damper/contact", "/damper/contact/loss"]
-            .map(|part| file.pointer(part));
+        let places = ["/primary", "/forcing", "/damper", "/damper/contact"];
+        let laws = ["/damper/contact/loss", "/damper/contact/rigid"];
+        let parts: Vec<_> = places.iter().chain(&laws).map(|part| file.pointer(part)).collect();
         let mut count = 0;
         for parameter in Parameter::ALL {
-            let found = parts.iter().flatten().find_map(|part| part.get(parameter.symbol())?.as_f64());
+            let field = parameter.symbol();
+            let found = parts.iter().flatten().find_map(|part| part.get(field)?.as_f64());
             assert_eq!(found, parameter.of(&scene), "{parameter}");
             count += usize::from(found.is_some());
         }
@@ -77,7 +84,8 @@ fn contract_values_out_of_range_are_refused_and_leave_the_scene_as_it_is() {
                 let before = scene;
                 match parameter.set(&mut scene, bad) {
                     Err(
-                        Unsettable::OutOfRange(_) | Unsettable::Absent(Absent::Forcing(_) | Absent::Loss(_)),
+                        Unsettable::OutOfRange(_)
+                        | Unsettable::Absent(Absent::Forcing(_) | Absent::Rigid | Absent::Loss(_)),
                     ) => {}
                     other => panic!("{parameter} = {bad}: {other:?}"),
                 }
@@ -116,6 +124,10 @@ fn contract_a_scene_says_what_it_does_not_have() {
         assert_eq!(absent(parameter, open), of_walls.or(other), "{parameter}");
         let forced = parameter.is_frequency() || Parameter::AMPLITUDES.contains(&parameter);
         assert_eq!(absent(parameter, free), forced.then_some(Absent::Forcing("start")), "{parameter}");
+        let rigid =
+            (parameter.is_of_contact() && parameter != Parameter::Restitution).then_some(Absent::Rigid);
+        let walls = Numbers { rigid: Some(0.7), ..SSVI }.scene();
+        assert_eq!(absent(parameter, walls), rigid.or(other), "{parameter}");
     }
 }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar
 
 from retune import _core, _show
@@ -52,6 +52,7 @@ class Contact(Part):
     obstacle, 4 the damper where it meets the obstacle. ``loss`` is what contacts lose: ``{"restitution": e}`` for the same restitution at
     every speed, or the law of Hunt and Crossley, ``{"lambda": s/m}`` or ``{"restitution": e, "at": v}`` for an undisturbed collision at a
     speed of v (m/s); nothing if left out.
+    ``rigid`` is the restitution of rigid walls, 0 to 1, in the place of all that.
     """
 
     title: ClassVar[str] = "colliding surfaces"
@@ -66,11 +67,16 @@ class Contact(Part):
     E4: float = 2.05e7
     nu4: float = 0.4
     loss: dict[str, float] | None = None
+    rigid: float | None = None
 
     def __post_init__(self) -> None:
         _check(None, {"m2": 1, "k2": 0, "c2": 0, "D": 0, "C": 0, "contact": self._study()})
 
     def _study(self) -> dict[str, Any]:
+        if self.rigid is not None:
+            # Surfaces that are given beside it are refused as in a study.
+            given = {of.name: getattr(self, of.name) for of in fields(self) if getattr(self, of.name) != of.default}
+            return {**given, "rigid": {"restitution": self.rigid}}
         return {name: value for name, value in vars(self).items() if value is not None}
 
 

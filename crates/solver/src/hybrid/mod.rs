@@ -4,11 +4,12 @@
 //! only be short enough to *see* a contact: a certified bound on the gap over the step decides at once in nearly all cases, an exact
 //! polynomial search (`gap`) in the rest.
 //!
-//! Read `propagate` (the loop), `flight`, then `sustained` (contacts that are followed step by step) on the state in `propagator`. `rigid` is the loop between rigid walls.
+//! Read `propagate` (the loop), `flight`, then `sustained` (contacts that are followed step by step) on the state in `propagator`. `rigid` is the loop between rigid walls, `held` its data.
 //! `contact_free` runs scenes without contacts, which need no loop for most of their time.
 
 pub mod contact_free;
 mod flight;
+mod held;
 mod propagate;
 pub mod propagator;
 mod rigid;

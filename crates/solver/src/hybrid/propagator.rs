@@ -1,6 +1,6 @@
 //! The data of the hybrid propagator: prepared once for a system, then used for any stretch of its motion.
 
-use super::rigid::RigidWalls;
+use super::held::RigidWalls;
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};

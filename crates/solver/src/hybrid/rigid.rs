@@ -4,37 +4,21 @@
 //! of a chatter, or of none: the wall then holds the damper if it is pressed on it (`docs/theory.md`, "Rigid walls").
 
 use super::flight::FlightEnd;
+use super::held::{Held, RigidWalls};
 use super::propagator::{Hybrid, Motion, Phase};
 use crate::error::SolverError;
-use crate::linear::flow::{Expansion, Flow};
+use crate::linear::flow::Expansion;
 use crate::linear::gap::{Lost, first_contact};
-use crate::linear::steps::{Step, StepClock};
-use crate::motion::form::Form;
+use crate::linear::steps::StepClock;
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::motion::segment::Segment;
 use crate::observe::observer::{Impact, Observer};
-use crate::system::held;
-use retune_model::{Coupled, Side};
+use retune_model::Side;
 
 /// Units in the last place of the speeds by which a rebound must part the bodies. A slower one is none: it is less than the rounding errors
 /// of a flight.
 const PARTED: f64 = 64.0;
-
-/// Rigid walls, prepared for a system.
-pub(super) struct RigidWalls {
-    restitution: f64,
-    /// Both bodies as one.
-    held: Flow<4>,
-}
-
-impl RigidWalls {
-    /// Those of a system, in steps of at most `longest` seconds; none if it has no rigid walls.
-    pub(super) fn of(system: &Coupled, longest: f64) -> Option<Self> {
-        let restitution = system.restitution()?;
-        Some(Self { restitution, held: Flow::new(held(system), longest) })
-    }
-}
 
 /// How a stretch on a wall ended.
 enum HoldEnd {
@@ -93,14 +77,16 @@ impl Hybrid<'_> {
         if touch.t > begun || closing > 0.0 {
             observer.touch_down(touch.t, side);
         }
+        // What holds it is the force after the impact: before it the structure may be faster or slower.
+        let at_rest = self.system.caught(side, &touch.y);
         let force =
-            self.system.holding_force(side, self.system.held_acceleration(touch.excitation, &touch.y));
+            self.system.holding_force(side, self.system.held_acceleration(touch.excitation, &at_rest));
         let pressing = force * self.system.inverse_effective_mass();
         let rounding = PARTED * f64::EPSILON * (v1.abs() + v2.abs() + pressing.abs() * touch.t);
         let slow = walls.restitution * closing <= rounding;
         let caught = slow && force >= 0.0;
         let y = match caught {
-            true => self.system.caught(side, &touch.y),
+            true => at_rest,
             false if closing > 0.0 => self.system.struck(walls.restitution, &touch.y),
             false => touch.y,
         };
@@ -138,12 +124,12 @@ impl Hybrid<'_> {
             let force = inertia.with_constant(inertia.coefficient(0) + constant);
             let longest = held.step().min(remaining);
             let end = first_contact(force, longest).map_err(|Lost| SolverError::NonFinite { t: now.t })?;
-            let mut step = Held::new(held, now, &motion, end.unwrap_or(longest), wall);
-            match end {
-                Some(_) => {}
-                None if longest < held.step() => step.step.end().t = to,
-                None => step.step.end().t = clock.after(1),
-            }
+            let last = match end {
+                Some(_) => None,
+                None if longest < held.step() => Some(to),
+                None => Some(clock.after(1)),
+            };
+            let step = Held::new(held, now, &motion, (end.unwrap_or(longest), last), wall);
             if step.length() > 0.0 {
                 observer.segment(&step);
             }
@@ -158,44 +144,5 @@ impl Hybrid<'_> {
             }
             clock.count(1);
         }
-    }
-}
-
-/// A step of the motion in which a wall holds the damper.
-struct Held<'a> {
-    step: Step<'a, 4>,
-    wall: f64,
-}
-
-impl<'a> Held<'a> {
-    fn new(flow: &'a Flow<4>, from: Knot<4>, motion: &Expansion<4>, length: f64, wall: f64) -> Self {
-        // Its bounds are those of its Taylor polynomial: those by the energy are of flight.
-        let mut step = Step::part(flow, from, motion, length, f64::INFINITY);
-        *step.end() = on_wall(*step.ends()[1], wall);
-        Self { step, wall }
-    }
-}
-
-/// A moment on a wall: its place and speed are those of the structure by definition rather than by arithmetic.
-fn on_wall(knot: Knot<4>, wall: f64) -> Knot<4> {
-    let [x, v, ..] = knot.y;
-    Knot { y: [x, v, x + wall, v], ..knot }
-}
-
-impl Segment<4> for Held<'_> {
-    fn ends(&self) -> [&Knot<4>; 2] {
-        self.step.ends()
-    }
-    fn length(&self) -> f64 {
-        self.step.length()
-    }
-    fn at(&self, theta: f64) -> Knot<4> {
-        on_wall(self.step.at(theta), self.wall)
-    }
-    fn at_time(&self, t: f64) -> Knot<4> {
-        on_wall(self.step.at_time(t), self.wall)
-    }
-    fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
-        self.step.quintic_error(form, ends, h, true)
     }
 }

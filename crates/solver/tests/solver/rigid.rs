@@ -225,3 +225,191 @@ fn contract_general_methods_are_refused() {
         assert_eq!(error, SolverError::RigidWalls { t: 0.0 });
     }
 }
+
+/// The structure alone, in its undamped steady motion `X cos ωt`, and a damper of a mass that it does not feel: a damper before a wall that
+/// moves as it is told.
+fn driven(amplitude: f64, numbers: Numbers) -> Numbers {
+    let (k1, m1) = (4.0 * numbers.omega * numbers.omega, 1.0);
+    Numbers {
+        m1,
+        c1: 0.0,
+        k1,
+        p: amplitude * (k1 - m1 * numbers.omega * numbers.omega),
+        m2: 1e-13,
+        ..numbers
+    }
+}
+
+/// The impacts of a run from this place and speed of the damper relative to the structure at the phase φ of its motion.
+fn impacts_from(numbers: &Numbers, phase: f64, amplitude: f64, [r, w]: [f64; 2], to: f64) -> Vec<Impact<4>> {
+    let system = numbers.coupled().with_phase(phase);
+    let [x1, v1] = [amplitude * phase.cos(), -amplitude * numbers.omega * phase.sin()];
+    let begin =
+        Motion { t: 0.0, y: [x1, v1, x1 + r, v1 + w], phase: retune_solver::Phase::Leaving(Side::Primary) };
+    let mut seen = Impacts::default();
+    Hybrid::new(&system, 1e-10, to, 1_000_000).propagate(begin, to, &mut seen).expect("a run");
+    seen.0
+}
+
+/// C. Budd and F. Dux, Chattering and related behaviour in impact oscillators, Phil. Trans. R. Soc. A 347 (1994) 365: `ü + u = cos ωt` over a
+/// wall at `u = σ`, which turns `u'` into `-r u'`. Motions with one impact in n periods are closed forms: between impacts at the phase φ,
+/// `u = γ cos(ωt + φ) + A cos t + B sin t` with `γ = 1/(1 - ω²)`, so with `u(0) = u(T) = σ`, `u'(0) = -r u'(T)`, `T = 2πn/ω`. Here `u = D - r`: the wall
+/// is the structure, which moves by `-X cos(ωt + φ)`, and drives u by `X ω² cos(ωt + φ)`.
+#[test]
+fn paper_budd_and_duxs_motions_with_one_impact() {
+    let mut tried = 0;
+    for (n, omega, r, sigma) in [
+        (1.0, 2.6, 0.8, 0.0),
+        (1.0, 2.4, 0.6, 0.1),
+        (2.0, 4.4, 0.8, 0.0),
+        (3.0, 6.3, 0.8, 0.05),
+        (2.0, 4.2, 0.5, 0.0),
+    ] {
+        let (period, gamma) = (std::f64::consts::TAU * n / omega, 1.0 / (1.0 - omega * omega));
+        let ([c, s], (mut low, mut high)) = ([period.cos(), period.sin()], (0.0, std::f64::consts::TAU));
+        // For a phase: A from the place, B from the place one period later, and by how much the speeds miss the law.
+        let motion = |phase: f64| {
+            let a = sigma - gamma * phase.cos();
+            let b = a * (1.0 - c) / s;
+            let own = -gamma * omega * phase.sin();
+            ([a, b], [own + b, own - a * s + b * c])
+        };
+        let misses = |phase: f64| {
+            let (_, [after, before]) = motion(phase);
+            after + r * before
+        };
+        // Its zeros with an impact from above the wall: u' > 0 before it, and u below σ all the way.
+        let whole: Vec<f64> = (0..4000).map(|k| low + (high - low) * f64::from(k) / 4000.0).collect();
+        for pair in whole.windows(2) {
+            (low, high) = (pair[0], pair[1]);
+            if misses(low) * misses(high) > 0.0 {
+                continue;
+            }
+            for _ in 0..80 {
+                let middle = 0.5 * (low + high);
+                if misses(low) * misses(middle) <= 0.0 { high = middle } else { low = middle }
+            }
+            let ([a, b], [after, before]) = motion(low);
+            let u = |t: f64| gamma * (omega * t + low).cos() + a * t.cos() + b * t.sin();
+            let below = (1..2000).all(|k| u(period * f64::from(k) / 2000.0) < sigma);
+            if before <= 0.0 || !below {
+                continue;
+            }
+            tried += 1;
+            // u = (D - r)/L with the length L = X ω²: the wall r = 0 is at σ = D/L.
+            let (d, length) = (sigma, 1.0);
+            let amplitude = length / (omega * omega);
+            let one = Numbers { omega, k2: 1e-13, c2: 0.0, d, c: 1e3, rigid: Some(r), ..SSVI };
+            let impacts = impacts_from(
+                &driven(amplitude, one),
+                low + std::f64::consts::PI,
+                amplitude,
+                [0.0, -after],
+                1.5 * period,
+            );
+            let first = impacts.first().expect("an impact");
+            let w = first.before.y[1] - first.before.y[3];
+            assert_eq!(impacts.len(), 1, "{n} {omega}");
+            assert!(
+                (first.before.t - period).abs() < 1e-9 * period,
+                "{n} {omega}: {:e}",
+                first.before.t - period
+            );
+            assert!((w - before).abs() < 1e-9 * before, "{n} {omega}: {w} {before}");
+        }
+    }
+    assert!(tried >= 4, "{tried}");
+}
+
+/// The slow invariant manifold of the vibro-impact NES with two impacts a period (T. Theurich, M. Gross and M. Krack, Nonlinear Dyn. 98 (2019);
+/// Theurich, Krack and Weidemann's ρ = (2/π) (1 - e)/(1 + e)): before a wall that moves by `X cos ωt` the free mass crosses a cavity of the
+/// length L at the speed V in half a period, so `X² = ((L - πV/ω)/2)² + (V (1 - e)/(1 + e) ω)²`.
+#[test]
+fn paper_vibro_impact_nes_on_its_slow_invariant_manifold() {
+    let (e, omega, length) = (0.8, 1.0, 2.0);
+    for share in [1.05, 1.2, 1.4] {
+        let v = share * length * omega / std::f64::consts::PI;
+        let place = 0.5 * (length - std::f64::consts::PI * v / omega);
+        let speed = v * (1.0 - e) / (1.0 + e);
+        // It leaves the near wall for the far one with the speed V, where the structure is at `place` and has `speed`.
+        let (amplitude, phase) = (place.hypot(speed / omega), (-speed / omega).atan2(place));
+        let rho = 2.0 / std::f64::consts::PI * (1.0 - e) / (1.0 + e);
+        let crossing = std::f64::consts::PI * v / omega;
+        let manifold = (0.5 * (length - crossing)).hypot(0.5 * rho * crossing);
+        assert!((amplitude / manifold - 1.0).abs() < 1e-14, "in the symbols of the paper");
+        let half = 0.5 * length;
+        let free = Numbers { omega, k2: 0.0, c2: 0.0, d: half, c: half, rigid: Some(e), ..SSVI };
+        let impacts = impacts_from(
+            &driven(amplitude, free),
+            phase,
+            amplitude,
+            [0.0, v - speed],
+            12.5 * std::f64::consts::PI,
+        );
+        assert_eq!(impacts.len(), 12, "{share}");
+        for (k, impact) in impacts.iter().enumerate() {
+            let t = std::f64::consts::PI / omega * (k + 1) as f64;
+            assert!((impact.after.t - t).abs() < 1e-9, "{share} {k}: {:e}", impact.after.t - t);
+            assert!((impact.after.y[3].abs() - v).abs() < 1e-9, "{share} {k}");
+            assert_eq!(impact.side, if k % 2 == 0 { Side::Obstacle } else { Side::Primary });
+        }
+    }
+}
+
+/// The impact oscillator of COCO's recipes (H. Dankowicz and F. Schilder, Recipes for Continuation, 2013), k = 1, c = 0.1, A = 1, ω = 1, a wall
+/// at 1, e = 0.8: its motion with one impact a period, by the closed form of the damped flow and Newton's law at the wall.
+#[test]
+fn paper_cocos_impact_oscillator() {
+    let (c, omega, e, d) = (0.1, 1.0, 0.8, 1.0);
+    let period = std::f64::consts::TAU / omega;
+    let nu = (1.0_f64 - 0.25 * c * c).sqrt();
+    let flow = |t: f64, a: f64, b: f64, phase: f64| {
+        // u'' + c u' + u = cos(t + φ) has the steady motion sin(t + φ)/c at ω = 1.
+        let (decay, turn) = ((-0.5 * c * t).exp(), nu * t);
+        let free = decay * (a * turn.cos() + b * turn.sin());
+        let rate = decay * ((nu * b - 0.5 * c * a) * turn.cos() - (nu * a + 0.5 * c * b) * turn.sin());
+        [free + (t + phase).sin() / c, rate + (t + phase).cos() / c]
+    };
+    let motion = |phase: f64| {
+        let a = d - phase.sin() / c;
+        let (decay, [cos, sin]) = ((-0.5 * c * period).exp(), [(nu * period).cos(), (nu * period).sin()]);
+        let b = a * (1.0 / decay - cos) / sin;
+        ([a, b], flow(0.0, a, b, phase)[1], flow(period, a, b, phase)[1])
+    };
+    let misses = |phase: f64| {
+        let (_, after, before) = motion(phase);
+        after + e * before
+    };
+    let mut found = 0;
+    for k in 0..4000 {
+        let [mut low, mut high] = [k, k + 1].map(|k| period * f64::from(k) / 4000.0);
+        if misses(low) * misses(high) > 0.0 {
+            continue;
+        }
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            if misses(low) * misses(middle) <= 0.0 { high = middle } else { low = middle }
+        }
+        let ([a, b], after, before) = motion(low);
+        let stays = (1..2000).all(|k| flow(period * f64::from(k) / 2000.0, a, b, low)[0] < d);
+        if before <= 0.0 || !stays {
+            continue;
+        }
+        found += 1;
+        let one = Numbers { omega, k2: 1e-13, c2: c * 1e-13, d, c: 1e3, rigid: Some(e), ..SSVI };
+        let impacts =
+            impacts_from(&driven(1.0, one), low + std::f64::consts::PI, 1.0, [0.0, -after], 1.5 * period);
+        let first = impacts.first().expect("an impact");
+        let w = first.before.y[1] - first.before.y[3];
+        assert!((first.before.t - period).abs() < 1e-9, "{:e}", first.before.t - period);
+        assert!((w - before).abs() < 1e-9 * before, "{w} {before}");
+    }
+    assert!(found >= 1, "{found}");
+}
+
+/// Found by the hunt: at e = 0 an impact changes the speed of the structure, and with it the force that would hold the damper.
+#[test]
+fn regress_what_holds_the_damper_is_the_force_after_the_impact() {
+    let hunt = retune_testkit::hunt::rigid::beside(&[1238, 1395, 1409, 1456]);
+    hunt.passes();
+}

@@ -39,6 +39,46 @@ fn refused(pointer: &str, value: Value, message: &str) {
     refused_text(&study.to_string(), message);
 }
 
+/// The walls have one law, and what rigid ones cannot have is refused with what to do.
+#[test]
+fn contract_wrong_rigid_walls_are_named_with_what_is_allowed() {
+    let rigid = |change: &dyn Fn(&mut Value), message: &str| {
+        let mut study = tiny();
+        study["scene"]["damper"]["contact"] = json!({ "rigid": { "restitution": 0.7 } });
+        change(&mut study);
+        let found = problem(&study.to_string());
+        assert!(found.starts_with(message), "{found}");
+    };
+    rigid(
+        &|study| study["scene"]["damper"]["contact"]["R"] = json!(2),
+        "scene.damper.contact: two laws: `rigid` and `R`: give `rigid` alone, or Hertz's surfaces",
+    );
+    rigid(
+        &|study| study["scene"]["damper"]["contact"]["rigid"]["restitution"] = json!(1.1),
+        "scene.damper.contact.rigid.restitution: 1.1 is not allowed here: give a number from 0 to 1",
+    );
+    rigid(
+        &|study| study["solver"] = json!({ "method": "ode23s" }),
+        "solver.method: ode23s is not allowed here: give hybrid: the walls are rigid",
+    );
+    rigid(
+        &|study| study["optimize"] = json!({ "vary": ["k2"], "limits": { "contact_force": 1e4 } }),
+        "optimize.limits.contact_force: 10000 is not allowed here: give no contact force: that of an impact with a rigid wall",
+    );
+    rigid(
+        &|study| study["optimize"] = json!({ "vary": ["k2"], "objective": { "quantity": "contact_force" } }),
+        "optimize.objective.quantity: contact_force is not allowed here: give no contact force",
+    );
+    rigid(
+        &|study| study["optimize"] = json!({ "vary": ["R"] }),
+        "optimize.vary: R is not allowed here: give what the damper has: its walls are rigid, without surfaces",
+    );
+    rigid(
+        &|study| study["scene"]["forcing"]["start"] = json!({ "x1": 0, "v1": 0, "x2": -0.1, "v2": 0 }),
+        "scene.forcing.start.x2: -0.1 is not allowed here: give a place from x1 to x1 + D + C",
+    );
+}
+
 /// A loss is given in one of two ways.
 #[test]
 fn contract_wrong_losses_are_named_with_what_is_allowed() {
