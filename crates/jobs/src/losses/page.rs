@@ -19,7 +19,7 @@ pub(super) fn write(losses: &Losses, directory: &Directory) -> Result<String, Er
         Block::figure(
             "losses.svg",
             draw::values(losses),
-            &format!("Worst {} over the restitution", quantity.name()),
+            format!("Worst {} over the restitution", quantity.name()),
         ),
         values(losses),
     ];
