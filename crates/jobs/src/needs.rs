@@ -176,6 +176,7 @@ pub(crate) fn sized(measure: Measure, value: f64) -> String {
     match measure {
         _ if !value.is_finite() => "without bound".to_owned(),
         Measure::Displacement => format!("{} mm", rounded(1e3 * value, 4)),
+        Measure::ContactPressure => format!("{} MPa", rounded(1e-6 * value, 4)),
         _ => format!("{} {}", rounded(value, 4), measure.unit()),
     }
 }

@@ -76,6 +76,7 @@ pub fn readable(value: f64, si: &'static str) -> Unit {
         "N" => &[("mN", 1e-3), ("N", 1.0), ("kN", 1e3), ("MN", 1e6)],
         "J" => &[("µJ", 1e-6), ("mJ", 1e-3), ("J", 1.0), ("kJ", 1e3), ("MJ", 1e6)],
         "kg" => &[("g", 1e-3), ("kg", 1.0), ("t", 1e3)],
+        "Pa" => &[("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)],
         "N/m" => &[("N/m", 1.0), ("kN/m", 1e3), ("MN/m", 1e6)],
         "N·s/m" => &[("N·s/m", 1.0), ("kN·s/m", 1e3)],
         _ => return (si, value),

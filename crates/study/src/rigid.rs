@@ -21,12 +21,14 @@ impl Study {
             let allowed = "hybrid: the walls are rigid, and a general method cannot follow impacts that take no time; or give Hertz's surfaces";
             return refuse("solver.method", self.solver.method.name().to_owned(), allowed);
         }
-        const FORCE: &str = "no contact force: that of an impact with a rigid wall has no bound; limit the stroke, or give Hertz's surfaces";
-        if self.quantity() == Measure::ContactForce {
-            return refuse("optimize.objective.quantity", Measure::ContactForce.name().to_owned(), FORCE);
+        const FORCE: &str = "no contact force or pressure: that of an impact with a rigid wall has no bound; limit the stroke, or give Hertz's surfaces";
+        if self.quantity().is_of_walls() {
+            return refuse("optimize.objective.quantity", self.quantity().name().to_owned(), FORCE);
         }
-        if let Some(most) = self.goal().limits.get(Limit::Of(Measure::ContactForce)) {
-            return refuse("optimize.limits.contact_force", most.to_string(), FORCE);
+        for measure in Measure::ALL.into_iter().filter(|measure| measure.is_of_walls()) {
+            if let Some(most) = self.goal().limits.get(Limit::Of(measure)) {
+                return refuse(&format!("optimize.limits.{}", measure.name()), most.to_string(), FORCE);
+            }
         }
         let system = Coupled::new(&self.scene.primary, &self.scene.forcing, &damper);
         let start = system.start();

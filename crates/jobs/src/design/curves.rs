@@ -62,7 +62,7 @@ pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Draw
         compared.all().map(|of| (of.what, curve(of, requirements.band))).collect();
     let ends = requirements.band.map(|end| end / size);
     let strikes = compared.dampers().any(Candidate::strikes);
-    let shown = Measure::ALL.into_iter().filter(|measure| *measure != Measure::ContactForce || strikes);
+    let shown = Measure::ALL.into_iter().filter(|measure| !measure.is_of_walls() || strikes);
     let chart = |measure: Measure| {
         let all: Vec<f64> = curves
             .iter()
@@ -73,9 +73,9 @@ pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Draw
         let scale = if number == 0.0 { 1.0 } else { number / largest };
         let scaled: Vec<f64> = all.iter().map(|value| scale * value).filter(|value| *value > 0.0).collect();
         let label = format!("{}, {name}", measure.name().replace('_', " "));
-        // A contact force is zero where nothing is struck.
-        let force = measure == Measure::ContactForce;
-        let y = if force { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
+        // What a wall feels is zero where nothing is struck.
+        let of_walls = measure.is_of_walls();
+        let y = if of_walls { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
         let allowed = requirements.allowed(Wish::Of(Limit::Of(measure)));
         let mut layers = Vec::new();
         if allowed.is_finite() {
@@ -88,7 +88,7 @@ pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Draw
         }
         for (what, points) in &curves {
             let points = points.iter().map(|(omega, values)| (omega / size, scale * values.get(measure)));
-            layers.push(Layer::line(points.filter(|(_, value)| force || *value > 0.0), line(*what)));
+            layers.push(Layer::line(points.filter(|(_, value)| of_walls || *value > 0.0), line(*what)));
         }
         Chart::of(
             Axis::linear(format!("frequency, {}", requirements.frequencies), (ends[0], ends[1])),

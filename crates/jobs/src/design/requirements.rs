@@ -215,8 +215,11 @@ impl Requirements {
         if let Ok(least) = Positive::new(least) {
             limits = limits.with(stroke, least);
         }
-        let walls = [Limit::Cavity, Limit::Of(Measure::ContactForce)];
-        let kept: Vec<Limit> = limits.set().filter(|limit| !walls.contains(limit)).collect();
+        let of_walls = |limit: &Limit| match limit {
+            Limit::Cavity => true,
+            Limit::Of(measure) => measure.is_of_walls(),
+        };
+        let kept: Vec<Limit> = limits.set().filter(|limit| !of_walls(limit)).collect();
         let optimize = json!({
             "vary": ["k2", "c2"],
             "objective": { "quantity": self.goal, "omega": self.omega(), "response": "steady" },

@@ -48,7 +48,7 @@ fn contract_the_schema_describes_parameters_as_the_catalogue_does() {
     let schema: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(path).expect("a schema")).expect("JSON");
     let mut count = 0;
-    for part in ["Primary", "Forcing", "Damper", "Contact", "Loss"] {
+    for part in ["Primary", "Forcing", "Damper", "Surfaces", "Loss"] {
         for (name, field) in schema["$defs"][part]["properties"].as_object().expect("fields") {
             let Ok(parameter) = name.parse::<Parameter>() else { continue };
             let words = field["description"].as_str().unwrap_or_default();

@@ -63,7 +63,7 @@ fn contract_wrong_rigid_walls_are_named_with_what_is_allowed() {
     );
     rigid(
         &|study| study["optimize"] = json!({ "vary": ["k2"], "limits": { "contact_force": 1e4 } }),
-        "optimize.limits.contact_force: 10000 is not allowed here: give no contact force: that of an impact with a rigid wall",
+        "optimize.limits.contact_force: 10000 is not allowed here: give no contact force or pressure: that of an impact with a rigid wall",
     );
     rigid(
         &|study| study["optimize"] = json!({ "vary": ["k2"], "objective": { "quantity": "contact_force" } }),
@@ -79,7 +79,7 @@ fn contract_wrong_rigid_walls_are_named_with_what_is_allowed() {
     );
 }
 
-/// A loss is given in one of two ways.
+/// A loss is given as a factor, or as a restitution, at one speed or at all.
 #[test]
 fn contract_wrong_losses_are_named_with_what_is_allowed() {
     let loss = |value: Value, message: &str| {
@@ -97,7 +97,7 @@ fn contract_wrong_losses_are_named_with_what_is_allowed() {
         ".restitution: 0 is not allowed here: give a number above 0 and at most 1",
     );
     loss(json!({ "restitution": 0.7, "at": 0 }), ".at: 0 is not allowed here: give a finite number above 0");
-    loss(json!({ "restitution": 0.7 }), ".at: missing, and it has no default");
+    loss(json!({ "at": 1 }), ".restitution: missing, and it has no default");
     loss(json!({ "at": 0.7 }), ".restitution: missing, and it has no default");
     loss(
         json!({ "lambda": 1, "restitution": 0.7, "at": 1 }),
@@ -294,7 +294,7 @@ fn contract_invalid_bands_are_refused() {
     );
     refused(
         json!({ "omga": { "from": 5, "to": 8 } }),
-        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, response, starts, settle, ensemble, sum",
+        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, restitution, response, starts, settle, ensemble, sum",
     );
     refused(
         json!({ "response": "stead" }),
