@@ -75,7 +75,8 @@ pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Draw
         let label = format!("{}, {name}", measure.name().replace('_', " "));
         // What a wall feels is zero where nothing is struck.
         let of_walls = measure.is_of_walls();
-        let y = if of_walls { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
+        let y =
+            if of_walls { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
         let allowed = requirements.allowed(Wish::Of(Limit::Of(measure)));
         let mut layers = Vec::new();
         if allowed.is_finite() {

@@ -6,12 +6,14 @@ use retune_model::Scene;
 use retune_solver::{Method, Response, SceneKind, Settings, SolverError, Window, simulate};
 
 /// The run with one of the exact method and one of DOP853, which meets a contact in time and by its own error estimate.
-pub fn both(scene: &Scene, to: f64, rtol: f64, most_steps: u64) -> [Result<Response, SolverError>; 2] {
+pub fn both(scene: &Scene, to: f64, rtol: f64, most_steps: [u64; 2]) -> [Result<Response, SolverError>; 2] {
     let window = Window { from: 0.0, to };
-    [(Method::Hybrid, rtol, 15_000), (Method::Dop853, 1e-12, most_steps)].map(|(method, rtol, max_steps)| {
-        let settings = Settings { method, rtol, atol: 1e-300, max_steps, ..Settings::default() };
-        simulate(scene, window, &settings)
-    })
+    [(Method::Hybrid, rtol, most_steps[0]), (Method::Dop853, 1e-12, most_steps[1])].map(
+        |(method, rtol, max_steps)| {
+            let settings = Settings { method, rtol, atol: 1e-300, max_steps, ..Settings::default() };
+            simulate(scene, window, &settings)
+        },
+    )
 }
 
 /// A relative difference.
@@ -23,7 +25,7 @@ pub fn apart(a: f64, b: f64) -> f64 {
 pub fn scenes(scenes: &[Scene]) -> Hunt {
     // Whether a scene is one that counts, and what is wrong with it.
     let look = |scene: &Scene| -> (bool, Option<String>) {
-        let [own, other] = both(scene, 1.0, 1e-9, 3_000);
+        let [own, other] = both(scene, 1.0, 1e-9, [3_000; 2]);
         let Ok(other) = other else { return (false, None) };
         let own = match own {
             Ok(own) => own,
