@@ -97,13 +97,15 @@ fn contract_wrong_losses_are_named_with_what_is_allowed() {
         ".restitution: 0 is not allowed here: give a number above 0 and at most 1",
     );
     loss(json!({ "restitution": 0.7, "at": 0 }), ".at: 0 is not allowed here: give a finite number above 0");
-    loss(json!({ "at": 1 }), ".restitution: missing, and it has no default");
     loss(json!({ "at": 0.7 }), ".restitution: missing, and it has no default");
     loss(
         json!({ "lambda": 1, "restitution": 0.7, "at": 1 }),
-        ": give `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s), not both",
+        ": give `lambda` (s/m) or `restitution`, not both",
     );
-    loss(json!({}), ": empty: give `lambda` (s/m), or `restitution` with `at` (the impact speed, m/s)");
+    loss(
+        json!({}),
+        ": empty: give `lambda` (s/m), or `restitution`, which holds at every speed or at the impact speed `at` (m/s)",
+    );
 }
 
 #[test]
