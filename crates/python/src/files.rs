@@ -10,7 +10,7 @@ use retune_jobs::design::Wishes;
 use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
 use retune_jobs::{Error, Request, certify, design, sweep, table2, tune};
-use retune_jobs::{fronts, retention};
+use retune_jobs::{fronts, losses, retention};
 use retune_model::Parameter;
 use retune_study::Setting;
 use serde::Deserialize;
@@ -24,6 +24,7 @@ enum Job {
     Certify,
     Design(Box<Wishes>),
     Fronts,
+    Losses,
     Merge { parts: Vec<PathBuf> },
     Reproduce { only: Option<String> },
     Share(String),
@@ -71,6 +72,7 @@ fn done(job: Job, request: &Request, monitor: &Monitor) -> Result<String, Fault>
             drop(design::design(&wishes.within("design").requirements()?, request, monitor)?);
         }
         Job::Fronts => drop(fronts::fronts(request, monitor)?),
+        Job::Losses => drop(losses::losses(request, monitor)?),
         Job::Merge { parts } => {
             tune::merge::merge(request, &parts, monitor)?;
             out = out_of_one(request)?;

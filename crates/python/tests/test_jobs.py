@@ -277,7 +277,7 @@ def test_contract_every_command_is_reachable(program: Path) -> None:
     """A command that comes new is missed here until it has its place."""
     said = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
     commands = re.findall(r"^  (\w+) {2,}", said.partition("Commands:")[2].partition("Options:")[0], re.M)
-    functions = {"optimize", "design", "merge", "verify", "certify", "sweep", "branches", "table2", "retention", "fronts", "reproduce"}
+    functions = {"optimize", "design", "merge", "verify", "certify", "sweep", "branches", "table2", "retention", "fronts", "losses", "reproduce"}
     assert functions <= set(dir(rt))
     # By another name: `problem.simulate`, `problem.batch`, `reproduce("figure3")`, `Problem.from_study`.
     elsewhere = {"simulate", "evaluate", "figure", "table", "check"}

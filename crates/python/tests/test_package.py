@@ -39,7 +39,7 @@ def test_contract_everything_has_a_docstring_and_every_number_a_unit() -> None:
 
 def test_contract_the_default_contact_is_the_studies() -> None:
     study = json.loads((STUDIES / "ssvi.json").read_text())
-    assert vars(rt.Contact()) == {**study["scene"]["damper"]["contact"], "loss": None}
+    assert vars(rt.Contact()) == {**study["scene"]["damper"]["contact"], "loss": None, "rigid": None}
 
 
 def test_contract_contacts_that_lose_energy(ssvi: rt.Problem) -> None:
@@ -58,7 +58,7 @@ def test_contract_rigid_walls() -> None:
     damper = rt.SSVI(60, k2=583.9, c2=94.97, D=0.02885, C=1.105, contact=rt.Contact(rigid=0.7))
     own = rt.Problem(rt.Structure(m1=1000, c1=452, k1=39500), damper, P=800, omega=6.28, window=(50, 100))
     assert own.simulate().maxima["E1max"] == study.simulate().maxima["E1max"]
-    assert study.simulate(e=0.0).maxima["E1max"] > study.simulate().maxima["E1max"]
+    assert study.simulate(restitution=0.0).maxima["E1max"] > study.simulate().maxima["E1max"]
     with pytest.raises(rt.StudyError, match="restitution"):
         rt.Contact(rigid=1.2)
 

@@ -14,7 +14,7 @@ are in SI units (kg, N/m, N s/m, N, m, s, rad/s), all parameters have the symbol
 from retune._compare import Comparison, compare
 from retune._core import __version__
 from retune._errors import Error, SolverError, StudyError
-from retune._files import Design, certify_file, design, fronts, merge, reproduce, retention, share, sweep, table2
+from retune._files import Design, certify_file, design, fronts, losses, merge, reproduce, retention, share, sweep, table2
 from retune._jobs import Certificate, Result, branches, certify, optimize, verify
 from retune._problem import Evaluation, Problem
 from retune._run import Run
@@ -44,6 +44,7 @@ __all__ = [
     "compare",
     "design",
     "fronts",
+    "losses",
     "merge",
     "optimize",
     "reproduce",

@@ -112,6 +112,12 @@ def fronts(study: Directory = "studies/fronts.json", out: Directory | None = Non
     return Path(_job(study, "fronts", out, options))
 
 
+def losses(study: Directory = "studies/ssvi-hedged.json", out: Directory | None = None, **options: Unpack[Options]) -> Path:
+    """What dampers are worth when their contacts lose energy: tunes one for each restitution of the objective of a study and one for
+    the worst of all, as `retune losses` does; returns the directory of the results."""
+    return Path(_job(study, "losses", out, options))
+
+
 def reproduce(
     only: str | None = None, out: Directory | None = None, *, study: Directory = "studies/paper.json", **options: Unpack[Options]
 ) -> Path:
