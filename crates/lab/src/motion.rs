@@ -38,7 +38,7 @@ impl Equations {
 
     /// State at rest.
     pub fn rest(&self) -> [f64; 4] {
-        self.coupled.map_or([0.0; 4], |c| c.rest())
+        self.coupled.as_ref().map_or([0.0; 4], |c| c.rest())
     }
 
     /// `y'`.
@@ -114,7 +114,7 @@ impl Equations {
 
     /// The walls that a state presses into.
     fn pressed(&self, y: &[f64; 4]) -> [bool; 2] {
-        self.coupled.map_or([false; 2], |c| c.indentation(y).map(|z| z > 0.0))
+        self.coupled.as_ref().map_or([false; 2], |c| c.indentation(y).map(|z| z > 0.0))
     }
 }
 

@@ -35,7 +35,7 @@ impl Side {
 }
 
 /// The coupled system. Its state is `[x1, v1, x2, v2]` (m, m/s).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Coupled {
     bare: Bare,
     m2: f64,
@@ -137,8 +137,8 @@ impl Coupled {
     }
 
     /// What contacts lose.
-    pub(crate) fn law(&self) -> Law {
-        self.law
+    pub(crate) fn law(&self) -> &Law {
+        &self.law
     }
 
     /// Whether contacts lose energy.

@@ -4,11 +4,13 @@
 //! vibroimpact, J. Appl. Mech. 42 (1975) 440. With the same restitution at every speed: see [`Restoring`].
 
 mod collision;
+mod remainder;
 mod restoring;
 
 pub(crate) use restoring::{Factor, Restoring, Stage};
 
 use collision::{chi, langevin};
+use std::sync::Arc;
 
 use crate::{NonNegative, OutOfRange, Positive, Restitution};
 use schemars::JsonSchema;
@@ -133,11 +135,11 @@ impl Loss {
 const ROUNDING: f64 = 1e-9;
 
 /// The law of a contact, as the equations of motion have it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Law {
     /// `1 + λ w`, and nothing where that would pull.
     Damping(f64),
-    Restoring(Restoring),
+    Restoring(Arc<Restoring>),
 }
 
 impl From<Loss> for Law {
@@ -145,7 +147,7 @@ impl From<Loss> for Law {
         match loss {
             Loss::Damping(lambda) => Self::Damping(lambda.get()),
             Loss::Restoring(e) if e.get() == 1.0 => Self::Damping(0.0),
-            Loss::Restoring(e) => Self::Restoring(Restoring::new(e.get())),
+            Loss::Restoring(e) => Self::Restoring(Arc::new(Restoring::new(e.get()))),
         }
     }
 }

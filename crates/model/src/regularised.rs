@@ -10,7 +10,7 @@
 //! Every right-hand side is a polynomial, so the motion is analytic in `θ` from before touch-down (`q = 0`, `w > 0`)
 //! until after lift-off (`q = 0`, `w < 0`), which is a simple root of `q`. In `t` it is not: `F ~ (t - t0)^(3/2)`.
 //! A loss, `K q³ (1 + λ w)`, leaves it polynomial. Where that would pull the force is zero, until the damper has left the wall or is pressed
-//! into it again: [`RegularisedContact::without_force`].
+//! into it again: [`RegularisedContact::set_force`].
 //! With the same restitution at every speed the factor is not polynomial but analytic, in `q` too, as it depends on `q⁵` (`crate::loss`).
 //! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
 
@@ -18,25 +18,26 @@ pub(crate) mod bounds;
 
 use crate::loss::{Law, Restoring, Stage};
 use crate::{Coupled, Excitation, Side};
+use std::sync::Arc;
 
 /// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.
 pub type RegularisedState = [f64; 5];
 
 /// Equation (1) in contact with one wall.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct RegularisedContact {
     side: Side,
     sign: f64,
     wall: f64,
     omega: f64,
     // Accelerations per unit of each cause.
-    primary: [f64; 3],            // 1/m1, c1/m1, k1/m1
-    hertz: [f64; 2],              // K/m1, K (1/m1 + 1/m2)
-    dashpot: [f64; 2],            // c2/m1, c2 (1/m1 + 1/m2)
-    spring: [f64; 2],             // k2/m1, k2 (1/m1 + 1/m2)
-    lambda: f64,                  // λ
+    primary: [f64; 3],                 // 1/m1, c1/m1, k1/m1
+    hertz: [f64; 2],                   // K/m1, K (1/m1 + 1/m2)
+    dashpot: [f64; 2],                 // c2/m1, c2 (1/m1 + 1/m2)
+    spring: [f64; 2],                  // k2/m1, k2 (1/m1 + 1/m2)
+    lambda: f64,                       // λ
     law: [f64; 2], // the factor of Hertz's force is law[0] + law[1] w: 1 + λ w, or 0 without force
-    restoring: Option<Restoring>, // the law in its place
+    restoring: Option<Arc<Restoring>>, // the law in its place
     stretch: f64,  // sign (wall - D): the spring's stretch at touch-down, towards the wall
     since: f64,    // the time at which the excitation was set
     cos: [f64; WAVE], // Taylor coefficients of P cos ωt and P sin ωt about that time
@@ -44,7 +45,7 @@ pub struct RegularisedContact {
 }
 
 /// Terms of the force's Taylor polynomials.
-const WAVE: usize = 8;
+pub(crate) const WAVE: usize = 8;
 
 impl Coupled {
     /// The regularised equations of contact with `side`.
@@ -54,8 +55,8 @@ impl Coupled {
         let (inv_m1, inv_m) = (1.0 / bare.m1, self.inverse_effective_mass());
         let pair = |factor: f64| [factor * inv_m1, factor * inv_m];
         let (lambda, restoring) = match self.law() {
-            Law::Damping(lambda) => (lambda, None),
-            Law::Restoring(law) => (0.0, Some(law)),
+            Law::Damping(lambda) => (*lambda, None),
+            Law::Restoring(law) => (0.0, Some(Arc::clone(law))),
         };
         RegularisedContact {
             side,
@@ -103,10 +104,9 @@ impl RegularisedContact {
         -1.0 / self.lambda
     }
 
-    /// The equations where the wall exerts no force although the damper is inside it, or with its force again.
-    #[must_use]
-    pub fn without_force(self, without: bool) -> Self {
-        Self { law: if without { [0.0; 2] } else { [1.0, self.lambda] }, ..self }
+    /// Lets the force of the wall act, or not although the damper is inside it.
+    pub fn set_force(&mut self, acts: bool) {
+        self.law = if acts { [1.0, self.lambda] } else { [0.0; 2] };
     }
 
     /// Whether they are those without force.
@@ -119,7 +119,7 @@ impl RegularisedContact {
     fn factor(&self, q: f64, w: f64) -> f64 {
         match &self.restoring {
             None => self.law[0] + self.law[1] * w,
-            Some(law) => law.stage(0.4 * self.hertz[1] * q.powi(5), w).f,
+            Some(law) => law.push(0.4 * self.hertz[1] * q.powi(5), w),
         }
     }
 
@@ -174,7 +174,7 @@ impl RegularisedContact {
     }
 
     /// The stage of a state.
-    fn stage(&self, law: Restoring, y: &RegularisedState) -> Stage {
+    fn stage(&self, law: &Restoring, y: &RegularisedState) -> Stage {
         law.stage(0.4 * self.hertz[1] * y[0].powi(5), y[1])
     }
 
@@ -251,7 +251,7 @@ impl RegularisedContact {
 
 /// `Σ c_k t^k` by Estrin's scheme: pairs, then pairs of pairs, so that chains of dependent operations are short.
 #[inline(always)]
-fn polynomial(c: &[f64; WAVE], t: f64) -> f64 {
+pub(crate) fn polynomial(c: &[f64; WAVE], t: f64) -> f64 {
     let t2 = t * t;
     let pair = |k: usize| c[k] + c[k + 1] * t;
     (pair(0) + pair(2) * t2) + (pair(4) + pair(6) * t2) * (t2 * t2)

@@ -15,7 +15,7 @@
 //! force is `1 + χ h >= 1 - χ e > 0`: it never pulls.
 
 use super::collision::chi;
-use std::f64::consts::PI;
+use super::remainder::Remainder;
 
 /// The factor `f` of Hertz's force at an indentation `z` that changes at the rate `w`, with its derivatives: those by `z` times `z`, and
 /// `by_own`, that by the number of the law itself, λ or e.
@@ -31,7 +31,7 @@ pub(crate) struct Factor {
 }
 
 /// The law of a restitution.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Restoring {
     pub(crate) chi: f64,
     e: f64,
@@ -39,8 +39,8 @@ pub(crate) struct Restoring {
     chi_by_e: f64,
     /// `ln(1 + χ)`, and `ln(1 - χ e)`, which 1 - χ e itself cannot tell where e is small.
     logs: [f64; 2],
-    /// Coefficients of Chebyshev's interpolant of ln f, from which its computation begins, see [`Self::guess`].
-    series: [f64; NODES],
+    /// h without the equation for it.
+    remainder: Remainder,
 }
 
 /// Where in an undisturbed collision a contact is.
@@ -52,20 +52,18 @@ pub(crate) struct Stage {
     pub v: f64,
     /// `1 + χ h`.
     pub f: f64,
-    /// ln f.
-    log: f64,
     /// G(h).
     pub g: f64,
     /// `2 (1 + χ h) G + h²`, from e² at lift-off to 1 at touch-down: it grows with h, by `2 χ G`.
     pub d: f64,
 }
 
-/// Nodes of the interpolant: below 1e-7 for e >= 0.7, below 1e-3 for e >= 0.2.
-const NODES: usize = 20;
 /// Below this χ the integrals over `[h, 1]` are series.
-const SMALL: f64 = 0.1;
+const SMALL: f64 = 0.25;
 /// Terms of them: the first that is left out is below `SMALL^TERMS`.
-const TERMS: i32 = 17;
+const TERMS: i32 = 28;
+/// How much beyond lift-off, as a share of w², a stage is computed by the polynomials of contacts.
+const BEYOND: f64 = 1e-3;
 
 impl Restoring {
     /// The law of the restitution `e` in (0, 1).
@@ -73,17 +71,28 @@ impl Restoring {
         let chi = chi(e);
         let chi_by_e = chi * e * (1.0 + chi) / ((1.0 - chi * e) - e * e * (1.0 + chi));
         let first = chi.ln_1p();
-        let law = Self { chi, e, chi_by_e, logs: [first, first - chi * (1.0 + e)], series: [0.0; NODES] };
-        let angle = |node: usize| PI * (node as f64 + 0.5) / NODES as f64;
-        let values: [f64; NODES] = std::array::from_fn(|node| {
-            let x = angle(node).cos();
-            law.stage(0.5 * (1.0 - x * x), x).log
-        });
-        let series = std::array::from_fn(|k| {
-            let sum: f64 = (0..NODES).map(|node| values[node] * (k as f64 * angle(node)).cos()).sum();
-            sum * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
-        });
-        Self { series, ..law }
+        let logs = [first, first - chi * (1.0 + e)];
+        let law = Self { chi, e, chi_by_e, logs, remainder: Remainder::NONE };
+        let at = |x: f64| {
+            let Stage { h, g, .. } = law.solved(0.5 * (1.0 - x) * (1.0 + x), x);
+            (h * h + 2.0 * g).sqrt()
+        };
+        Self { remainder: Remainder::new(law.branch(), at), ..law }
+    }
+
+    /// Where h as a function of x has its branch point, beyond touch-down: `D = 0` there. Far away where χ is small.
+    fn branch(&self) -> f64 {
+        if self.chi < SMALL {
+            return f64::INFINITY;
+        }
+        let at = |h: f64| self.with((self.chi * h).ln_1p(), 1.0 + self.chi * h, h);
+        let (mut low, mut high) = (1.0, 4.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if at(middle).d > 0.0 { low = middle } else { high = middle }
+        }
+        let Stage { h, g, .. } = at(low);
+        h / (h * h + 2.0 * g).sqrt()
     }
 
     /// `G = ∫_h^1 s / (1 + χ s) ds = ((1 - h) - ln((1 + χ) / f) / χ) / χ`, from h and ln f.
@@ -107,15 +116,9 @@ impl Restoring {
         self.with(log, f, h)
     }
 
-    /// The stage where ln f is larger by `step`, of which the third power is below rounding.
-    fn near(&self, Stage { log, f, h, .. }: Stage, step: f64) -> Stage {
-        let more = f * (step + 0.5 * step * step);
-        self.with(log + step, f + more, h + more / self.chi)
-    }
-
     fn with(&self, log: f64, f: f64, h: f64) -> Stage {
         let g = self.g(h, log);
-        Stage { h, v: f64::NAN, f, log, g, d: 2.0 * f * g + h * h }
+        Stage { h, v: f64::NAN, f, g, d: 2.0 * f * g + h * h }
     }
 
     /// The stage with this h between -e and 1; v is left open.
@@ -123,18 +126,37 @@ impl Restoring {
         self.at(if h <= -self.e { self.logs[1] } else { (self.chi * h).ln_1p().max(self.logs[1]) })
     }
 
-    /// ln f at `x = ż / √(ż² + 2 S)`, on which alone it depends, by its interpolant; without loss x would be h.
-    fn guess(&self, x: f64) -> f64 {
-        let [mut now, mut before] = [0.0, 0.0];
-        for c in self.series.iter().skip(1).rev() {
-            (now, before) = (c + 2.0 * x * now - before, now);
+    /// The factor of the force at `S` (m²/s²) and the rate of indentation `w` (m/s).
+    #[inline]
+    pub(crate) fn push(&self, s: f64, w: f64) -> f64 {
+        let whole = w * w + 2.0 * s;
+        match self.remainder.is_exact() && s >= -BEYOND * w * w && whole > 0.0 {
+            true => {
+                let x = w / whole.sqrt();
+                1.0 + self.chi * x * self.remainder.at(x)
+            }
+            false => self.solved(s, w).f,
         }
-        self.series[0] + x * now - before
     }
 
-    /// The stage at `S` (m²/s²) and the rate of indentation `w` (m/s): the root of `φ = w² G - h² S` on the side of the sign of w, by Halley's
-    /// iteration on ln f, kept inside by bisection. A step of an integration may end a little beyond lift-off, where `S < 0` and `h < -e`.
+    /// The stage at `S` (m²/s²) and the rate of indentation `w` (m/s). A step of an integration may end a little beyond lift-off, where
+    /// `S < 0` and `h < -e`.
     pub(crate) fn stage(&self, s: f64, w: f64) -> Stage {
+        let whole = w * w + 2.0 * s;
+        if !self.remainder.is_exact() || s < -BEYOND * w * w || whole <= 0.0 {
+            return self.solved(s, w);
+        }
+        let root = whole.sqrt();
+        let x = w / root;
+        let r = self.remainder.at(x);
+        let (h, g) = (x * r, s / whole * (r * r));
+        let f = 1.0 + self.chi * h;
+        Stage { h, v: root / r, f, g, d: 2.0 * f * g + h * h }
+    }
+
+    /// The same from its equation: the root of `φ = w² G - h² S` on the side of the sign of w, by Halley's iteration on ln f, kept inside by
+    /// bisection.
+    fn solved(&self, s: f64, w: f64) -> Stage {
         let Self { chi, e, logs, .. } = *self;
         if w == 0.0 {
             let deepest = self.at(0.0);
@@ -145,7 +167,8 @@ impl Restoring {
         let beyond = if s < 0.0 { 2.0 * chi } else { 0.0 };
         let rises = w <= 0.0;
         let [mut low, mut high] = if rises { [logs[1] - beyond, 0.0] } else { [0.0, logs[0] + beyond] };
-        let mut log = self.guess(w / whole.sqrt()).clamp(low, high);
+        let x = w / whole.sqrt();
+        let mut log = (chi * x * self.remainder.at(x).clamp(e, 1.0)).ln_1p().max(low).min(high);
         let mut stage = self.at(log);
         for _ in 0..100 {
             let Stage { h, f, g, .. } = stage;
@@ -163,12 +186,11 @@ impl Restoring {
             let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
             let step = next - log;
             log = next;
+            stage = self.at(log);
             // The next step would be of the order of the cube of this one.
             if step.abs() <= 1e-6 * log.abs() || value == 0.0 {
-                stage = self.near(stage, step);
                 break;
             }
-            stage = self.at(log);
         }
         // Of both ways to v the one that keeps its digits.
         let v = if stage.h.abs() > 0.5 * e { w / stage.h } else { (s / stage.g).sqrt() };
@@ -198,8 +220,8 @@ impl Restoring {
     }
 
     /// `dh/dχ` at one S and ż: `h f / D ∂G/∂χ`, with `∂G/∂χ = -∫_h^1 s² / (1 + χ s)² ds`.
-    fn h_by_chi(&self, Stage { h, f, log, d, .. }: Stage) -> f64 {
-        let chi = self.chi;
+    fn h_by_chi(&self, Stage { h, f, d, .. }: Stage) -> f64 {
+        let (chi, log) = (self.chi, f.ln());
         // f ∂G/∂χ: the integral itself grows without bound where f vanishes.
         let by_chi = if chi < SMALL {
             let (mut sum, mut sign, mut power) = (0.0, 1.0, h * h * h);
@@ -243,6 +265,25 @@ mod tests {
                     assert!((stage.v / v - 1.0).abs() < allowed / e, "{e} {v} {h}: {stage:?}");
                 }
             }
+        }
+    }
+
+    /// The polynomials beside the equation that they replace, up to where they are not used any more.
+    #[test]
+    fn exact_polynomials_in_place_of_the_equation() {
+        for e in [
+            0.28, 0.3, 0.32, 0.35, 0.4, 0.42, 0.44, 0.46, 0.48, 0.5, 0.6, 0.7, 0.8, 0.855, 0.86, 0.9, 0.95,
+            0.99, 0.999,
+        ] {
+            let law = Restoring::new(e);
+            let mut worst = 0.0_f64;
+            for i in 0..=4000 {
+                let x = -1.0 + f64::from(i) / 2000.0;
+                let s = 0.5 * (1.0 - x) * (1.0 + x);
+                let [a, b] = [law.stage(s, x), law.solved(s, x)];
+                worst = worst.max((a.h - b.h).abs()).max((a.f - b.f).abs()).max((a.v - b.v).abs());
+            }
+            assert!(law.remainder.is_exact() && worst < 1e-14, "{e}: {worst:e}");
         }
     }
 

@@ -39,11 +39,11 @@ struct Series<const K: usize> {
 
 /// Bounds on a piece of a contact.
 #[derive(Clone, Copy)]
-struct Bounds {
+struct Bounds<'a> {
     /// On the sizes of `[q, w, x1, v1]`.
     state: [f64; 4],
     /// Of a restitution that is the same at every speed.
-    stages: Option<Stages>,
+    stages: Option<Stages<'a>>,
 }
 
 impl RegularisedContact {
@@ -73,9 +73,10 @@ impl RegularisedContact {
     }
 
     /// Bounds on a piece; `None` if it is too long for the proof.
-    fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds> {
+    fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
-        let stages = self.restoring.map(|law| Stages::of(law, [from, to].map(|y| self.stage(law, y))));
+        let stages =
+            self.restoring.as_deref().map(|law| Stages::of(law, [from, to].map(|y| self.stage(law, y))));
         let mut bounds = Bounds { state: ends, stages };
         for _ in 0..8 {
             let series = self.series::<2, false>(bounds);
@@ -96,7 +97,7 @@ impl RegularisedContact {
     }
 
     /// The series that follow from bounds on a piece; those of the accelerations to the last order only `IF_RATES`.
-    fn series<const K: usize, const IF_RATES: bool>(&self, bounds: Bounds) -> Series<K> {
+    fn series<const K: usize, const IF_RATES: bool>(&self, bounds: Bounds<'_>) -> Series<K> {
         let [q0, w0, x0, v0] = bounds.state;
         let start = |bound: f64| {
             let mut series = [0.0; K];

@@ -32,7 +32,7 @@ impl Hybrid<'_> {
         let stopped = |now: Knot<4>, phase| Ok(Motion { t: now.t, y: now.y, phase });
         loop {
             if let Phase::InContact(side) = phase {
-                let equations = self.contacts[side as usize];
+                let equations = self.contacts[side as usize].clone();
                 let regularised = equations.regularise(&now.y);
                 match self.contact(equations, &now, regularised, to, observer)? {
                     End::InContact(end) => return stopped(end, phase),
@@ -60,8 +60,8 @@ impl Hybrid<'_> {
                         }
                         continue;
                     }
-                    let equations = self.contacts[side as usize];
-                    let (begin, regularised) = self.enter_contact(equations, touch, to, observer)?;
+                    let equations = self.contacts[side as usize].clone();
+                    let (begin, regularised) = self.enter_contact(equations.clone(), touch, to, observer)?;
                     if begin.t >= to {
                         return stopped(begin, Phase::InContact(side));
                     }

@@ -23,17 +23,17 @@ pub(super) fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f
 
 /// Bounds on the stages of a piece.
 #[derive(Clone, Copy)]
-pub struct Stages {
-    law: Restoring,
+pub struct Stages<'a> {
+    law: &'a Restoring,
     /// The least and the greatest h.
     h: [f64; 2],
     /// The greatest 1/v, s/m.
     slowness: f64,
 }
 
-impl Stages {
+impl<'a> Stages<'a> {
     /// Of two stages.
-    pub fn of(law: Restoring, [a, b]: [Stage; 2]) -> Self {
+    pub fn of(law: &'a Restoring, [a, b]: [Stage; 2]) -> Self {
         let slowness = (1.0 / a.v).max(1.0 / b.v);
         Self { law, h: [a.h.min(b.h), a.h.max(b.h)], slowness }
     }
@@ -78,7 +78,7 @@ pub struct StageSeries<const K: usize> {
 
 impl<const K: usize> StageSeries<K> {
     /// From bounds on the stages.
-    pub fn new(Stages { law, h: [low, high], slowness }: Stages) -> Self {
+    pub fn new(Stages { law, h: [low, high], slowness }: Stages<'_>) -> Self {
         let start = |bound: f64| {
             let mut series = [0.0; K];
             series[0] = bound;

@@ -202,7 +202,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         let ends = [self.knot(piece), self.knot(piece + 1)];
         let mut from = self.of.equations.regularise(&ends[0].y);
         from[0] = ends[0].clock[0];
-        let mut equations = self.of.equations;
+        let mut equations = self.of.equations.clone();
         equations.set_excitation(0.0, ends[0].excitation);
         let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
         let length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));

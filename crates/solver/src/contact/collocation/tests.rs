@@ -40,7 +40,8 @@ fn contact(draw: &mut Draw) -> (Coupled, Side, Knot<4>) {
     let speed = 10f64.powf(draw.between(-1.5, 0.5));
     let (x1, v1, t) = (draw.between(-0.2, 0.2), draw.between(-1.2, 1.2), draw.between(0.0, 1.0));
     let y = [x1, v1, x1 + system.wall(side), v1 + side.sign() * speed];
-    (system, side, Knot { t, excitation: system.excitation(t), y, clock: [1.0, 0.0] })
+    let touch = Knot { t, excitation: system.excitation(t), y, clock: [1.0, 0.0] };
+    (system, side, touch)
 }
 
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
@@ -114,8 +115,15 @@ impl Observer<4> for Compare<'_> {
             let mut find = Find { t: seen.t, y: None };
             let mut work = Work::default();
             let limits = (1e-13, Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]));
-            let _ =
-                integrate(equations, &self.touch, regularised, seen.t + 1e-9, limits, &mut work, &mut find);
+            let _ = integrate(
+                equations.clone(),
+                &self.touch,
+                regularised,
+                seen.t + 1e-9,
+                limits,
+                &mut work,
+                &mut find,
+            );
             let y = find.y.expect("the time is within the contact");
             let speed = (self.touch.y[3] - self.touch.y[1]).abs();
             self.worst = (0..4).map(|i| (y[i] - seen.y[i]).abs() / speed).fold(self.worst, f64::max);

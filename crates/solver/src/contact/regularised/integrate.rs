@@ -36,7 +36,7 @@ pub fn integrate(
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
     equations.set_excitation(y[TIME], from.excitation);
-    equations = equations.without_force(equations.push(y[W]) < 0.0);
+    equations.set_force(equations.push(y[W]) >= 0.0);
     let plan = Plan::new(&equations, &y, rtol);
     let start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
     let mut contact =
@@ -57,7 +57,7 @@ pub fn integrate(
             observer.segment(&piece);
         }
         if parts {
-            contact.equations = contact.equations.without_force(!contact.equations.has_no_force());
+            contact.equations.set_force(contact.equations.has_no_force());
         }
         if is_last || observer.satisfied() {
             return Ok(End::InContact(end));
