@@ -48,9 +48,7 @@ const PAPER: [(Parameter, f64); 4] =
 /// The study is wrong or has no restitutions, nothing can be computed, or the results cannot be written.
 pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, Error> {
     let study = read(&request.study)?;
-    let mut restitutions = restitutions(&study)?;
-    restitutions.sort_by(|a, b| b.total_cmp(a));
-    restitutions.dedup();
+    let restitutions = restitutions(&study)?;
     let job = Job::of_studies(&KIND, request, json!({}), [(study.name(), &study)].into_iter())?;
     job.run(request, watch, |directory| {
         let mut searches = Searches::new(directory, &job.order, watch);
@@ -66,7 +64,7 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
             designs.push((Tuning::Anew, *e, found));
             before = Some(found);
         }
-        let lossless = designs[0].2;
+        let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
         let hedged = searches.tune(&study, "all")?.found().damper.design;
         let of_paper = |parameter: Parameter| PAPER.into_iter().find(|(known, _)| *known == parameter);
@@ -91,11 +89,14 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
     })
 }
 
-/// The restitutions of the objective of a study.
+/// The restitutions of the objective of a study, and 1, from the largest.
 fn restitutions(study: &Study) -> Result<Vec<f64>, Error> {
     let set = study.objective().restitution.filter(|_| study.optimize.is_some());
     let set = set.ok_or_else(|| Error::rule(study)(Rule::NoRestitutions))?;
-    Ok(set.into_iter().map(|e| e.get()).collect())
+    let mut all: Vec<f64> = set.into_iter().map(|e| e.get()).chain([1.0]).collect();
+    all.sort_by(|a, b| b.total_cmp(a));
+    all.dedup();
+    Ok(all)
 }
 
 /// The study for one restitution alone.
