@@ -4,7 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use retune_model::{Bare, Coupled, Parameter, Scene};
 use retune_solver::observe::{PrimaryEnergy, RunningMaximum, Unobserved};
 use retune_solver::{Follower, Method, Motion, Phase, Settings, Tangent, Window, e1_max};
-use retune_testkit::scenes::{ROW3, SSVI, TMD};
+use retune_testkit::scenes::{Numbers, ROW3, SSVI, TMD};
 use std::hint::black_box;
 
 const WHOLE: Window = Window { from: 0.0, to: 100.0 };
@@ -87,5 +87,24 @@ fn derivatives(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, runs, derivatives);
+/// One damper with every kind of wall: Hertz's without loss, with λ, with one restitution at every speed, and rigid.
+fn walls(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("E1max over 100 s, e = 0.7");
+    for (name, numbers) in [("Table 2", SSVI), ("Table 1 row 3", ROW3)] {
+        for (walls, numbers) in [
+            ("no loss", numbers),
+            ("lambda", Numbers { lambda: 0.45, ..numbers }),
+            ("restitution", Numbers { e: 0.7, ..numbers }),
+            ("rigid", Numbers { rigid: Some(0.7), ..numbers }),
+        ] {
+            let scene = numbers.scene();
+            group.bench_function(format!("{name}, {walls}"), |bencher| {
+                bencher.iter(|| e1_max(black_box(&scene), WHOLE, &Settings::default(), f64::INFINITY));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, runs, walls, derivatives);
 criterion_main!(benches);
