@@ -50,6 +50,7 @@ mod loss;
 mod measure;
 mod parameter;
 mod per_variable;
+mod polynomial;
 mod regularised;
 mod scene;
 mod sensitivity;
@@ -68,7 +69,7 @@ pub use forcing::{Excitation, Forcing, Source, Start};
 pub use hertz::{
     hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure, hertz_stiffness,
 };
-pub use loss::Loss;
+pub use loss::{Loss, Restoring};
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};

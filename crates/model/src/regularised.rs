@@ -17,6 +17,7 @@
 pub(crate) mod bounds;
 
 use crate::loss::{Law, Restoring, Stage};
+use crate::polynomial::{TERMS as WAVE, polynomial};
 use crate::{Coupled, Excitation, Side};
 use std::sync::Arc;
 
@@ -43,9 +44,6 @@ pub struct RegularisedContact {
     cos: [f64; WAVE], // Taylor coefficients of P cos ωt and P sin ωt about that time
     sin: [f64; WAVE],
 }
-
-/// Terms of the force's Taylor polynomials.
-pub(crate) const WAVE: usize = 8;
 
 impl Coupled {
     /// The regularised equations of contact with `side`.
@@ -87,6 +85,11 @@ impl RegularisedContact {
     /// Whether contacts lose energy.
     pub fn is_lossy(&self) -> bool {
         self.may_part() || self.restoring.is_some()
+    }
+
+    /// The law of a restitution that is the same at every speed.
+    pub fn restoring(&self) -> Option<&Restoring> {
+        self.restoring.as_deref()
     }
 
     /// Whether the law may pull: the force then ends while the damper is inside the wall.
@@ -247,12 +250,4 @@ impl RegularisedContact {
             - y * (1.0 / 6.0 + x * 3.0 / 32.0 - y * 3.0 / 40.0);
         2.0 * q / v2.sqrt() * series
     }
-}
-
-/// `Σ c_k t^k` by Estrin's scheme: pairs, then pairs of pairs, so that chains of dependent operations are short.
-#[inline(always)]
-pub(crate) fn polynomial(c: &[f64; WAVE], t: f64) -> f64 {
-    let t2 = t * t;
-    let pair = |k: usize| c[k] + c[k + 1] * t;
-    (pair(0) + pair(2) * t2) + (pair(4) + pair(6) * t2) * (t2 * t2)
 }

@@ -4,11 +4,12 @@
 //! `x = ż / √(ż² + 2 S)`, which alone determines the stage, `h = x r` and `v = √(ż² + 2 S) / r`. `r` is analytic in `x` from -1 to 1, with a
 //! branch point of a square root not far beyond touch-down: as a function of the root of the distance from it, r is smooth there, too.
 
-use crate::regularised::{WAVE, polynomial};
+use crate::polynomial::{self as few, polynomial};
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// Terms of a polynomial.
-const TERMS: usize = 4 * WAVE;
+const TERMS: usize = 4 * few::TERMS;
 /// Where one polynomial ends and the next begins.
 const ENDS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
 /// A branch point beyond this is far.
@@ -21,7 +22,7 @@ const ROUNDING: f64 = 1e-15;
 pub(super) struct Remainder {
     /// Coefficients in the variable that runs from -1 to 1 between two ends: x itself below 0, the root of the distance from the branch point
     /// above.
-    pieces: [[[f64; WAVE]; 4]; 4],
+    pieces: [[[f64; few::TERMS]; 4]; 4],
     branch: f64,
     /// Middle and the inverse of half the length of each piece in its variable.
     places: [[f64; 2]; 4],
@@ -31,7 +32,7 @@ pub(super) struct Remainder {
 impl Remainder {
     /// 1 throughout, as without loss.
     pub const NONE: Self = {
-        let mut one = [[0.0; WAVE]; 4];
+        let mut one = [[0.0; few::TERMS]; 4];
         one[0][0] = 1.0;
         Self { pieces: [one; 4], branch: FAR, places: [[0.0; 2]; 4], exact: false }
     };
@@ -54,7 +55,8 @@ impl Remainder {
             let last = chebyshev[TERMS - 2].abs().max(chebyshev[TERMS - 1].abs());
             table.exact = table.exact && last < ROUNDING;
             let powers = powers(&chebyshev);
-            table.pieces[piece] = std::array::from_fn(|i| std::array::from_fn(|k| powers[WAVE * i + k]));
+            table.pieces[piece] =
+                std::array::from_fn(|i| std::array::from_fn(|k| powers[few::TERMS * i + k]));
         }
         table
     }
@@ -83,8 +85,9 @@ impl Remainder {
 
 /// Chebyshev's polynomial of an order at a node; multiples of whole turns are left out exactly.
 fn cosine(order: usize, node: usize) -> f64 {
-    let part = (order * (2 * node + 1)) % (4 * TERMS);
-    (0.5 * PI * part as f64 / TERMS as f64).cos()
+    static COSINES: LazyLock<[f64; 4 * TERMS]> =
+        LazyLock::new(|| std::array::from_fn(|part| (0.5 * PI * part as f64 / TERMS as f64).cos()));
+    COSINES[(order * (2 * node + 1)) % (4 * TERMS)]
 }
 
 /// The coefficients of the powers in a sum of Chebyshev polynomials.

@@ -32,7 +32,7 @@ pub(crate) struct Factor {
 
 /// The law of a restitution.
 #[derive(Clone, Debug)]
-pub(crate) struct Restoring {
+pub struct Restoring {
     pub(crate) chi: f64,
     e: f64,
     /// dχ/de.
@@ -126,9 +126,19 @@ impl Restoring {
         self.at(if h <= -self.e { self.logs[1] } else { (self.chi * h).ln_1p().max(self.logs[1]) })
     }
 
+    /// e.
+    pub fn restitution(&self) -> f64 {
+        self.e
+    }
+
+    /// Whether the factor is computed by polynomials instead of an iteration: of restitutions of 0.3 and above.
+    pub fn is_tabulated(&self) -> bool {
+        self.remainder.is_exact()
+    }
+
     /// The factor of the force at `S` (m²/s²) and the rate of indentation `w` (m/s).
     #[inline]
-    pub(crate) fn push(&self, s: f64, w: f64) -> f64 {
+    pub fn push(&self, s: f64, w: f64) -> f64 {
         let whole = w * w + 2.0 * s;
         match self.remainder.is_exact() && s >= -BEYOND * w * w && whole > 0.0 {
             true => {
@@ -195,6 +205,12 @@ impl Restoring {
         // Of both ways to v the one that keeps its digits.
         let v = if stage.h.abs() > 0.5 * e { w / stage.h } else { (s / stage.g).sqrt() };
         Stage { v, ..stage }
+    }
+
+    /// The factor of the force, and its derivatives by `ln z` and by `w` (s/m).
+    pub fn slopes(&self, s: f64, w: f64) -> [f64; 3] {
+        let Factor { f, by_z, by_w, .. } = self.factor(s, w);
+        [f, by_z, by_w]
     }
 
     /// The factor `1 + χ h` with its derivatives. `h` depends on `u = ż/√S` alone, with `h' = 2 f G^(3/2) / D`.

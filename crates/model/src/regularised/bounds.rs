@@ -23,6 +23,8 @@ pub struct OverContact {
     pub impulse: f64,
     /// `q`, √m.
     depth: f64,
+    /// The least v of a restitution that is the same at every speed, m/s.
+    slowest: f64,
     /// How long it takes, s.
     pub duration: f64,
     /// What the force adds to the acceleration of the structure, m/s².
@@ -148,6 +150,10 @@ impl RegularisedContact {
     /// `w² + (4/5) κ q⁵ = w0² + 2 ∫ g w dt <= w0² + 2 G t ŵ <= ŵ²`; so `q` stays below the greatest depth at
     /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and Hertz's impulse below `w0 + ŵ + G t`. The change of `v1` follows from that. The speeds are
     /// guessed first, and the proof holds if the bounds confirm the guess.
+    ///
+    /// With the same restitution at every speed `w = v h` with `|h| <= 1` and `dv/dt = A h / D`, where `|h|/D <= 1/e` (for `|h| > e` as
+    /// `D >= h²`, else as `D >= e²`), so that `|w|` and v stay within `G t / e` of w0; `S = v² G(h)` is at most `v²/2`, as without loss, and
+    /// the impulse as the force only pushes.
     pub fn over_contact(
         &self,
         touch: &RegularisedState,
@@ -159,6 +165,7 @@ impl RegularisedContact {
         let share = self.hertz[0] / self.hertz[1];
         let depth = |w: f64| q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
         let excitation = self.primary[0] * amplitude;
+        let gain = self.restoring.as_ref().map_or(2.0, |law| 2.0_f64.max(1.0 / law.restitution()));
         let within = |[w, v]: [f64; 2]| {
             let most = [x1 + duration * v, v, depth(w).powi(2) + self.stretch.abs(), w];
             let resisting = excitation + self.primary[1] * v + self.primary[2] * most[0];
@@ -169,7 +176,7 @@ impl RegularisedContact {
         let impulse = |w: f64, apart: f64| w0 + w + apart * duration;
         let follows = |guess: [f64; 2]| {
             let (_, [_, on_primary, _, apart]) = within(guess);
-            let reached = w0 + 2.0 * apart * duration;
+            let reached = w0 + gain * apart * duration;
             [reached, v1 + share * impulse(reached, apart) + on_primary * duration]
         };
         let mut guess = [1.5 * w0, v1 + 3.0 * w0];
@@ -188,14 +195,23 @@ impl RegularisedContact {
         }
         let (most, beside) = within(speeds);
         let impulse = impulse(w, beside[3]);
-        Some(OverContact { most, beside, impulse, depth: depth(w), duration, excitation })
+        let slowest = w0 - gain * beside[3] * duration;
+        if self.restoring.is_some() && slowest <= 0.0 {
+            return None;
+        }
+        Some(OverContact { most, beside, impulse, depth: depth(w), slowest, duration, excitation })
     }
 
     /// Bounds on the first Taylor coefficients in *time* over a whole contact. `q |w|` is at most `max u √(1 - u⁵) = 0.658` times the
-    /// bounds on both.
+    /// bounds on both. The factor f of a loss changes at the rate `χ dh/dt`, `dh/dt = f/v (-κ q³ + 2 A G / D)`, and `2 f G <= D`.
     pub fn growth_over_contact(&self, over: &OverContact) -> Growth<3> {
         let ([x, v, stretch, w], [_, on_primary, _, apart], q) = (over.most, over.beside, over.depth);
-        let (cube, cube_rate) = (q * q * q, 1.5 * 0.658 * q * w);
+        let (mut cube, mut cube_rate) = (q * q * q, 1.5 * 0.658 * q * w);
+        if let Some(law) = &self.restoring {
+            let most = 1.0 + law.chi;
+            let turn = law.chi * (most * self.hertz[1] * cube + apart) / over.slowest;
+            (cube, cube_rate) = (most * cube, most * cube_rate + cube * turn);
+        }
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
         let turning = self.omega * over.excitation + self.primary[1] * a1 + self.primary[2] * v;
         let jerk =

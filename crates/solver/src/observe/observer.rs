@@ -29,7 +29,7 @@ pub trait Path<const N: usize> {
 }
 
 /// Most knots of a [`Path`].
-pub const MOST_KNOTS: usize = 18;
+pub const MOST_KNOTS: usize = 26;
 
 /// An impact with a rigid wall: the state jumps.
 #[derive(Clone, Copy, Debug)]

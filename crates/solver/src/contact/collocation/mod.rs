@@ -10,12 +10,15 @@
 //!
 //! The second line is a Volterra equation for `z` alone. A contact is short beside the linear motion, so a few terms are
 //! exact to rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that
-//! are computed once a program (see `newton`). A contact that is not of this kind is declined, and integrated step by step (see
+//! are computed once a program (see `newton`). With the same restitution at every speed it is close to the undisturbed collision of that law
+//! (see `lossy` and `lossy_rule`). A contact that is not of this kind is declined, and integrated step by step (see
 //! `regularised`).
 //!
 //! Read `undisturbed` (the collision that all are close to), `nodes` and `rule` (integrals of its force on few nodes), `response`
 //! (`A^k b` and `g_k`), `newton` and `solve` (the iteration), then `motion` (the motion that observers see).
 
+pub mod lossy;
+pub mod lossy_rule;
 pub mod motion;
 pub mod newton;
 pub mod nodes;

@@ -17,7 +17,7 @@ use wide::f64x4;
 /// A contact from touch-down to lift-off.
 pub(super) struct Collision<'a, const N: usize, const M: usize> {
     pub(super) of: &'a Collisions,
-    pub(super) rule: &'static Rule<N, M>,
+    pub(super) rule: &'a Rule<N, M>,
     pub(super) flow: &'a Flow<4>,
     pub(super) touch: &'a Knot<4>,
     /// The motion without contact, and the terms of it and of the response to the force that are needed.
@@ -207,7 +207,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
         let length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));
         let derivative = equations.derivative(&from);
-        observer.segment(&Piece {
+        let mut piece = Piece {
             equations: &equations,
             touch_down: ends[0].t,
             from: &from,
@@ -216,7 +216,12 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
             ends,
             bounds: Default::default(),
-        });
+        };
+        // The clock of lossy contacts, which holds their force, holds 1/√z to fewer digits.
+        if self.of.lossy.is_some() {
+            piece.meet_end();
+        }
+        observer.segment(&piece);
     }
 
     fn linearised(&self, loss: bool) -> LinearContact {

@@ -1,13 +1,17 @@
 //! How the force of a contact moves the linear system: `A^k b` and `g_k`, and for how long few terms suffice.
 
+use super::lossy_rule::LossyRule;
 use crate::linear::flow::Flow;
 use crate::motion::linearised::MOMENTS;
 use retune_model::{Coupled, RegularisedContact, Side};
+use std::sync::Arc;
 
 /// The numbers of all contacts with one wall.
 pub struct Collisions {
     /// The regularised equations.
     pub equations: RegularisedContact,
+    /// The rule of contacts with the same restitution at every speed.
+    pub lossy: Option<Arc<LossyRule>>,
     /// The wall.
     pub side: Side,
     /// Its position relative to the structure, m.
@@ -60,6 +64,7 @@ impl Collisions {
         let equations = system.regularised_contact(side);
         let [cos, sin] = system.excitation(0.0);
         let amplitude = cos.hypot(sin);
-        Self { equations, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
+        let lossy = equations.restoring().filter(|law| law.is_tabulated()).map(LossyRule::of);
+        Self { equations, lossy, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
     }
 }

@@ -8,10 +8,8 @@
 //! converges like `2.95^-n`. With the impulse `∫ F dτ`, whose weight is `u⁴ (1 - u)⁴`, in mind, the nodes are Gauss's for
 //! that weight.
 
-use super::newton::Newton;
 use super::nodes::{Nodes, dot, packed, product};
 use super::quadrature::{gauss, legendre};
-use super::undisturbed::{clock, undisturbed_force};
 use crate::motion::linearised::MOMENTS;
 use nalgebra::DMatrix;
 /// Quadrature for forces `f(τ)` on a contact of unit duration, on `N = 4 M` nodes.
@@ -34,20 +32,22 @@ pub struct Rule<const N: usize, const M: usize> {
     pub running: [Nodes<M>; N],
     /// The same at `u = 1`, for each `j`.
     pub whole: Nodes<M>,
-    /// The iteration for depths and duration.
-    pub newton: Newton<N, M>,
     /// Rows that give the two highest Legendre coefficients of `c`, from the force `ζ^(3/2) c` at the nodes.
     pub tails: [Nodes<M>; 2],
 }
 
 impl<const N: usize, const M: usize> Rule<N, M> {
-    /// Computes the rule. It takes milliseconds: a program does it once.
-    pub fn new() -> Self {
-        let force = undisturbed_force();
+    /// Computes the rule for a collision with this force and these depths over the clock, with its integrals. It takes milliseconds: a program
+    /// does it once for a law.
+    pub fn new(
+        clock: impl Fn(f64) -> [f64; 2],
+        force: impl Fn(f64) -> f64,
+        depth: impl Fn(f64) -> f64,
+    ) -> (Self, Integrals<N>) {
         let (nodes, _) = gauss(N, 4);
         let nodes: [f64; N] = std::array::from_fn(|i| nodes[i]);
         let forces = nodes.map(&force);
-        let depths = forces.map(|f| f.powf(2.0 / 3.0));
+        let depths = nodes.map(depth);
         let times = nodes.map(|u| clock(u)[0]);
         let cardinal = |j: usize, u: f64| {
             let factor = |i: usize| if i == j { 1.0 } else { (u - nodes[i]) / (nodes[j] - nodes[i]) };
@@ -79,11 +79,10 @@ impl<const N: usize, const M: usize> Rule<N, M> {
         let moments_of_all = moments.each_ref().map(|moment| moment.each_ref().map(packed));
         let last_of_all = last.each_ref().map(packed);
         let undisturbed = packed(&forces);
-        Self {
+        let rule = Self {
             times: packed(&times),
             rates: packed(&nodes.map(|u| clock(u)[1])),
             depths: packed(&depths),
-            newton: Newton::new(&times, &depths, &moments, &last),
             running: running.each_ref().map(packed),
             whole: packed(&whole),
             undisturbed: moments_of_all.each_ref().map(|moment| product(moment, &undisturbed)),
@@ -92,21 +91,37 @@ impl<const N: usize, const M: usize> Rule<N, M> {
                 .map(|k| packed::<N, M>(&std::array::from_fn(|j| coefficients[(k, j)] / forces[j]))),
             moments: moments_of_all,
             last: last_of_all,
-        }
+        };
+        (rule, Integrals { times, depths, forces, moments, last })
     }
+}
+
+/// What a rule is made of, number by number.
+pub struct Integrals<const N: usize> {
+    pub times: [f64; N],
+    pub depths: [f64; N],
+    pub forces: [f64; N],
+    /// As those of the rule.
+    pub moments: [[[f64; N]; N]; MOMENTS],
+    pub last: [[f64; N]; MOMENTS],
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::nodes::node;
-    use super::super::undisturbed::{DURATION, STIFFNESS};
+    use super::super::undisturbed::{DURATION, STIFFNESS, clock, undisturbed_force};
     use super::*;
+
+    fn rule<const N: usize, const M: usize>() -> Rule<N, M> {
+        let force = undisturbed_force();
+        Rule::new(clock, &force, |u| force(u).powf(2.0 / 3.0)).0
+    }
 
     #[test]
     fn exact_moments_of_the_undisturbed_collision() {
         // It leaves as fast as it came, so the impulse is 2 and ζ(1) = 0: DURATION - Λ ∬ ζ^(3/2) = 0.
         fn check<const N: usize, const M: usize>() {
-            let rule = Rule::<N, M>::new();
+            let rule = rule::<N, M>();
             let impulse = STIFFNESS / DURATION * rule.undisturbed_last[0];
             assert!((impulse - 2.0).abs() < 1e-13, "{N}: {impulse}");
             assert!((DURATION - STIFFNESS * rule.undisturbed_last[1]).abs() < 1e-13, "{N}");
@@ -125,7 +140,7 @@ mod tests {
     fn order_moments_of_a_disturbed_force() {
         // f = ζ^(3/2) / (1.2 + u): against the rule of most nodes.
         fn impulse<const N: usize, const M: usize>() -> f64 {
-            let rule = Rule::<N, M>::new();
+            let rule = rule::<N, M>();
             let (nodes, _) = gauss(N, 4);
             let force: [f64; N] = std::array::from_fn(|i| node(&rule.depths, i).powf(1.5) / (1.2 + nodes[i]));
             dot(&rule.last[0], &packed(&force))

@@ -1,10 +1,11 @@
 //! One contact by collocation: Newton's iteration for the depths at the nodes and the duration, and the error estimate.
 
 use super::motion::Collision;
+use super::newton::Newton;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
-use super::undisturbed::DURATION;
+use super::undisturbed::{DURATION, clock, undisturbed_force};
 use crate::linear::flow::{Expansion, Flow};
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
@@ -14,8 +15,17 @@ use std::sync::LazyLock;
 use wide::f64x4;
 
 /// The rules in use, from few nodes to many.
-static RULES: LazyLock<(Rule<8, 2>, Rule<12, 3>, Rule<16, 4>)> =
-    LazyLock::new(|| (Rule::new(), Rule::new(), Rule::new()));
+static RULES: LazyLock<(Lossless<8, 2>, Lossless<12, 3>, Lossless<16, 4>)> =
+    LazyLock::new(|| (lossless(), lossless(), lossless()));
+
+/// A rule for contacts that lose nothing, and their iteration.
+type Lossless<const N: usize, const M: usize> = (Rule<N, M>, Newton<N, M>);
+
+fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
+    let force = undisturbed_force();
+    let (rule, integrals) = Rule::new(clock, &force, |u| force(u).powf(2.0 / 3.0));
+    (rule, Newton::new(&integrals.times, &integrals.depths, &integrals.moments, &integrals.last))
+}
 
 /// The error of the end of a contact over `tail^1.25`, for each rule, where the tail of its force's expansion is the root of the
 /// sum of squares of the two highest coefficients. Calibrated on contacts drawn at random; the test
@@ -23,7 +33,7 @@ static RULES: LazyLock<(Rule<8, 2>, Rule<12, 3>, Rule<16, 4>)> =
 const TAIL: [f64; 3] = [1.8e-3, 3.5e-4, 2.9e-4];
 
 /// Most iterations: one that has not converged by then converges too slowly.
-const MAX_ITERATIONS: u32 = 16;
+pub(super) const MAX_ITERATIONS: u32 = 16;
 
 impl Collisions {
     /// Computes the contact that begins at `touch` and shows it to the observer, if it is nearly an undisturbed collision
@@ -36,7 +46,11 @@ impl Collisions {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
-        // A collision that loses energy is not close to the undisturbed one without loss.
+        if let Some(of) = &self.lossy {
+            let iterate = |pushed: &mut Pushed<_>| self.iterate_lossy(of, &touch, to, pushed);
+            return self.solve(&of.rule, iterate, flow, &touch, observer);
+        }
+        // A collision that loses energy otherwise is not close to an undisturbed one that is known.
         if self.equations.is_lossy() {
             return None;
         }
@@ -44,26 +58,28 @@ impl Collisions {
         // At these tolerances common contacts pass the error estimate of the rule. Inside a contact Gauss's nodes gain nothing, but the
         // motion there is still accurate enough for the energy of the much heavier structure.
         if self.rtol >= 1e-7
-            && let Some(end) = self.solve(few, flow, &touch, to, observer)
+            && let Some(end) =
+                self.solve(&few.0, |pushed| self.iterate(few, &touch, to, pushed), flow, &touch, observer)
         {
             return Some(end);
         }
         if self.rtol >= 1e-9
-            && let Some(end) = self.solve(some, flow, &touch, to, observer)
+            && let Some(end) =
+                self.solve(&some.0, |pushed| self.iterate(some, &touch, to, pushed), flow, &touch, observer)
         {
             return Some(end);
         }
-        self.solve(many, flow, &touch, to, observer)
+        self.solve(&many.0, |pushed| self.iterate(many, &touch, to, pushed), flow, &touch, observer)
     }
 
     /// The contact by one rule; `None` if it is not of the kind that the rule is for.
     #[inline(always)]
     fn solve<const N: usize, const M: usize>(
         &self,
-        rule: &'static Rule<N, M>,
+        rule: &Rule<N, M>,
+        iterate: impl FnOnce(&mut Pushed<M>) -> Option<Found<M>>,
         flow: &Flow<4>,
         touch: &Knot<4>,
-        to: f64,
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
         let mut pushed = Pushed {
@@ -71,8 +87,7 @@ impl Collisions {
             moments: rule.undisturbed,
             last: rule.undisturbed_last,
         };
-        let Found { depth, terms, depths, duration, iterations } =
-            self.iterate(rule, touch, to, &mut pushed)?;
+        let Found { depth, terms, depths, duration, iterations } = iterate(&mut pushed)?;
         let mut collision = Collision {
             of: self,
             rule,
@@ -101,7 +116,7 @@ impl Collisions {
     #[inline(never)]
     fn iterate<const N: usize, const M: usize>(
         &self,
-        rule: &'static Rule<N, M>,
+        (rule, newton): &Lossless<N, M>,
         touch: &Knot<4>,
         to: f64,
         Pushed { free, moments, last }: &mut Pushed<M>,
@@ -135,23 +150,21 @@ impl Collisions {
             let free_last = approach.at(duration) * duration;
             let residual: Nodes<M> =
                 std::array::from_fn(|i| depths[i] - mean_rate[i] * times[i] + pushed[i] * scale);
-            let (change, lengthening) =
-                rule.newton.change(shares, &residual, scale * pushed_last - free_last);
+            let (change, lengthening) = newton.change(shares, &residual, scale * pushed_last - free_last);
             for i in 0..M {
                 depths[i] -= change[i];
             }
             stretch -= lengthening;
             iterations += 1;
-            let largest = change.iter().fold(f64x4::splat(lengthening).abs(), |size, c| size.max(c.abs()));
-            let size = largest.to_array().into_iter().fold(0.0, f64::max);
+            let size = size(&change, lengthening);
             // Each iteration gains about as much as the last: an error of about `size² / before` is left.
             let settled = size * size <= 0.3 * self.rtol * before;
             if size.is_nan() || size >= 0.5 * before || iterations == MAX_ITERATIONS {
                 return None;
             }
             if iterations == 1 {
-                shares = rule.newton.shares(&change, lengthening);
-                let (bend, longer) = rule.newton.second_order(shares);
+                shares = newton.shares(&change, lengthening);
+                let (bend, longer) = newton.second_order(shares);
                 for i in 0..M {
                     depths[i] += bend[i];
                 }
@@ -175,27 +188,34 @@ impl Collisions {
     }
 }
 
+/// The largest of a change at the nodes and of the duration.
+#[inline(always)]
+pub(super) fn size<const M: usize>(change: &Nodes<M>, lengthening: f64) -> f64 {
+    let largest = change.iter().fold(f64x4::splat(lengthening).abs(), |size, c| size.max(c.abs()));
+    largest.to_array().into_iter().fold(0.0, f64::max)
+}
+
 /// The motion without contact, and the moments of the force at the nodes and at lift-off.
-struct Pushed<const M: usize> {
-    free: Expansion<4, FREE>,
-    moments: [Nodes<M>; MOMENTS],
-    last: [f64; MOMENTS],
+pub(super) struct Pushed<const M: usize> {
+    pub free: Expansion<4, FREE>,
+    pub moments: [Nodes<M>; MOMENTS],
+    pub last: [f64; MOMENTS],
 }
 
 /// What the iteration has found.
-struct Found<const M: usize> {
+pub(super) struct Found<const M: usize> {
     /// Greatest depth of the undisturbed collision, m.
-    depth: f64,
+    pub depth: f64,
     /// Terms of the response to the force that are needed.
-    terms: usize,
+    pub terms: usize,
     /// At the nodes, over `depth`.
-    depths: Nodes<M>,
+    pub depths: Nodes<M>,
     /// s
-    duration: f64,
-    iterations: u32,
+    pub duration: f64,
+    pub iterations: u32,
 }
 
 /// Terms of the motion without contact that are needed: their error is about the square of the response's.
-fn free_terms(terms: usize) -> usize {
+pub(super) fn free_terms(terms: usize) -> usize {
     terms + 4
 }

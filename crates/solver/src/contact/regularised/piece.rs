@@ -95,6 +95,13 @@ impl Piece<'_> {
         }
     }
 
+    /// Corrects the length by one step of Newton's iteration: the piece ends at its time, or where it is to leave the wall.
+    pub fn meet_end(&mut self) {
+        let y = self.advance(self.length);
+        let [t, q] = [self.ends[1].t - self.touch_down, self.ends[1].clock[0]];
+        self.length -= if q > 0.0 { (y[TIME] - t) / y[Q] } else { 2.0 * y[Q] / y[W] };
+    }
+
     fn advance(&self, theta: f64) -> RegularisedState {
         let h = theta / f64::from(self.steps);
         let mut y = step(self.equations, self.from, self.slope, h).y;
