@@ -75,7 +75,7 @@ pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
 pub use regularised::bounds::{Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
-pub use scene::{Primary, Scene, den_hartog, warburton};
+pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};
 pub use steady::Steady;
 pub use unit::Unit;
 pub use value::{Bounce, Finite, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution};
