@@ -66,7 +66,8 @@ pub use damper::Damper;
 pub use design::{Design, NoDesign};
 pub use forcing::{Excitation, Forcing, Source, Start};
 pub use hertz::{
-    hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure, hertz_stiffness,
+    HERTZ_YIELD, hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure,
+    hertz_stiffness,
 };
 pub use loss::Loss;
 pub use measure::{Measure, PerMeasure};
