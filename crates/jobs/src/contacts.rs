@@ -1,12 +1,14 @@
 //! What the contacts of a run are like, and where its energy goes: in words, and as data.
 
-use retune_model::{Coupled, Scene, Side};
+use retune_model::{Coupled, HERTZ_YIELD, Scene, Side, Surfaces};
 use retune_solver::{Collisions, Losses, Settings, SolverError, Window, collisions};
 use retune_study::{counted, rounded};
 use serde::Serialize;
 
 /// The share of R above which the radius of the contact area is no longer small, as Hertz's theory takes it to be.
 const WIDE: f64 = 1.0 / 3.0;
+/// A contact is quasi-static, as Hertz's theory takes it to be, where a wave passes the damper and comes back so many times while it lasts.
+const WAVES: f64 = 5.0;
 
 /// The contacts with both walls in a run; none with a wall that is not touched.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -26,9 +28,31 @@ struct Wall {
     /// Duration of the shortest and of the longest contact, null if none has begun and ended.
     shortest: f64,
     longest: f64,
-    /// R, m; none of a rigid wall.
+    /// None of a rigid wall.
     #[serde(skip)]
-    radius: Option<f64>,
+    known: Option<Known>,
+}
+
+/// What Hertz's law is judged by. SI units.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    /// R.
+    radius: f64,
+    /// The yield strength, where it is given.
+    strength: Option<f64>,
+    /// The time of a wave through the damper and back, where its density is given.
+    wave: Option<f64>,
+}
+
+impl Known {
+    fn of(surfaces: &Surfaces, side: Side, mass: f64) -> Self {
+        let strength = surfaces.strength.map(f64::from);
+        Self {
+            radius: surfaces.radius.get(),
+            strength,
+            wave: surfaces.waves(mass).map(|waves| waves[side as usize]),
+        }
+    }
 }
 
 impl Contacts {
@@ -39,6 +63,7 @@ impl Contacts {
     pub fn of(scene: &Scene, window: Window, settings: &Settings) -> Result<Option<Self>, SolverError> {
         let Some(damper) = scene.damper.filter(|damper| damper.contact.is_some()) else { return Ok(None) };
         let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
+        let surfaces = damper.contact.and_then(|contact| contact.surfaces().copied());
         let found = collisions(scene, window, settings)?;
         let wall = |side: Side| {
             let Collisions { count, speed, indentation, shortest, longest } = found[side as usize];
@@ -50,10 +75,7 @@ impl Contacts {
                 contact_pressure: system.wall_pressure(side, indentation),
                 shortest,
                 longest,
-                radius: damper
-                    .contact
-                    .and_then(|contact| contact.surfaces().copied())
-                    .map(|of| of.radius.get()),
+                known: surfaces.as_ref().map(|surfaces| Known::of(surfaces, side, damper.mass.get())),
             })
         };
         let [structure, obstacle] = Side::BOTH.map(wall);
@@ -72,22 +94,49 @@ impl Contacts {
 
     /// Where the law of the contact is used outside of what it holds for.
     pub fn warnings(&self) -> Vec<String> {
-        let wide = self.walls().filter_map(|(name, wall)| {
-            let radius = wall.radius.filter(|radius| wall.contact_radius > WIDE * radius)?;
-            Some((name, wall, radius))
-        });
-        wide.map(|(name, wall, radius)| {
-            format!(
-                "on the {name} the contact area has a radius of {}, more than a third of R = {}: Hertz's law holds for small areas",
-                millimetres(wall.contact_radius),
-                millimetres(radius)
-            )
-        })
-        .collect()
+        let of = |(name, wall): (&str, &Wall)| {
+            let all = [wall.wide(), wall.yields(), wall.fast()];
+            all.into_iter().flatten().map(|words| format!("on the {name} {words}")).collect::<Vec<_>>()
+        };
+        self.walls().flat_map(of).collect()
     }
 }
 
 impl Wall {
+    /// That its area is not small.
+    fn wide(&self) -> Option<String> {
+        let radius =
+            self.known.map(|known| known.radius).filter(|radius| self.contact_radius > WIDE * radius)?;
+        Some(format!(
+            "the contact area has a radius of {}, more than a third of R = {}: Hertz's law holds for small areas",
+            millimetres(self.contact_radius),
+            millimetres(radius)
+        ))
+    }
+
+    /// That it is not elastic.
+    fn yields(&self) -> Option<String> {
+        let strength =
+            self.known?.strength.filter(|strength| self.contact_pressure > HERTZ_YIELD * strength)?;
+        Some(format!(
+            "the pressure of {} is {} times the yield strength of {}: at {HERTZ_YIELD} times that, yield begins below the \
+             surface (Tresca and von Mises, nu = 0.3): Hertz's law holds for elastic contacts",
+            pressure(self.contact_pressure),
+            rounded(self.contact_pressure / strength, 3),
+            pressure(strength)
+        ))
+    }
+
+    /// That it is not quasi-static.
+    fn fast(&self) -> Option<String> {
+        let wave = self.known?.wave.filter(|wave| self.shortest < WAVES * wave)?;
+        Some(format!(
+            "the shortest contact lasts {}, less than {WAVES} times the {} of a wave through the damper and back: Hertz's law holds for quasi-static contacts",
+            milliseconds(self.shortest),
+            milliseconds(wave)
+        ))
+    }
+
     fn words(&self) -> String {
         let Self { impacts, impact_speed, indentation, contact_radius, contact_pressure, .. } = *self;
         let lasting = if self.longest > 0.0 {
@@ -101,7 +150,7 @@ impl Wall {
             String::new()
         };
         let impacts = format!("{} at up to {} m/s", counted(impacts, "impact"), rounded(impact_speed, 3));
-        if self.radius.is_none() {
+        if self.known.is_none() {
             return format!("{impacts} on a rigid wall");
         }
         format!(
@@ -115,6 +164,10 @@ impl Wall {
 
 fn millimetres(length: f64) -> String {
     format!("{} mm", rounded(1e3 * length, 3))
+}
+
+fn milliseconds(time: f64) -> String {
+    format!("{} ms", rounded(1e3 * time, 3))
 }
 
 fn pressure(value: f64) -> String {

@@ -1,4 +1,4 @@
-//! `design`: from a structure and what its damper may be to an answer. First the closed form: no damper, the formula of a textbook, the best
+//! `design`: from a structure and what its damper may be to an answer. First the closed form: no damper, the formulas that fit the goal, the best
 //! TMD. Then an SSVI NES, from good designs that are known. All are compared by every quantity over the band, and the better one is certified.
 
 mod answer;

@@ -45,7 +45,9 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
     let [hertz, rpm] = hertz_and_rpm(summary.omega());
     let transmissibility = summary.transmissibility();
     let powers = Powers::new(losses, window.to - window.from);
-    Ok(Simulation { summary, hertz, rpm, transmissibility, contacts, powers, transient: study.transient() })
+    let warnings = contacts.iter().flat_map(Contacts::warnings).collect();
+    let transient = study.transient();
+    Ok(Simulation { summary, hertz, rpm, transmissibility, contacts, powers, warnings, transient })
 }
 
 /// One run as the command line shows it: its summary, and the same in the units and the ratio that engineers ask for.
@@ -66,6 +68,9 @@ pub struct Simulation {
     /// Where the energy goes, W.
     #[serde(rename = "power_lost")]
     powers: Powers,
+    /// Where the law of the contact is used outside of what it holds for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<String>,
     /// What is to be known of the transient in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     transient: Option<String>,
@@ -78,7 +83,7 @@ impl std::fmt::Display for Simulation {
             write!(f, "\ncontacts    {words}")?;
         }
         self.powers.words().iter().try_for_each(|words| write!(f, "\nlosses      {words}"))?;
-        for words in self.contacts.iter().flat_map(Contacts::warnings) {
+        for words in &self.warnings {
             write!(f, "\nwarning     {words}")?;
         }
         self.transient.iter().try_for_each(|words| write!(f, "\nnote        {words}"))

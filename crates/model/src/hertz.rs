@@ -45,6 +45,12 @@ pub fn hertz_pressure(stiffness: f64, radius: f64, z: f64) -> f64 {
     if z > 0.0 { 1.5 / PI * stiffness * z.sqrt() / radius } else { 0.0 }
 }
 
+/// Pressure in the middle of a contact area, as a multiple of the yield strength, from which on the softer body yields, first below the surface.
+///
+/// K. L. Johnson, Contact Mechanics, 1985, section 6.1, for a Poisson's ratio of 0.3. On the axis two principal stresses are equal, so the
+/// criteria of Tresca and von Mises agree.
+pub const HERTZ_YIELD: f64 = 1.6;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,6 +74,24 @@ mod tests {
         let carried = 2.0 / 3.0 * PI * radius * z * pressure;
         assert!((carried / hertz_force(k, z) - 1.0).abs() < 1e-14);
         assert_eq!(hertz_pressure(k, radius, -z), 0.0);
+    }
+
+    /// The stresses on the axis at the depth ζ a below the middle of the area, as shares of p0 (Johnson, equation 3.45): their largest
+    /// difference is the yield strength.
+    #[test]
+    fn exact_yield_begins_where_the_stresses_below_the_surface_differ_most() {
+        let difference = |depth: f64| {
+            let axial = 1.0 / (1.0 + depth * depth);
+            let radial = (1.0 + 0.3) * (1.0 - depth * (1.0 / depth).atan()) - 0.5 * axial;
+            axial - radial
+        };
+        let (most, depth) = (1..4000)
+            .map(|i| 5e-4 * f64::from(i))
+            .map(|depth| (difference(depth), depth))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("depths");
+        assert!((depth - 0.48).abs() < 0.005, "Johnson: z = 0.48 a; {depth}");
+        assert!((1.0 / most / HERTZ_YIELD - 1.0).abs() < 0.01, "{}", 1.0 / most);
     }
 
     #[test]

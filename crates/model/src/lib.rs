@@ -67,7 +67,8 @@ pub use damper::Damper;
 pub use design::{Design, NoDesign};
 pub use forcing::{Excitation, Forcing, Source, Start};
 pub use hertz::{
-    hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure, hertz_stiffness,
+    HERTZ_YIELD, hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure,
+    hertz_stiffness,
 };
 pub use loss::{Loss, Restoring};
 pub use measure::{Measure, PerMeasure};
@@ -76,7 +77,7 @@ pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
 pub use regularised::bounds::{Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
-pub use scene::{Primary, Scene, den_hartog, warburton};
+pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};
 pub use steady::Steady;
 pub use unit::Unit;
 pub use value::{Bounce, Finite, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution};

@@ -3,7 +3,9 @@
 
 pub mod place;
 
-use crate::unit::{DAMPING, FORCE, FREQUENCY, IMBALANCE, LENGTH, LOSS, MASS, MODULUS, NONE, STIFFNESS};
+use crate::unit::{
+    DAMPING, DENSITY, FORCE, FREQUENCY, IMBALANCE, LENGTH, LOSS, MASS, MODULUS, NONE, STIFFNESS,
+};
 use crate::{Unit, unit};
 use serde::{Deserialize, Serialize};
 
@@ -36,11 +38,13 @@ pub enum Parameter {
     Nu4,
     Lambda,
     Restitution,
+    Strength,
+    Density,
 }
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 26] = [
         Self::K2,
         Self::C2,
         Self::D,
@@ -65,6 +69,8 @@ impl Parameter {
         Self::Nu4,
         Self::Lambda,
         Self::Restitution,
+        Self::Strength,
+        Self::Density,
     ];
     /// Those that a search may vary, the first of [`Self::ALL`].
     pub const VARIED: [Self; 6] = [Self::K2, Self::C2, Self::D, Self::C, Self::M2, Self::R];
@@ -116,6 +122,10 @@ impl Parameter {
             Self::Nu4 => ("nu4", "Poisson's ratio of the damper's surface that meets the obstacle", NONE),
             Self::Lambda => ("lambda", "damping factor of the contact force", LOSS),
             Self::Restitution => ("restitution", "restitution of a contact at every speed", NONE),
+            Self::Strength => {
+                ("strength", "yield strength of the weakest of the colliding surfaces", MODULUS)
+            }
+            Self::Density => ("density", "density of the damper", DENSITY),
         }
     }
 

@@ -56,6 +56,27 @@ pub fn den_hartog(primary: &Primary, mass: f64) -> [f64; 2] {
     [mass * frequency * frequency, 2.0 * mass * frequency * zeta]
 }
 
+/// The exact optimum that Den Hartog's formulas come near to: the spring and dashpot with the least largest displacement, over all
+/// frequencies, of an undamped structure under a harmonic force. `[k2, c2]`, N/m and N·s/m, of a damper of `mass` (kg). With `μ = m2/m1`,
+/// `r = √(4 + 3μ)` and `ω0 = √(k1/m1)`
+///
+/// `ω2/ω0 = 2/(1 + μ) √(2 (16 + 23μ + 9μ² + 2 (2 + μ) r) / (3 (64 + 80μ + 27μ²)))`, `ζ = √((8 + 9μ - 4r) / (1 + μ)) / 4`,
+///
+/// `k2 = m2 ω2²` and `c2 = 2 m2 ω2 ζ`. For light dampers `8 - 4r` cancels: `8 + 9μ - 4r = 3μ (32 + 27μ) / (8 + 9μ + 4r)`.
+///
+/// O. Nishihara and T. Asami, Closed-form solutions to the exact optimizations of dynamic vibration absorbers (minimizations of the maximum
+/// amplitude magnification factors), J. Vib. Acoust. 124 (2002) 576: the compliance.
+pub fn nishihara_asami(primary: &Primary, mass: f64) -> [f64; 2] {
+    let ratio = mass / primary.mass.get();
+    let root = (4.0 + 3.0 * ratio).sqrt();
+    let tuning = 2.0 * (16.0 + 23.0 * ratio + 9.0 * ratio * ratio + 2.0 * (2.0 + ratio) * root)
+        / (3.0 * (64.0 + 80.0 * ratio + 27.0 * ratio * ratio));
+    let frequency = primary.natural_frequency() * 2.0 / (1.0 + ratio) * tuning.sqrt();
+    let squared = 3.0 * ratio * (32.0 + 27.0 * ratio) / (8.0 + 9.0 * ratio + 4.0 * root) / (1.0 + ratio);
+    let zeta = 0.25 * squared.sqrt();
+    [mass * frequency * frequency, 2.0 * mass * frequency * zeta]
+}
+
 /// Warburton's optimum for the acceleration of an undamped structure under a harmonic force, or for its displacement under a rotating
 /// imbalance: `[k2, c2]`, N/m and N·s/m, of a damper of `mass` (kg). With `μ = m2/m1` and `ω2 = √(k1/m1) / √(1 + μ)` they are `k2 = m2 ω2²`
 /// and `c2 = 2 m2 ω2 √(3μ / (8 (1 + μ/2)))`.

@@ -38,6 +38,9 @@ pub(crate) const IMBALANCE: &[Unit] = &[
 ];
 /// Units of a Young's modulus, N/m².
 pub const MODULUS: &[Unit] = &[("N/m²", 1.0), ("Pa", 1.0), ("MPa", 1e6), ("GPa", 1e9)];
+/// Units of a density, kg/m³.
+pub(crate) const DENSITY: &[Unit] =
+    &[("kg/m³", 1.0), ("kg/m3", 1.0), ("g/cm³", 1e3), ("g/cm3", 1e3), ("t/m³", 1e3)];
 /// Units of the damping factor of a contact, s/m.
 pub(crate) const LOSS: &[Unit] = &[("s/m", 1.0), ("s/mm", 1e3)];
 /// Units of time, s.

@@ -56,6 +56,8 @@ struct InFile {
     #[serde(rename = "E4")] young_4: Option<Positive>,
     #[serde(rename = "nu4")] poisson_4: Option<PoissonRatio>,
     loss: Option<Loss>,
+    strength: Option<Positive>,
+    density: Option<Positive>,
     rigid: Option<Rigid>,
 }
 
@@ -65,7 +67,7 @@ enum Refused {
     #[error("missing field `{0}`: give all of R, q, E1, nu1 to E4, nu4 (Hertz's surfaces), or `rigid` alone")]
     Missing(&'static str),
     #[error(
-        "two laws: `rigid` and `{0}`: give `rigid` alone, or Hertz's surfaces (R, q, E1, nu1 to E4, nu4, loss) without it"
+        "two laws: `rigid` and `{0}`: give `rigid` alone, or Hertz's surfaces (R, q, E1, nu1 to E4, nu4, loss, strength, density) without it"
     )]
     Both(&'static str),
 }
@@ -82,7 +84,7 @@ impl TryFrom<InFile> for Contact {
                 ("E2", file.young_2.is_some()), ("nu2", file.poisson_2.is_some()),
                 ("E3", file.young_3.is_some()), ("nu3", file.poisson_3.is_some()),
                 ("E4", file.young_4.is_some()), ("nu4", file.poisson_4.is_some()),
-                ("loss", file.loss.is_some()),
+                ("loss", file.loss.is_some()), ("strength", file.strength.is_some()), ("density", file.density.is_some()),
             ];
             return match given.into_iter().find(|(_, given)| *given) {
                 Some((name, _)) => Err(Refused::Both(name)),
@@ -101,6 +103,8 @@ impl TryFrom<InFile> for Contact {
             young_4: file.young_4.ok_or(Refused::Missing("E4"))?,
             poisson_4: file.poisson_4.ok_or(Refused::Missing("nu4"))?,
             loss: file.loss.unwrap_or_default(),
+            strength: file.strength,
+            density: file.density,
         }))
     }
 }
@@ -169,6 +173,14 @@ pub struct Surfaces {
     /// What a contact loses; left out, contacts lose nothing.
     #[serde(default, skip_serializing_if = "Loss::is_none")]
     pub loss: Loss,
+    /// strength, yield strength of the weakest of the colliding surfaces, N/m². No motion depends on it: an answer warns of contacts whose
+    /// pressure is above 1.6 times it, where a surface begins to yield.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength: Option<Positive>,
+    /// density, density of the damper, kg/m³. No motion depends on it: an answer warns of contacts shorter than five times what a wave takes
+    /// through the damper and back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<Positive>,
 }
 
 impl Surfaces {
@@ -193,6 +205,8 @@ impl Surfaces {
             young_4: young(2.05e7)?,
             poisson_4: soft,
             loss: Loss::default(),
+            strength: None,
+            density: None,
         })
     }
 
@@ -211,18 +225,43 @@ impl Surfaces {
             pair(self.young_3, self.poisson_3, self.young_4, self.poisson_4),
         ]
     }
+
+    /// The times that a longitudinal wave takes through a damper of `mass` (kg) and back, s, by the contacts with the primary structure and
+    /// with the obstacle: `2 L / c` with the size `L = (m2/ρ)^(1/3)` and the speed `c = √(E/ρ)` of a wave in a rod, E that of the softer of
+    /// the two surfaces that meet. None where no density is given.
+    pub fn waves(&self, mass: f64) -> Option<[f64; 2]> {
+        let density = self.density?.get();
+        let softer =
+            [(self.young_1, self.young_2), (self.young_3, self.young_4)].map(|(a, b)| a.get().min(b.get()));
+        Some(softer.map(|young| 2.0 * (mass / density).cbrt() / (young / density).sqrt()))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// A cube of 8 kg of 1000 kg/m³ is 0.2 m wide; where E = 10 MPa is softer, its waves go at 100 m/s.
+    #[test]
+    fn exact_a_wave_passes_a_cube_and_comes_back() {
+        let number = |value| Positive::new(value).expect("above 0");
+        let mut surfaces = Surfaces::for_mass(number(60.0)).expect("surfaces");
+        (surfaces.young_2, surfaces.young_3) = (number(1e7), number(4e7));
+        surfaces.young_4 = number(1e8);
+        assert_eq!(surfaces.waves(8.0), None);
+        surfaces.density = Some(number(1000.0));
+        for (time, expected) in surfaces.waves(8.0).expect("times").into_iter().zip([4e-3, 2e-3]) {
+            assert!((time / expected - 1.0).abs() < 1e-14, "{time} {expected}");
+        }
+    }
+
     const HERTZ: &str = r#"{"R":2.0,"q":0.318,"E1":210000000000.0,"nu1":0.3,"E2":22100000.0,"nu2":0.4,"E3":210000000000.0,"nu3":0.3,"E4":20500000.0,"nu4":0.4}"#;
 
     #[test]
     fn contract_the_walls_have_one_of_two_laws() {
         let read = |text: &str| serde_json::from_str::<Contact>(text).map_err(|error| error.to_string());
-        for text in [HERTZ, r#"{"rigid":{"restitution":0.7}}"#] {
+        let known = HERTZ.replace('}', r#","strength":20000000.0,"density":1200.0}"#);
+        for text in [HERTZ, &known, r#"{"rigid":{"restitution":0.7}}"#] {
             let contact = read(text).expect("a law");
             assert_eq!(serde_json::to_string(&contact).expect("JSON"), text);
             assert_eq!(contact.rigid().is_some(), contact.surfaces().is_none());
@@ -239,6 +278,13 @@ mod tests {
             (r#"{"rigid":{"restitution":0.7},"R":2}"#, "two laws: `rigid` and `R`: give `rigid` alone, or"),
             (r#"{"rigid":{"restitution":0.7},"loss":{"lambda":0.1}}"#, "two laws: `rigid` and `loss`"),
             (&HERTZ.replace('{', r#"{"rigid":{"restitution":1},"#), "two laws: `rigid` and `R`"),
+            (r#"{"rigid":{"restitution":0.7},"strength":1e7}"#, "two laws: `rigid` and `strength`"),
+            (r#"{"rigid":{"restitution":0.7},"density":1e3}"#, "two laws: `rigid` and `density`"),
+            (&HERTZ.replace('{', r#"{"strength":0,"#), "0 is not allowed here: give a finite number above 0"),
+            (
+                &HERTZ.replace('{', r#"{"density":-1,"#),
+                "-1 is not allowed here: give a finite number above 0",
+            ),
             (r#"{"rigid":{"restitution":1.1}}"#, "1.1 is not allowed here: give a number from 0 to 1"),
             (r#"{"rigid":{"restitution":-0.1}}"#, "-0.1 is not allowed here: give a number from 0 to 1"),
             (r#"{"rigid":{}}"#, "missing field `restitution`"),

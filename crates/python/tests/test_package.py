@@ -13,7 +13,7 @@ import pytest
 from conftest import ROOT, STUDIES
 
 import retune as rt
-from retune import _scene
+from retune import _run, _scene
 
 
 def test_contract_the_wheel_is_for_every_later_python_and_small() -> None:
@@ -39,7 +39,8 @@ def test_contract_everything_has_a_docstring_and_every_number_a_unit() -> None:
 
 def test_contract_the_default_contact_is_the_studies() -> None:
     study = json.loads((STUDIES / "ssvi.json").read_text())
-    assert vars(rt.Contact()) == {**study["scene"]["damper"]["contact"], "loss": None, "rigid": None}
+    none = dict.fromkeys(("loss", "strength", "density", "rigid"))
+    assert vars(rt.Contact()) == {**study["scene"]["damper"]["contact"], **none}
 
 
 def test_contract_contacts_that_lose_energy(ssvi: rt.Problem) -> None:
@@ -51,6 +52,26 @@ def test_contract_contacts_that_lose_energy(ssvi: rt.Problem) -> None:
     assert own.simulate().maxima["E1max"] == lossy.simulate().maxima["E1max"]
     with pytest.raises(rt.StudyError, match="restitution"):
         rt.Contact(loss={"restitution": 1.2, "at": 1})
+
+
+def test_contract_a_strength_and_a_density_change_no_motion() -> None:
+    structure = rt.Structure(m1=1000, c1=452, k1=39500)
+
+    def run(contact: rt.Contact) -> rt.Run:
+        damper = rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36, contact=contact)
+        return rt.Problem(structure, damper, P=800, omega=6.28, window=(50, 100)).simulate()
+
+    plain, known = run(rt.Contact()), run(rt.Contact(strength=1e5, density=1200))
+    for name in _run.SHOWN:
+        assert known.maxima[name] == plain.maxima[name], name
+    assert "warnings" not in plain.maxima
+    assert ["yield strength of 100 kPa" in words for words in known.maxima["warnings"]] == [True, False] * 2
+    with pytest.raises(rt.StudyError, match="strength: -1 is not allowed here: give a finite number above 0"):
+        rt.Contact(strength=-1)
+    with pytest.raises(rt.StudyError, match="density: 0 is not allowed here: give a finite number above 0"):
+        rt.Contact(density=0)
+    with pytest.raises(rt.StudyError, match="two laws: `rigid` and `density`"):
+        rt.Contact(rigid=0.7, density=1200)
 
 
 def test_contract_rigid_walls() -> None:

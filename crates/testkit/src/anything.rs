@@ -80,6 +80,8 @@ impl Anything {
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
                 loss: loss(lambda),
+                strength: None,
+                density: None,
             })),
         };
         let scene = Scene {

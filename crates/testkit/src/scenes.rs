@@ -124,6 +124,8 @@ impl Numbers {
                 young_4,
                 poisson_4: rubber,
                 loss: self.loss(),
+                strength: None,
+                density: None,
             }))),
         }
     }

@@ -1,5 +1,6 @@
 //! The answer of `design` in words, on screen and on its page. Lines on screen fit 80 columns.
 
+use super::Formula;
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::question::{broken_at_spaces, limit};
@@ -132,23 +133,27 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         format!("Build the {name}: {}.", parameters(chosen)),
         format!("  Alone, on a rigid support, it has {}. {reduction}{why}.", tuning(chosen, requirements)),
     ];
-    let (formula, value) = &compared.formula;
     if chosen.what == What::Tmd {
-        let more = value.goal / chosen.goal - 1.0;
-        let beside = match value.feasible {
-            false => ", but breaks a limit".to_owned(),
-            true if more > 5e-4 => format!(", {} more", percent(more)),
-            true => String::new(),
-        };
-        lines.push(format!(
-            "  {} (k2 = {}, c2 = {}) gives {}{beside}.",
-            formula.name,
-            sized(formula.k2, "N/m"),
-            sized(formula.c2, "N·s/m"),
-            sized(value.goal, goal.unit()),
-        ));
+        lines.extend(compared.formulas.iter().map(|formula| beside(formula, chosen.goal, goal)));
     }
     lines
+}
+
+/// What a formula gives, beside the best TMD.
+fn beside((formula, tmd): &(Formula, Candidate), best: f64, goal: Measure) -> String {
+    let more = tmd.goal / best - 1.0;
+    let beside = match tmd.feasible {
+        false => ", but breaks a limit".to_owned(),
+        true if more > 5e-4 => format!(", {} more", percent(more)),
+        true => String::new(),
+    };
+    format!(
+        "  {} (k2 = {}, c2 = {}) gives {}{beside}.",
+        formula.name,
+        sized(formula.k2, "N/m"),
+        sized(formula.c2, "N·s/m"),
+        sized(tmd.goal, goal.unit()),
+    )
 }
 
 /// That nothing keeps the limits, and what would.

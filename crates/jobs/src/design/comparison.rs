@@ -31,8 +31,8 @@ pub struct Comparison {
     pub goal: Measure,
     /// The structure alone.
     pub none: Candidate,
-    /// The formula of a textbook, and what its TMD has of the goal.
-    pub formula: (Formula, Candidate),
+    /// The formulas that fit the goal, and what the TMD of each has of it.
+    pub formulas: Vec<(Formula, Candidate)>,
     /// The best TMD.
     pub tmd: Candidate,
     /// The best SSVI NES that was found that strikes its walls.
@@ -113,6 +113,13 @@ fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
     Ok(Candidate::new(What::Tmd, &study)?)
 }
 
+/// The TMD of a formula.
+fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(Formula, Candidate), Error> {
+    let mut tmd = tmd_of(study, [formula.k2, formula.c2])?;
+    tmd.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
+    Ok((formula, tmd))
+}
+
 /// The SSVI NES that the ends of a search are, the best first: those that can be run and strike. One that strikes nothing is a TMD.
 fn striking(study: &Study, found: &ssvi::Found) -> Result<Vec<Candidate>, Error> {
     let mut all: Vec<Candidate> = Vec::new();
@@ -169,11 +176,10 @@ pub(super) fn compare(
     }
     let bare = Study { scene: Scene { damper: None, ..tmd_study.scene }, ..tmd_study.clone() };
     let none = Candidate::new(What::None, &bare)?;
-    let formula = Formula::of(requirements, &tmd_study.scene);
-    let tmd = tmd_of(tmd_study, tmd::best(tmd_study, formula)?)?;
-    let mut textbook = tmd_of(tmd_study, [formula.k2, formula.c2])?;
-    textbook.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
-    let formula = (formula, textbook);
+    let formulas = Formula::all(requirements, &tmd_study.scene.primary);
+    let tmd = tmd_of(tmd_study, tmd::best(tmd_study, &formulas)?)?;
+    let formulas =
+        formulas.into_iter().map(|formula| by(requirements, tmd_study, formula)).collect::<Result<_, _>>()?;
     let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
     watch.result(&format!(
         "\nTMD, exact: {} {}{kept}, {}",
@@ -211,7 +217,7 @@ pub(super) fn compare(
     Ok(Comparison {
         goal,
         none,
-        formula,
+        formulas,
         tmd,
         ssvi,
         tried,
@@ -253,8 +259,8 @@ fn costs(
     let cost = |wish: Wish| {
         let free = requirements.without(wish);
         let study = free.tmd()?;
-        let formula = Formula::of(&free, &study.scene);
-        let free_tmd = tmd_of(&study, tmd::best(&study, formula)?)?;
+        let formulas = Formula::all(&free, &study.scene.primary);
+        let free_tmd = tmd_of(&study, tmd::best(&study, &formulas)?)?;
         let binds = match wish {
             Wish::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
             Wish::K2 => ssvi.k2() > 0.99 * requirements.allowed(wish),
@@ -289,7 +295,8 @@ fn lightest(requirements: &Requirements) -> Result<Option<f64>, Error> {
     let keeps = |mass: f64| -> Result<bool, Error> {
         let heavier = Requirements { mass, ..requirements.clone() };
         let study = heavier.tmd()?;
-        Ok(tmd_of(&study, tmd::best(&study, Formula::of(&heavier, &study.scene))?)?.feasible)
+        let formulas = Formula::all(&heavier, &study.scene.primary);
+        Ok(tmd_of(&study, tmd::best(&study, &formulas)?)?.feasible)
     };
     let (mut low, mut high) = (requirements.mass, HEAVIEST * requirements.m1);
     if high <= low || !keeps(high)? {
@@ -326,7 +333,7 @@ impl Serialize for Candidate {
 
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let (formula, value) = &self.formula;
+        let by = |(formula, damper): &(Formula, Candidate)| json!({ "name": formula.name, "damper": damper });
         let costs: Map<String, Value> = self
             .costs
             .iter()
@@ -343,7 +350,7 @@ impl Serialize for Comparison {
             "certificate": self.certificate,
             "SSVI_NES_certificate": self.ssvi_certificate,
             "candidates": self.all().collect::<Vec<_>>(),
-            "formula": { "name": formula.name, "damper": value },
+            "formulas": self.formulas.iter().map(by).collect::<Vec<_>>(),
             "limits": costs,
             "k1_off": self.detuned,
             "lightest_TMD": self.lightest,

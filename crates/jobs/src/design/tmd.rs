@@ -5,7 +5,7 @@ use super::requirements::{Driving, Requirements};
 use crate::Error;
 use crate::tune::objective::searched;
 use rayon::prelude::*;
-use retune_model::{Measure, Scene, den_hartog, warburton};
+use retune_model::{Measure, Primary, den_hartog, nishihara_asami, warburton};
 use retune_study::Study;
 
 /// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
@@ -14,7 +14,7 @@ const RANGE: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 100.0]];
 /// Points of the grid from which descents begin.
 const BEST: usize = 3;
 
-/// The formula of a textbook for an undamped structure.
+/// A formula for an undamped structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formula {
     /// Whose it is, and for what.
@@ -26,15 +26,23 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// The formula that fits what is asked: Den Hartog's where the displacement under a constant force or on a moving base counts,
-    /// Warburton's where it is the displacement under an imbalance, or the acceleration under a constant force.
-    pub fn of(requirements: &Requirements, scene: &Scene) -> Self {
-        let squared = matches!(requirements.source, Driving::Imbalance(_))
-            != (requirements.goal == Measure::Acceleration);
-        let (name, formula): (_, fn(&_, f64) -> [f64; 2]) =
-            if squared { ("Warburton's formula", warburton) } else { ("Den Hartog's formula", den_hartog) };
-        let [k2, c2] = formula(&scene.primary, requirements.mass);
-        Self { name, k2, c2 }
+    /// The formulas that fit what is asked, the best first. Where it is the displacement, or the force on the ground, under a constant force
+    /// or on a moving base: Nishihara and Asami's, which is exact without damping of the structure, and Den Hartog's. Warburton's
+    /// where it is the displacement under an imbalance, or the acceleration under a constant force. Else Den Hartog's.
+    pub fn all(requirements: &Requirements, primary: &Primary) -> Vec<Self> {
+        let imbalance = matches!(requirements.source, Driving::Imbalance(_));
+        let squared = imbalance != (requirements.goal == Measure::Acceleration);
+        let exact = !imbalance && matches!(requirements.goal, Measure::Displacement | Measure::GroundForce);
+        let of = |name, formula: fn(&Primary, f64) -> [f64; 2]| {
+            let [k2, c2] = formula(primary, requirements.mass);
+            Self { name, k2, c2 }
+        };
+        let den_hartog = || of("Den Hartog's formula", den_hartog);
+        match (squared, exact) {
+            (true, _) => vec![of("Warburton's formula", warburton)],
+            (_, true) => vec![of("Nishihara and Asami's formula", nishihara_asami), den_hartog()],
+            _ => vec![den_hartog()],
+        }
     }
 }
 
@@ -42,7 +50,7 @@ impl Formula {
 ///
 /// # Errors
 /// The study has nothing to tune.
-pub(super) fn best(study: &Study, formula: Formula) -> Result<[f64; 2], Error> {
+pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Error> {
     let search = study.search().map_err(Error::rule(study))?;
     let objective = searched(study, &search, &search.variables);
     let bounds = &search.options.bounds;
@@ -62,8 +70,8 @@ pub(super) fn best(study: &Study, formula: Formula) -> Result<[f64; 2], Error> {
     };
     let mut grid: Vec<(f64, [f64; 2])> = (0..POINTS * POINTS).into_par_iter().map(at).collect();
     grid.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let starts: Vec<[f64; 2]> = [within(scales), within([formula.k2, formula.c2])]
-        .into_iter()
+    let starts: Vec<[f64; 2]> = std::iter::once(within(scales))
+        .chain(formulas.iter().map(|formula| within([formula.k2, formula.c2])))
         .chain(grid.iter().take(BEST).map(|(_, x)| *x))
         .collect();
     let ends: Vec<_> = starts.par_iter().map(|start| objective.descend(bounds, start).end).collect();

@@ -1,7 +1,7 @@
 //! `simulate`: one run, its summary and its motion.
 
 use crate::{read, request, search};
-use retune_jobs::simulate::{Trajectory, simulate};
+use retune_jobs::simulate::{Simulation, Trajectory, simulate};
 use retune_jobs::table2::table2;
 use retune_jobs::{Error, Silent};
 use retune_model::Parameter;
@@ -163,6 +163,61 @@ fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
     assert!(
         said.contains("holds the designs of several searches") && said.ends_with("table/study"),
         "{said}"
+    );
+}
+
+/// A strength and a density change no number of a run, and nothing is said while the contacts are elastic and quasi-static.
+#[test]
+fn contract_contacts_outside_what_hertzs_law_holds_for_are_told() {
+    let study = retune_study::read(&studies().join("ssvi-resonance.json")).expect("a study");
+    let study =
+        study.with(&["t0=1", "T=8", "R=0.5"].map(|text| text.parse().expect("a setting"))).expect("a study");
+    let numbers = |run: &Simulation| {
+        let mut run = json!(run);
+        run["parameters"]["damper"]["contact"] = json!(null);
+        let warnings = run.as_object_mut().expect("an object").remove("warnings");
+        (run, warnings)
+    };
+    let (plain, none) = numbers(&good(simulate(&study, None)));
+    let structure = |name: &str| plain["contacts"]["structure"][name].as_f64().expect(name);
+    let [pressure, shortest] = [structure("contact_pressure"), structure("shortest")];
+    let warnings = |parameter: Parameter, value: f64| -> Vec<String> {
+        let run = good(simulate(&study.with(&[Setting::new(parameter, value)]).expect("a study"), None));
+        let (numbers, told) = numbers(&run);
+        assert_eq!(numbers, plain, "{parameter}");
+        let words = run.to_string();
+        let shown: Vec<String> =
+            words.lines().filter_map(|line| line.strip_prefix("warning     ").map(str::to_owned)).collect();
+        assert_eq!(told, (!shown.is_empty()).then(|| json!(shown)));
+        shown
+    };
+    assert_eq!(none, None);
+    let strength = pressure / 1.6;
+    assert_eq!(warnings(Parameter::Strength, 1.001 * strength), [""; 0]);
+    // A wave passes the damper of 60 kg and the softer surface, of 22.1 MPa, and comes back in 2 m2^(1/3) ρ^(1/6) / √E.
+    let density = (shortest / 10.0 * 2.21e7_f64.sqrt() / 60_f64.cbrt()).powi(6);
+    assert_eq!(warnings(Parameter::Density, 0.99 * density), [""; 0]);
+    let yields = |wall: &str, numbers: &str| {
+        format!(
+            "on the {wall} the pressure of {numbers}: at 1.6 times that, yield begins below the surface (Tresca and von Mises, nu = 0.3): Hertz's law holds for elastic contacts"
+        )
+    };
+    let fast = |wall: &str, lasts: &str, wave: &str| {
+        format!(
+            "on the {wall} the shortest contact lasts {lasts} ms, less than 5 times the {wave} ms of a wave through the damper and back: Hertz's law holds for quasi-static contacts"
+        )
+    };
+    assert_eq!(
+        warnings(Parameter::Strength, 0.5 * strength),
+        [
+            yields("structure", "1.95 MPa is 3.2 times the yield strength of 609 kPa"),
+            yields("obstacle", "1.68 MPa is 2.75 times the yield strength of 609 kPa")
+        ]
+    );
+    assert_eq!(warnings(Parameter::Density, 1.01 * density), [fast("structure", "17.5", "3.5")]);
+    assert_eq!(
+        warnings(Parameter::Density, 8.0 * density),
+        [fast("structure", "17.5", "4.95"), fast("obstacle", "18.8", "5.14")]
     );
 }
 

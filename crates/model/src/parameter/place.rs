@@ -41,6 +41,8 @@ pub enum Unsettable {
 /// Where a parameter stands in a scene, with its range.
 enum Place<'a> {
     Positive(&'a mut Positive),
+    /// One that may be left out.
+    Optional(&'a mut Option<Positive>),
     NonNegative(&'a mut NonNegative),
     Poisson(&'a mut PoissonRatio),
     Restitution(&'a mut Restitution),
@@ -48,19 +50,21 @@ enum Place<'a> {
 }
 
 impl Place<'_> {
-    fn get(&self) -> f64 {
-        match self {
+    fn get(&self) -> Option<f64> {
+        Some(match self {
             Self::Positive(at) => at.get(),
+            Self::Optional(at) => at.as_ref()?.get(),
             Self::NonNegative(at) => at.get(),
             Self::Poisson(at) => at.get(),
             Self::Restitution(at) => at.get(),
             Self::Bounce(at) => at.get(),
-        }
+        })
     }
 
     fn set(self, value: f64) -> Result<(), OutOfRange> {
         match self {
             Self::Positive(at) => *at = Positive::new(value)?,
+            Self::Optional(at) => *at = Some(Positive::new(value)?),
             Self::NonNegative(at) => *at = NonNegative::new(value)?,
             Self::Poisson(at) => *at = PoissonRatio::new(value)?,
             Self::Restitution(at) => *at = Restitution::new(value)?,
@@ -121,6 +125,8 @@ impl Parameter {
             Self::Nu3 => Place::Poisson(&mut contact.poisson_3),
             Self::E4 => Place::Positive(&mut contact.young_4),
             Self::Nu4 => Place::Poisson(&mut contact.poisson_4),
+            Self::Strength => Place::Optional(&mut contact.strength),
+            Self::Density => Place::Optional(&mut contact.density),
             Self::Lambda | Self::Restitution => return self.place_in_loss(&mut contact.loss),
             _ => Place::Positive(&mut contact.radius),
         };
@@ -145,7 +151,7 @@ impl Parameter {
 
     /// Its value in a scene, in its SI unit; none where the scene has no such parameter.
     pub fn of(self, scene: &Scene) -> Option<f64> {
-        self.place(&mut scene.clone()).ok().map(|place| place.get())
+        self.place(&mut scene.clone()).ok().and_then(|place| place.get())
     }
 
     /// Gives it a value in a scene, in its SI unit.
@@ -163,7 +169,7 @@ impl Parameter {
     pub fn of_damper(self, damper: &Damper) -> Option<f64> {
         let mut damper = *damper;
         let place = self.is_of_damper().then(|| self.place_in(&mut damper).ok()).flatten();
-        place.map(|place| place.get())
+        place.and_then(|place| place.get())
     }
 
     /// Its value in a damper; NaN where it has none.

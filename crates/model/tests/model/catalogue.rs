@@ -16,6 +16,8 @@ fn scenes() -> [Scene; 4] {
             let loss =
                 if matches!(source, Source::Base(_)) { Parameter::Restitution } else { Parameter::Lambda };
             loss.set(&mut scene, 0.3).expect("in range");
+            Parameter::Strength.set(&mut scene, 2e7).expect("in range");
+            Parameter::Density.set(&mut scene, 1200.0).expect("in range");
             scene
         });
     [a, b, c, rigid]

@@ -52,6 +52,8 @@ class Contact(Part):
     obstacle, 4 the damper where it meets the obstacle. ``loss`` is what contacts lose: ``{"restitution": e}`` for the same restitution at
     every speed, or the law of Hunt and Crossley, ``{"lambda": s/m}`` or ``{"restitution": e, "at": v}`` for an undisturbed collision at a
     speed of v (m/s); nothing if left out.
+    ``strength`` (Pa), the yield strength of the weakest surface, and ``density`` (kg/m³), that of the damper, change no motion: with them
+    ``simulate(...).maxima["warnings"]``, and the answers of searches, tell contacts that yield or are too short for Hertz's law.
     ``rigid`` is the restitution of rigid walls, 0 to 1, in the place of all that.
     """
 
@@ -67,6 +69,8 @@ class Contact(Part):
     E4: float = 2.05e7
     nu4: float = 0.4
     loss: dict[str, float] | None = None
+    strength: float | None = None
+    density: float | None = None
     rigid: float | None = None
 
     def __post_init__(self) -> None:

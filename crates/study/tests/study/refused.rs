@@ -54,6 +54,10 @@ fn contract_wrong_rigid_walls_are_named_with_what_is_allowed() {
         "scene.damper.contact: two laws: `rigid` and `R`: give `rigid` alone, or Hertz's surfaces",
     );
     rigid(
+        &|study| study["scene"]["damper"]["contact"]["density"] = json!(1200),
+        "scene.damper.contact: two laws: `rigid` and `density`: give `rigid` alone, or Hertz's surfaces",
+    );
+    rigid(
         &|study| study["scene"]["damper"]["contact"]["rigid"]["restitution"] = json!(1.1),
         "scene.damper.contact.rigid.restitution: 1.1 is not allowed here: give a number from 0 to 1",
     );
@@ -167,6 +171,14 @@ fn contract_values_out_of_range_are_named_with_what_is_allowed() {
         json!(0.7),
         "scene.damper.contact.nu2: 0.7 is not allowed here: give a number above -1 and at most 0.5",
     );
+    for field in ["strength", "density"] {
+        let mut study = tiny();
+        study["scene"]["damper"]["contact"][field] = json!(0);
+        refused_text(
+            &study.to_string(),
+            &format!("scene.damper.contact.{field}: 0 is not allowed here: give a finite number above 0"),
+        );
+    }
     refused("/window/T", json!(0), "window.T: 0 is not allowed here: give a finite number above 0");
     refused("/window/t0", json!(4), "window: t0 = 4 s is not before T = 4 s: the window is empty");
     refused(
