@@ -4,8 +4,9 @@ mod certificate;
 mod margin;
 mod measure;
 mod motions;
+mod walls;
 
-pub use certificate::{Certificate, Short, Verdict, periodic};
+pub use certificate::{Certificate, Short, Verdict, Walls, periodic};
 
 use crate::again::{Made, json};
 use crate::artefact::{Content, Kind, artefact};
@@ -74,7 +75,13 @@ fn is_same(one: &Path, other: &Path) -> bool {
 /// # Errors
 /// There is no damper, or the design has no value.
 pub fn certify(study: &Study) -> Result<Certificate, Error> {
-    measure::measure(study, damper_of(study)?, OtherStarts::Always)
+    Ok(complete(study, measure::measure(study, damper_of(study)?, OtherStarts::Always)?))
+}
+
+/// A certificate of the damper of a study that has all but the value between other walls, with that too.
+pub(crate) fn complete(study: &Study, certificate: Certificate) -> Certificate {
+    let walls = walls::other_walls(study, &certificate);
+    certificate.with_walls(walls)
 }
 
 /// The certificate of the damper of a study, made again.
@@ -91,7 +98,7 @@ pub(crate) fn again(study: &Study, said: serde_json::Value) -> Made {
     }
 }
 
-/// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without.
+/// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without, nor are other walls.
 ///
 /// # Errors
 /// As [`certify`].

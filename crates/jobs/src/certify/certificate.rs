@@ -6,12 +6,14 @@ mod measured;
 mod motions;
 mod text;
 mod verdict;
+mod walls;
 
 pub use limits::{Kept, Near};
 pub use margin::{Error as ParameterError, Margin, Other};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
 pub use motions::{Another, Irregular, MISSED, Motions, SHARE, periodic};
 pub use verdict::{Judged, Verdict};
+pub use walls::{AtRestitution, AtStiffness, Found, Walls};
 
 use crate::Error;
 use crate::amount::Amount;
@@ -42,6 +44,9 @@ pub struct Certificate {
     pub(crate) words: String,
     /// The rule that the verdict follows.
     pub(crate) rule: String,
+    /// The value between other walls, where the damper touches its own; beside the verdict, which does not depend on it.
+    #[serde(flatten)]
+    pub(crate) walls: Option<Walls>,
     /// The limits at the design and near it, where the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limits: Option<Kept>,
@@ -67,6 +72,9 @@ pub struct Certificate {
 pub struct Short {
     verdict: Option<Verdict>,
     words: String,
+    /// What other walls make of the value, in words, where the damper touches its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contacts: Option<String>,
     error_bar: f64,
     /// What the comparison of methods came to.
     #[serde(skip)]
@@ -83,9 +91,10 @@ pub struct Short {
 }
 
 impl Short {
-    /// The verdict in words, with the error bar.
+    /// The verdict in words, with the error bar; on a line of its own what other walls do.
     pub fn verdict_words(&self) -> String {
-        format!("{} ({})", self.words, self.compared)
+        let contacts = self.contacts.as_ref().map_or(String::new(), |words| format!("\nContacts: {words}"));
+        format!("{} ({}){contacts}", self.words, self.compared)
     }
 
     /// The reason for the verdict, in words.
@@ -144,6 +153,7 @@ impl Certificate {
             verdict,
             words,
             rule: verdict::rule(value.quantity, limits.is_some(), study.certificate),
+            walls: None,
             limits,
             worst_run,
             convergence,
@@ -154,6 +164,17 @@ impl Certificate {
             sensitivity,
             neighbourhood,
         }
+    }
+
+    /// With the value between other walls.
+    pub(super) fn with_walls(self, walls: Option<Walls>) -> Self {
+        Self { walls, ..self }
+    }
+
+    /// Whether the motion with the largest value that was found strikes a wall.
+    pub(super) fn strikes(&self) -> bool {
+        let largest = self.motions.as_ref().and_then(|motions| motions.largest.as_ref());
+        largest.is_some_and(|largest| !largest.impacts.is_empty())
     }
 
     /// How far the methods that could finish the worst run agree, and which could not.
@@ -217,6 +238,7 @@ impl Certificate {
         Short {
             verdict,
             words,
+            contacts: self.walls.as_ref().map(|walls| walls.words().to_owned()),
             error_bar,
             compared,
             missed_peak: self.missed_peak(),

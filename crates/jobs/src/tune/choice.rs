@@ -4,7 +4,7 @@
 use super::refine::{Refined, Run};
 use crate::Error;
 use crate::amount::Amount;
-use crate::certify::{Certificate, Verdict, certify, judge};
+use crate::certify::{Certificate, Verdict, certify, complete, judge};
 use crate::resampled::worst;
 use retune_model::{Measure, PerVariable};
 use retune_optim::Limit;
@@ -159,7 +159,8 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     });
     let passed = passed.collect();
     let (number, certificate) = seen.swap_remove(chosen);
-    let certificate = if certificate.is_whole() { certificate } else { certify(&of(number)?)? };
+    let design = of(number)?;
+    let certificate = if certificate.is_whole() { complete(&design, certificate) } else { certify(&design)? };
     refined.winner = number;
     Ok((certificate, passed))
 }

@@ -26,6 +26,7 @@ mod table2;
 mod tune;
 mod verify;
 mod verify_fronts;
+mod walls;
 
 use retune_jobs::Done;
 use retune_jobs::tune::{Optimum, tune};

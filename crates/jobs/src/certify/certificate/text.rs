@@ -7,8 +7,12 @@ use retune_study::short;
 
 impl std::fmt::Display for Short {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { words, compared, regime, exponent, .. } = self;
-        write!(f, "certificate: {words}\n  {compared}, ")?;
+        let Self { words, contacts, compared, regime, exponent, .. } = self;
+        write!(f, "certificate: {words}\n  ")?;
+        if let Some(contacts) = contacts {
+            write!(f, "Contacts: {contacts}\n  ")?;
+        }
+        write!(f, "{compared}, ")?;
         write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
     }
 }
@@ -74,6 +78,9 @@ impl std::fmt::Display for Certificate {
             writeln!(f, "limits        {own}; broken by {} of {members} neighbours", limits.neighbours())?;
         }
         writeln!(f, "verdict       {}", self.words)?;
+        if let Some(walls) = &self.walls {
+            writeln!(f, "              Contacts: {}", walls.words())?;
+        }
         write!(f, "rule          {}", self.rule)
     }
 }

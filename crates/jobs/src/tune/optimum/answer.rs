@@ -14,6 +14,8 @@ use std::path::Path;
 const COLUMNS: usize = 80;
 /// A space at which no line is broken.
 const HELD: &str = "\u{a0}";
+/// A hyphen at which none is broken.
+const HYPHEN: &str = "\u{2011}";
 
 impl Optimum {
     /// The last lines on screen.
@@ -147,12 +149,19 @@ impl Optimum {
     }
 }
 
-/// A paragraph in lines of at most [`COLUMNS`] columns.
+/// Paragraphs in lines of at most [`COLUMNS`] columns; the first may be indented.
 fn wrapped(text: &str, indent: &str) -> String {
     let own = &text[..text.len() - text.trim_start().len()];
     let further = format!("{own}{indent}       ");
-    let options = textwrap::Options::new(COLUMNS).initial_indent(own).subsequent_indent(&further);
-    textwrap::fill(text.trim_start(), options).replace(HELD, " ")
+    // The name of a file stays whole.
+    let held = |word: &str| if word.contains('/') { word.replace('-', HYPHEN) } else { word.to_owned() };
+    let paragraph = |(i, text): (usize, &str)| {
+        let first = if i == 0 { own } else { &further };
+        let options = textwrap::Options::new(COLUMNS).initial_indent(first).subsequent_indent(&further);
+        let words: Vec<String> = text.split(' ').map(held).collect();
+        textwrap::fill(&words.join(" "), options).replace(HELD, " ").replace(HYPHEN, "-")
+    };
+    text.trim_start().lines().enumerate().map(paragraph).collect::<Vec<_>>().join("\n")
 }
 
 impl LimitNote {

@@ -3,6 +3,7 @@
 use super::findings::{Compared, Findings};
 use super::flags::Flag;
 use super::numbers::{amount, compared, digits, four, frequency};
+use crate::certify::Walls;
 use crate::needs::{Needs, sized};
 use crate::summary::baseline;
 use maud::{Markup, html};
@@ -107,6 +108,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             (fact("Against no damper", &none.0, &none.1))
             (fact(&format!("Against {}", baseline(&findings.study.scene)), &study.0, &study.1))
             (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
+            @if let Some(walls) = &certificate.walls { (fact("Contacts", &contacts(walls, energy, quantity), walls.words())) }
             @if let Some(needs) = &findings.optimum.needs {
                 @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
                     "{what}, from rest on, at {}{}{}", frequency(needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
@@ -120,6 +122,16 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             (fact("Motion", &certificate.motion.regime, &format!("at the worst frequency it {}", certificate.motion.sentence)))
         }
     }
+}
+
+/// What other restitutions make of the value, in short.
+fn contacts(walls: &Walls, own: f64, quantity: Measure) -> String {
+    walls.worst().map_or("no value with a loss".to_owned(), |worst| {
+        let percent = 100.0 * (worst.found.value / own - 1.0);
+        let sign = if percent > 0.0 { "+" } else { "" };
+        let change = digits(percent, 3);
+        format!("{} at e = {} ({sign}{change} %)", amount(worst.found.value, quantity), worst.restitution)
+    })
 }
 
 /// What the part of the response has that the objective looks at, where that is less.

@@ -3,6 +3,7 @@
 use super::findings::Findings;
 use super::numbers::{amount, digits, four};
 use crate::amount::label;
+use crate::certify::Walls;
 use maud::html;
 use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, SKY, VERMILION};
@@ -32,6 +33,7 @@ pub fn section(findings: &Findings) -> Section {
             "The largest " (name) " with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
         }))
         (table(findings).markup())
+        @if let Some(walls) = &findings.certificate.walls { (walls_table(findings, walls).markup()) }
     };
     ("sensitivity", "Sensitivity to small errors", vec![Block::Elements(body)])
 }
@@ -64,6 +66,23 @@ fn table(findings: &Findings) -> Table {
             sign(one.worst_at_percent, digits(one.worst_at_percent, 3)),
             sign(percent, digits(percent, 3)),
         ]);
+    }
+    table
+}
+
+/// The value between other walls.
+fn walls_table(findings: &Findings, walls: &Walls) -> Table {
+    let own = findings.certificate.value.value;
+    let quantity = findings.quantity();
+    let head = ["walls", &label(quantity), "worst at ω, rad/s", "against the design, %"];
+    let title =
+        format!("{} with other walls: e is the restitution at every speed, K the stiffness", quantity.name());
+    let mut table = Table::new(title, &head);
+    for (place, found) in walls.all() {
+        let percent = 100.0 * (found.value / own - 1.0);
+        let sign = if percent > 0.0 && percent.is_finite() { "+" } else { "" };
+        let value = if found.value.is_finite() { four(found.value) } else { "no value".to_owned() };
+        table.row([place, value, four(found.omega), format!("{sign}{}", digits(percent, 3))]);
     }
     table
 }
