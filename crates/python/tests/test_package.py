@@ -80,6 +80,7 @@ def test_contract_rigid_walls() -> None:
     own = rt.Problem(rt.Structure(m1=1000, c1=452, k1=39500), damper, P=800, omega=6.28, window=(50, 100))
     assert own.simulate().maxima["E1max"] == study.simulate().maxima["E1max"]
     assert study.simulate(restitution=0.0).maxima["E1max"] > study.simulate().maxima["E1max"]
+    assert "0.7" in repr(rt.Contact(rigid=0.7))
     with pytest.raises(rt.StudyError, match="restitution"):
         rt.Contact(rigid=1.2)
 

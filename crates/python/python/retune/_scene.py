@@ -21,7 +21,9 @@ class Part:
     title: ClassVar[str]
 
     def _rows(self) -> list[list[object]]:
-        return [[name, value, *MEANING[name]] for name, value in vars(self).items() if isinstance(value, (int, float))]
+        # `rigid` of a contact is a restitution.
+        known = ((value, "restitution" if name == "rigid" else name) for name, value in vars(self).items())
+        return [[name, value, *MEANING[name]] for value, name in known if isinstance(value, (int, float))]
 
     def __repr__(self) -> str:
         return f"{self.title}\n{_show.text(['', 'value', 'unit', ''], self._rows())}"

@@ -49,8 +49,7 @@ pub fn undisturbed_force() -> impl Fn(f64) -> f64 {
         .map(|([q, ..], &u)| q.powi(3) / ends(u))
         .collect();
     values.extend(values.clone().into_iter().rev());
-    let through = interpolated(nodes, values);
-    move |u| ends(u) * through(u)
+    interpolated(nodes, values, ends)
 }
 
 /// The undisturbed collision whose restitution is the same at every speed.
@@ -74,16 +73,15 @@ impl Lossy {
     pub fn force(&self, law: &Restoring) -> impl Fn(f64) -> f64 + use<> {
         let force = |&[q, w, _]: &[f64; 3]| q.powi(3) * law.push(0.5 * q.powi(5), w);
         let values = self.states.iter().zip(&self.nodes).map(|(y, &u)| force(y) / ends(u)).collect();
-        let through = interpolated(self.nodes.clone(), values);
-        move |u| ends(u) * through(u)
+        interpolated(self.nodes.clone(), values, ends)
     }
 
     /// The depth over the clock, in units of Z.
     pub fn depth(&self) -> impl Fn(f64) -> f64 + use<> {
         // q ~ u at both ends
         let values = self.states.iter().zip(&self.nodes).map(|([q, ..], u)| q / (u * (1.0 - u))).collect();
-        let through = interpolated(self.nodes.clone(), values);
-        move |u| (u * (1.0 - u) * through(u)).powi(2)
+        let root = interpolated(self.nodes.clone(), values, |u| u * (1.0 - u));
+        move |u| root(u).powi(2)
     }
 }
 
@@ -143,8 +141,8 @@ fn along(
     states
 }
 
-/// The polynomial that has these values on Gauss's nodes.
-fn interpolated(nodes: Vec<f64>, values: Vec<f64>) -> impl Fn(f64) -> f64 {
+/// `scale` times the polynomial that has these values on Gauss's nodes.
+fn interpolated(nodes: Vec<f64>, values: Vec<f64>, scale: impl Fn(f64) -> f64) -> impl Fn(f64) -> f64 {
     let weights: Vec<f64> = (0..NODES)
         .map(|j| (0..NODES).filter(|&i| i != j).map(|i| 0.25 / (nodes[j] - nodes[i])).product())
         .collect();
@@ -152,12 +150,12 @@ fn interpolated(nodes: Vec<f64>, values: Vec<f64>) -> impl Fn(f64) -> f64 {
         let (mut above, mut below) = (0.0, 0.0);
         for ((node, weight), value) in nodes.iter().zip(&weights).zip(&values) {
             if u == *node {
-                return *value;
+                return scale(u) * value;
             }
             above += weight / (u - node) * value;
             below += weight / (u - node);
         }
-        above / below
+        scale(u) * above / below
     }
 }
 
