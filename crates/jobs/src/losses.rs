@@ -11,6 +11,7 @@ use crate::again::{Row, Source, broken};
 use crate::artefact::{Content, Kind, artefact};
 use crate::contacts::Powers;
 use crate::job::{Done, Job, Made};
+use crate::paper::TABLE_2;
 use crate::resolved::{self, Resolved};
 use crate::searches::Searches;
 use crate::{Error, Observer, Request};
@@ -38,10 +39,6 @@ pub static KIND: Kind = Kind {
     ],
 };
 
-/// The paper's Table 2, the SSVI NES.
-const PAPER: [(Parameter, f64); 4] =
-    [(Parameter::K2, 215.0), (Parameter::C2, 232.0), (Parameter::D, 0.06), (Parameter::C, 0.36)];
-
 /// Tunes dampers for the restitutions of the objective of a study, and compares them.
 ///
 /// # Errors
@@ -67,8 +64,9 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
         let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
         let hedged = searches.tune(&study, "all")?.found().damper.design;
-        let of_paper = |parameter: Parameter| PAPER.into_iter().find(|(known, _)| *known == parameter);
-        let paper = Design::new(|parameter| of_paper(parameter).map_or(f64::NAN, |(_, value)| value));
+        let paper = Design::new(|parameter| {
+            Parameter::PAPER.iter().position(|known| *known == parameter).map_or(f64::NAN, |i| TABLE_2[i])
+        });
         let paper = paper.map_err(|(parameter, source)| {
             Error::from(Unusable::Value { parameter, source: source.into() })
         })?;

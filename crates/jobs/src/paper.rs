@@ -18,6 +18,7 @@ mod table2;
 mod variants;
 
 pub use plan::PaperPlan;
+pub(crate) use table1::TABLE_2;
 
 use crate::again::{Made as Again, broken, design, json, text};
 use crate::artefact::{Content, Kind, artefact};

@@ -60,16 +60,17 @@ fn of_system<S: Loses<N> + Follow<N>, const N: usize>(
 trait Loses<const N: usize> {
     /// The power, W, that goes into the structure's dashpot, into the damper's, and into a contact.
     fn powers(&self, knot: &Knot<N>) -> [f64; 3];
-    /// The kinetic energy of a state, J.
-    fn kinetic(&self, y: &[f64; N]) -> f64;
+    /// What an impact takes of the energy, J.
+    fn taken(&self, impact: &Impact<N>) -> f64;
 }
 
 impl Loses<2> for Bare {
     fn powers(&self, knot: &Knot<2>) -> [f64; 3] {
         [self.dashpot_loss(knot.excitation, knot.y[1]), 0.0, 0.0]
     }
-    fn kinetic(&self, y: &[f64; 2]) -> f64 {
-        0.5 * self.mass() * y[1] * y[1]
+    /// Nothing strikes it.
+    fn taken(&self, _impact: &Impact<2>) -> f64 {
+        0.0
     }
 }
 
@@ -79,9 +80,8 @@ impl Loses<4> for Coupled {
         let contact = self.contact_loss(&knot.y);
         [self.bare().dashpot_loss(knot.excitation, knot.y[1]), self.damper_loss(&knot.y), contact]
     }
-    fn kinetic(&self, y: &[f64; 4]) -> f64 {
-        let [m1, m2] = self.masses();
-        0.5 * (m1 * y[1] * y[1] + m2 * y[3] * y[3])
+    fn taken(&self, impact: &Impact<4>) -> f64 {
+        self.kinetic_energy(&impact.before.y) - self.kinetic_energy(&impact.after.y)
     }
 }
 
@@ -102,7 +102,6 @@ impl<S: Loses<N>, const N: usize> Observer<N> for Observed<'_, S> {
         }
     }
     fn impact(&mut self, impact: &Impact<N>) {
-        let [before, after] = [impact.before, impact.after].map(|knot| self.system.kinetic(&knot.y));
-        self.lost[2] += before - after;
+        self.lost[2] += self.system.taken(impact);
     }
 }

@@ -47,8 +47,7 @@ pub(super) fn write(losses: &Losses, directory: &Directory) -> Result<String, Er
 }
 
 const LAW: &str = "The restitution e is the speed after over the speed before an undisturbed collision, the same at every speed; with e = 1 contacts \
-                   lose nothing, as in the paper. Where a motion is irregular, as that of the paper's damper is, a value is that of the window alone: a longer \
-                   one may show more. `retune verify` computes each number again.";
+                   lose nothing, as in the paper. Where a motion is irregular a value is that of the window alone: a longer one may show more. `retune verify` computes each number again.";
 const ENERGY: &str = "At the frequency that is worst for the damper at each restitution, over the window of the study. In a motion that repeats, the sum is \
                       the mean power of the force.";
 

@@ -138,6 +138,11 @@ impl Coupled {
         self.c2 * (y[3] - y[1]).powi(2)
     }
 
+    /// Kinetic energy of both bodies, J.
+    pub fn kinetic_energy(&self, y: &[f64; 4]) -> f64 {
+        0.5 * (self.bare.m1 * y[1] * y[1] + self.m2 * y[3] * y[3])
+    }
+
     /// True mechanical energy, J: kinetic, both springs (the damper's by its own stretch), and `(2/5) K z^(5/2)` a contact.
     ///
     /// Constant when `P = c1 = c2 = 0` and contacts lose nothing.

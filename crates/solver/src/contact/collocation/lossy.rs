@@ -11,11 +11,11 @@
 //! undisturbed collision is hastened by Broyden's updates (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995,
 //! section 7.3).
 
-use super::lossy_rule::{LossyRule, M, N, Unknowns, along};
+use super::lossy_rule::{LossyRule, M, N, Unknowns, inner};
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
-use super::solve::{Found, MAX_ITERATIONS, Pushed, free_terms, size};
+use super::solve::{Found, MAX_ITERATIONS, Pushed, TAIL, error, free_terms, size};
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
 use crate::motion::polynomial::Polynomial;
@@ -44,6 +44,7 @@ struct Motion {
 }
 
 impl Contact<'_> {
+    /// The motion under these forces, whose moments are left at the nodes and at the end.
     fn motion(
         &self,
         (forces, stretch): &Unknowns,
@@ -85,15 +86,15 @@ impl Broyden {
     fn step(&mut self, plain: Unknowns) -> Unknowns {
         let mut step = plain;
         for pair in self.0.windows(2) {
-            let share = along(&pair[0].0, &step) / pair[0].1;
+            let share = inner(&pair[0].0, &step) / pair[0].1;
             let (forces, stretch) = pair[1].0;
             step = (std::array::from_fn(|i| step.0[i] + forces[i] * share), step.1 + stretch * share);
         }
         if let Some((before, square)) = self.0.last() {
-            let share = 1.0 / (1.0 - along(before, &step) / square);
+            let share = 1.0 / (1.0 - inner(before, &step) / square);
             step = (step.0.map(|step| step * share), step.1 * share);
         }
-        self.0.push((step, along(&step, &step)));
+        self.0.push((step, inner(&step, &step)));
         step
     }
 }
@@ -146,10 +147,10 @@ impl Collisions {
             // Each step gains at least as much as the last.
             if size * size <= 0.3 * self.rtol * before {
                 let Motion { depths, .. } = contact.motion(&unknowns, moments, last);
-                let tail =
-                    rule.tails.each_ref().map(|row| dot(row, &unknowns.0).powi(2)).iter().sum::<f64>().sqrt();
                 let duration = unknowns.1 * undisturbed;
-                let is_right = TAIL * tail.powf(1.25) <= self.rtol && touch.t + duration < to;
+                // The forces of both kinds of collision are alike: so are their errors, as the tests show.
+                let error = error(rule, &unknowns.0, TAIL[2]);
+                let is_right = error <= self.rtol && touch.t + duration < to;
                 return is_right.then_some(Found { depth, terms, depths, duration, iterations });
             }
             before = size;
@@ -167,6 +168,3 @@ fn force(law: &Restoring, depths: f64x4, speeds: f64x4) -> f64x4 {
         z * root * law.push(0.5 * z * z * root, speeds[lane])
     }))
 }
-
-/// As those of the rules without loss.
-const TAIL: f64 = 2.9e-4;

@@ -14,16 +14,18 @@ const KEPT: usize = 64;
 /// The rules of laws by the bits of their restitutions.
 static RULES: Mutex<BTreeMap<u64, Arc<LossyRule>>> = Mutex::new(BTreeMap::new());
 
-/// A rule for collisions near the undisturbed one of a law, and their iteration.
+/// A rule for collisions near the undisturbed one of a law, and their iteration. Lengths are in units of the greatest depth Z without loss, speeds
+/// in that at touch-down, w, times in Z/w, forces in `K Z^(3/2)`.
 pub struct LossyRule {
     pub law: Restoring,
-    /// Duration of the undisturbed collision, see [`Lossy`].
+    /// Duration of the undisturbed collision.
     pub duration: f64,
     pub rule: Rule<N, M>,
-    /// The forces of the undisturbed collision.
+    /// The forces of the undisturbed collision at the nodes.
     pub forces: Nodes<M>,
-    /// Their speeds there, and the slopes of the force by depth and by speed.
+    /// The speeds of its indentation.
     pub speeds: Nodes<M>,
+    /// The slopes of its force by depth and by speed.
     pub slopes: [Nodes<M>; 2],
     /// The inverse Jacobian there: a column for each node and one for the end; last rows apart.
     inverse: [Nodes<M>; N + 1],
@@ -37,7 +39,8 @@ pub const M: usize = 6;
 /// A vector of forces and the duration.
 pub type Unknowns = (Nodes<M>, f64);
 
-pub fn along(a: &Unknowns, b: &Unknowns) -> f64 {
+/// Their inner product.
+pub fn inner(a: &Unknowns, b: &Unknowns) -> f64 {
     dot(&a.0, &b.0) + a.1 * b.1
 }
 
@@ -62,12 +65,8 @@ impl LossyRule {
         let undisturbed = Lossy::new(law);
         let duration = undisturbed.duration;
         let (rule, integrals) = Rule::new(leaning, undisturbed.force(law), undisturbed.depth());
-        let Integrals { depths, forces, moments, .. } = &integrals;
-        let speed = |i: usize| {
-            let impulse: f64 = (0..N).map(|j| moments[0][j][i] * forces[j]).sum();
-            1.0 - 1.25 * duration * impulse
-        };
-        let speeds: [f64; N] = std::array::from_fn(speed);
+        let Integrals { depths, forces, .. } = &integrals;
+        let speeds: [f64; N] = std::array::from_fn(|i| 1.0 - 1.25 * duration * integrals.whole(0, i));
         let slopes: [[f64; 2]; N] = std::array::from_fn(|i| {
             let (z, [factor, by_z, by_w]) = (depths[i], law.slopes(0.5 * depths[i].powf(2.5), speeds[i]));
             [z.sqrt() * (1.5 * factor + by_z), z * z.sqrt() * by_w]
@@ -107,16 +106,16 @@ impl LossyRule {
 /// The inverse Jacobian of the residuals at the undisturbed collision, by forces and duration: with `Λ = (5/4) D²`,
 /// `ζ = D σ τ - Λ σ² m_1` and `ż/w = 1 - (Λ/D) σ m_0`.
 fn inverse(duration: f64, integrals: &Integrals<N>, slopes: &[[f64; 2]; N]) -> DMatrix<f64> {
-    let Integrals { times, forces, moments, last, .. } = integrals;
     let stiffness = 1.25 * duration * duration;
-    let moment = |k: usize, i: usize, j: usize| if i < N { moments[k][j][i] } else { last[k][j] };
-    let whole = |k: usize, i: usize| (0..N).map(|j| moment(k, i, j) * forces[j]).sum::<f64>();
     let jacobian = DMatrix::from_fn(N + 1, N + 1, |i, j| {
         let [depth, speed] = if j < N {
-            [-stiffness * moment(1, i, j), -stiffness / duration * moment(0, i, j)]
+            [-stiffness * integrals.moment(1, i, j), -stiffness / duration * integrals.moment(0, i, j)]
         } else {
-            let time = if i < N { times[i] } else { 1.0 };
-            [duration * time - 2.0 * stiffness * whole(1, i), -stiffness / duration * whole(0, i)]
+            let time = if i < N { integrals.times[i] } else { 1.0 };
+            [
+                duration * time - 2.0 * stiffness * integrals.whole(1, i),
+                -stiffness / duration * integrals.whole(0, i),
+            ]
         };
         if i == N {
             return depth;

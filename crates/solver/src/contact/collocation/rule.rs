@@ -106,6 +106,18 @@ pub struct Integrals<const N: usize> {
     pub last: [[f64; N]; MOMENTS],
 }
 
+impl<const N: usize> Integrals<N> {
+    /// The contribution of node `j` to moment `k` at node `i`, or at the end for `i = N`.
+    pub fn moment(&self, k: usize, i: usize, j: usize) -> f64 {
+        if i < N { self.moments[k][j][i] } else { self.last[k][j] }
+    }
+
+    /// Moment `k` of the undisturbed collision's force there.
+    pub fn whole(&self, k: usize, i: usize) -> f64 {
+        (0..N).map(|j| self.moment(k, i, j) * self.forces[j]).sum()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::nodes::node;

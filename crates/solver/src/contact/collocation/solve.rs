@@ -30,7 +30,7 @@ fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
 /// The error of the end of a contact over `tail^1.25`, for each rule, where the tail of its force's expansion is the root of the
 /// sum of squares of the two highest coefficients. Calibrated on contacts drawn at random; the test
 /// `reference_contacts_at_once_agree_with_contacts_step_by_step` checks the resulting errors.
-const TAIL: [f64; 3] = [1.8e-3, 3.5e-4, 2.9e-4];
+pub(super) const TAIL: [f64; 3] = [1.8e-3, 3.5e-4, 2.9e-4];
 
 /// Most iterations: one that has not converged by then converges too slowly.
 pub(super) const MAX_ITERATIONS: u32 = 16;
@@ -180,9 +180,8 @@ impl Collisions {
                 break force;
             }
         };
-        let tail = (dot(&rule.tails[0], &force).powi(2) + dot(&rule.tails[1], &force).powi(2)).sqrt();
         let duration = stretch * undisturbed;
-        let error = TAIL[N / 4 - 2] * tail * tail.sqrt().sqrt();
+        let error = error(rule, &force, TAIL[N / 4 - 2]);
         let is_right = error <= self.rtol && touch.t + duration < to;
         is_right.then_some(Found { depth, terms, depths, duration, iterations })
     }
@@ -193,6 +192,13 @@ impl Collisions {
 pub(super) fn size<const M: usize>(change: &Nodes<M>, lengthening: f64) -> f64 {
     let largest = change.iter().fold(f64x4::splat(lengthening).abs(), |size, c| size.max(c.abs()));
     largest.to_array().into_iter().fold(0.0, f64::max)
+}
+
+/// The estimated error of a contact with these forces at the nodes.
+#[inline(always)]
+pub(super) fn error<const N: usize, const M: usize>(rule: &Rule<N, M>, force: &Nodes<M>, share: f64) -> f64 {
+    let tail = (dot(&rule.tails[0], force).powi(2) + dot(&rule.tails[1], force).powi(2)).sqrt();
+    share * tail * tail.sqrt().sqrt()
 }
 
 /// The motion without contact, and the moments of the force at the nodes and at lift-off.

@@ -22,8 +22,8 @@ pub fn clock(u: f64) -> [f64; 2] {
 /// Where, in terms of the other clock, that of lossy collisions runs slowest, and over which width.
 const SLOW: [f64; 2] = [0.4, 0.2];
 
-/// `τ` and `dτ/du` of the clock of lossy collisions. Once one is disturbed its law has a branch point (`D = 0`) near the indentation, at about
-/// `0.23 ± 0.17 i` of the other clock. A hyperbolic sine moves a pair of singularities as far away as can be (T. W. Tee and
+/// `τ` and `dτ/du` of the clock of lossy collisions. Once one is disturbed its law has a branch point (`D = 0`) near the first half of the contact,
+/// from `0.20 ± 0.16 i` of the other clock for e = 0.3 to `0.32 ± 0.30 i` for 0.9 (`tests/reference/branch_point.py`). A hyperbolic sine moves a pair of singularities as far away as can be (T. W. Tee and
 /// L. N. Trefethen, SIAM J. Sci. Comput. 28 (2006) 1798); place and width are those by which the most contacts drawn at random fit.
 pub fn leaning(u: f64) -> [f64; 2] {
     let [place, width] = SLOW;
