@@ -11,6 +11,7 @@ mod fronts;
 mod interrupted;
 mod limits;
 mod links;
+mod losses;
 mod motions;
 mod paper;
 mod quantity;
@@ -56,11 +57,11 @@ fn replace(desk: &Desk, study: &str, out: &str) -> Request {
     Request { replace: true, ..request(desk, study, out) }
 }
 
-/// The optimum of a search that was made now.
+/// The answer of a job that was done now.
 #[track_caller]
-fn found(tuned: Done<Optimum>) -> Optimum {
-    match tuned {
-        Done::Made(optimum) => optimum,
+fn found<T>(done: Done<T>) -> T {
+    match done {
+        Done::Made(answer) => answer,
         Done::FinishedBefore => panic!("it was finished before"),
     }
 }

@@ -80,6 +80,10 @@ pub trait Observer<const N: usize> {
     fn touch_down(&mut self, _t: f64, _side: Side) {}
     /// The damper has struck a rigid wall: between two segments the state jumps.
     fn impact(&mut self, _impact: &Impact<N>) {}
+    /// Whether it follows every piece of a contact that loses energy: such a contact is then integrated step by step, in fewer pieces.
+    fn follows_losses(&self) -> bool {
+        false
+    }
     /// Whether the run may stop here. It stops as soon as one of several observers says so.
     fn satisfied(&self) -> bool {
         false
@@ -115,6 +119,9 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
         self.0.impact(impact);
         self.1.impact(impact);
     }
+    fn follows_losses(&self) -> bool {
+        self.0.follows_losses() || self.1.follows_losses()
+    }
     fn satisfied(&self) -> bool {
         self.0.satisfied() || self.1.satisfied()
     }
@@ -136,6 +143,9 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
     }
     fn impact(&mut self, impact: &Impact<N>) {
         (**self).impact(impact);
+    }
+    fn follows_losses(&self) -> bool {
+        (**self).follows_losses()
     }
     fn satisfied(&self) -> bool {
         (**self).satisfied()
@@ -161,6 +171,9 @@ macro_rules! for_each_in {
             }
             fn impact(&mut self, impact: &Impact<N>) {
                 self.iter_mut().for_each(|observer| observer.impact(impact));
+            }
+            fn follows_losses(&self) -> bool {
+                self.iter().any(|observer| observer.follows_losses())
             }
             fn satisfied(&self) -> bool {
                 self.iter().any(|observer| observer.satisfied())

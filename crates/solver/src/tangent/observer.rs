@@ -258,11 +258,11 @@ impl Observer<4> for Course<'_> {
     fn satisfied(&self) -> bool {
         self.struck.is_some()
     }
+    /// The force of a lossy contact is not a function of the depths alone, so that [`Path::linearised`] does not hold for it.
+    fn follows_losses(&self) -> bool {
+        true
+    }
     fn path(&mut self, path: &impl Path<4>) {
-        // The force of a lossy contact is not a function of the depths alone: its pieces are followed.
-        if self.system.is_lossy() {
-            return (0..path.pieces()).for_each(|piece| path.show(piece, self));
-        }
         self.cross(path.linearised(self.parameters.contains(&Parameter::Lambda)));
     }
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}

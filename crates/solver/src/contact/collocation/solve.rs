@@ -46,7 +46,7 @@ impl Collisions {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
-        if let Some(of) = &self.lossy {
+        if let Some(of) = self.lossy.as_ref().filter(|_| !observer.follows_losses()) {
             let iterate = |pushed: &mut Pushed<_>| self.iterate_lossy(of, &touch, to, pushed);
             return self.solve(&of.rule, iterate, flow, &touch, observer);
         }

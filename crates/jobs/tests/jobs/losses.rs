@@ -1,0 +1,65 @@
+//! `losses`: dampers tuned for each restitution of their contacts and for all at once.
+
+use crate::{found, request};
+use retune_jobs::Silent;
+use retune_jobs::losses::{Losses, Point, Tuning, losses};
+use retune_model::Measure;
+use retune_testkit::desk::{Desk, tiny};
+use retune_testkit::observers::{good, refused};
+use retune_testkit::verified;
+use serde_json::{Value, json};
+
+/// The tiny study with contacts of a restitution, tuned for the worst of these.
+fn lossy(restitutions: &[f64]) -> Value {
+    let mut study = tiny();
+    study["scene"]["damper"]["contact"]["loss"] = json!({ "restitution": 0.8 });
+    let optimize = &mut study["optimize"];
+    optimize["surf"].take();
+    // With one start certificates are quick.
+    optimize["objective"] = json!({ "restitution": restitutions, "starts": 1 });
+    optimize["refine"] = json!({ "MaxFunEvals": 12 });
+    study
+}
+
+fn of(losses: &Losses, tuning: Tuning, restitution: f64) -> &Point {
+    losses.of(tuning).find(|point| point.restitution == restitution).expect("a point")
+}
+
+/// Each damper at each restitution, and without loss, which is not asked for; every row is what its design has, and nothing is lost in
+/// impacts that lose nothing.
+#[test]
+fn contract_each_damper_is_compared_at_each_restitution() {
+    let desk = Desk::with(&lossy(&[0.7]));
+    let found = found(good(losses(&request(&desk, "study.json", "out"), &Silent)));
+    let quantity = found.study.quantity();
+    assert_eq!(quantity, Measure::Energy);
+    for tuning in Tuning::ALL {
+        let restitutions: Vec<f64> = found.of(tuning).map(|point| point.restitution).collect();
+        assert_eq!(restitutions, [1.0, 0.7], "{tuning:?}");
+        let [.., without] = of(&found, tuning, 1.0).worth.powers.parts();
+        let [.., with] = of(&found, tuning, 0.7).worth.powers.parts();
+        assert_eq!(without, 0.0, "{tuning:?}");
+        let strikes = of(&found, tuning, 0.7).worth.impact_speed > 0.0;
+        assert_eq!(with > 0.0, strikes, "{tuning:?}: {with} W");
+    }
+    let [lossless, anew] = [Tuning::Lossless, Tuning::Anew].map(|tuning| of(&found, tuning, 1.0));
+    assert_eq!((lossless.design, lossless.worth.value), (anew.design, anew.worth.value));
+    let at = |tuning| of(&found, tuning, 0.7).worth.value;
+    assert!(at(Tuning::Anew) <= at(Tuning::Lossless), "it starts from the other");
+    assert!(
+        found.of(Tuning::Paper).all(|point| point.worth.impact_speed > 0.0),
+        "the paper's damper strikes"
+    );
+    let said = verified::holds(&desk, "out", 8);
+    assert!(said.contains("losses.csv"), "{said}");
+}
+
+#[test]
+fn contract_restitutions_to_compare_are_asked_for() {
+    let mut study = lossy(&[0.7]);
+    study["optimize"]["objective"]["restitution"].take();
+    let desk = Desk::with(&study);
+    let error = refused(losses(&request(&desk, "study.json", "out"), &Silent)).to_string();
+    assert!(error.contains("optimize.objective.restitution: missing"), "{error}");
+    assert!(!desk.path("out").exists(), "nothing is made");
+}
