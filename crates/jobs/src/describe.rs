@@ -58,18 +58,28 @@ fn walls(contact: &Contact) -> String {
     };
     let stiffness = joined(&surfaces.stiffness().map(short), " and ");
     let hertz = format!("contact stiffnesses {stiffness} N/m^1.5");
-    if surfaces.loss.is_none() {
-        return format!("{hertz}, Hertz without loss");
+    match surfaces.loss_obstacle {
+        None => format!("{hertz}, {}", loss(&surfaces.loss)),
+        Some(obstacle) => {
+            format!("{hertz}, on the structure {}, on the obstacle {}", loss(&surfaces.loss), loss(&obstacle))
+        }
     }
-    let [slow, fast] = [0.1, 1.0].map(|speed| short(surfaces.loss.restitution(speed)));
-    match surfaces.loss {
+}
+
+/// What a contact loses.
+fn loss(loss: &Loss) -> String {
+    if loss.is_none() {
+        return "Hertz without loss".to_owned();
+    }
+    let [slow, fast] = [0.1, 1.0].map(|speed| short(loss.restitution(speed)));
+    match loss {
         Loss::Damping(lambda) => {
             let lambda = short(lambda.get());
             format!(
-                "{hertz}, Hunt and Crossley's loss with lambda = {lambda} s/m: restitution {slow} at 0.1 m/s, {fast} at 1 m/s"
+                "Hunt and Crossley's loss with lambda = {lambda} s/m: restitution {slow} at 0.1 m/s, {fast} at 1 m/s"
             )
         }
-        Loss::Restoring(_) => format!("{hertz}, a loss with restitution {slow} at every speed"),
+        Loss::Restoring(_) => format!("a loss with restitution {slow} at every speed"),
     }
 }
 

@@ -46,7 +46,7 @@ pub struct Coupled {
     walls: [f64; 2],
     hertz: [f64; 2],
     /// What contacts lose.
-    law: Law,
+    laws: [Law; 2],
     /// R, m; 0 of a damper without Hertz's surfaces.
     pub(crate) radius: f64,
     /// e of rigid walls.
@@ -68,7 +68,7 @@ impl Coupled {
                 None => [f64::NEG_INFINITY, f64::INFINITY],
             },
             hertz: surfaces.map_or([0.0; 2], Surfaces::stiffness),
-            law: surfaces.map_or(Law::NONE, |surfaces| surfaces.loss.into()),
+            laws: surfaces.map_or([Law::NONE, Law::NONE], |surfaces| surfaces.losses().map(Law::from)),
             radius: surfaces.map_or(0.0, |surfaces| surfaces.radius.get()),
             restitution: damper
                 .contact
@@ -136,14 +136,14 @@ impl Coupled {
         self.hertz[side as usize]
     }
 
-    /// What contacts lose.
-    pub(crate) fn law(&self) -> &Law {
-        &self.law
+    /// What contacts with a wall lose.
+    pub(crate) fn law(&self, side: Side) -> &Law {
+        &self.laws[side as usize]
     }
 
     /// Whether contacts lose energy.
     pub fn is_lossy(&self) -> bool {
-        self.law.is_lossy()
+        self.laws.iter().any(Law::is_lossy)
     }
 
     /// The force of a wall at an indentation `z` (m) that changes at the rate `w` (m/s), `[F, ∂F/∂z, ∂F/∂w]` in N, N/m, N·s/m: Hertz's,
@@ -161,7 +161,7 @@ impl Coupled {
     /// The factor of Hertz's force at the indentation `q²` (m) that changes at the rate `w` (m/s).
     #[inline]
     pub(crate) fn wall_factor(&self, side: Side, q: f64, w: f64) -> Factor {
-        self.law.factor(|| 0.4 * self.hertz(side) * self.inverse_effective_mass() * q.powi(5), w)
+        self.law(side).factor(|| 0.4 * self.hertz(side) * self.inverse_effective_mass() * q.powi(5), w)
     }
 
     /// The radius of the contact area at an indentation `z` (m), m: `√(R z)` (Johnson, p. 92).

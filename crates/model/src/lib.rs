@@ -75,7 +75,7 @@ pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
-pub use regularised::bounds::{Growth, ORDERS, OverContact};
+pub use regularised::bounds::{Change, Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};
 pub use steady::Steady;

@@ -148,7 +148,7 @@ impl From<Loss> for Law {
         match loss {
             Loss::Damping(lambda) => Self::Damping(lambda.get()),
             Loss::Restoring(e) if e.get() == 1.0 => Self::Damping(0.0),
-            Loss::Restoring(e) => Self::Restoring(Arc::new(Restoring::new(e.get()))),
+            Loss::Restoring(e) => Self::Restoring(Restoring::of(e.get())),
         }
     }
 }

@@ -52,7 +52,7 @@ impl Coupled {
         let bare = self.bare();
         let (inv_m1, inv_m) = (1.0 / bare.m1, self.inverse_effective_mass());
         let pair = |factor: f64| [factor * inv_m1, factor * inv_m];
-        let (lambda, restoring) = match self.law() {
+        let (lambda, restoring) = match self.law(side) {
             Law::Damping(lambda) => (*lambda, None),
             Law::Restoring(law) => (0.0, Some(Arc::clone(law))),
         };
@@ -88,8 +88,13 @@ impl RegularisedContact {
     }
 
     /// The law of a restitution that is the same at every speed.
-    pub fn restoring(&self) -> Option<&Restoring> {
-        self.restoring.as_deref()
+    pub fn restoring(&self) -> Option<&Arc<Restoring>> {
+        self.restoring.as_ref()
+    }
+
+    /// λ of the law of Hunt and Crossley, s/m; 0 without.
+    pub fn lambda(&self) -> f64 {
+        self.lambda
     }
 
     /// Whether the law may pull: the force then ends while the damper is inside the wall.

@@ -56,6 +56,7 @@ struct InFile {
     #[serde(rename = "E4")] young_4: Option<Positive>,
     #[serde(rename = "nu4")] poisson_4: Option<PoissonRatio>,
     loss: Option<Loss>,
+    loss_obstacle: Option<Loss>,
     strength: Option<Positive>,
     density: Option<Positive>,
     rigid: Option<Rigid>,
@@ -67,7 +68,7 @@ enum Refused {
     #[error("missing field `{0}`: give all of R, q, E1, nu1 to E4, nu4 (Hertz's surfaces), or `rigid` alone")]
     Missing(&'static str),
     #[error(
-        "two laws: `rigid` and `{0}`: give `rigid` alone, or Hertz's surfaces (R, q, E1, nu1 to E4, nu4, loss, strength, density) without it"
+        "two laws: `rigid` and `{0}`: give `rigid` alone, or Hertz's surfaces (R, q, E1, nu1 to E4, nu4, loss, loss_obstacle, strength, density) without it"
     )]
     Both(&'static str),
 }
@@ -84,7 +85,8 @@ impl TryFrom<InFile> for Contact {
                 ("E2", file.young_2.is_some()), ("nu2", file.poisson_2.is_some()),
                 ("E3", file.young_3.is_some()), ("nu3", file.poisson_3.is_some()),
                 ("E4", file.young_4.is_some()), ("nu4", file.poisson_4.is_some()),
-                ("loss", file.loss.is_some()), ("strength", file.strength.is_some()), ("density", file.density.is_some()),
+                ("loss", file.loss.is_some()), ("loss_obstacle", file.loss_obstacle.is_some()),
+                ("strength", file.strength.is_some()), ("density", file.density.is_some()),
             ];
             return match given.into_iter().find(|(_, given)| *given) {
                 Some((name, _)) => Err(Refused::Both(name)),
@@ -103,6 +105,7 @@ impl TryFrom<InFile> for Contact {
             young_4: file.young_4.ok_or(Refused::Missing("E4"))?,
             poisson_4: file.poisson_4.ok_or(Refused::Missing("nu4"))?,
             loss: file.loss.unwrap_or_default(),
+            loss_obstacle: file.loss_obstacle,
             strength: file.strength,
             density: file.density,
         }))
@@ -173,6 +176,9 @@ pub struct Surfaces {
     /// What a contact loses; left out, contacts lose nothing.
     #[serde(default, skip_serializing_if = "Loss::is_none")]
     pub loss: Loss,
+    /// What a contact with the obstacle loses, where that is not what one with the primary structure does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loss_obstacle: Option<Loss>,
     /// strength, yield strength of the weakest of the colliding surfaces, N/m². No motion depends on it: an answer warns of contacts whose
     /// pressure is above 1.6 times it, where a surface begins to yield.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -205,6 +211,7 @@ impl Surfaces {
             young_4: young(2.05e7)?,
             poisson_4: soft,
             loss: Loss::default(),
+            loss_obstacle: None,
             strength: None,
             density: None,
         })
@@ -224,6 +231,11 @@ impl Surfaces {
             pair(self.young_1, self.poisson_1, self.young_2, self.poisson_2),
             pair(self.young_3, self.poisson_3, self.young_4, self.poisson_4),
         ]
+    }
+
+    /// What contacts with the primary structure and with the obstacle lose.
+    pub fn losses(&self) -> [Loss; 2] {
+        [self.loss, self.loss_obstacle.unwrap_or(self.loss)]
     }
 
     /// The times that a longitudinal wave takes through a damper of `mass` (kg) and back, s, by the contacts with the primary structure and
@@ -261,7 +273,8 @@ mod tests {
     fn contract_the_walls_have_one_of_two_laws() {
         let read = |text: &str| serde_json::from_str::<Contact>(text).map_err(|error| error.to_string());
         let known = HERTZ.replace('}', r#","strength":20000000.0,"density":1200.0}"#);
-        for text in [HERTZ, &known, r#"{"rigid":{"restitution":0.7}}"#] {
+        let two = HERTZ.replace('}', r#","loss":{"restitution":0.9},"loss_obstacle":{"lambda":0.0}}"#);
+        for text in [HERTZ, &known, &two, r#"{"rigid":{"restitution":0.7}}"#] {
             let contact = read(text).expect("a law");
             assert_eq!(serde_json::to_string(&contact).expect("JSON"), text);
             assert_eq!(contact.rigid().is_some(), contact.surfaces().is_none());
@@ -278,6 +291,10 @@ mod tests {
             (r#"{"rigid":{"restitution":0.7},"R":2}"#, "two laws: `rigid` and `R`: give `rigid` alone, or"),
             (r#"{"rigid":{"restitution":0.7},"loss":{"lambda":0.1}}"#, "two laws: `rigid` and `loss`"),
             (&HERTZ.replace('{', r#"{"rigid":{"restitution":1},"#), "two laws: `rigid` and `R`"),
+            (
+                r#"{"rigid":{"restitution":0.7},"loss_obstacle":{"lambda":0.1}}"#,
+                "two laws: `rigid` and `loss_obstacle`",
+            ),
             (r#"{"rigid":{"restitution":0.7},"strength":1e7}"#, "two laws: `rigid` and `strength`"),
             (r#"{"rigid":{"restitution":0.7},"density":1e3}"#, "two laws: `rigid` and `density`"),
             (&HERTZ.replace('{', r#"{"strength":0,"#), "0 is not allowed here: give a finite number above 0"),

@@ -80,6 +80,8 @@ impl Anything {
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
                 loss: loss(lambda),
+                // Of one lossy damper in two, contacts with the obstacle lose something else.
+                loss_obstacle: (lambda > 0.8).then(|| loss(1.3 - lambda)),
                 strength: None,
                 density: None,
             })),

@@ -28,6 +28,8 @@ pub struct Numbers {
     pub lambda: f64,
     /// Restitution at every speed, 1 of those that λ is given for.
     pub e: f64,
+    /// The restitution of contacts with the obstacle, where that is another.
+    pub e_obstacle: Option<f64>,
     /// e of rigid walls in the place of the surfaces.
     pub rigid: Option<f64>,
 }
@@ -49,6 +51,7 @@ pub const SSVI: Numbers = Numbers {
     young: [2.1e11, 2.21e7, 2.1e11, 2.05e7],
     lambda: 0.0,
     e: 1.0,
+    e_obstacle: None,
     rigid: None,
 };
 
@@ -124,6 +127,8 @@ impl Numbers {
                 young_4,
                 poisson_4: rubber,
                 loss: self.loss(),
+                loss_obstacle:
+                    self.e_obstacle.map(|e| Loss::Restoring(Restitution::new(e).expect("above 0"))),
                 strength: None,
                 density: None,
             }))),

@@ -58,7 +58,7 @@ fn touches(study: &Study) -> bool {
 /// A scene whose contacts have a restitution, whatever their loss was.
 fn with_restitution(mut scene: Scene, restitution: f64) -> Result<Scene, Unusable> {
     if let Some(Damper { contact: Some(Contact::Hertz(surfaces)), .. }) = &mut scene.damper {
-        surfaces.loss = Loss::default();
+        (surfaces.loss, surfaces.loss_obstacle) = (Loss::default(), None);
     }
     with(scene, Parameter::Restitution, restitution)
 }

@@ -116,7 +116,8 @@ impl Coupled {
         let [z1, z2] = self.indentation(y);
         let position = y[0].abs() + y[2].abs();
         // The sum of the sizes of the terms of the law.
-        let loss = self.law().most(y[1].abs() + y[3].abs());
+        let most = |side: Side| self.law(side).most(y[1].abs() + y[3].abs());
+        let loss = most(Side::Primary).max(most(Side::Obstacle));
         let size = |hertz: f64, z: f64, wall: f64| {
             if z > 0.0 { hertz_force(hertz, z) * (1.0 + 1.5 * (position + wall) / z) } else { 0.0 }
         };

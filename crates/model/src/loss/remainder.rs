@@ -7,6 +7,7 @@
 use crate::polynomial::{self as few, polynomial};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
+use wide::f64x4;
 
 /// Terms of a polynomial.
 const TERMS: usize = 4 * few::TERMS;
@@ -73,7 +74,7 @@ impl Remainder {
     /// r.
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
-        let piece = usize::from(x >= ENDS[1]) + usize::from(x >= ENDS[2]) + usize::from(x >= ENDS[3]);
+        let piece = piece(x);
         let [middle, scale] = self.places[piece];
         let t = (self.variable(piece, x) - middle) * scale;
         let [a, b, c, d] = &self.pieces[piece];
@@ -81,6 +82,29 @@ impl Remainder {
         let t8 = (t2 * t2) * (t2 * t2);
         (polynomial(a, t) + t8 * polynomial(b, t)) + (t8 * t8) * (polynomial(c, t) + t8 * polynomial(d, t))
     }
+
+    /// The same, bit by bit, of four x at once: of each polynomial that one of them needs.
+    pub fn at_four(&self, x: f64x4) -> f64x4 {
+        let pieces = x.to_array().map(piece);
+        let (first, last) = pieces.iter().fold((3, 0), |(a, b), &piece| (piece.min(a), piece.max(b)));
+        let mut all = f64x4::ZERO;
+        for piece in first..=last {
+            let [middle, scale] = self.places[piece];
+            let variable = if piece < 2 { x } else { (f64x4::splat(self.branch) - x).sqrt() };
+            let t = (variable - middle) * scale;
+            let [a, b, c, d] = self.pieces[piece].each_ref().map(|few| polynomial(few, t));
+            let t2 = t * t;
+            let t8 = (t2 * t2) * (t2 * t2);
+            let here = (a + t8 * b) + (t8 * t8) * (c + t8 * d);
+            all = if piece == first { here } else { x.simd_ge(f64x4::splat(ENDS[piece])).select(here, all) };
+        }
+        all
+    }
+}
+
+/// The polynomial for an x.
+fn piece(x: f64) -> usize {
+    usize::from(x >= ENDS[1]) + usize::from(x >= ENDS[2]) + usize::from(x >= ENDS[3])
 }
 
 /// Chebyshev's polynomial of an order at a node; multiples of whole turns are left out exactly.

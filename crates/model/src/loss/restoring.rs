@@ -16,6 +16,9 @@
 
 use super::collision::chi;
 use super::remainder::Remainder;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use wide::f64x4;
 
 /// The factor `f` of Hertz's force at an indentation `z` that changes at the rate `w`, with its derivatives: those by `z` times `z`, and
 /// `by_own`, that by the number of the law itself, λ or e.
@@ -65,9 +68,28 @@ const TERMS: i32 = 28;
 /// How much beyond lift-off, as a share of w², a stage is computed by the polynomials of contacts.
 const BEYOND: f64 = 1e-3;
 
+/// Most laws that are kept: a study has a few restitutions.
+const KEPT: usize = 64;
+/// Laws by the bits of their restitutions.
+static LAWS: Mutex<BTreeMap<u64, Arc<Restoring>>> = Mutex::new(BTreeMap::new());
+
 impl Restoring {
-    /// The law of the restitution `e` in (0, 1).
-    pub(crate) fn new(e: f64) -> Self {
+    /// The law of the restitution `e` in (0, 1), computed once for a restitution.
+    pub(crate) fn of(e: f64) -> Arc<Self> {
+        // A law is whole before it is kept, so that a panic elsewhere has left nothing half done.
+        if let Some(law) = LAWS.lock().unwrap_or_else(PoisonError::into_inner).get(&e.to_bits()) {
+            return Arc::clone(law);
+        }
+        let law = Arc::new(Self::new(e));
+        let mut kept = LAWS.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= KEPT {
+            kept.clear();
+        }
+        kept.insert(e.to_bits(), Arc::clone(&law));
+        law
+    }
+
+    fn new(e: f64) -> Self {
         let chi = chi(e);
         let chi_by_e = chi * e * (1.0 + chi) / ((1.0 - chi * e) - e * e * (1.0 + chi));
         let first = chi.ln_1p();
@@ -146,6 +168,20 @@ impl Restoring {
             }
             None => self.solved(s, w).f,
         }
+    }
+
+    /// The same, bit by bit, of four contacts at once.
+    #[inline]
+    pub fn push_of_four(&self, s: f64x4, w: f64x4) -> f64x4 {
+        let square = w * w;
+        let whole = square + s * 2.0;
+        let holds = s.simd_ge(square * -BEYOND) & whole.simd_gt(f64x4::ZERO);
+        if self.remainder.is_exact() && holds.all() {
+            let x = w / whole.sqrt();
+            return x * self.chi * self.remainder.at_four(x) + 1.0;
+        }
+        let (s, w) = (s.to_array(), w.to_array());
+        f64x4::new(std::array::from_fn(|i| self.push(s[i], w[i])))
     }
 
     /// `ż² + 2 S`, m²/s², where the polynomials hold.
@@ -305,6 +341,12 @@ mod tests {
                 worst = worst.max((a.h - b.h).abs()).max((a.f - b.f).abs()).max((a.v - b.v).abs());
             }
             assert!(law.remainder.is_exact() && worst < 1e-14, "{e}: {worst:e}");
+            for x in [-0.99, -0.8, -0.51, -0.2, 0.1, 0.45, 0.55, 0.999] {
+                let x = [x, x + 0.001, -0.3 * x, 0.7 * x];
+                let s = x.map(|x| 0.5 * (1.0 - x) * (1.0 + x));
+                let alone: [f64; 4] = std::array::from_fn(|i| law.push(s[i], x[i]));
+                assert_eq!(law.push_of_four(f64x4::new(s), f64x4::new(x)).to_array(), alone, "{e} {x:?}");
+            }
         }
     }
 

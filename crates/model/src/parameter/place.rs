@@ -22,6 +22,9 @@ pub enum Absent {
     /// Another number gives the forcing.
     #[error("the forcing of the scene is given by `{0}`")]
     Forcing(&'static str),
+    /// Contacts with either wall have a loss of their own.
+    #[error("each wall has its own loss: give `loss` alone, for both")]
+    Losses,
     /// Another number gives the loss of its contacts.
     #[error("the loss of the contact is given by `{0}`")]
     Loss(&'static str),
@@ -127,6 +130,9 @@ impl Parameter {
             Self::Nu4 => Place::Poisson(&mut contact.poisson_4),
             Self::Strength => Place::Optional(&mut contact.strength),
             Self::Density => Place::Optional(&mut contact.density),
+            Self::Lambda | Self::Restitution if contact.loss_obstacle.is_some() => {
+                return Err(Absent::Losses);
+            }
             Self::Lambda | Self::Restitution => return self.place_in_loss(&mut contact.loss),
             _ => Place::Positive(&mut contact.radius),
         };

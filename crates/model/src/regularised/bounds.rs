@@ -31,6 +31,17 @@ pub struct OverContact {
     excitation: f64,
 }
 
+/// Bounds between two states, each the most and how far it may be from what it is at the nearer of the two.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// Of the four numbers of [`Growth`].
+    pub states: Growth<2>,
+    /// Of their rates in time.
+    pub rates: Growth<2>,
+    /// Of `q`, the rate of time, √m.
+    pub root: [f64; 2],
+}
+
 /// Series with every term by its size: of the numbers of [`Growth`], of `a1` and of `dw/dt`.
 struct Series<const K: usize> {
     growth: Growth<K>,
@@ -72,6 +83,41 @@ impl RegularisedContact {
         let Series { growth, a1, rate, .. } = self.series::<ORDERS, true>(bounds);
         let [_, v1, _, w] = growth;
         [growth, [v1, a1, w, rate]]
+    }
+
+    /// Bounds between two states `h` apart; `None` if the piece is too long for the proof. They need nothing of the factor of a loss but that
+    /// it lies between 0 and its largest, so that they hold where that factor turns too fast for the series: where `v` vanishes.
+    pub fn change(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Change> {
+        let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
+        let mut most = ends;
+        let excitation = self.primary[0] * self.cos[0].hypot(self.sin[0]);
+        for _ in 0..8 {
+            let [q, w, x1, v1] = most;
+            let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
+            let outside = excitation + self.primary[1] * v1 + self.primary[2] * x1;
+            let [a1, rate] = [0, 1]
+                .map(|i| outside + self.hertz[i] * contact + self.dashpot[i] * w + self.spring[i] * stretch);
+            let change = [0.5 * w, q * rate, q * v1, q * a1].map(|slope| 0.5 * h * slope);
+            let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + change[i]);
+            if (0..4).all(|i| reach[i] <= most[i]) {
+                let [of_q, of_w, of_x1, of_v1] = change;
+                let of_stretch = 2.0 * q * of_q;
+                let turning = 0.5 * h * q * self.omega * excitation;
+                let outside = turning + self.primary[1] * of_v1 + self.primary[2] * of_x1;
+                let [of_a1, of_rate] = [0, 1].map(|i| {
+                    outside + self.hertz[i] * contact + self.dashpot[i] * of_w + self.spring[i] * of_stretch
+                });
+                return Some(Change {
+                    states: [[x1, of_x1], [v1, of_v1], [stretch, of_stretch], [w, of_w]],
+                    rates: [[v1, of_v1], [a1, of_a1], [w, of_w], [rate, of_rate]],
+                    root: [q, of_q],
+                });
+            }
+            for i in 0..4 {
+                most[i] = most[i].max(1.05 * reach[i]);
+            }
+        }
+        None
     }
 
     /// Bounds on a piece; `None` if it is too long for the proof.
@@ -153,7 +199,7 @@ impl RegularisedContact {
     ///
     /// With the same restitution at every speed `w = v h` with `|h| <= 1` and `dv/dt = A h / D`, where `|h|/D <= 1/e` (for `|h| > e` as
     /// `D >= h²`, else as `D >= e²`), so that `|w|` and v stay within `G t / e` of w0; `S = v² G(h)` is at most `v²/2`, as without loss, and
-    /// the impulse as the force only pushes.
+    /// the impulse as the force only pushes. By the law of Hunt and Crossley the force takes energy away, so that all is as without loss.
     pub fn over_contact(
         &self,
         touch: &RegularisedState,
@@ -203,13 +249,15 @@ impl RegularisedContact {
     }
 
     /// Bounds on the first Taylor coefficients in *time* over a whole contact. `q |w|` is at most `max u √(1 - u⁵) = 0.658` times the
-    /// bounds on both. The factor f of a loss changes at the rate `χ dh/dt`, `dh/dt = f/v (-κ q³ + 2 A G / D)`, and `2 f G <= D`.
+    /// bounds on both. The factor f of a loss changes at the rate `χ dh/dt`, `dh/dt = f/v (-κ q³ + 2 A G / D)`, and `2 f G <= D`; that of Hunt
+    /// and Crossley at `λ dw/dt`.
     pub fn growth_over_contact(&self, over: &OverContact) -> Growth<3> {
         let ([x, v, stretch, w], [_, on_primary, _, apart], q) = (over.most, over.beside, over.depth);
         let (mut cube, mut cube_rate) = (q * q * q, 1.5 * 0.658 * q * w);
-        if let Some(law) = &self.restoring {
-            let most = 1.0 + law.chi;
-            let turn = law.chi * (most * self.hertz[1] * cube + apart) / over.slowest;
+        if self.is_lossy() {
+            let most = self.most(w);
+            let turns = self.restoring.as_ref().map_or(self.lambda, |law| law.chi / over.slowest);
+            let turn = turns * (most * self.hertz[1] * cube + apart);
             (cube, cube_rate) = (most * cube, most * cube_rate + cube * turn);
         }
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);

@@ -87,7 +87,9 @@ fn contract_values_out_of_range_are_refused_and_leave_the_scene_as_it_is() {
                 match parameter.set(&mut scene, bad) {
                     Err(
                         Unsettable::OutOfRange(_)
-                        | Unsettable::Absent(Absent::Forcing(_) | Absent::Rigid | Absent::Loss(_)),
+                        | Unsettable::Absent(
+                            Absent::Forcing(_) | Absent::Rigid | Absent::Losses | Absent::Loss(_),
+                        ),
                     ) => {}
                     other => panic!("{parameter} = {bad}: {other:?}"),
                 }

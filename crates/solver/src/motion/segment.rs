@@ -23,4 +23,10 @@ pub trait Segment<const N: usize> {
     fn quintic_error(&self, _form: &Form<N>, _ends: [&Knot<N>; 2], _h: f64, _sharp: bool) -> Option<f64> {
         None
     }
+    /// How far a quantity may rise between two places `h` apart above the larger of its values there, from its slopes (with respect to `θ`)
+    /// at both, by a bound that is coarse but holds where [`Self::quintic_error`] is infinite; infinite itself for a motion without such a
+    /// bound.
+    fn rise(&self, _form: &Form<N>, _ends: [&Knot<N>; 2], _slopes: [f64; 2], _h: f64) -> f64 {
+        f64::INFINITY
+    }
 }

@@ -101,7 +101,12 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         let coefficients = quintic(b.0 - a.0, a.2.map(f64x4::splat), b.2.map(f64x4::splat));
-        let highest = highest(coefficients, f64x4::splat(remainder)).to_array()[0];
+        let highest = if remainder.is_finite() {
+            highest(coefficients, f64x4::splat(remainder)).to_array()[0]
+        } else {
+            let (form, slopes) = (self.quantity.form(), [a.2[1], b.2[1]]);
+            a.2[0].max(b.2[0]) + segment.rise(form, [&a.1, &b.1], slopes, b.0 - a.0)
+        };
         // A bound that is NaN drops nothing.
         if highest <= self.record.value {
             return;

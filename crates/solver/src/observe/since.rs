@@ -98,4 +98,7 @@ impl<S: Segment<4>> Segment<4> for Tail<'_, S> {
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, sharp: bool) -> Option<f64> {
         self.whole.quintic_error(form, ends, h, sharp)
     }
+    fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
+        self.whole.rise(form, ends, slopes, h)
+    }
 }

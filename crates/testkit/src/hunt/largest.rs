@@ -49,10 +49,16 @@ fn anywhere_masses(draw: &mut Spread) -> Numbers {
     Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
 }
 
-/// Any scene whose contacts lose energy, from a thousandth to nearly all.
+/// Any scene whose contacts lose energy, from a thousandth to nearly all: one in two by the law of Hunt and Crossley, of the others one in two
+/// with a wall apart.
 fn lossy(draw: &mut Spread) -> Numbers {
     let numbers = anywhere(draw);
-    Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
+    if draw.unit() < 0.5 {
+        return Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers };
+    }
+    let mut restitution = || 0.05 + 0.95 * draw.unit();
+    let (e, other) = (restitution(), restitution());
+    Numbers { e, e_obstacle: (draw.unit() < 0.5).then_some(other), ..numbers }
 }
 
 /// How a scene is drawn.
@@ -118,8 +124,10 @@ fn pair<Q: Quantity<4>>(quantity: impl Fn() -> Q) -> Pair<Q> {
     (RunningMaximum::new(quantity(), f64::INFINITY), Everywhere::new(quantity()))
 }
 
-/// The gain that the search missed, relative to the largest value; infinite if the search could not prove its record.
-fn missed<Q: Quantity<4>>((search, everywhere): &Pair<Q>, size: f64) -> f64 {
+/// The gain that a search missed, relative to the largest value, and by how much its bounds could not decide.
+type Missed = [f64; 2];
+
+fn missed<Q: Quantity<4>>((search, everywhere): &Pair<Q>, size: f64) -> Missed {
     relative(everywhere.largest - search.record().value, search.doubt(), size)
 }
 
@@ -135,19 +143,13 @@ fn sizes<'a>(
     (Magnitude::new(quantity, f64::INFINITY), [1.0, -1.0].map(|sign| Everywhere::new(quantity(sign))))
 }
 
-fn missed_size((search, everywhere): &Sizes<'_>) -> f64 {
+fn missed_size((search, everywhere): &Sizes<'_>) -> Missed {
     let largest = everywhere[0].largest.max(everywhere[1].largest);
     relative(largest - search.record().value, search.doubt(), largest)
 }
 
-fn relative(missed: f64, doubt: f64, size: f64) -> f64 {
-    if doubt > ALLOWED * size {
-        f64::INFINITY
-    } else if missed <= 0.0 {
-        0.0
-    } else {
-        missed / size
-    }
+fn relative(missed: f64, doubt: f64, size: f64) -> Missed {
+    [missed, doubt].map(|share| if share <= 0.0 { 0.0 } else { share / size })
 }
 
 /// Counts the pieces of contacts.
@@ -162,7 +164,7 @@ impl Observer<4> for ContactPieces {
 
 /// The gains that the search missed in a scene, of E1, E2, both ends of the relative displacement, and the sizes of x1, v1, a1 and the
 /// force on the ground, and the forces of walls that lose energy; and the number of contact pieces.
-fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 10], u64), SolverError> {
+fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([Missed; 10], u64), SolverError> {
     let system = numbers.coupled();
     let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
     let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
@@ -184,7 +186,7 @@ fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([f64; 10], u64), S
     let reach = far.1.largest.abs().max(near.1.largest.abs());
     let [x1, v1, a1, ground] = structure.each_ref().map(missed_size);
     let [e1, e2] = [missed(&e1, e1.1.largest), missed(&e2, e2.1.largest)];
-    let [on_primary, on_obstacle] = forces.map_or([0.0; 2], |(found, everywhere)| {
+    let [on_primary, on_obstacle] = forces.map_or([[0.0; 2]; 2], |(found, everywhere)| {
         let most = everywhere[0].largest.max(everywhere[1].largest).max(1.0);
         let missed = |side: usize| everywhere[side].largest - found.records()[side].value.max(0.0);
         [0, 1].map(|side| relative(missed(side), found.doubt(), most))
@@ -279,21 +281,28 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
             (number, search(&numbers, from, rtol))
         })
         .collect();
-    let (mut pieces, mut contact_scenes, mut faults) = (0, 0, Vec::new());
+    let (mut pieces, mut contact_scenes, mut faults, mut undecided) = (0, 0, Vec::new(), 0);
     for (number, found) in looked {
         let (missed, seen) = found.unwrap_or_else(|error| panic!("{what} {number}: {error}"));
         pieces += seen;
         contact_scenes += u64::from(seen > 0);
-        if missed.iter().any(|m| m.is_nan() || *m > ALLOWED) {
+        let beyond =
+            |part: usize| missed.iter().any(|missed| missed[part].is_nan() || missed[part] > ALLOWED);
+        // A factor that depends on the speed may turn too fast for the bounds where that vanishes: a run then says how much is open.
+        if scenes == Scenes::Lossy && beyond(1) && !beyond(0) {
+            undecided += 1;
+        } else if beyond(0) || beyond(1) {
             faults.push(format!("{number} {missed:?} {:?}", drawn(number, scene)));
         }
     }
     let mut hunt = Hunt::default();
     hunt.row(format!(
-        "| {what} | {count} | {contact_scenes} | {pieces} pieces of contacts | 1e-9 | {} |",
-        faults.len()
+        "| {what} | {count} | {contact_scenes} | {pieces} pieces of contacts | 1e-9 | {}{} |",
+        faults.len(),
+        if undecided > 0 { format!("; {undecided} not proven") } else { String::new() }
     ));
     hunt.faults = faults;
+    hunt.check(undecided <= count / 50, || format!("{undecided} of {count} scenes are not proven"));
     hunt.check(contact_scenes > count / 4, || format!("{contact_scenes} of {count} scenes have contacts"));
     hunt
 }
@@ -330,8 +339,9 @@ pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
     hunt
 }
 
-/// The gains that the search missed in scene `number` of those drawn anywhere, and the most that is allowed.
+/// The gains that the search missed or could not decide in scene `number` of those drawn anywhere, and the most that is allowed.
 pub fn missed_in(number: u64) -> ([f64; 10], f64) {
     let (numbers, from, rtol) = drawn(number, anywhere);
-    (search(&numbers, from, rtol).expect("a run").0, ALLOWED)
+    let (missed, _) = search(&numbers, from, rtol).expect("a run");
+    (missed.map(|[missed, doubt]| missed.max(doubt)), ALLOWED)
 }

@@ -1,4 +1,4 @@
-//! Contacts with the same restitution at every speed, close to the undisturbed collision of that law.
+//! Contacts that lose energy, close to an undisturbed collision: of the same restitution at every speed, or of a χ next to that of the contact.
 //!
 //! The force `f = ζ^(3/2) φ` depends on the speed of indentation, too, so the unknowns are the forces at the nodes and the duration σ. With the
 //! moments `m_k` of f the Volterra equation gives depth and speed at every node,
@@ -11,7 +11,7 @@
 //! undisturbed collision is hastened by Broyden's updates (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995,
 //! section 7.3).
 
-use super::lossy_rule::{LossyRule, M, N, Unknowns, inner};
+use super::lossy_rule::{LossyRule, UnitLaw, Unknowns, inner};
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
@@ -19,11 +19,10 @@ use super::solve::{Found, MAX_ITERATIONS, Pushed, TAIL, error, free_terms, size}
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
 use crate::motion::polynomial::Polynomial;
-use retune_model::Restoring;
 use wide::f64x4;
 
 /// A contact in the units of its undisturbed collision.
-struct Contact<'a> {
+struct Contact<'a, const N: usize, const M: usize> {
     of: &'a Collisions,
     rule: &'a Rule<N, M>,
     terms: usize,
@@ -31,32 +30,46 @@ struct Contact<'a> {
     depth: f64,
     speed: f64,
     undisturbed: f64,
+    /// Bounds on the terms of the response to a force of 1, over the first of them.
+    weights: [f64; MOMENTS],
     /// `z_free / t` in Z, and `ż_free` in w.
     approach: Polynomial<FREE>,
     pace: Polynomial<FREE>,
 }
 
 /// The motion under forces at the nodes: depths and speeds there, and the depth at the end.
-struct Motion {
+struct Motion<const M: usize> {
     depths: Nodes<M>,
     speeds: Nodes<M>,
     end: f64,
 }
 
-impl Contact<'_> {
-    /// The motion under these forces, whose moments are left at the nodes and at the end.
-    fn motion(
+impl<const N: usize, const M: usize> Contact<'_, N, M> {
+    /// Adds the moments of a change of the forces (of this size, in units of the greatest force), as far as the change counts.
+    #[inline(always)]
+    fn add(
         &self,
-        (forces, stretch): &Unknowns,
+        change: &Nodes<M>,
+        size: f64,
         moments: &mut [Nodes<M>; MOMENTS],
         last: &mut [f64; MOMENTS],
-    ) -> Motion {
+    ) {
+        let counts = |k: &usize| self.weights[*k] * size > 0.02 * self.of.rtol;
+        let needed = (2..=self.terms).rev().find(counts).unwrap_or(1);
+        for k in 0..=needed {
+            let more = product(&self.rule.moments[k], change);
+            for i in 0..M {
+                moments[k][i] += more[i];
+            }
+            last[k] += dot(&self.rule.last[k], change);
+        }
+    }
+
+    /// The motion under forces with these moments.
+    #[inline(always)]
+    fn motion(&self, stretch: f64, moments: &[Nodes<M>; MOMENTS], last: &[f64; MOMENTS]) -> Motion<M> {
         let Self { of, rule, terms, depth, speed, .. } = *self;
         let duration = stretch * self.undisturbed;
-        for k in 0..=terms {
-            moments[k] = product(&rule.moments[k], forces);
-            last[k] = dot(&rule.last[k], forces);
-        }
         let (mut pushed, mut slowed, mut pushed_last) = ([f64x4::ZERO; M], [f64x4::ZERO; M], 0.0);
         for k in (1..=terms).rev() {
             for i in 0..M {
@@ -79,11 +92,11 @@ impl Contact<'_> {
 }
 
 /// Broyden's steps, each with the square of its length.
-struct Broyden(Vec<(Unknowns, f64)>);
+struct Broyden<const M: usize>(Vec<(Unknowns<M>, f64)>);
 
-impl Broyden {
+impl<const M: usize> Broyden<M> {
     /// The next step, from that by the inverse Jacobian at the beginning.
-    fn step(&mut self, plain: Unknowns) -> Unknowns {
+    fn step(&mut self, plain: Unknowns<M>) -> Unknowns<M> {
         let mut step = plain;
         for pair in self.0.windows(2) {
             let share = inner(&pair[0].0, &step) / pair[0].1;
@@ -100,20 +113,18 @@ impl Broyden {
 }
 
 impl Collisions {
-    /// As the iteration of contacts without loss, for those near the undisturbed collision of `rule`.
+    /// As the iteration of contacts without loss, for those near the undisturbed collision of a rule.
     #[inline(never)]
-    pub(super) fn iterate_lossy(
+    pub(super) fn iterate_lossy<const N: usize, const M: usize>(
         &self,
-        of: &LossyRule,
+        of: &LossyRule<N, M>,
+        law: &UnitLaw,
         touch: &Knot<4>,
         to: f64,
         Pushed { free, moments, last }: &mut Pushed<M>,
     ) -> Option<Found<M>> {
-        let LossyRule { rule, law, .. } = of;
+        let rule = &of.rule;
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
-        if speed.is_nan() || speed <= 0.0 {
-            return None;
-        }
         let depth = self.equations.greatest_depth(speed).powi(2);
         let undisturbed = of.duration * depth / speed;
         let terms = self.longest.iter().position(|&longest| undisturbed < longest)?;
@@ -124,29 +135,43 @@ impl Collisions {
             }))
         };
         let (approach, pace) = (between(x1, x2, depth).over_s(), between(v1, v2, speed));
-        let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, approach, pace };
-        let mut unknowns: Unknowns = (of.forces, 1.0);
+        let mut weights = [1.0; MOMENTS];
+        let mut part = 2.0 / self.gains[1];
+        for k in 2..MOMENTS {
+            part *= undisturbed / (k + 1) as f64;
+            weights[k] = part * self.gains[k].abs();
+        }
+        let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace };
+        let mut unknowns: Unknowns<M> = (of.forces, 1.0);
         let mut broyden = Broyden(Vec::with_capacity(MAX_ITERATIONS as usize));
         let mut before = 1.0_f64;
         for iterations in 1..=MAX_ITERATIONS {
-            let Motion { depths, speeds, end } = contact.motion(&unknowns, moments, last);
+            let Motion { depths, speeds, end } = contact.motion(unknowns.1, moments, last);
             // At first the force is taken as linear: before the duration fits, depths near the end may be below zero.
-            let residual: Nodes<M> = std::array::from_fn(|i| match iterations {
+            let residual: Nodes<M> = match iterations {
                 1 => {
-                    of.slopes[0][i] * (rule.depths[i] - depths[i])
-                        + of.slopes[1][i] * (of.speeds[i] - speeds[i])
+                    let undisturbed = forces(law, &rule.depths, &of.speeds);
+                    std::array::from_fn(|i| {
+                        (unknowns.0[i] - undisturbed[i])
+                            + of.slopes[0][i] * (rule.depths[i] - depths[i])
+                            + of.slopes[1][i] * (of.speeds[i] - speeds[i])
+                    })
                 }
-                _ => unknowns.0[i] - force(law, depths[i], speeds[i]),
-            });
+                _ => {
+                    let force = forces(law, &depths, &speeds);
+                    std::array::from_fn(|i| unknowns.0[i] - force[i])
+                }
+            };
             let (change, lengthening) = broyden.step(of.change(&(residual, end)));
             let size = size(&change, lengthening);
             if size.is_nan() || size >= 0.5 * before {
                 return None;
             }
             unknowns = (std::array::from_fn(|i| unknowns.0[i] + change[i]), unknowns.1 + lengthening);
+            contact.add(&change, size, moments, last);
             // Each step gains at least as much as the last.
             if size * size <= 0.3 * self.rtol * before {
-                let Motion { depths, .. } = contact.motion(&unknowns, moments, last);
+                let Motion { depths, .. } = contact.motion(unknowns.1, moments, last);
                 let duration = unknowns.1 * undisturbed;
                 // The forces of both kinds of collision are alike: so are their errors, as the tests show.
                 let error = error(rule, &unknowns.0, TAIL[2]);
@@ -157,14 +182,23 @@ impl Collisions {
         }
         None
     }
+
+    /// Whether the force pushes throughout a contact that loses energy by the law of Hunt and Crossley: the speed of indentation
+    /// `w` falls by it, and rises by other forces at most as fast as in the bounds over the contact.
+    pub(super) fn pushes(&self, touch: &Knot<4>, end: &[f64; 4], duration: f64) -> bool {
+        let touch = self.equations.regularise(&touch.y);
+        let depth = self.equations.greatest_depth(touch[1]);
+        let over = self.equations.over_contact(&touch, depth, duration, self.amplitude);
+        let least = self.side.sign() * (end[3] - end[1]);
+        over.is_some_and(|over| self.equations.push(least - over.beside[3] * duration) > 0.0)
+    }
 }
 
-/// `ζ^(3/2) φ`.
+/// `ζ^(3/2) φ` at the nodes.
 #[inline(always)]
-fn force(law: &Restoring, depths: f64x4, speeds: f64x4) -> f64x4 {
-    let (depths, speeds) = (depths.to_array(), speeds.to_array());
-    f64x4::new(std::array::from_fn(|lane| {
-        let (z, root) = (depths[lane], depths[lane].sqrt());
-        z * root * law.push(0.5 * z * z * root, speeds[lane])
-    }))
+fn forces<const M: usize>(law: &UnitLaw, depths: &Nodes<M>, speeds: &Nodes<M>) -> Nodes<M> {
+    std::array::from_fn(|i| {
+        let (z, root) = (depths[i], depths[i].sqrt());
+        z * root * law.push_of_four(z * z * root * 0.5, speeds[i])
+    })
 }

@@ -1,23 +1,134 @@
-//! The undisturbed collision of a restitution at the nodes of its rule, and the inverse Jacobian there: computed once for a restitution.
+//! The undisturbed collision of a loss at the nodes of its rule, and the inverse Jacobian there: computed once for a loss.
 
 use super::nodes::{Nodes, dot, node, packed};
 use super::rule::{Integrals, Rule};
 use super::undisturbed::{Lossy, leaning};
 use nalgebra::DMatrix;
-use retune_model::Restoring;
+use retune_model::{RegularisedContact, Restoring};
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use wide::f64x4;
 
-/// Most laws whose rules are kept: a study has a few restitutions.
+/// The factor of Hertz's force in the units of an undisturbed collision, see [`LossyRule`].
+#[derive(Clone)]
+pub enum UnitLaw {
+    /// The same restitution at every speed.
+    Restoring(Arc<Restoring>),
+    /// Hunt and Crossley's `1 + χ ż`.
+    Damping(f64),
+}
+
+impl UnitLaw {
+    /// The factor at `S = z^(5/2)/2` and `ż`.
+    pub fn push(&self, s: f64, w: f64) -> f64 {
+        match self {
+            Self::Restoring(law) => law.push(s, w),
+            Self::Damping(chi) => 1.0 + chi * w,
+        }
+    }
+
+    /// The same of four contacts.
+    #[inline(always)]
+    pub fn push_of_four(&self, s: f64x4, w: f64x4) -> f64x4 {
+        match self {
+            Self::Restoring(law) => law.push_of_four(s, w),
+            Self::Damping(chi) => w * *chi + 1.0,
+        }
+    }
+
+    /// The factor, and its derivatives by `ln z` and by `ż`.
+    fn slopes(&self, s: f64, w: f64) -> [f64; 3] {
+        match self {
+            Self::Restoring(law) => law.slopes(s, w),
+            Self::Damping(chi) => [1.0 + chi * w, 0.0, *chi],
+        }
+    }
+}
+
+/// Most restitutions whose rules are kept: a study has a few.
 const KEPT: usize = 64;
-/// The rules of laws by the bits of their restitutions.
-static RULES: Mutex<BTreeMap<u64, Arc<LossyRule>>> = Mutex::new(BTreeMap::new());
+/// Rules by the bits of the restitutions.
+static RESTORING: Mutex<BTreeMap<u64, Arc<LossyRules>>> = Mutex::new(BTreeMap::new());
+
+/// The χ whose undisturbed collisions are kept of the law of Hunt and Crossley: multiples of this, up to a restitution of 0.37.
+const STEP: f64 = 0.1;
+const STEPS: usize = 18;
+static DAMPING: [OnceLock<LossyRules>; STEPS] = [const { OnceLock::new() }; STEPS];
+
+/// The rules near an undisturbed collision, from few nodes to many.
+pub struct LossyRules {
+    pub few: LossyRule<16, 4>,
+    pub some: LossyRule<20, 5>,
+    pub many: LossyRule<24, 6>,
+}
+
+impl LossyRules {
+    fn new(law: &UnitLaw) -> Self {
+        let undisturbed = Lossy::new(law);
+        Self {
+            few: LossyRule::new(law, &undisturbed),
+            some: LossyRule::new(law, &undisturbed),
+            many: LossyRule::new(law, &undisturbed),
+        }
+    }
+
+    /// Those of a restitution.
+    fn restoring(law: &Arc<Restoring>) -> Arc<Self> {
+        let key = law.restitution().to_bits();
+        // Rules are whole before they are kept, so that a panic elsewhere has left nothing half done.
+        if let Some(rules) = RESTORING.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Arc::clone(rules);
+        }
+        let rules = Arc::new(Self::new(&UnitLaw::Restoring(Arc::clone(law))));
+        let mut kept = RESTORING.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= KEPT {
+            kept.clear();
+        }
+        kept.insert(key, Arc::clone(&rules));
+        rules
+    }
+
+    /// Those of the kept χ next to one; none if that is beyond them.
+    fn damping(chi: f64) -> Option<&'static Self> {
+        let step = (chi / STEP).round();
+        let kept = DAMPING.get(step as usize).filter(|_| step >= 0.0)?;
+        Some(kept.get_or_init(|| Self::new(&UnitLaw::Damping(STEP * step))))
+    }
+}
+
+/// The loss of the contacts with a wall, where they can be computed at once.
+pub enum Loss {
+    Restoring(Arc<LossyRules>, UnitLaw),
+    /// λ, s/m.
+    Damping(f64),
+}
+
+impl Loss {
+    /// Of equations; none without loss, and for restitutions below 0.3, which have no tables.
+    pub fn of(equations: &RegularisedContact) -> Option<Self> {
+        match equations.restoring() {
+            Some(law) if law.is_tabulated() => {
+                Some(Self::Restoring(LossyRules::restoring(law), UnitLaw::Restoring(Arc::clone(law))))
+            }
+            Some(_) => None,
+            None => Some(equations.lambda()).filter(|lambda| *lambda > 0.0).map(Self::Damping),
+        }
+    }
+
+    /// The rules for a contact that begins at a speed, m/s, and its law.
+    pub fn rules(&self, speed: f64) -> Option<(&LossyRules, UnitLaw)> {
+        match self {
+            Self::Restoring(rules, law) => Some((rules, law.clone())),
+            Self::Damping(lambda) => {
+                LossyRules::damping(lambda * speed).map(|rules| (rules, UnitLaw::Damping(lambda * speed)))
+            }
+        }
+    }
+}
 
 /// A rule for collisions near the undisturbed one of a law, and their iteration. Lengths are in units of the greatest depth Z without loss, speeds
 /// in that at touch-down, w, times in Z/w, forces in `K Z^(3/2)`.
-pub struct LossyRule {
-    pub law: Restoring,
+pub struct LossyRule<const N: usize, const M: usize> {
     /// Duration of the undisturbed collision.
     pub duration: f64,
     pub rule: Rule<N, M>,
@@ -27,42 +138,22 @@ pub struct LossyRule {
     pub speeds: Nodes<M>,
     /// The slopes of its force by depth and by speed.
     pub slopes: [Nodes<M>; 2],
-    /// The inverse Jacobian there: a column for each node and one for the end; last rows apart.
-    inverse: [Nodes<M>; N + 1],
+    /// The inverse Jacobian there: a column for each node; that of the end and the last row apart.
+    inverse: [Nodes<M>; N],
+    last_column: Nodes<M>,
     last_row: (Nodes<M>, f64),
 }
 
-/// Nodes, four side by side.
-pub const N: usize = 4 * M;
-pub const M: usize = 6;
-
 /// A vector of forces and the duration.
-pub type Unknowns = (Nodes<M>, f64);
+pub type Unknowns<const M: usize> = (Nodes<M>, f64);
 
 /// Their inner product.
-pub fn inner(a: &Unknowns, b: &Unknowns) -> f64 {
+pub fn inner<const M: usize>(a: &Unknowns<M>, b: &Unknowns<M>) -> f64 {
     dot(&a.0, &b.0) + a.1 * b.1
 }
 
-impl LossyRule {
-    /// The rule of a law, computed once for a restitution.
-    pub fn of(law: &Restoring) -> Arc<Self> {
-        let key = law.restitution().to_bits();
-        // A rule is whole before it is kept, so that a panic elsewhere has left nothing half done.
-        if let Some(rule) = RULES.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
-            return Arc::clone(rule);
-        }
-        let rule = Arc::new(Self::new(law));
-        let mut kept = RULES.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= KEPT {
-            kept.clear();
-        }
-        kept.insert(key, Arc::clone(&rule));
-        rule
-    }
-
-    fn new(law: &Restoring) -> Self {
-        let undisturbed = Lossy::new(law);
+impl<const N: usize, const M: usize> LossyRule<N, M> {
+    fn new(law: &UnitLaw, undisturbed: &Lossy) -> Self {
         let duration = undisturbed.duration;
         let (rule, integrals) = Rule::new(leaning, undisturbed.force(law), undisturbed.depth());
         let Integrals { depths, forces, .. } = &integrals;
@@ -74,29 +165,28 @@ impl LossyRule {
         let inverse = inverse(duration, &integrals, &slopes);
         let column = |j: usize| packed::<N, M>(&std::array::from_fn(|i| inverse[(i, j)]));
         Self {
-            law: law.clone(),
             duration,
             rule,
             forces: packed(forces),
             speeds: packed(&speeds),
             slopes: [0, 1].map(|by| packed::<N, M>(&slopes.map(|slopes| slopes[by]))),
             inverse: std::array::from_fn(column),
+            last_column: column(N),
             last_row: (packed::<N, M>(&std::array::from_fn(|j| inverse[(N, j)])), inverse[(N, N)]),
         }
     }
 
     /// The change by the inverse Jacobian of the undisturbed collision.
     #[inline(always)]
-    pub fn change(&self, (residual, end): &Unknowns) -> Unknowns {
-        let (columns, last) = self.inverse.split_at(N);
+    pub fn change(&self, (residual, end): &Unknowns<M>) -> Unknowns<M> {
         let mut change = [f64x4::ZERO; M];
-        for (column, i) in columns.iter().zip(0..) {
+        for (column, i) in self.inverse.iter().zip(0..) {
             let by = node(residual, i);
             for (change, column) in change.iter_mut().zip(column) {
                 *change += *column * by;
             }
         }
-        for (change, column) in change.iter_mut().zip(&last[0]) {
+        for (change, column) in change.iter_mut().zip(&self.last_column) {
             *change = -(*change + *column * *end);
         }
         (change, -(dot(&self.last_row.0, residual) + self.last_row.1 * end))
@@ -105,7 +195,7 @@ impl LossyRule {
 
 /// The inverse Jacobian of the residuals at the undisturbed collision, by forces and duration: with `Λ = (5/4) D²`,
 /// `ζ = D σ τ - Λ σ² m_1` and `ż/w = 1 - (Λ/D) σ m_0`.
-fn inverse(duration: f64, integrals: &Integrals<N>, slopes: &[[f64; 2]; N]) -> DMatrix<f64> {
+fn inverse<const N: usize>(duration: f64, integrals: &Integrals<N>, slopes: &[[f64; 2]; N]) -> DMatrix<f64> {
     let stiffness = 1.25 * duration * duration;
     let jacobian = DMatrix::from_fn(N + 1, N + 1, |i, j| {
         let [depth, speed] = if j < N {

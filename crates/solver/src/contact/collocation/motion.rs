@@ -218,7 +218,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             bounds: Default::default(),
         };
         // On the clock of lossy contacts, which suits their force, the integral of 1/√z has fewer digits: an error of 1e-11 was seen.
-        if self.of.lossy.is_some() && self.of.rtol < 1e-10 {
+        if self.of.loss.is_some() && self.of.rtol < 1e-10 {
             piece.meet_end();
         }
         observer.segment(&piece);

@@ -1,17 +1,16 @@
 //! How the force of a contact moves the linear system: `A^k b` and `g_k`, and for how long few terms suffice.
 
-use super::lossy_rule::LossyRule;
+use super::lossy_rule::Loss;
 use crate::linear::flow::Flow;
 use crate::motion::linearised::MOMENTS;
 use retune_model::{Coupled, RegularisedContact, Side};
-use std::sync::Arc;
 
 /// The numbers of all contacts with one wall.
 pub struct Collisions {
     /// The regularised equations.
     pub equations: RegularisedContact,
-    /// The rule of contacts with the same restitution at every speed.
-    pub lossy: Option<Arc<LossyRule>>,
+    /// What they lose.
+    pub loss: Option<Loss>,
     /// The wall.
     pub side: Side,
     /// Its position relative to the structure, m.
@@ -64,7 +63,7 @@ impl Collisions {
         let equations = system.regularised_contact(side);
         let [cos, sin] = system.excitation(0.0);
         let amplitude = cos.hypot(sin);
-        let lossy = equations.restoring().filter(|law| law.is_tabulated()).map(LossyRule::of);
-        Self { equations, lossy, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
+        let loss = Loss::of(&equations);
+        Self { equations, loss, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
     }
 }

@@ -1,5 +1,6 @@
 //! One contact by collocation: Newton's iteration for the depths at the nodes and the duration, and the error estimate.
 
+use super::lossy_rule::{Loss, LossyRule, LossyRules, UnitLaw};
 use super::motion::Collision;
 use super::newton::Newton;
 use super::nodes::{Nodes, at_nodes, dot, product};
@@ -46,13 +47,9 @@ impl Collisions {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
-        if let Some(of) = self.lossy.as_ref().filter(|_| !observer.follows_losses()) {
-            let iterate = |pushed: &mut Pushed<_>| self.iterate_lossy(of, &touch, to, pushed);
-            return self.solve(&of.rule, iterate, flow, &touch, observer);
-        }
-        // A collision that loses energy otherwise is not close to an undisturbed one that is known.
         if self.equations.is_lossy() {
-            return None;
+            let loss = self.loss.as_ref().filter(|_| !observer.follows_losses())?;
+            return self.collide_lossy(loss, flow, touch, to, observer);
         }
         let (few, some, many) = &*RULES;
         // At these tolerances common contacts pass the error estimate of the rule. Inside a contact Gauss's nodes gain nothing, but the
@@ -70,6 +67,49 @@ impl Collisions {
             return Some(end);
         }
         self.solve(&many.0, |pushed| self.iterate(many, &touch, to, pushed), flow, &touch, observer)
+    }
+
+    /// The same of a contact that loses energy.
+    #[inline(always)]
+    fn collide_lossy(
+        &self,
+        loss: &Loss,
+        flow: &Flow<4>,
+        touch: Knot<4>,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Option<(Knot<4>, u64)> {
+        let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
+        if speed.is_nan() || speed <= 0.0 {
+            return None;
+        }
+        let (LossyRules { few, some, many }, law) = loss.rules(speed)?;
+        // At these tolerances common contacts pass the error estimate of the rule.
+        let (few_suffice, some_suffice) = match law {
+            UnitLaw::Damping(_) => (self.rtol >= 1e-10, self.rtol >= 1e-12),
+            UnitLaw::Restoring(_) => (self.rtol >= 1e-9, self.rtol >= 1e-11),
+        };
+        if few_suffice && let Some(end) = self.solve_lossy(few, &law, flow, &touch, to, observer) {
+            return Some(end);
+        }
+        if some_suffice && let Some(end) = self.solve_lossy(some, &law, flow, &touch, to, observer) {
+            return Some(end);
+        }
+        self.solve_lossy(many, &law, flow, &touch, to, observer)
+    }
+
+    /// The same by one rule.
+    #[inline(always)]
+    fn solve_lossy<const N: usize, const M: usize>(
+        &self,
+        of: &LossyRule<N, M>,
+        law: &UnitLaw,
+        flow: &Flow<4>,
+        touch: &Knot<4>,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Option<(Knot<4>, u64)> {
+        self.solve(&of.rule, |pushed| self.iterate_lossy(of, law, touch, to, pushed), flow, touch, observer)
     }
 
     /// The contact by one rule; `None` if it is not of the kind that the rule is for.
@@ -105,6 +145,9 @@ impl Collisions {
             end: [0.0; 4],
         };
         collision.end = collision.lift_off();
+        if self.equations.may_part() && !self.pushes(touch, &collision.end, duration) {
+            return None;
+        }
         observer.path(&collision);
         let excitation = flow.excitation_after(touch.excitation, duration);
         let end = Knot { t: touch.t + duration, excitation, y: collision.end, clock: [1.0, 0.0] };

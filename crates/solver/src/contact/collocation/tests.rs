@@ -116,6 +116,26 @@ fn reference_lossy_contacts_at_once_agree_with_contacts_step_by_step() {
     }
 }
 
+/// The same by the law of Hunt and Crossley, whose χ grows with the touch-down speed: to a restitution of 0.37.
+#[test]
+fn reference_damped_contacts_at_once_agree_with_contacts_step_by_step() {
+    for (lambda, rtol, taken_at_least) in
+        [(0.02, 1e-8, 75), (0.02, 1e-10, 65), (0.45, 1e-8, 70), (0.45, 1e-10, 60), (2.0, 1e-8, 40)]
+    {
+        let mut draw = Draw(1);
+        let (mut taken, mut worst) = (0, 0.0_f64);
+        for _ in 0..100 {
+            let system = Numbers { lambda, ..numbers(&mut draw) }.coupled();
+            let (side, touch) = touch_down(&mut draw, &system);
+            let apart = at_once(&system, side, touch, rtol);
+            taken += usize::from(apart.is_some());
+            worst = worst.max(apart.unwrap_or(0.0));
+        }
+        assert!(taken >= taken_at_least, "λ = {lambda}: {taken} of 100 contacts at rtol {rtol:e}");
+        assert!(worst <= (10.0 * rtol).max(3e-11), "λ = {lambda}: {worst:e} at rtol {rtol:e}");
+    }
+}
+
 /// Keeps the largest distance of what it sees from the motion followed step by step.
 struct Compare<'a> {
     system: &'a Coupled,

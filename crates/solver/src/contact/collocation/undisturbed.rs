@@ -4,9 +4,9 @@
 //! `Z = (5 w² / 4κ)^(2/5)` and the duration `T = 2.943 Z/w` every such collision is the same, `ζ'' = -Λ ζ^(3/2)` with
 //! `ζ(0) = ζ(1) = 0`.
 
+use super::lossy_rule::UnitLaw;
 use super::quadrature::gauss;
 use crate::methods::dop853;
-use retune_model::Restoring;
 
 /// Duration of the undisturbed collision, in units of greatest depth over touch-down speed: `(4/5) B(2/5, 1/2)`.
 pub const DURATION: f64 = 2.943_275_184_324_705;
@@ -52,7 +52,7 @@ pub fn undisturbed_force() -> impl Fn(f64) -> f64 {
     interpolated(nodes, values, ends)
 }
 
-/// The undisturbed collision whose restitution is the same at every speed.
+/// The undisturbed collision of a law of loss.
 pub struct Lossy {
     /// Its duration, in units of the greatest depth *without loss* over the touch-down speed.
     pub duration: f64,
@@ -62,7 +62,7 @@ pub struct Lossy {
 
 impl Lossy {
     /// Of a law.
-    pub fn new(law: &Restoring) -> Self {
+    pub fn new(law: &UnitLaw) -> Self {
         let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4) * law.push(0.5 * q.powi(5), w), q];
         let duration = lift_off(slope);
         let (nodes, _) = gauss(NODES, 0);
@@ -70,7 +70,7 @@ impl Lossy {
     }
 
     /// The force over the clock, in units of `K Z^(3/2)`.
-    pub fn force(&self, law: &Restoring) -> impl Fn(f64) -> f64 + use<> {
+    pub fn force(&self, law: &UnitLaw) -> impl Fn(f64) -> f64 + use<> {
         let force = |&[q, w, _]: &[f64; 3]| q.powi(3) * law.push(0.5 * q.powi(5), w);
         let values = self.states.iter().zip(&self.nodes).map(|(y, &u)| force(y) / ends(u)).collect();
         interpolated(self.nodes.clone(), values, ends)

@@ -78,16 +78,26 @@ impl Segment<4> for Piece<'_> {
         };
         Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(growth, rates, 6)) // 6! of a Taylor coefficient
     }
+
+    fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
+        let [from, to] = self.states(ends);
+        let change = self.equations.change(h, &from, &to);
+        change.map_or(f64::INFINITY, |change| form.rise_between(&change, slopes, h))
+    }
 }
 
 impl Piece<'_> {
-    /// Bounds between two places `h` apart; those of the rates where a form needs them.
-    fn growth(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64) -> [Growth<ORDERS>; 2] {
-        // `q` is taken from the clock, because it has lost digits in the state.
-        let [from, to] = ends.map(|knot| {
+    /// The regularised states of two moments, but for their times; `q` is taken from the clock, because it has lost digits in the state.
+    fn states(&self, ends: [&Knot<4>; 2]) -> [RegularisedState; 2] {
+        ends.map(|knot| {
             let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
             [knot.clock[0], w, x1, v1, 0.0]
-        });
+        })
+    }
+
+    /// Bounds between two places `h` apart; those of the rates where a form needs them.
+    fn growth(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64) -> [Growth<ORDERS>; 2] {
+        let [from, to] = self.states(ends);
         if form.is_rated() {
             self.equations.growth_of_rates(h, &from, &to)
         } else {

@@ -1,7 +1,7 @@
 //! Bounds of quantities in contacts, from bounds on the four numbers that the motion there consists of (`retune_model::Growth`).
 
 use super::{Form, times};
-use retune_model::{Growth, OverContact};
+use retune_model::{Change, Growth, OverContact};
 
 /// The sizes of the weights of the numbers of [`Growth`] in a row of weights of the state: `x2 - D = x1 + sign (stretch)`,
 /// `v2 = v1 + sign w`.
@@ -27,6 +27,30 @@ impl Form<4> {
             }
         }
         over.duration * (self.slope.at(&over.most) + turn * over.impulse / hertz_rate)
+    }
+
+    /// How far the quantity may rise above the larger of its values at two places `h` apart, from its slopes there: by its change, or, where
+    /// it does not depend on the rate of the state, by the slope at the nearer of the two and the change of that.
+    pub fn rise_between(&self, Change { states, rates, root }: &Change, slopes: [f64; 2], h: f64) -> f64 {
+        let change = self.in_contact::<2>(states, rates, 1);
+        if self.is_rated() {
+            return change;
+        }
+        let sizes = |row: &[f64; 4], of: &Growth<2>, k: usize| -> f64 {
+            let weights = sizes(row);
+            (0..4).map(|i| times(weights[i], of[i][k])).sum()
+        };
+        // Its slope in time is linear · d' + Σ weight (row · d) (row · d').
+        let (mut most, mut turn) = (sizes(&self.linear, rates, 0), sizes(&self.linear, rates, 1));
+        for (weight, row) in &self.squares {
+            let [d, by_d, rate, by_rate] =
+                [(states, 0), (states, 1), (rates, 0), (rates, 1)].map(|(of, k)| sizes(row, of, k));
+            most += weight * times(d, rate);
+            turn += weight * (times(d, by_rate) + times(by_d, rate));
+        }
+        let turn = root[0] * turn + root[1] * most;
+        let ahead = slopes[0].max(-slopes[1]).max(0.0);
+        change.min(0.5 * h * (ahead + turn))
     }
 
     /// A bound on the Taylor coefficient of order `k` in a contact, from those of its motion and, for what is linear in the rate of
