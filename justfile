@@ -173,6 +173,11 @@ schema:
 python *OPTIONS:
     crates/python/build "$@"
 
+# Build the wheel and the sdist that others install into target/dist, for any processor, and try each in a bare environment
+[group('develop')]
+wheel *OPTIONS:
+    crates/python/package "$@"
+
 # Pack every published crate and build it from its package
 [group('develop')]
 package:
@@ -180,3 +185,5 @@ package:
     # An earlier packing of the same version would be reused, so it is removed first.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
     cargo package --target-dir target/packing --workspace --exclude retune-lab --exclude retune-python --exclude retune-testkit --allow-dirty
+    # What a registry would say of them, in the order in which they are published.
+    cargo publish --dry-run --no-verify --target-dir target/packing --workspace --exclude retune-lab --exclude retune-python --exclude retune-testkit --allow-dirty
