@@ -28,7 +28,8 @@ pub fn say_how_to_resume() {
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {
-                let words = resume_command(std::env::var(RUN_AS).ok(), WORDS.get().into_iter().flatten().cloned());
+                let words =
+                    resume_command(std::env::var(RUN_AS).ok(), WORDS.get().into_iter().flatten().cloned());
                 let words = retune_study::visible(&words).into_owned();
                 let _ = writeln!(
                     std::io::stderr(),
