@@ -4,6 +4,7 @@ use crate::{interrupt, progress};
 use retune_jobs::answer;
 use retune_jobs::{Error, Observer, Progress};
 use retune_study::visible;
+use serde_json::Value;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -64,6 +65,9 @@ impl Observer for Screen {
     }
     fn answered(&self, file: &Path) -> Result<(), Error> {
         if self.json { self.line(answer::as_json(file)?) } else { Ok(()) }
+    }
+    fn answered_with(&self, json: &Value) -> Result<(), Error> {
+        if self.json { self.line(answer::text(json)?) } else { Ok(()) }
     }
 }
 
