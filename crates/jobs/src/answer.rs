@@ -1,10 +1,11 @@
 //! The answer of a job as JSON: the file without which its results are not complete.
 
 use crate::Error;
-use crate::again::{each_row, text};
+use crate::again::{self, each_row};
 use crate::columns::column;
 use retune_report::table::{Cell, Table};
 use retune_store::json_text;
+use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::Path;
 
@@ -18,9 +19,17 @@ pub fn as_json(file: &Path) -> Result<String, Error> {
     let value = match file.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => table(file)?.json(),
         Some("html") => statements(place)?,
-        _ => return Ok(text(place, &name)?.trim_end().to_owned()),
+        _ => return Ok(again::text(place, &name)?.trim_end().to_owned()),
     };
     Ok(json_text(&value, &name)?.trim_end().to_owned())
+}
+
+/// An answer as indented JSON, as files of results have it.
+///
+/// # Errors
+/// It has no JSON.
+pub fn text(answer: &impl Serialize) -> Result<String, Error> {
+    Ok(json_text(answer, "standard output")?.trim_end().to_owned())
 }
 
 /// A table of results.
@@ -55,7 +64,7 @@ fn statements(place: &Path) -> Result<Value, Error> {
     for entry in std::fs::read_dir(place).map_err(refuse)? {
         let name = entry.map_err(refuse)?.file_name().to_string_lossy().into_owned();
         if let Some(item) = name.strip_suffix(ENDING) {
-            all.insert(item.to_owned(), crate::again::json(place, &name)?);
+            all.insert(item.to_owned(), again::json(place, &name)?);
         }
     }
     Ok(Value::Object(all))

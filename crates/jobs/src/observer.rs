@@ -1,6 +1,7 @@
 //! Observers of a job.
 
 use crate::Error;
+use serde_json::Value;
 use std::path::Path;
 
 /// Receives the output and the progress of a job. A command line prints them, a page may draw them, [`Silent`] ignores them.
@@ -26,6 +27,13 @@ pub trait Observer: Sync {
     /// # Errors
     /// As [`Self::result`].
     fn answered(&self, _file: &Path) -> Result<(), Error> {
+        Ok(())
+    }
+    /// The job is done, and its answer as JSON stands in no file.
+    ///
+    /// # Errors
+    /// As [`Self::result`].
+    fn answered_with(&self, _json: &Value) -> Result<(), Error> {
         Ok(())
     }
 }

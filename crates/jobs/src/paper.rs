@@ -171,8 +171,9 @@ fn again(place: &Path, name: &str) -> Result<Again, Error> {
 ///
 /// # Errors
 /// It, or a file that it names, is wrong.
-pub fn describe(path: &Path) -> Result<(String, Vec<&'static Kind>), Error> {
-    Ok(match study::kind_of(path)? {
+pub fn describe(path: &Path) -> Result<Described, Error> {
+    let kind = study::kind_of(path)?;
+    let (words, jobs) = match kind {
         study::Kind::Table2 => {
             (words::table2(&study::read_table2(path)?), vec![&rows::KIND, &retention::KIND])
         }
@@ -186,5 +187,28 @@ pub fn describe(path: &Path) -> Result<(String, Vec<&'static Kind>), Error> {
             let jobs = if study.optimize.is_some() { vec![&tune::KIND] } else { Vec::new() };
             (words::study(&study), jobs)
         }
-    })
+    };
+    Ok(Described { kind, words, jobs })
+}
+
+/// What a study file asks for.
+#[derive(Debug)]
+pub struct Described {
+    /// Its kind.
+    pub kind: study::Kind,
+    /// What it asks for, in words.
+    pub words: String,
+    /// The jobs whose files it makes.
+    pub jobs: Vec<&'static Kind>,
+}
+
+impl Described {
+    /// The same as JSON.
+    pub fn json(&self, path: &Path) -> Value {
+        let lines: Vec<&str> = self.words.lines().map(str::trim).collect();
+        let files = |job: &&Kind| job.artefacts.iter().map(|artefact| artefact.name).collect::<Vec<_>>();
+        let jobs: Map<String, Value> =
+            self.jobs.iter().map(|job| (job.command.to_owned(), files(job).into())).collect();
+        serde_json::json!({ "file": path.display().to_string(), "kind": self.kind.name(), "words": lines, "files": jobs })
+    }
 }

@@ -132,7 +132,7 @@ def main() -> None:
     for words, text in (("numpy included", whole), ("after numpy", code)):
         took = min(float(subprocess.run([sys.executable, "-c", text], capture_output=True, check=True).stdout) for _ in range(7))
         row(f"import retune, {words}", f"{took:.3f} s", "at most 0.15 s")
-    (wheel,) = (ROOT / "target" / "wheels").glob("retune-*.whl")
+    (wheel,) = (ROOT / "target" / "wheels").glob("retune_dampers-*.whl")
     row("wheel", f"{wheel.stat().st_size / 1e6:.2f} MB", "at most 5 MB")
 
     peaks = []

@@ -64,7 +64,8 @@ impl Fault {
             StudyError::Unreadable { .. }
             | StudyError::NotText { .. }
             | StudyError::Kind { .. }
-            | StudyError::Several { .. } => {
+            | StudyError::Several { .. }
+            | StudyError::NoResults { .. } => {
                 return Self::Study { message: error.to_string(), field: None, given: Given::Nothing };
             }
         };

@@ -10,6 +10,7 @@
 //! - `pool`: the threads that an evaluation may use.
 //! - `problem`: a study as a function of a design; `motion`: its runs and sweeps; `jobs`: what takes minutes and writes files;
 //!   `files`: the jobs whose answer is their files.
+//! - `program`: the command line.
 
 mod arrays;
 mod columns;
@@ -20,6 +21,7 @@ mod monitor;
 mod motion;
 mod pool;
 mod problem;
+mod program;
 
 /// The private part of the package `retune`.
 #[pyo3::pymodule]
@@ -32,6 +34,8 @@ mod _core {
     use crate::motion::{run, sweep};
     #[pymodule_export]
     use crate::problem::Core;
+    #[pymodule_export]
+    use crate::program::program;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

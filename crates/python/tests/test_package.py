@@ -5,6 +5,8 @@ from __future__ import annotations
 import inspect
 import json
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -17,11 +19,22 @@ from retune import _run, _scene
 
 
 def test_contract_the_wheel_is_for_every_later_python_and_small() -> None:
-    (wheel,) = (ROOT / "target" / "wheels").glob("retune-*.whl")
-    assert re.fullmatch(r"retune-[\d.]+-cp311-abi3-\w+\.whl", wheel.name), wheel.name
-    assert wheel.stat().st_size <= 5e6
+    (wheel,) = (ROOT / "target" / "wheels").glob("retune_dampers-*.whl")
+    assert re.fullmatch(r"retune_dampers-[\d.]+-cp311-abi3-\w+\.whl", wheel.name), wheel.name
+    assert wheel.stat().st_size <= 6e6  # with the program
     assert Path(rt.__file__).with_name("py.typed").is_file()
     assert rt.__version__ == tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
+
+
+def test_contract_the_wheel_brings_the_program(program: Path) -> None:
+    def said(*words: str | Path) -> tuple[int, bytes, bytes]:
+        ran = subprocess.run(words, capture_output=True, check=False)
+        return ran.returncode, ran.stdout, ran.stderr
+
+    installed = Path(sys.executable).with_name("retune")
+    for words in (["--version"], ["check", STUDIES / "ssvi.json"], ["check", STUDIES / "none.json"], ["simulate", "--rtol", "x"]):
+        assert said(installed, *words) == said(program, *words), words
+    assert said(installed, "check", STUDIES / "none.json")[0] == 2
 
 
 def test_contract_everything_has_a_docstring_and_every_number_a_unit() -> None:

@@ -1,12 +1,16 @@
 //! The command line: commands, arguments and their help.
 
 mod branches;
+mod common;
 mod design;
+mod named;
 mod running;
 mod sweep;
 
 pub use branches::Branches;
+pub use common::Common;
 pub use design::Design;
+use named::Named;
 pub use running::Running;
 pub use sweep::Sweep;
 
@@ -61,6 +65,8 @@ pub enum Command {
         /// Largest relative difference that is accepted; another machine may round differently
         #[arg(long, value_name = "X", default_value_t = 0.0)]
         within: f64,
+        #[command(flatten)]
+        common: Common,
     },
     /// Certify a design: error bar, sensitivity, regime and a verdict on its E1max
     Certify {
@@ -151,6 +157,8 @@ pub enum Command {
     Check {
         /// The study file
         study: PathBuf,
+        #[command(flatten)]
+        common: Common,
     },
     /// Print the JSON Schema of a study file, for completion and validation in an editor
     Schema {
@@ -194,7 +202,7 @@ pub struct Reproduce {
 pub struct Simulate {
     /// The study file
     pub study: PathBuf,
-    #[arg(long = "set", value_name = "NAME=VALUE", help = settings())]
+    #[arg(long = "set", value_name = "NAME=VALUE", help = settings(), value_parser = Named::<Setting>::new(assignments), hide_possible_values = true)]
     pub settings: Vec<Setting>,
     /// Start from this state instead of rest: x1,v1,x2,v2 in m and m/s, or x1,v1 with the damper's spring at rest
     #[arg(long, value_name = "X1,V1,X2,V2", value_parser = retune_study::start, allow_hyphen_values = true)]
@@ -208,9 +216,8 @@ pub struct Simulate {
     /// Relative tolerance of a step
     #[arg(long, value_name = "X")]
     pub rtol: Option<f64>,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub common: Common,
     /// Also write the motion in the window to a CSV file. Its last column, moment, gives the kind of row: "grid" (one per
     /// --interval), or an event in between: "touch-down", "force-max", "lift-off" of each contact, "E1-max" of each maximum of E1
     #[arg(long, value_name = "FILE.csv")]
@@ -225,12 +232,20 @@ pub struct Simulate {
 pub struct Evaluate {
     #[arg(help = format!("The study file; a design is one number for each parameter that it tunes, in the order {}", Parameter::VARIED_SYMBOLS.join(" ")))]
     pub study: PathBuf,
-    /// Answer with JSON objects, which include the violation of limits
+    /// Answer with JSON objects, one per line, which include the violation of limits
     #[arg(long)]
     pub json: bool,
+    /// Print only the answers, without notes on the study
+    #[arg(long)]
+    pub quiet: bool,
     /// Number of lines evaluated in parallel, and threads of the runs of each; the values are the same for any number [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// What a shell completes after `--set`.
+fn assignments() -> Vec<String> {
+    Settable::all().map(|settable| format!("{}=", settable.symbol())).collect()
 }
 
 /// What `--set` is for.
@@ -253,3 +268,7 @@ fn method(name: String) -> Method {
 fn contacts(name: String) -> Contacts {
     if name == "stepped" { Contacts::Stepped } else { Contacts::Located }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/cli.rs"]
+mod tests;

@@ -10,7 +10,7 @@ use retune_jobs::simulate::Trajectory;
 use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
 use retune_jobs::tune::Optimum;
-use retune_jobs::{Done, Error, Observer, Request, certify, evaluate, table2, tune, verify};
+use retune_jobs::{Done, Error, Observer, Request, answer, certify, evaluate, table2, tune, verify};
 use retune_jobs::{fronts, losses, retention};
 use retune_study as study;
 use std::io::BufReader;
@@ -21,7 +21,6 @@ use std::path::Path;
 /// # Errors
 /// Those of its job.
 pub fn run(command: Command) -> Result<(), Error> {
-    let all = Screen::new(false, false);
     match command {
         Command::Optimize { study, shard, running } => {
             let (request, screen) = running.request(&study);
@@ -35,16 +34,18 @@ pub fn run(command: Command) -> Result<(), Error> {
             let (request, screen) = running.request(&study);
             found(tune::merge::merge(&request, &parts, &screen)?)
         }
-        Command::Verify { results, sample, within } => {
-            verify::verify(&results, sample as usize, within, &all)
+        Command::Verify { results, sample, within, common } => {
+            let screen = common.screen(false);
+            common.request(&results).on_threads(|| verify::verify(&results, sample as usize, within, &screen))
         }
         Command::Certify { design, running } => {
             let (request, screen) = running.request(&design);
             certify::certify_file(&request, &screen)?.check_limits()
         }
-        Command::Simulate(arguments) => simulate(&arguments, &all),
+        Command::Simulate(arguments) => simulate(&arguments),
         Command::Explore { study, port, no_browser } => {
-            retune_explore::explore(&retune_explore::Options { study, port, browser: !no_browser }, &all)
+            let screen = Screen::new(false, false);
+            retune_explore::explore(&retune_explore::Options { study, port, browser: !no_browser }, &screen)
         }
         Command::Sweep(arguments) => sweep(arguments),
         Command::Branches(arguments) => branches(arguments),
@@ -68,8 +69,8 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Reproduce(arguments) => reproduce(&arguments, None),
         Command::Figure { number, paper } => reproduce(&paper, Some(&format!("figure{number}"))),
         Command::Table { number, paper } => reproduce(&paper, Some(&format!("table{number}"))),
-        Command::Check { study } => check(&study, &all),
-        Command::Schema { kind } => all.line(json(&match kind {
+        Command::Check { study, common } => check(&study, common),
+        Command::Schema { kind } => Screen::new(false, false).line(answer::text(&match kind {
             Kind::Study => schemars::schema_for!(study::Study),
             Kind::Table2 => schemars::schema_for!(study::Table2),
             Kind::Fronts => schemars::schema_for!(study::Fronts),
@@ -78,7 +79,7 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "retune", &mut script);
-            all.line(String::from_utf8_lossy(&script).trim_end())
+            Screen::new(false, false).line(String::from_utf8_lossy(&script).trim_end())
         }
     }
 }
@@ -119,7 +120,7 @@ fn reproduce(cli::Reproduce { study, running }: &cli::Reproduce, only: Option<&s
     retune_jobs::paper::reproduce(&request, only, &screen).map(drop)
 }
 
-fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
+fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
     let mut study = study::read(&arguments.study)?;
     study.solver.method = arguments.solver.unwrap_or(study.solver.method);
     study.solver.contacts = arguments.contacts.unwrap_or(study.solver.contacts);
@@ -132,8 +133,10 @@ fn simulate(arguments: &cli::Simulate, screen: &Screen) -> Result<(), Error> {
     let trajectory = arguments.trajectory.as_deref();
     let trajectory =
         trajectory.map(|file| Trajectory { file, interval: arguments.interval, inputs: &inputs });
-    let summary = retune_jobs::simulate::simulate(&study, trajectory)?;
-    screen.line(if arguments.json { json(&summary)? } else { summary.to_string() })
+    let request = arguments.common.request(&arguments.study);
+    let summary = request.on_threads(|| retune_jobs::simulate::simulate(&study, trajectory))?;
+    let text = if arguments.common.json { answer::text(&summary)? } else { summary.to_string() };
+    arguments.common.screen(false).line(text)
 }
 
 fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
@@ -152,7 +155,7 @@ fn branches(arguments: cli::Branches) -> Result<(), Error> {
     retune_jobs::branches::branches(&request, &options, &screen).map(drop)
 }
 
-fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<(), Error> {
+fn evaluate(cli::Evaluate { study, json, threads, quiet }: &cli::Evaluate) -> Result<(), Error> {
     let request = Request { threads: *threads, ..Request::new(study) };
     let streams = Streams {
         input: BufReader::new(std::io::stdin()),
@@ -160,19 +163,17 @@ fn evaluate(cli::Evaluate { study, json, threads }: &cli::Evaluate) -> Result<()
         complaints: &mut screen::complain,
     };
     let study = study::read(study)?;
-    study.transient().iter().for_each(|words| (streams.complaints)(&format!("note: {words}")));
+    let notes = study.transient();
+    notes.iter().filter(|_| !quiet).for_each(|words| (streams.complaints)(&format!("note: {words}")));
     evaluate::evaluate(&study, *json, &request, streams)
 }
 
 /// Checks a study file and prints a description of it.
-fn check(path: &Path, screen: &Screen) -> Result<(), Error> {
-    let (words, jobs) = retune_jobs::paper::describe(path)?;
-    screen.line(words)?;
-    jobs.iter().try_for_each(|job| screen.line(job.files()))?;
+fn check(path: &Path, common: cli::Common) -> Result<(), Error> {
+    let described = retune_jobs::paper::describe(path)?;
+    let screen = common.screen(false);
+    screen.answered_with(&described.json(path))?;
+    screen.result(&described.words)?;
+    described.jobs.iter().try_for_each(|job| screen.result(&job.files()))?;
     screen.result(&format!("{}: good", path.display()))
-}
-
-/// A result as indented JSON.
-fn json(value: &impl serde::Serialize) -> Result<String, Error> {
-    Ok(retune_store::json_text(value, "standard output")?.trim_end().to_owned())
 }

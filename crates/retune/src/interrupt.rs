@@ -1,9 +1,20 @@
 //! Ctrl-C and SIGTERM. The journal already holds everything computed so far, so nothing needs to be saved: the process prints the
 //! command that resumes the work and exits. (On systems without signals, Ctrl-C ends it without a message, and nothing is lost either.)
 
+use std::ffi::OsString;
+use std::sync::OnceLock;
+
 /// The environment variable that the justfile sets to `just`, whose recipes are named like the commands; it replaces the program's
 /// name in printed commands.
 pub const RUN_AS: &str = "RETUNE_RUN_AS";
+
+/// The words of the command line of this process.
+static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Remembers the words of the command line, for the command that resumes the work.
+pub fn remember(words: Vec<OsString>) {
+    let _ = WORDS.set(words);
+}
 
 /// From now on, Ctrl-C ends the process and prints the command that resumes the work.
 #[cfg(unix)]
@@ -17,7 +28,8 @@ pub fn say_how_to_resume() {
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {
-                let words = resume_command(std::env::var(RUN_AS).ok(), std::env::args_os());
+                let words =
+                    resume_command(std::env::var(RUN_AS).ok(), WORDS.get().into_iter().flatten().cloned());
                 let words = retune_study::visible(&words).into_owned();
                 let _ = writeln!(
                     std::io::stderr(),
@@ -36,7 +48,7 @@ pub fn say_how_to_resume() {}
 
 /// The command line that resumes the work of this one. `run_as` replaces the program's name, if it is given.
 #[cfg(unix)]
-fn resume_command(run_as: Option<String>, mut arguments: impl Iterator<Item = std::ffi::OsString>) -> String {
+fn resume_command(run_as: Option<String>, mut arguments: impl Iterator<Item = OsString>) -> String {
     let program = arguments.next().unwrap_or_else(|| "retune".into());
     let mut words = vec![run_as.unwrap_or_else(|| quoted(&program))];
     words

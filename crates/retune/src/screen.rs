@@ -4,10 +4,10 @@ use crate::{interrupt, progress};
 use retune_jobs::answer;
 use retune_jobs::{Error, Observer, Progress};
 use retune_study::visible;
+use serde_json::Value;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
-use std::process::ExitCode;
 
 /// The observer of all jobs: shows them on the terminal.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +66,9 @@ impl Observer for Screen {
     fn answered(&self, file: &Path) -> Result<(), Error> {
         if self.json { self.line(answer::as_json(file)?) } else { Ok(()) }
     }
+    fn answered_with(&self, json: &Value) -> Result<(), Error> {
+        if self.json { self.line(answer::text(json)?) } else { Ok(()) }
+    }
 }
 
 /// Shows why a command failed. If standard error cannot be written, only the exit code reports the failure.
@@ -92,12 +95,12 @@ fn say(what: &str, words: &str) {
 }
 
 /// Shows an error in the arguments, or the help that was requested. Returns the exit code.
-pub fn show_usage(error: &clap::Error) -> ExitCode {
+pub fn show_usage(error: &clap::Error) -> u8 {
     if error.use_stderr() && error.kind() != clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     {
         let _ = write!(std::io::stderr(), "{}", visible(&error.render().to_string()));
     } else {
         let _ = error.print(); // in colour; it repeats nothing that the user typed
     }
-    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+    u8::try_from(error.exit_code()).unwrap_or(crate::exit::WRONG)
 }

@@ -67,11 +67,21 @@ pub enum StudyError {
         rule: Rule,
     },
     /// Results of several dampers, where those of one are needed.
-    #[error("{file}: holds the designs of several searches: give the directory of one of them{}", .one.as_ref().map(|one| format!(", for instance {one}")).unwrap_or_default())]
+    #[error("{file}: holds the designs of several searches{}", .one.as_ref().map_or(", but not their studies".to_owned(), |one| format!(": give one of them, for instance {one}")))]
     Several {
         /// The directory.
         file: String,
-        /// The first of those below it.
+        /// The first that can be read in their place.
+        one: Option<String>,
+    },
+    /// A directory without the results of a search.
+    #[error("{file}: these are no results: there is no study.json in it, but {found}{}", .one.as_ref().map(|one| format!("; give a study or results, for instance {one}")).unwrap_or_default())]
+    NoResults {
+        /// The directory.
+        file: String,
+        /// What is in it.
+        found: String,
+        /// The first in it that can be read in its place.
         one: Option<String>,
     },
     /// A value of the paper's plan is not allowed.

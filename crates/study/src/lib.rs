@@ -31,6 +31,7 @@ mod file;
 mod format;
 mod fronts;
 mod global;
+mod instead;
 mod kind;
 mod objective;
 pub mod read;

@@ -3,6 +3,7 @@
 use super::built_in::{is_built_in, read_plan_text};
 use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
+use super::instead::{OPTIMUM, STUDY, instead};
 use super::kind::Kind;
 use super::rule::Rule;
 use super::search::name_from;
@@ -12,12 +13,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-
-/// The file with the design that a search found, beside [`STUDY`], its study.
-const OPTIMUM: &str = "optimum.json";
-const STUDY: &str = "study.json";
-/// The file in the place of [`STUDY`] where there are several.
-const SEVERAL: &str = "resolved.json";
 
 /// Reads the plan of the paper's reproduction.
 ///
@@ -38,9 +33,8 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
     let Some(place) = found_in(path)? else {
         return from_text(&read_text(path)?, &path.display().to_string());
     };
-    if !place.join(STUDY).exists() && place.join(SEVERAL).exists() {
-        let one = first_below(&place).map(|one| one.display().to_string());
-        return Err(StudyError::Several { file: path.display().to_string(), one });
+    if path.is_dir() && !place.join(STUDY).exists() {
+        return Err(instead(path));
     }
     let file = place.join(STUDY);
     let study = from_text(&read_text(&file)?, &file.display().to_string())?;
@@ -78,20 +72,6 @@ pub fn found_in(path: &Path) -> Result<Option<PathBuf>, StudyError> {
     let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
     let is_optimum = json.is_ok_and(|json| json.get("damper_type").is_some());
     Ok(is_optimum.then(|| path.parent().unwrap_or(Path::new("")).to_owned()))
-}
-
-/// The first directory below with the results of a search.
-fn first_below(place: &Path) -> Option<PathBuf> {
-    let mut inner: Vec<PathBuf> = std::fs::read_dir(place)
-        .ok()?
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.is_dir())
-        .collect();
-    inner.sort();
-    inner
-        .iter()
-        .find_map(|path| if path.join(OPTIMUM).exists() { Some(path.clone()) } else { first_below(path) })
 }
 
 /// The design of an `optimum.json`.

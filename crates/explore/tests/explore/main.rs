@@ -1,6 +1,7 @@
 //! The explorer: its server, its sessions, what it thins out.
 
 mod branches;
+mod hostile;
 mod server;
 mod session;
 mod thin;

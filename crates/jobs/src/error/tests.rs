@@ -83,6 +83,11 @@ fn studies() -> Vec<StudyError> {
         StudyError::List { file: file.clone(), field: "window".into() },
         StudyError::Rule { file: file.clone(), rule: Rule::NoDamper },
         StudyError::Several { file: file.clone(), one: Some("results/retune/k1-30000/tmd".into()) },
+        StudyError::NoResults {
+            file: file.clone(),
+            found: "a.json, notes.txt".into(),
+            one: Some("study.json/a.json".into()),
+        },
         StudyError::Paper { file, problem: "k1: give at least one number above 0".into() },
     ]
 }
@@ -234,7 +239,7 @@ fn regress_the_words_of_every_error() {
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
         each!(errors(), Error: Store Study Setting Rule Requirement Argument Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
-        each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several Paper),
+        each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several NoResults Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoRestitutions NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance

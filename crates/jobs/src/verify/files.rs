@@ -59,6 +59,7 @@ fn compare(place: &Path, there: &[String], report: &mut Report<'_>) -> Result<()
     } else {
         format!("{}: {}", counted(manifest.files.len() as u64, "file"), problems.join("; "))
     };
+    report.found("", Some(problems.is_empty()), &words);
     report.watch.result(&format!("  {words}"))?;
     let place = report.place.clone();
     report.problems.extend(problems.into_iter().map(|problem| format!("{place}{problem}")));

@@ -3,8 +3,19 @@
 use super::tally::Tally;
 use super::values;
 use crate::{Error, Observer};
-use serde_json::Value;
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
+
+/// What was found of a file, or of a directory.
+#[derive(Debug, Serialize)]
+struct Finding {
+    /// The file below the directory that is verified; empty for the directory itself.
+    file: String,
+    /// Whether it holds; null where that cannot be checked.
+    holds: Option<bool>,
+    words: String,
+}
 
 /// A report to the observer; it collects what does not hold and what cannot be checked.
 pub struct Report<'a> {
@@ -17,12 +28,20 @@ pub struct Report<'a> {
     /// What does not hold.
     pub problems: Vec<String>,
     unchecked: Vec<String>,
+    findings: Vec<Finding>,
 }
 
 impl<'a> Report<'a> {
     /// A report of nothing yet; numbers that differ by at most the share `within` hold.
     pub fn new(watch: &'a dyn Observer, within: f64) -> Self {
-        Self { watch, within, place: String::new(), problems: Vec::new(), unchecked: Vec::new() }
+        let (problems, unchecked, findings) = (Vec::new(), Vec::new(), Vec::new());
+        Self { watch, within, place: String::new(), problems, unchecked, findings }
+    }
+
+    /// Keeps a finding for the answer.
+    pub fn found(&mut self, name: &str, holds: Option<bool>, words: &str) {
+        let file = format!("{}{name}", self.place);
+        self.findings.push(Finding { file, holds, words: words.to_owned() });
     }
 
     /// Reports what does not hold; `name` is the file, or empty.
@@ -32,6 +51,7 @@ impl<'a> Report<'a> {
     pub fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
         let between = if name.is_empty() { "" } else { ", " };
         self.problems.push(format!("{}{name}{between}{words}", self.place));
+        self.found(name, Some(false), words);
         let line = if name.is_empty() { format!("  {words}") } else { format!("  {name:<22} {words}") };
         self.watch.result(&line)
     }
@@ -42,6 +62,7 @@ impl<'a> Report<'a> {
     /// As [`Self::fail`].
     pub fn unchecked(&mut self, words: &str) -> Result<(), Error> {
         self.unchecked.push(format!("{}{words}", self.place));
+        self.found("", None, words);
         self.watch.result(&format!("  cannot be checked: {words}"))
     }
 
@@ -76,6 +97,7 @@ impl<'a> Report<'a> {
         if tally.most > self.within {
             self.problems.push(format!("{}{name}, {words}", self.place));
         }
+        self.found(name, Some(tally.most <= self.within), &format!("{what}: {words}"));
         self.watch.result(&format!("  {name:<22} {what}: {words}"))
     }
 
@@ -84,8 +106,17 @@ impl<'a> Report<'a> {
     /// # Errors
     /// [`Error::NotHeld`], [`Error::NotChecked`], or the observer's.
     pub fn end(self, path: &Path) -> Result<(), Error> {
-        let Self { watch, within, problems, unchecked, .. } = self;
+        let Self { watch, within, problems, unchecked, findings, .. } = self;
         let unchecked = unchecked.join("; ");
+        let holds = match (problems.is_empty(), unchecked.is_empty()) {
+            (false, _) => Some(false),
+            (true, false) => None,
+            (true, true) => Some(true),
+        };
+        let results = path.display().to_string();
+        watch.answered_with(
+            &json!({ "results": results, "holds": holds, "within": within, "findings": findings }),
+        )?;
         if problems.is_empty() && unchecked.is_empty() {
             let agrees = if within > 0.0 { format!("agrees within {within:e}") } else { "agrees".to_owned() };
             return watch.result(&format!(

@@ -166,6 +166,29 @@ fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
     );
 }
 
+/// A directory that is none of Retune's is told with what is in it, and with what can be read in its place.
+#[test]
+fn contract_a_foreign_directory_is_told_with_what_is_in_it() {
+    let desk = Desk::with(&tiny());
+    std::fs::create_dir(desk.path("empty")).expect("a directory");
+    let said = |path: &str| refused(read_file(&desk.path(path))).to_string();
+    assert!(said("empty").ends_with("these are no results: there is no study.json in it, but nothing"));
+    std::fs::create_dir(desk.path("mine")).expect("a directory");
+    for name in ["a.txt", "b.json", "c.txt", "d.txt", "e.txt", "f.txt", "g.txt"] {
+        desk.write_json(&format!("mine/{name}"), &json!({ "a": 1 }));
+    }
+    assert!(
+        said("mine").ends_with("but a.txt, b.json, c.txt, d.txt, e.txt and 2 others"),
+        "{}",
+        said("mine")
+    );
+    std::fs::create_dir_all(desk.path("mine/inner/one")).expect("a directory");
+    std::fs::write(desk.path("mine/inner/one/optimum.json"), "{}").expect("a file");
+    assert!(said("mine").ends_with("/mine/inner/one"), "{}", said("mine"));
+    std::fs::copy(desk.path("study.json"), desk.path("mine/z.json")).expect("a study");
+    assert!(said("mine").ends_with("/mine/z.json"), "{}", said("mine"));
+}
+
 /// A strength and a density change no number of a run, and nothing is said while the contacts are elastic and quasi-static.
 #[test]
 fn contract_contacts_outside_what_hertzs_law_holds_for_are_told() {

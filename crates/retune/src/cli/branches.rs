@@ -1,5 +1,6 @@
 //! The arguments of `branches`.
 
+use super::named::Named;
 use super::running::Running;
 use clap::Args;
 use retune_jobs::branches::Options;
@@ -12,7 +13,7 @@ pub struct Branches {
     /// A study, the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
-    #[arg(long, value_name = "NAME", default_value = "omega", help = format!("The parameter: {}", Parameter::differentiable(" ")))]
+    #[arg(long, value_name = "NAME", default_value = "omega", help = format!("The parameter: {}", Parameter::differentiable(" ")), value_parser = Named::<Parameter>::new(parameters), hide_possible_values = true)]
     pub over: Parameter,
     /// Its least value, in its SI unit or with a unit: 0.8Hz [default: of the band of the study, or 0.8 of its own]
     #[arg(long, value_name = "A")]
@@ -41,4 +42,9 @@ pub struct Branches {
     /// How it is run; results go to results/branches-<study>-<parameter> (of results: <study>-tuned) unless --out says otherwise.
     #[command(flatten)]
     pub running: Running,
+}
+
+/// What motions may be followed along.
+fn parameters() -> Vec<String> {
+    Parameter::differentiable(" ").split(' ').map(str::to_owned).collect()
 }

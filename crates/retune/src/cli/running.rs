@@ -1,5 +1,6 @@
 //! The options of every job that makes results.
 
+use super::common::Common;
 use crate::screen::Screen;
 use clap::Args;
 use retune_jobs::Request;
@@ -12,17 +13,11 @@ pub struct Running {
     /// Directory of the results [default: results/<study>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Threads of the grid; the results are the same for any number [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Print only the result, without progress
-    #[arg(long, conflicts_with = "verbose")]
-    pub quiet: bool,
-    /// Print the answer as one JSON object, and nothing else
-    #[arg(long, conflicts_with = "verbose")]
-    pub json: bool,
+    /// What the screen shows, and threads.
+    #[command(flatten)]
+    pub common: Common,
     /// Print every iteration as it is made, as the paper's Table 1 does
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["quiet", "json"])]
     pub verbose: bool,
     /// Resume unfinished work, if there is any
     #[arg(long, conflicts_with = "restart")]
@@ -43,8 +38,8 @@ impl Running {
             (false, true) => Begin::Restart,
             (false, false) => Begin::New,
         };
-        let &Self { ref out, threads, replace, quiet, verbose, json, .. } = self;
-        let request = Request { study: study.to_owned(), out: out.clone(), threads, begin, replace };
-        (request, Screen::new(quiet, verbose).as_json(json))
+        let &Self { ref out, common, replace, verbose, .. } = self;
+        let request = Request { out: out.clone(), begin, replace, ..common.request(study) };
+        (request, common.screen(verbose))
     }
 }

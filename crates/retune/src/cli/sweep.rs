@@ -1,5 +1,6 @@
 //! The arguments of `sweep`.
 
+use super::named::Named;
 use super::running::Running;
 use clap::Args;
 use retune_jobs::parts::Shard;
@@ -13,7 +14,7 @@ pub struct Sweep {
     /// A study, the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
-    #[arg(long, value_name = "NAME", help = format!("The parameter: {}", Parameter::ALL.map(Parameter::symbol).join(" ")))]
+    #[arg(long, value_name = "NAME", help = format!("The parameter: {}", parameters().join(" ")), value_parser = Named::<Parameter>::new(parameters), hide_possible_values = true)]
     pub over: Parameter,
     /// Its first value, in its SI unit or with a unit: 0.8Hz, 30kN/m
     #[arg(long, value_name = "A")]
@@ -30,7 +31,7 @@ pub struct Sweep {
     /// The unit of ends without one, for instance Hz for omega
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<String>,
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "objective", help = quantities())]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "objective", help = about_quantities(), value_parser = Named::<Quantity>::new(quantities), hide_possible_values = true)]
     pub quantity: Vec<Quantity>,
     /// Compute the objective of the study at each value, for instance the worst over its band, instead of one run
     #[arg(long)]
@@ -46,9 +47,19 @@ pub struct Sweep {
     pub running: Running,
 }
 
+/// What may be swept.
+fn parameters() -> Vec<String> {
+    Parameter::ALL.map(|parameter| parameter.symbol().to_owned()).to_vec()
+}
+
+/// What may be shown.
+fn quantities() -> Vec<String> {
+    Quantity::all().map(|quantity| quantity.name().to_owned()).collect()
+}
+
 /// What `--quantity` is for.
-fn quantities() -> String {
-    let names: Vec<&str> = Quantity::all().map(Quantity::name).collect();
+fn about_quantities() -> String {
+    let names = quantities();
     format!(
         "What is shown: {}, with commas between [default: {}]; the tables hold all of them",
         names.join(" "),

@@ -95,3 +95,36 @@ fn contract_branches_are_one_object_on_standard_output_and_are_verified() {
     let Answer { code, stderr, .. } = desk.run(&["branches", "study.json", "--from", "8", "--to", "5"]);
     assert!(code == Some(2) && stderr.contains("--to: 5 is not above --from 8"), "{stderr}");
 }
+
+/// `check` and `verify` make no file: their answer as JSON is all that they print, and says what the words say.
+#[test]
+fn contract_checks_answer_as_json() {
+    let desk = Desk::new();
+    desk.write_json("study.json", &tiny());
+    let answer = |arguments: &[&str]| -> (Option<i32>, serde_json::Value) {
+        let ran = desk.run(arguments);
+        (ran.code, serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}")))
+    };
+    let (code, checked) = answer(&["check", "study.json", "--json"]);
+    assert_eq!((code, &checked["file"], &checked["kind"]), (Some(0), &"study.json".into(), &"study".into()));
+    let words = desk.good(&["check", "study.json"]);
+    for line in checked["words"].as_array().expect("lines") {
+        assert!(words.contains(line.as_str().expect("a line")), "{line}");
+    }
+    assert!(checked["files"]["optimize"].to_string().contains("optimum.json"), "{checked}");
+    desk.good(&["optimize", "study.json", "--out", "out", "--quiet"]);
+    let verify = ["verify", "out", "--sample", "3", "--json", "--threads", "1"];
+    let (code, verified) = answer(&verify);
+    assert_eq!((code, &verified["holds"]), (Some(0), &true.into()), "{verified}");
+    assert!(
+        verified["findings"]
+            .as_array()
+            .is_some_and(|all| all.len() >= 4 && all.iter().all(|f| f["holds"] == true))
+    );
+    desk.write("out/notes.txt", "mine");
+    let (code, verified) = answer(&verify);
+    assert_eq!((code, &verified["holds"]), (Some(4), &serde_json::Value::Null), "{verified}");
+    desk.write("out/fminsearch.txt", "another");
+    let (code, verified) = answer(&verify);
+    assert_eq!((code, &verified["holds"]), (Some(1), &false.into()), "{verified}");
+}

@@ -15,7 +15,8 @@ fn contract_the_answer_of_the_readme_is_that_of_the_program() {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
     let readme = std::fs::read_to_string(readme).expect("the README");
     let section = readme.split("\n## Your own structure").nth(1).expect("the section");
-    let command = section.split("just ").nth(1).and_then(|rest| rest.lines().next()).expect("the command");
+    let command =
+        section.split("\nretune ").nth(1).and_then(|rest| rest.lines().next()).expect("the command");
     let desk = Desk::new();
     let arguments: Vec<&str> = command.split(' ').collect();
     let answer = desk.run(&arguments);

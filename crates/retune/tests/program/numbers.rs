@@ -1,7 +1,7 @@
 //! The numbers that the documents quote are those of the files that they cite.
 //!
 //! A comment behind numbers says where they are: `226 J<!-- results/ssvi/optimum.json E1max -->`. With several fields, separated by
-//! ` & `, the first is that of the first of as many numbers before the comment. A field is
+//! ` & `, the first is that of the first of as many numbers before the comment; `same` is the field before it. A field is
 //! - of a JSON file, the names on the way to it: `refine.runs.0.E1max`;
 //! - of a table, a column and what the other columns of its row hold: `E1max[damper=SSVI NES;k2=600]`;
 //! - of a text, words of its line in quotes, `"Table 2's row"`: one of the numbers of that line.
@@ -173,7 +173,12 @@ fn check(document: &str, text: &str) -> Checked {
         let is_file = |(file, _): &(&str, &str)| file.starts_with("results/") || file.starts_with("tests/");
         if let Some((file, fields)) = comment.trim().split_once(' ').filter(is_file) {
             checked.count += 1;
-            let fields: Vec<&str> = fields.split(" & ").map(str::trim).collect();
+            let mut fields: Vec<&str> = fields.split(" & ").map(str::trim).collect();
+            for at in 1..fields.len() {
+                if fields[at] == "same" {
+                    fields[at] = fields[at - 1];
+                }
+            }
             let printed = numbers(&before);
             let first =
                 printed.len().checked_sub(fields.len()).unwrap_or_else(|| panic!("{document}: {comment}"));

@@ -1,4 +1,5 @@
 //! Study files and their schema.
 
 mod refused;
+mod refused_search;
 mod schema;

@@ -3,12 +3,12 @@
 use retune_model::{Absent, Parameter};
 use retune_study::read::from_text;
 use retune_study::{Rule, Setting, SettingError, StudyError};
-use retune_testkit::desk::{Desk, global, tiny};
+use retune_testkit::desk::{Desk, tiny};
 use serde_json::{Value, json};
 
 /// What is wrong with this study, without the place in its file.
 #[track_caller]
-fn problem(text: &str) -> String {
+pub fn problem(text: &str) -> String {
     match from_text(text, "bad.json").expect_err("a wrong study") {
         StudyError::Field { file, line, column, problem } => {
             assert!(file == "bad.json" && line > 0, "{file}:{line}:{column}");
@@ -27,13 +27,13 @@ fn problem(text: &str) -> String {
 }
 
 #[track_caller]
-fn refused_text(text: &str, message: &str) {
+pub fn refused_text(text: &str, message: &str) {
     assert_eq!(problem(text), message);
 }
 
 /// The tiny study with `value` at `pointer`.
 #[track_caller]
-fn refused(pointer: &str, value: Value, message: &str) {
+pub fn refused(pointer: &str, value: Value, message: &str) {
     let mut study = tiny();
     *study.pointer_mut(pointer).unwrap_or_else(|| panic!("no {pointer}")) = value;
     refused_text(&study.to_string(), message);
@@ -239,93 +239,6 @@ fn contract_wrong_types_are_named() {
 }
 
 #[test]
-fn contract_contradictions_in_a_search_are_named() {
-    let from_to = |from: f64, to: f64, points: u64| json!({ "from": from, "to": to, "points": points });
-    refused(
-        "/optimize/surf/k2",
-        from_to(300.0, 200.0, 3),
-        "optimize.surf.k2: the range is empty: `from` 300 is above `to` 200",
-    );
-    refused(
-        "/optimize/surf/k2",
-        from_to(5.0, 200.0, 3),
-        "optimize.surf.k2: from 5 to 200 leaves the bounds [10, 1000]",
-    );
-    refused(
-        "/optimize/surf/k2/from",
-        json!(0),
-        "optimize.surf.k2: `from` is 0: both ends of a logarithmic axis must be above zero",
-    );
-    refused(
-        "/optimize/bounds/k2",
-        json!([400, 100]),
-        "optimize.bounds.k2: [400, 100] is not allowed here: give [smallest, largest] with 0 <= smallest < largest",
-    );
-    refused("/optimize/vary", json!([]), "optimize.vary: empty: name at least one of k2, c2, D, C, m2, R");
-    refused("/optimize/vary", json!(["k2", "C", "k2"]), "optimize.vary: `k2` is named twice");
-    refused(
-        "/optimize/vary",
-        json!(["k2", "c2", "D"]),
-        "optimize.surf.C: `C` is not tuned: add it to `vary` or leave it out here",
-    );
-    refused("/scene/damper", Value::Null, "scene.damper: missing, but `optimize` tunes the damper");
-    let mut study = tiny();
-    study["optimize"]["surf"] = Value::Null;
-    study["scene"]["damper"]["k2"] = json!(5);
-    refused_text(
-        &study.to_string(),
-        "scene.damper.k2: 5 is where the refinement starts, but lies outside the bounds [10, 1000]",
-    );
-}
-
-#[test]
-fn contract_invalid_bands_are_refused() {
-    let refused = |objective: Value, message: &str| {
-        let mut study = tiny();
-        study["optimize"]["objective"] = objective;
-        refused_text(&study.to_string(), message);
-    };
-    refused(
-        json!({ "omega": { "from": 8, "to": 5 } }),
-        "optimize.objective.omega: from = 8 rad/s is not below to = 5 rad/s: the band is empty",
-    );
-    refused(
-        json!({ "omega": { "from": 5, "to": 8, "samples": 1 } }),
-        "optimize.objective.omega.samples: 1 is not allowed here: give a whole number from 2 to 10000",
-    );
-    refused(
-        json!({ "omega": { "from": 0, "to": 8 } }),
-        "optimize.objective.omega.from: 0 is not allowed here: give a finite number above 0",
-    );
-    refused(
-        json!({ "omega": { "from": 5, "till": 8 } }),
-        "optimize.objective.omega: unknown field `till`; allowed: from, to, samples, relative",
-    );
-    refused(json!({ "omega": { "from": 5 } }), "optimize.objective.omega.to: missing, and it has no default");
-    refused(
-        json!({ "omega": 6.5 }),
-        "optimize.objective.omega: wrong type: number `6.5`, expected an object",
-    );
-    refused(
-        json!({ "omga": { "from": 5, "to": 8 } }),
-        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, restitution, response, starts, settle, ensemble, sum",
-    );
-    refused(
-        json!({ "response": "stead" }),
-        "optimize.objective.response: \"stead\" is not allowed here; did you mean `steady`? allowed: window, steady, settled, motions",
-    );
-}
-
-#[test]
-fn contract_a_million_million_points_are_refused_at_once() {
-    let mut study = tiny();
-    for axis in ["k2", "c2", "D", "C"] {
-        study["optimize"]["surf"][axis]["points"] = json!(1000);
-    }
-    refused_text(&study.to_string(), "optimize.surf: the grid has 1e12 points: at most 10000000 are allowed");
-}
-
-#[test]
 fn contract_text_that_is_not_json_is_refused() {
     let text = tiny().to_string();
     let number = |replacement: &str| text.replace("\"m1\":1000", replacement);
@@ -365,78 +278,6 @@ fn contract_a_missing_file_is_named() {
         }
         other => panic!("{other}"),
     }
-}
-
-/// Rules that several fields break together are values as well as words.
-#[test]
-fn contract_contradictions_are_typed() {
-    let rule = |pointer: &str, value: Value| {
-        let mut study = tiny();
-        *study.pointer_mut(pointer).expect(pointer) = value;
-        match from_text(&study.to_string(), "bad.json").expect_err("a contradiction") {
-            StudyError::Rule { rule, .. } => rule,
-            other => panic!("{other}"),
-        }
-    };
-    assert_eq!(rule("/window/t0", json!(4)), Rule::EmptyWindow { t0: 4.0, end: 4.0 });
-    assert_eq!(rule("/scene/damper", Value::Null), Rule::NoDamper);
-    assert_eq!(rule("/optimize/vary", json!([])), Rule::NothingVaried);
-    assert_eq!(rule("/optimize/refine/starts", json!(0)), Rule::NoStarts);
-}
-
-#[test]
-fn contract_invalid_objectives_are_refused() {
-    for (objective, message) in [
-        (
-            json!({ "k1": { "set": [] } }),
-            "optimize.objective.k1.set: an empty list is not allowed here: give at least one",
-        ),
-        (
-            json!({ "k1": { "range": { "from": 4e4, "to": 4e4, "samples": 3 } } }),
-            "optimize.objective.k1.range: from = 40000 N/m is not below to = 40000 N/m: the band is empty",
-        ),
-        (json!({ "settle": { "blocks": 1 } }), "optimize.objective.settle.blocks: 1 is not allowed here"),
-        (
-            json!({ "ensemble": { "members": 0 } }),
-            "optimize.objective.ensemble.members: 0 is not allowed here",
-        ),
-        (
-            json!({ "ensemble": { "members": 2, "statistic": { "quantile": 1.5 } } }),
-            "optimize.objective.ensemble.statistic.quantile: 1.5 is not allowed here: give a number above 0 and at most 1",
-        ),
-        (
-            json!({ "response": "steady", "sum": [{ "weight": 1, "objective": {} }] }),
-            "optimize.objective.sum: stands in the place of quantity, omega, k1, response, starts, settle and ensemble",
-        ),
-        (
-            json!({ "quantity": "contact_force", "response": "steady" }),
-            "optimize.objective.quantity: contact_force is not allowed here: give another quantity, or another response",
-        ),
-        (
-            json!({ "sum": [
-                { "weight": 1, "objective": {} }, { "weight": 1, "objective": { "quantity": "x1max" } }
-            ] }),
-            "optimize.objective.sum[1].objective.quantity: x1max is not allowed here: give the same quantity in all parts",
-        ),
-        (
-            json!({ "sum": [{ "weight": 1, "objective": { "omega": { "from": 8, "to": 5 } } }] }),
-            "optimize.objective.sum[0].objective.omega: from = 8 rad/s is not below to = 5 rad/s",
-        ),
-    ] {
-        let said = problem(&global(objective, json!({})).to_string());
-        assert!(said.starts_with(message), "{message}: {said}");
-    }
-    let mut based = global(json!({ "response": "steady" }), json!({ "ground_force": 100 }));
-    based["scene"]["forcing"] = json!({ "base": 0.01, "omega": 6.3 });
-    let said = problem(&based.to_string());
-    let message =
-        "optimize.limits.ground_force: 100 is not allowed here: give another response: on a moving base";
-    assert!(said.starts_with(message), "{said}");
-    let mut open = global(json!({}), json!({}));
-    open["optimize"]["bounds"] = json!({});
-    let said = problem(&open.to_string());
-    let message = "optimize.global.box.k2: missing, and optimize.bounds.k2 has no largest value";
-    assert!(said.starts_with(message), "{said}");
 }
 
 #[test]

@@ -1,0 +1,37 @@
+//! Values with names that a shell completes. What is typed is parsed, and refused, in the library's words.
+
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command, Error};
+use std::ffi::OsStr;
+use std::marker::PhantomData;
+use std::str::FromStr;
+
+/// A parser of `T` with the names that a shell completes.
+#[derive(Clone)]
+pub struct Named<T> {
+    names: fn() -> Vec<String>,
+    of: PhantomData<T>,
+}
+
+impl<T> Named<T> {
+    /// A parser that a shell completes with these names.
+    pub const fn new(names: fn() -> Vec<String>) -> Self {
+        Self { names, of: PhantomData }
+    }
+}
+
+impl<T> TypedValueParser for Named<T>
+where
+    T: FromStr + Clone + Send + Sync + 'static,
+    T::Err: Into<Box<dyn std::error::Error + Send + Sync>>,
+{
+    type Value = T;
+
+    fn parse_ref(&self, command: &Command, argument: Option<&Arg>, value: &OsStr) -> Result<T, Error> {
+        TypedValueParser::parse_ref(&|text: &str| text.parse::<T>(), command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new((self.names)().into_iter().map(PossibleValue::new)))
+    }
+}
