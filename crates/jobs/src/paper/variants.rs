@@ -1,4 +1,5 @@
-//! What the paper leaves out, for the statements on all figures: each verdict again under other radii R and other windows of the maxima.
+//! What the paper leaves out, for the statements on all figures: each verdict again under other radii R, other windows of the maxima, and with contacts that lose
+//! energy, as those of every real damper do.
 
 use super::item::Item;
 use super::plan::{Plan, RADII, Range};
@@ -14,6 +15,8 @@ use std::collections::BTreeMap;
 
 /// The shares of a run that pass before a window of its maxima, beside that of the study.
 const BEFORE: [f64; 2] = [0.0, 0.25];
+/// A restitution of contacts such as is measured on steel and hard rubber.
+const RESTITUTION: f64 = 0.7;
 /// Frequencies on which worst cases are looked at, and of motions and curves at most: fewer than on the rest of the page.
 const LADDER: usize = 301;
 const MOTIONS: usize = 41;
@@ -49,7 +52,9 @@ pub fn figures(plan: &Plan) -> Result<Item, Error> {
         let from = share * end;
         (format!("{} to {} s", short(from), short(end)), Setting::new(Settable::From, from))
     };
-    let settings: Vec<(String, Setting)> = RADII.map(radius).into_iter().chain(BEFORE.map(window)).collect();
+    let loss = (format!("e = {}", short(RESTITUTION)), Setting::new(Parameter::Restitution, RESTITUTION));
+    let settings: Vec<(String, Setting)> =
+        RADII.map(radius).into_iter().chain(BEFORE.map(window)).chain([loss]).collect();
     let bar = plan.watch.progress("figures, settings", (settings.len() * FIGURES.len()) as u64);
     let mut verdicts: Vec<Verdicts> = Vec::new();
     for (number, (_, change)) in settings.iter().enumerate() {
@@ -78,7 +83,7 @@ pub fn figures(plan: &Plan) -> Result<Item, Error> {
         table.push(cells![*figure, paper.as_str()].into_iter().chain(words).collect());
     }
     let caption =
-        "Verdicts under other radii (the window of the study) and windows (the radius of the study)";
+        "Verdicts under other radii, windows and losses of contacts: one at a time, the rest as in the study";
     item.table(caption, table);
     item.notes.push(summary(&verdicts));
     Ok(item)

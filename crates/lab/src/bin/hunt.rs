@@ -12,7 +12,7 @@ use retune_testkit::hunt::{
 use std::path::Path;
 use std::process::ExitCode;
 
-const USAGE: &str = "hunt NAME [DRAWS]: largest, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
+const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
                      steps), scenes, settled, bands, kills";
 
 fn main() -> Any<ExitCode> {
@@ -38,6 +38,11 @@ fn main() -> Any<ExitCode> {
             show("", largest::beside_everywhere(Scenes::TwoMaxima, count));
             show("", largest::beside_everywhere(Scenes::Lossy, count));
             show("", largest::beside_dop853(Scenes::Any, count));
+            show("", largest::beside_dop853(Scenes::Lossy, count));
+        }
+        "losses" => {
+            let count = number(20_000)?.into();
+            show(include_str!("../hunts/hunt.md"), largest::beside_everywhere(Scenes::Lossy, count));
             show("", largest::beside_dop853(Scenes::Lossy, count));
         }
         "rigid" => show(include_str!("../hunts/rigid.md"), rigid::rigid(number(40_000)?.into())),
