@@ -11,11 +11,12 @@
 //! undisturbed collision is hastened by Broyden's updates (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995,
 //! section 7.3).
 
-use super::lossy_rule::{LossyRule, UnitLaw, Unknowns, inner};
+use super::lossy_rule::{LossyRule, Unknowns, inner};
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
 use super::solve::{Found, MAX_ITERATIONS, Pushed, TAIL, error, free_terms, size};
+use super::unit_law::UnitLaw;
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
 use crate::motion::polynomial::Polynomial;

@@ -3,47 +3,12 @@
 use super::nodes::{Nodes, dot, node, packed};
 use super::rule::{Integrals, Rule};
 use super::undisturbed::{Lossy, leaning};
+use super::unit_law::UnitLaw;
 use nalgebra::DMatrix;
 use retune_model::{RegularisedContact, Restoring};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use wide::f64x4;
-
-/// The factor of Hertz's force in the units of an undisturbed collision, see [`LossyRule`].
-#[derive(Clone)]
-pub enum UnitLaw {
-    /// The same restitution at every speed.
-    Restoring(Arc<Restoring>),
-    /// Hunt and Crossley's `1 + χ ż`.
-    Damping(f64),
-}
-
-impl UnitLaw {
-    /// The factor at `S = z^(5/2)/2` and `ż`.
-    pub fn push(&self, s: f64, w: f64) -> f64 {
-        match self {
-            Self::Restoring(law) => law.push(s, w),
-            Self::Damping(chi) => 1.0 + chi * w,
-        }
-    }
-
-    /// The same of four contacts.
-    #[inline(always)]
-    pub fn push_of_four(&self, s: f64x4, w: f64x4) -> f64x4 {
-        match self {
-            Self::Restoring(law) => law.push_of_four(s, w),
-            Self::Damping(chi) => w * *chi + 1.0,
-        }
-    }
-
-    /// The factor, and its derivatives by `ln z` and by `ż`.
-    fn slopes(&self, s: f64, w: f64) -> [f64; 3] {
-        match self {
-            Self::Restoring(law) => law.slopes(s, w),
-            Self::Damping(chi) => [1.0 + chi * w, 0.0, *chi],
-        }
-    }
-}
 
 /// Most restitutions whose rules are kept: a study has a few.
 const KEPT: usize = 64;

@@ -10,8 +10,8 @@
 //!
 //! The second line is a Volterra equation for `z` alone. A contact is short beside the linear motion, so a few terms are
 //! exact to rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that
-//! are computed once a program (see `newton`). With the same restitution at every speed it is close to the undisturbed collision of that law
-//! (see `lossy` and `lossy_rule`). A contact that is not of this kind is declined, and integrated step by step (see
+//! are computed once a program (see `newton`). One that loses energy is close to the undisturbed collision of its law
+//! (see `lossy`, `lossy_rule` and `unit_law`). A contact that is not of this kind is declined, and integrated step by step (see
 //! `regularised`).
 //!
 //! Read `undisturbed` (the collision that all are close to), `nodes` and `rule` (integrals of its force on few nodes), `response`
@@ -27,6 +27,7 @@ pub mod response;
 pub mod rule;
 pub mod solve;
 pub mod undisturbed;
+pub mod unit_law;
 
 #[cfg(test)]
 mod tests;

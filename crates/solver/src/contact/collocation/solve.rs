@@ -1,12 +1,13 @@
 //! One contact by collocation: Newton's iteration for the depths at the nodes and the duration, and the error estimate.
 
-use super::lossy_rule::{Loss, LossyRule, LossyRules, UnitLaw};
+use super::lossy_rule::{Loss, LossyRule, LossyRules};
 use super::motion::Collision;
 use super::newton::Newton;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
 use super::undisturbed::{DURATION, clock, undisturbed_force};
+use super::unit_law::UnitLaw;
 use crate::linear::flow::{Expansion, Flow};
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;

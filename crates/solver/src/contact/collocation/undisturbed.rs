@@ -4,8 +4,8 @@
 //! `Z = (5 w² / 4κ)^(2/5)` and the duration `T = 2.943 Z/w` every such collision is the same, `ζ'' = -Λ ζ^(3/2)` with
 //! `ζ(0) = ζ(1) = 0`.
 
-use super::lossy_rule::UnitLaw;
 use super::quadrature::gauss;
+use super::unit_law::UnitLaw;
 use crate::methods::dop853;
 
 /// Duration of the undisturbed collision, in units of greatest depth over touch-down speed: `(4/5) B(2/5, 1/2)`.
