@@ -53,7 +53,16 @@ struct Observed<'a> {
     began: Option<(f64, Side)>,
 }
 
+/// A body that moves away is out of the wall from this share of the largest indentation on: general methods end their pieces there only to rounding.
+const OUT: f64 = 1e-9;
+
 impl Observed<'_> {
+    /// Whether a contact has ended.
+    fn is_out(&self, side: Side, y: &[f64; 4]) -> bool {
+        let depth = self.system.indentation(y)[side as usize];
+        depth <= OUT * self.walls[side as usize].indentation && side.sign() * (y[3] - y[1]) < 0.0
+    }
+
     fn ends(&mut self, t: f64) {
         if let Some((began, side)) = self.began.take() {
             let wall = &mut self.walls[side as usize];
@@ -66,7 +75,8 @@ impl Observed<'_> {
 impl Observer<4> for Observed<'_> {
     fn segment(&mut self, segment: &impl Segment<4>) {
         let [from, to] = segment.ends();
-        if segment.in_flight() {
+        let out_at_once = self.began.is_some_and(|(_, side)| self.is_out(side, &from.y));
+        if segment.in_flight() || out_at_once {
             self.ends(from.t);
         } else {
             // The relative position is largest at an end of the segment, or where its rate vanishes between them.
@@ -86,6 +96,9 @@ impl Observer<4> for Observed<'_> {
                 for (wall, depth) in self.walls.iter_mut().zip(self.system.indentation(&y)) {
                     wall.indentation = wall.indentation.max(depth);
                 }
+            }
+            if self.began.is_some_and(|(_, side)| self.is_out(side, &to.y)) {
+                self.ends(to.t);
             }
         }
         self.speed = (to.y[3] - to.y[1]).abs();

@@ -3,7 +3,7 @@
 use crate::forcings::decay;
 use crate::problems::assert_close;
 use retune_model::{Finite, Side, Start};
-use retune_solver::{Moment, Rows, Settings, Window, collisions, simulate, trajectory};
+use retune_solver::{Method, Moment, Rows, Settings, Window, collisions, simulate, trajectory};
 use retune_testkit::scenes::{LOSSY, Numbers, SSVI, TWO_SIDED};
 
 /// An undisturbed Hertz collision at the speed v: `z = (5 μ v² / (4 K))^(2/5)` with the effective mass μ, and 2.9432751 z/v long
@@ -54,6 +54,28 @@ fn reference_the_events_of_a_trajectory() {
             assert_close(wall.speed, speeds[i], 1.0, 1e-12, "speed");
             let pressure = system.wall_pressure(side, wall.indentation);
             assert_close(pressure, run.pressure_max[i], pressure.max(1.0), 1e-8, "pressure");
+        }
+    }
+}
+
+/// General methods end their pieces at lift-off only to rounding, and do not say that a piece is free.
+#[test]
+fn reference_general_methods_see_contacts_as_long() {
+    let window = Window { from: 0.0, to: 5.0 };
+    for numbers in [SSVI, LOSSY] {
+        let scene = numbers.scene();
+        let found = collisions(&scene, window, &Settings::default()).expect("a run");
+        for method in [Method::Dop853, Method::Ode45] {
+            let general = Settings { method, rtol: 1e-11, ..Settings::default() };
+            let other = collisions(&scene, window, &general).expect("a run");
+            for (a, b) in found.iter().zip(&other) {
+                assert_eq!(a.count, b.count, "{method:?}");
+                assert_close(b.indentation, a.indentation, 1.0, 1e-8, "indentation");
+                if a.count > 0 {
+                    assert_close(b.shortest, a.shortest, a.shortest, 1e-5, "shortest");
+                    assert_close(b.longest, a.longest, a.longest, 1e-5, "longest");
+                }
+            }
         }
     }
 }

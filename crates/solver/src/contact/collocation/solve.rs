@@ -71,7 +71,7 @@ impl Collisions {
     }
 
     /// The same of a contact that loses energy.
-    #[inline(always)]
+    #[inline(never)]
     fn collide_lossy(
         &self,
         loss: &Loss,
