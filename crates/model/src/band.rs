@@ -143,7 +143,7 @@ impl<'a> Search<'a> {
             Source::Force(amplitude) => (amplitude.get(), 0, None),
             Source::Imbalance(imbalance) => (imbalance.get() * factors.unit, 2, None),
             Source::Base(base) => (base.get(), 0, Some(ground(bare, factors.unit))),
-            Source::Decay(_) => (0.0, 0, None),
+            Source::Decay(_) | Source::History(_) => (0.0, 0, None),
         };
         Self { bare, factors, damper, measure, force, power, weight, band, seen }
     }

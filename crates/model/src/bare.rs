@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{Excitation, Forcing, Primary, Source, Start};
+use crate::{Excitation, Forcing, History, Of, Primary, Source, Start, Stretch};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -9,7 +9,11 @@ pub struct Bare {
     pub(crate) m1: f64,
     pub(crate) c1: f64,
     pub(crate) k1: f64,
+    /// The force `f` and its partner `s` obey `df/dt = -ω s` and `ds/dt = ω f`, the second with 0 in the place of ω where the force is linear
+    /// in time; rad/s.
     pub(crate) omega: f64,
+    pub(crate) returns: f64,
+    frequency: f64,
     source: Source,
     /// Where the motion starts away from rest.
     pub(crate) away: Option<Start>,
@@ -27,12 +31,23 @@ impl Bare {
             c1: primary.damping.get(),
             k1: primary.stiffness.get(),
             omega: forcing.frequency.get(),
+            returns: forcing.frequency.get(),
+            frequency: forcing.frequency.get(),
             source: forcing.source,
             away: forcing.start(),
             amplitude: 0.0,
             phase: 0.0,
             lead: 0.0,
         };
+        if let Source::History(history) = forcing.source {
+            let [omega, returns] = history.course.turning();
+            return Self {
+                omega,
+                returns,
+                amplitude: bare.force_of(&history).abs() * history.course.bounds()[0],
+                ..bare
+            };
+        }
         let [amplitude, lead] = bare.amplitude_and_lead(bare.omega);
         Self { amplitude, lead, ..bare }
     }
@@ -46,8 +61,60 @@ impl Bare {
             Source::Base(base) => {
                 [base.get() * self.k1.hypot(omega * self.c1), (omega * self.c1).atan2(self.k1)]
             }
-            Source::Decay(_) => [0.0; 2],
+            Source::Decay(_) | Source::History(_) => [0.0; 2],
         }
+    }
+
+    /// The force per unit of what is given in time: an acceleration a of the base is the force -m1 a in coordinates that move with it.
+    fn force_of(&self, history: &History) -> f64 {
+        match history.of {
+            Of::Force => 1.0,
+            Of::BaseAcceleration => -self.m1,
+        }
+    }
+
+    /// What is given in time, if anything is.
+    pub fn history(&self) -> Option<&History> {
+        if let Source::History(history) = &self.source { Some(history) } else { None }
+    }
+
+    /// Whether the coordinates move with a base that is accelerated: every mass then feels a force in proportion to it.
+    pub fn moves_with_base(&self) -> bool {
+        self.history().is_some_and(|history| history.of == Of::BaseAcceleration)
+    }
+
+    /// The stretch of time at `t` (s) in which the force goes on as one solution of its equation, with the force at its start; at a jump the
+    /// stretch that begins there. None of a harmonic force, which has one alone.
+    pub fn stretch(&self, t: f64) -> Option<Stretch> {
+        let history = self.history()?;
+        let (stretch, unit) = (history.course.stretch(t), self.force_of(history));
+        Some(Stretch { begin: stretch.begin.map(|of| unit * of), ..stretch })
+    }
+
+    /// The force at time `t` (s) of a stretch, as [`Self::excitation`].
+    pub fn excitation_in(&self, stretch: &Stretch, t: f64) -> Excitation {
+        let ([f, s], elapsed) = (stretch.begin, t - stretch.from);
+        if [f, s] == [0.0; 2] {
+            return [0.0; 2];
+        }
+        if self.returns == 0.0 {
+            return [f - self.omega * s * elapsed, s];
+        }
+        let (sin, cos) = (self.omega * elapsed).sin_cos();
+        [f * cos - s * sin, s * cos + f * sin]
+    }
+
+    /// The largest force, N, and the largest rate of it where it has one, N/s.
+    pub fn force_bounds(&self) -> [f64; 2] {
+        match self.history() {
+            Some(history) => history.course.bounds().map(|bound| self.force_of(history).abs() * bound),
+            None => [self.amplitude, self.amplitude * self.omega],
+        }
+    }
+
+    /// `[ω, ω again or 0]` of `df/dt = -ω s`, `ds/dt = ω f`, rad/s: how the force turns.
+    pub fn turning(&self) -> [f64; 2] {
+        [self.omega, self.returns]
     }
 
     /// The forcing's kind and size.
@@ -76,13 +143,16 @@ impl Bare {
         self.m1
     }
 
-    /// Angular frequency ω of the force, rad/s.
+    /// Angular frequency ω of the force, rad/s; 0 where it has none.
     pub fn frequency(&self) -> f64 {
-        self.omega
+        self.frequency
     }
 
     /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N, with the amplitude and the phase of whatever forces the structure.
     pub fn excitation(&self, t: f64) -> Excitation {
+        if let Some(stretch) = self.stretch(t) {
+            return self.excitation_in(&stretch, t);
+        }
         let (sin, cos) = (self.omega * t + (self.phase + self.lead)).sin_cos();
         [self.amplitude * cos, self.amplitude * sin]
     }
@@ -131,12 +201,21 @@ impl Bare {
     /// A bound on how fast the motion can change, 1/s: the larger of ω and `√(k1/m1) + c1/m1`, which is no less than the
     /// norm of the linear part in the energy norm.
     pub fn rate(&self) -> f64 {
-        self.omega.max((self.k1 / self.m1).sqrt() + self.c1 / self.m1)
+        self.returns.max((self.k1 / self.m1).sqrt() + self.c1 / self.m1)
+    }
+
+    /// What turns the force, in the symbols of a study file.
+    pub(crate) fn turns_by(&self) -> &'static str {
+        if self.history().is_some() { "pulse" } else { "omega" }
     }
 
     /// The largest contribution to [`Self::rate`], in the symbols of a study file.
     pub fn fastest(&self) -> &'static str {
-        largest([(self.omega, "omega"), ((self.k1 / self.m1).sqrt(), "k1/m1"), (self.c1 / self.m1, "c1/m1")])
+        largest([
+            (self.returns, self.turns_by()),
+            ((self.k1 / self.m1).sqrt(), "k1/m1"),
+            (self.c1 / self.m1, "c1/m1"),
+        ])
     }
 
     /// Energy of the primary structure, `E1 = (m1 v1² + k1 x1²) / 2`, J.

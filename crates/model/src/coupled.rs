@@ -51,6 +51,8 @@ pub struct Coupled {
     pub(crate) radius: f64,
     /// e of rigid walls.
     restitution: Option<f64>,
+    /// m2/m1 where the coordinates move with an accelerated base: as much of the force on the structure acts on the damper. 0 otherwise.
+    carried: f64,
 }
 
 impl Coupled {
@@ -74,6 +76,11 @@ impl Coupled {
                 .contact
                 .and_then(|contact| contact.rigid())
                 .map(|rigid| rigid.restitution.get()),
+            carried: if Bare::new(primary, forcing).moves_with_base() {
+                damper.mass.get() / primary.mass.get()
+            } else {
+                0.0
+            },
         }
     }
 
@@ -91,6 +98,11 @@ impl Coupled {
     /// `[P cos(ωt + φ), P sin(ωt + φ)]` at time `t` (s), N.
     pub fn excitation(&self, t: f64) -> Excitation {
         self.bare.excitation(t)
+    }
+
+    /// `f/m1`, m/s²: what the motion of the base takes from every acceleration in coordinates that move with it; 0 in others.
+    pub fn frame_acceleration(&self, [force, _]: Excitation) -> f64 {
+        if self.carried > 0.0 { force / self.bare.m1 } else { 0.0 }
     }
 
     /// The paper's initial state, `[0, 0, D, 0]`.
@@ -222,28 +234,32 @@ impl Coupled {
     ) -> [f64; 4] {
         let Bare { m1, c1, k1, .. } = self.bare;
         let on_damper = contact - self.c2 * (v2 - v1) - self.k2 * (x2 - x1 - self.d);
-        [v1, (cos - c1 * v1 - k1 * x1 - on_damper) / m1, v2, on_damper / self.m2]
+        let a2 = on_damper / self.m2;
+        let a2 = if self.carried > 0.0 { a2 + cos / m1 } else { a2 };
+        [v1, (cos - c1 * v1 - k1 * x1 - on_damper) / m1, v2, a2]
     }
 
     /// The linear part: `A` of `y' = A (y - y0) + b P cos ωt` away from contacts, and `b`; `y0` is [`Self::rest`].
     pub fn linear_part(&self) -> (SMatrix<f64, 4, 4>, [f64; 4]) {
-        (self.jacobian_with([0.0; 2]), [0.0, 1.0 / self.bare.m1, 0.0, 0.0])
+        let on_structure = 1.0 / self.bare.m1;
+        let on_damper = if self.carried > 0.0 { on_structure } else { 0.0 };
+        (self.jacobian_with([0.0; 2]), [0.0, on_structure, 0.0, on_damper])
     }
 
     /// A bound on how fast the motion between contacts can change, 1/s: the larger of ω and `√(tr M⁻¹K) + tr M⁻¹C`, which is
     /// no less than the norm of the linear part in the energy norm.
     pub fn rate(&self) -> f64 {
-        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let Bare { m1, c1, k1, returns, .. } = self.bare;
         let inverse_m = self.inverse_effective_mass();
-        omega.max((k1 / m1 + self.k2 * inverse_m).sqrt() + c1 / m1 + self.c2 * inverse_m)
+        returns.max((k1 / m1 + self.k2 * inverse_m).sqrt() + c1 / m1 + self.c2 * inverse_m)
     }
 
     /// The largest contribution to [`Self::rate`], in the symbols of a study file.
     pub fn fastest(&self) -> &'static str {
-        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let Bare { m1, c1, k1, returns, .. } = self.bare;
         let (m2, c2, k2) = (self.m2, self.c2, self.k2);
         largest([
-            (omega, "omega"),
+            (returns, self.bare.turns_by()),
             ((k1 / m1).sqrt(), "k1/m1"),
             ((k2 / m1).sqrt(), "k2/m1"),
             ((k2 / m2).sqrt(), "k2/m2"),
@@ -261,8 +277,10 @@ impl Coupled {
     }
 
     /// Largest growth of [`Self::energy_norm`], √J/s; see [`Bare::energy_norm_growth`].
+    ///
+    /// An acceleration `a` of the base does the work `-a (m1 v1 + m2 v2)`, at most `|a| √((m1 + m2) 2E)`: it grows by `√(1 + m2/m1)` as much.
     pub fn energy_norm_growth(&self) -> f64 {
-        self.bare.energy_norm_growth()
+        self.bare.energy_norm_growth() * (1.0 + self.carried).sqrt()
     }
 
     /// The largest `|row · (y - y0)|` over all states of energy norm 1 (the dual norm); infinite if `row` weights a coordinate
@@ -304,7 +322,8 @@ impl Coupled {
 
     /// `∂y'/∂t` of equation (1), which is due to the force alone.
     pub fn time_derivative(&self, [_, sin]: Excitation) -> [f64; 4] {
-        [0.0, -self.bare.omega * sin / self.bare.m1, 0.0, 0.0]
+        let on_structure = -self.bare.omega * sin / self.bare.m1;
+        [0.0, on_structure, 0.0, if self.carried > 0.0 { on_structure } else { 0.0 }]
     }
 
     /// The numbers of the steady response: `(m2, k2, c2)`.

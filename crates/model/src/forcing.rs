@@ -1,14 +1,17 @@
-//! What makes the structure move: a harmonic force, a rotating imbalance, a moving base, or a start away from rest. `docs/theory.md`
-//! has the equations of each; all but the last are a harmonic force on the structure.
+//! What makes the structure move: a harmonic force, a rotating imbalance, a moving base, a start away from rest, or a pulse or a record.
+//! `docs/theory.md` has the equations of each; the first three are a harmonic force on the structure.
 
-use crate::{Finite, NonNegative};
+use crate::history::{Course, History, Of, Pulse, Shape};
+use crate::record::{Column, Record, RecordFile};
+use crate::unit::named;
+use crate::{Finite, NonNegative, Positive, Unit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The harmonic force and its quarter-turn: `[P cos(ωt + φ), P sin(ωt + φ)]`, N.
 ///
 /// The formulas of this crate take this pair instead of `t`, so that a caller who steps in time may turn it by a rotation instead
-/// of calling `cos` at every step.
+/// of calling `cos` at every step. Of a force that is given in time ([`History`]) it is `[f, -(df/dt) / ω]`.
 pub type Excitation = [f64; 2];
 
 /// What makes the primary structure move, and how fast.
@@ -18,7 +21,7 @@ pub type Excitation = [f64; 2];
 pub struct Forcing {
     /// Its kind and size.
     pub source: Source,
-    /// omega, its angular frequency, rad/s; 0 of a free decay.
+    /// omega, its angular frequency, rad/s; 0 of a free decay, a pulse and a record.
     pub frequency: NonNegative,
     /// Where a motion under a force starts; at rest if there is none. A free decay has its own.
     pub start: Option<Start>,
@@ -36,6 +39,8 @@ pub enum Source {
     Base(NonNegative),
     /// Nothing but a start away from rest.
     Decay(Start),
+    /// A force, or an acceleration of the base, that is given in time.
+    History(History),
 }
 
 /// A state at t = 0, SI units.
@@ -83,16 +88,19 @@ impl Forcing {
             Source::Force(force) => ground_force / force.get(),
             Source::Imbalance(imbalance) => ground_force / (imbalance.get() * omega * omega),
             Source::Base(base) => displacement / base.get(),
-            Source::Decay(_) => f64::NAN,
+            Source::Decay(_) | Source::History(_) => f64::NAN,
         }
     }
 }
 
-/// What makes the primary structure move: one of `P`, `imbalance` and `base` with its `omega`, from rest or from `start`; or `start` alone.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+/// What makes the primary structure move: one of `P`, `imbalance` and `base` with its `omega`, from rest or from `start`; a `pulse` or a
+/// `record`, each with `of`; or `start` alone.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Forcing", extend("oneOf" = [
     { "required": ["P", "omega"] }, { "required": ["imbalance", "omega"] }, { "required": ["base", "omega"] },
+    { "required": ["pulse", "of", "peak", "duration"], "properties": { "omega": false } },
+    { "required": ["record", "of"], "properties": { "omega": false } },
     { "required": ["start"], "properties": { "omega": false } }
 ]))]
 struct InFile {
@@ -111,42 +119,179 @@ struct InFile {
     /// omega, angular frequency of the forcing, rad/s: of the force, of the rotation or of the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     omega: Option<NonNegative>,
+    /// pulse, the shape of a pulse that begins at t = 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pulse: Option<Shape>,
+    /// record, a file with samples, straight lines between them: CSV with a header and the time in its first column, s, or PEER's AT2, whose
+    /// unit is g. A path that is not absolute begins at the directory of the study. Before the first and after the last sample there is nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    record: Option<String>,
+    /// of, what a pulse or a record gives: a force on the structure, or an acceleration of the base.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    of: Option<Of>,
+    /// peak, the largest value of a pulse, in its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    peak: Option<Finite>,
+    /// duration, how long a pulse lasts, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    duration: Option<Positive>,
+    /// unit, that of a pulse's peak or a record's values: N if left out, or m/s² of an acceleration (of an AT2 file g).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    /// scale, by how much the values of a record are multiplied; 1 if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scale: Option<Finite>,
+    /// column, that of a record's values in a CSV file, by its name in the header or its number from 1; the second if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    column: Option<Column>,
+}
+
+impl From<History> for InFile {
+    fn from(History { of, course }: History) -> Self {
+        let unit = |unit: Unit| (unit != of.units()[0]).then(|| unit.0.to_owned());
+        let file = Self { of: Some(of), ..Self::default() };
+        match course {
+            Course::Pulse(Pulse { shape, peak, unit: own, duration }) => Self {
+                pulse: Some(shape),
+                peak: Some(peak),
+                duration: Some(duration),
+                unit: unit(own),
+                ..file
+            },
+            Course::Record(record) => {
+                let RecordFile { file: path, column, unit, scale } = record.source().clone();
+                let unit = unit.map(|unit| unit.0.to_owned());
+                Self { record: Some(path), column, unit, scale, ..file }
+            }
+        }
+    }
 }
 
 impl From<Forcing> for InFile {
     fn from(Forcing { source, frequency, start }: Forcing) -> Self {
-        let none = Self { force: None, imbalance: None, base: None, start, omega: Some(frequency) };
+        let none = Self { start, omega: Some(frequency), ..Self::default() };
         match source {
             Source::Force(amplitude) => Self { force: Some(amplitude), ..none },
             Source::Imbalance(amplitude) => Self { imbalance: Some(amplitude), ..none },
             Source::Base(amplitude) => Self { base: Some(amplitude), ..none },
             Source::Decay(start) => Self { start: Some(start), omega: None, ..none },
+            Source::History(history) => Self { start, ..history.into() },
         }
     }
 }
 
 /// Why what a file says is no forcing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Refused {
-    #[error("give one of `P`, `imbalance` and `base`, or `start` alone, not {0} of them")]
+    #[error("give one of `P`, `imbalance`, `base`, `pulse` and `record`, or `start` alone, not {0} of them")]
     Count(usize),
     #[error("missing field `omega`: the angular frequency, rad/s")]
     NoFrequency,
     #[error("`omega` has no meaning beside `start`: a free decay has no force")]
     FreeFrequency,
+    #[error("`{field}` has no meaning beside `{beside}`")]
+    Beside { field: &'static str, beside: &'static str },
+    #[error("missing field `{field}` beside `{beside}`: {what}")]
+    Without { field: &'static str, beside: &'static str, what: &'static str },
+    #[error("`unit`: \"{given}\" is not allowed here: give one of {allowed}")]
+    Unit { given: String, allowed: String },
+}
+
+impl InFile {
+    /// The first of the fields of pulses and records that is given and not among `known`.
+    fn stray(&self, known: &[&str]) -> Option<&'static str> {
+        let fields = [
+            ("omega", self.omega.is_some()),
+            ("of", self.of.is_some()),
+            ("peak", self.peak.is_some()),
+            ("duration", self.duration.is_some()),
+            ("unit", self.unit.is_some()),
+            ("scale", self.scale.is_some()),
+            ("column", self.column.is_some()),
+        ];
+        fields.into_iter().find(|(name, given)| *given && !known.contains(name)).map(|(name, _)| name)
+    }
+
+    /// The unit that is given, if one is.
+    fn unit(&self, of: Of) -> Result<Option<Unit>, Refused> {
+        let Some(given) = &self.unit else { return Ok(None) };
+        let refused = || {
+            let all: Vec<&str> = of.units().iter().map(|(name, _)| *name).collect();
+            Refused::Unit { given: given.clone(), allowed: all.join(", ") }
+        };
+        named(given, of.units()).map(Some).ok_or_else(refused)
+    }
+
+    /// What is given in time, if it is.
+    fn history(&self) -> Result<Option<History>, Refused> {
+        let beside = match (self.pulse, &self.record) {
+            (None, None) => return Ok(None),
+            (Some(_), _) => "pulse",
+            (None, Some(_)) => "record",
+        };
+        let without = |field, what| Refused::Without { field, beside, what };
+        let known: &[&str] = if beside == "pulse" {
+            &["of", "peak", "duration", "unit"]
+        } else {
+            &["of", "unit", "scale", "column"]
+        };
+        if let Some(field) = self.stray(known) {
+            return Err(Refused::Beside { field, beside });
+        }
+        let of = self.of.ok_or(without("of", "`force` or `base acceleration`"))?;
+        let unit = self.unit(of)?;
+        let course = match (self.pulse, &self.record) {
+            (Some(shape), _) => Course::Pulse(Pulse {
+                shape,
+                peak: self.peak.ok_or(without("peak", "the largest value"))?,
+                duration: self.duration.ok_or(without("duration", "how long it lasts, s"))?,
+                unit: unit.unwrap_or(of.units()[0]),
+            }),
+            (None, file) => Course::Record(Record::new(RecordFile {
+                file: file.clone().unwrap_or_default(),
+                column: self.column.clone(),
+                unit,
+                scale: self.scale,
+            })),
+        };
+        Ok(Some(History { of, course }))
+    }
 }
 
 impl TryFrom<InFile> for Forcing {
     type Error = Refused;
 
     fn try_from(file: InFile) -> Result<Self, Refused> {
-        let InFile { force, imbalance, base, start, omega } = file;
-        let sources = [force.map(Source::Force), imbalance.map(Source::Imbalance), base.map(Source::Base)];
+        let history = file.history()?;
+        let stray = file.stray(&["omega"]).filter(|_| history.is_none());
+        let InFile { force, imbalance, base, start, omega, pulse, record, .. } = file;
+        let sources = [
+            force.map(Source::Force),
+            imbalance.map(Source::Imbalance),
+            base.map(Source::Base),
+            history.map(Source::History),
+            // A pulse and a record are two.
+            history.filter(|_| pulse.is_some() && record.is_some()).map(Source::History),
+        ];
         let given: Vec<Source> = sources.into_iter().flatten().collect();
+        if let (Some(field), [source]) = (stray, given.as_slice()) {
+            let beside = match source {
+                Source::Force(_) => "P",
+                Source::Imbalance(_) => "imbalance",
+                _ => "base",
+            };
+            return Err(Refused::Beside { field, beside });
+        }
+        if let (Some(field), []) = (stray, given.as_slice()) {
+            return Err(Refused::Beside { field, beside: "start" });
+        }
         match (given.as_slice(), start, omega) {
             ([], Some(_), Some(_)) => Err(Refused::FreeFrequency),
             ([], Some(start), None) => {
                 Ok(Self { source: Source::Decay(start), frequency: NonNegative::default(), start: None })
+            }
+            ([source @ Source::History(_)], start, None) => {
+                Ok(Self { source: *source, frequency: NonNegative::default(), start })
             }
             ([source], start, Some(frequency)) => Ok(Self { source: *source, frequency, start }),
             ([_], _, None) => Err(Refused::NoFrequency),
@@ -171,12 +316,47 @@ mod tests {
             r#"{"base":0.01,"omega":6.28}"#,
             r#"{"P":800.0,"start":{"x1":0.1,"v1":0.0,"x2":0.2,"v2":0.0},"omega":6.28}"#,
             r#"{"start":{"x1":0.1,"v1":0.0,"v2":0.0}}"#,
+            r#"{"pulse":"half sine","of":"base acceleration","peak":3.0,"duration":0.1}"#,
+            r#"{"start":{"x1":0.1,"v1":0.0,"v2":0.0},"pulse":"rectangle","of":"force","peak":-3.0,"duration":0.1,"unit":"kN"}"#,
+            r#"{"record":"quake.csv","of":"base acceleration"}"#,
+            r#"{"record":"quake.csv","of":"base acceleration","unit":"g","scale":-2.0,"column":"north"}"#,
+            r#"{"record":"push.csv","of":"force","column":3}"#,
         ] {
             let forcing = read(text).expect(text);
             assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
         }
         for (text, said) in [
-            (r#"{"omega":6.28}"#, "give one of `P`, `imbalance` and `base`, or `start` alone, not 0 of them"),
+            (
+                r#"{"omega":6.28}"#,
+                "give one of `P`, `imbalance`, `base`, `pulse` and `record`, or `start` alone, not 0",
+            ),
+            (
+                r#"{"pulse":"half sine","of":"force","peak":1,"duration":1,"omega":1}"#,
+                "`omega` has no meaning beside `pulse`",
+            ),
+            (r#"{"pulse":"half sine","of":"force","peak":1}"#, "missing field `duration` beside `pulse`"),
+            (
+                r#"{"pulse":"half sine","peak":1,"duration":1}"#,
+                "missing field `of` beside `pulse`: `force` or",
+            ),
+            (r#"{"pulse":"saw","of":"force","peak":1,"duration":1}"#, "unknown variant `saw`"),
+            (r#"{"pulse":"rectangle","of":"force","peak":1,"duration":0}"#, "0 is not allowed here"),
+            (
+                r#"{"pulse":"rectangle","of":"force","peak":1,"duration":1,"unit":"g"}"#,
+                "`unit`: \"g\" is not allowed here: give one of N, kN",
+            ),
+            (r#"{"record":"a.csv","of":"force","peak":1}"#, "`peak` has no meaning beside `record`"),
+            (r#"{"record":"a.csv","pulse":"rectangle","of":"force","peak":1,"duration":1}"#, "not 2 of them"),
+            (
+                r#"{"record":"a.csv","of":"base acceleration","unit":"N"}"#,
+                "\"N\" is not allowed here: give one of m/s²",
+            ),
+            (r#"{"P":1,"omega":1,"of":"force"}"#, "`of` has no meaning beside `P`"),
+            (
+                r#"{"P":1,"omega":1,"pulse":"rectangle","of":"force","peak":1,"duration":1}"#,
+                "`omega` has no meaning beside `pulse`",
+            ),
+            (r#"{"start":{},"scale":1}"#, "`scale` has no meaning beside `start`"),
             (r#"{"P":1,"base":1,"omega":6.28}"#, "not 2 of them"),
             (r#"{"P":1}"#, "missing field `omega`"),
             (r#"{"start":{},"omega":1}"#, "`omega` has no meaning beside `start`"),

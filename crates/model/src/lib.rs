@@ -1,7 +1,7 @@
 //! The physics of a damper on a forced oscillator: one copy of each formula of the paper, beside its equation number.
 //!
 //! A heavy *primary structure* (PS; `m1, c1, k1`) is excited by `F(t) = P cos ωt`, by a rotating imbalance or by its base, or
-//! decays from a start ([`Forcing`]). A light damper (`m2, c2, k2`) moves in a
+//! decays from a start, or feels a pulse or a record ([`Forcing`]). A light damper (`m2, c2, k2`) moves in a
 //! cavity of the PS: it touches the PS where `x2 - x1 <= 0` and the obstacle (the cavity's far wall, which moves with the
 //! PS) where `x2 - x1 >= D + C`. Its spring is at rest at `x2 - x1 = D`.
 //!
@@ -46,11 +46,13 @@ mod damper;
 mod design;
 mod forcing;
 mod hertz;
+mod history;
 mod loss;
 mod measure;
 mod parameter;
 mod per_variable;
 mod polynomial;
+mod record;
 mod regularised;
 mod scene;
 mod sensitivity;
@@ -70,11 +72,13 @@ pub use hertz::{
     HERTZ_YIELD, hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure,
     hertz_stiffness,
 };
+pub use history::{Course, History, Of, Pulse, Shape, Stretch};
 pub use loss::{Loss, Restoring};
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
+pub use record::{BadSamples, Column, Record, RecordFile, Samples};
 pub use regularised::bounds::{Change, Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};

@@ -31,6 +31,9 @@ pub struct RegularisedContact {
     sign: f64,
     wall: f64,
     omega: f64,
+    returns: f64,    // ω again, or 0 where the force is linear in time
+    force: [f64; 2], // bounds on the force and its rate, N, N/s
+    felt: f64,       // sign, or 0 where the force accelerates both bodies alike
     // Accelerations per unit of each cause.
     primary: [f64; 3],                 // 1/m1, c1/m1, k1/m1
     hertz: [f64; 2],                   // K/m1, K (1/m1 + 1/m2)
@@ -61,6 +64,9 @@ impl Coupled {
             sign: side.sign(),
             wall: self.wall(side),
             omega: bare.omega,
+            returns: bare.returns,
+            force: bare.force_bounds(),
+            felt: if bare.moves_with_base() { 0.0 } else { side.sign() },
             primary: [inv_m1, bare.c1 * inv_m1, bare.k1 * inv_m1],
             hertz: pair(self.hertz(side)),
             dashpot: pair(c2),
@@ -139,8 +145,8 @@ impl RegularisedContact {
     pub fn set_excitation(&mut self, t: f64, [cos, sin]: Excitation) {
         (self.since, self.cos[0], self.sin[0]) = (t, cos, sin);
         for k in 1..WAVE {
-            let turn = self.omega / k as f64;
-            (self.cos[k], self.sin[k]) = (-turn * self.sin[k - 1], turn * self.cos[k - 1]);
+            let [turn, back] = [self.omega / k as f64, self.returns / k as f64];
+            (self.cos[k], self.sin[k]) = (-turn * self.sin[k - 1], back * self.cos[k - 1]);
         }
     }
 
@@ -150,9 +156,9 @@ impl RegularisedContact {
         [polynomial(&self.cos, t), polynomial(&self.sin, t)]
     }
 
-    /// Angular frequency of the force, rad/s.
+    /// Angular frequency with which the force turns, rad/s; 0 where it is linear in time.
     pub fn frequency(&self) -> f64 {
-        self.omega
+        self.returns
     }
 
     /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
@@ -166,7 +172,7 @@ impl RegularisedContact {
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
         let excitation = self.primary[0] * polynomial(&self.cos, t - self.since);
         [
-            (self.sign * resisting - push(1)) - self.sign * excitation,
+            (self.sign * resisting - push(1)) - self.felt * excitation,
             (self.sign * push(0) - resisting) + excitation,
         ]
     }

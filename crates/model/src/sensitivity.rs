@@ -33,7 +33,7 @@ impl Bare {
                     _ => size(Parameter::Base, base.get()),
                 }
             }
-            Source::Decay(_) => [0.0; 2],
+            Source::Decay(_) | Source::History(_) => [0.0; 2],
         }
     }
 }

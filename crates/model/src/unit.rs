@@ -69,6 +69,11 @@ pub fn read(text: &str, units: &[Unit]) -> Result<f64, String> {
     })
 }
 
+/// The unit of that name.
+pub fn named(name: &str, units: &[Unit]) -> Option<Unit> {
+    units.iter().copied().find(|unit| unit.0 == name)
+}
+
 /// A value in the SI unit `si`, in the unit in which a person reads it best: `0.0022` and `m` are `2.2` and `mm`.
 pub fn readable(value: f64, si: &'static str) -> Unit {
     // From the smallest.

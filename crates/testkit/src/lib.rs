@@ -4,6 +4,7 @@
 pub mod anything;
 #[cfg(feature = "desk")]
 pub mod desk;
+pub mod histories;
 pub mod hunt;
 #[cfg(feature = "jobs")]
 pub mod observers;

@@ -89,10 +89,18 @@ impl Coupled {
         let (stretch, stretch_rate) = (x2 - x1 - self.d, v2 - v1);
         let on_damper = walls.net - stretch_rate * self.c2 - stretch * self.k2;
         let g = cos - v1 * c1 - on_damper;
-        let (a1, a2) = ((g - x1 * k1) / m1, on_damper / self.m2);
+        let (a1, mut a2) = ((g - x1 * k1) / m1, on_damper / self.m2);
+        if self.carried > 0.0 {
+            a2 += cos / m1;
+        }
         let on_damper_rate = -walls.slope * stretch_rate - (a2 - a1) * walls.drag - stretch_rate * self.k2;
         let g_rate = sin * -omega - a1 * c1 - on_damper_rate;
-        Accelerations { a: [a1, a2], force: [g, on_damper], force_rate: [g_rate, on_damper_rate] }
+        let (mut force, mut rate) = (on_damper, on_damper_rate);
+        if self.carried > 0.0 {
+            force += cos * self.carried;
+            rate += sin * (-omega * self.carried);
+        }
+        Accelerations { a: [a1, a2], force: [g, force], force_rate: [g_rate, rate] }
     }
 
     /// [`Self::accelerations`] with the forces of walls: those of a contact, or of a rigid wall that holds the damper.

@@ -57,9 +57,7 @@ impl Coupled {
     /// The wall that holds the damper in a state under a force: it rests on it and is pressed on it. None of Hertz's surfaces.
     #[inline]
     pub fn holding(&self, excitation: Excitation, y: &[f64; 4]) -> Option<Side> {
-        let holds = |&side: &Side| {
-            self.rests_on(side, y) && self.holding_force(side, self.held_acceleration(excitation, y)) >= 0.0
-        };
+        let holds = |&side: &Side| self.rests_on(side, y) && self.held_force(side, excitation, y) >= 0.0;
         Side::BOTH.into_iter().filter(|_| self.is_rigid()).find(holds)
     }
 
@@ -68,13 +66,24 @@ impl Coupled {
         self.bare.with_mass(self.bare.m1 + self.m2)
     }
 
+    /// The force on both bodies as one.
+    fn on_both(&self, excitation: Excitation) -> Excitation {
+        excitation.map(|part| part * (1.0 + self.carried))
+    }
+
+    /// The force between a wall and the damper that it holds, N.
+    fn held_force(&self, side: Side, excitation: Excitation, y: &[f64; 4]) -> f64 {
+        let a = self.held_acceleration(excitation, y) - self.frame_acceleration(excitation);
+        self.holding_force(side, a)
+    }
+
     /// The acceleration of both bodies while a wall holds the damper, m/s².
     pub fn held_acceleration(&self, excitation: Excitation, y: &[f64; 4]) -> f64 {
-        self.joined().derivative(excitation, &[y[0], y[1]])[1]
+        self.joined().derivative(self.on_both(excitation), &[y[0], y[1]])[1]
     }
 
     /// `[weight, constant]` of the force between the wall and the damper that it holds, N: `weight a + constant` at the common acceleration
-    /// `a`. It is what spring and inertia ask for, and the wall can only push: the damper is held while it is not negative.
+    /// `a`, that of the base included. It is what spring and inertia ask for, and the wall can only push: the damper is held while it is not negative.
     pub fn holding_force_weights(&self, side: Side) -> [f64; 2] {
         let sign = -side.sign();
         [sign * self.m2, sign * self.k2 * (self.wall(side) - self.d)]
@@ -96,7 +105,8 @@ impl Coupled {
             0.0, 0.0, 0.0, 1.0,
             -k1 / m, -c1 / m, 0.0, 0.0,
         ];
-        (SMatrix::<f64, 4, 4>::from_row_slice(&rows), [0.0, 1.0 / m, 0.0, 1.0 / m])
+        let input = (1.0 + self.carried) / m;
+        (SMatrix::<f64, 4, 4>::from_row_slice(&rows), [0.0, input, 0.0, input])
     }
 
     /// A bound on how fast that motion can change, 1/s, as [`Self::rate`].
@@ -106,7 +116,7 @@ impl Coupled {
 
     /// `[x1, v1, a1, da1/dt, d²a1/dt²]` while a wall holds the damper.
     pub(super) fn held_motion(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 5] {
-        self.joined().primary_motion(excitation, &[y[0], y[1]])
+        self.joined().primary_motion(self.on_both(excitation), &[y[0], y[1]])
     }
 
     /// [`Accelerations`] while a wall holds the damper.
@@ -126,7 +136,7 @@ impl Coupled {
     pub fn wall_reactions(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 2] {
         let mut forces = self.contact_forces(y);
         if let Some(side) = self.holding(excitation, y) {
-            forces[side as usize] = self.holding_force(side, self.held_acceleration(excitation, y));
+            forces[side as usize] = self.held_force(side, excitation, y);
         }
         forces
     }

@@ -17,10 +17,10 @@ impl Bare {
     /// [`Self::primary_motion`] of four moments side by side.
     #[inline(always)]
     pub fn primary_motion_in_flight(&self, &[cos, sin]: &[f64x4; 2], &[x1, v1]: &[f64x4; 2]) -> [f64x4; 5] {
-        let Self { m1, c1, k1, omega, .. } = *self;
+        let Self { m1, c1, k1, omega, returns, .. } = *self;
         let a1 = (cos - v1 * c1 - x1 * k1) / m1;
         let jerk = (sin * -omega - a1 * c1 - v1 * k1) / m1;
-        [x1, v1, a1, jerk, (cos * (-omega * omega) - jerk * c1 - a1 * k1) / m1]
+        [x1, v1, a1, jerk, (cos * (-omega * returns) - jerk * c1 - a1 * k1) / m1]
     }
 
     /// `[k1, c1]`: the weights of `x1` and `v1` in the force that the structure transmits to the ground, `k1 x1 + c1 v1`, N.
@@ -97,7 +97,7 @@ impl Coupled {
         [bend, twist, warp]: [f64x4; 3],
     ) -> [f64x4; 5] {
         let &[x1, v1, _, v2] = y;
-        let Bare { m1, c1, k1, omega, .. } = self.bare;
+        let Bare { m1, c1, k1, omega, returns, .. } = self.bare;
         let Accelerations { a: [a1, a2], force_rate: [g_rate, on_damper_rate], .. } =
             self.accelerations(excitation, y, walls);
         let (jerk, jerk_2) = ((g_rate - v1 * k1) / m1, on_damper_rate / self.m2);
@@ -106,7 +106,7 @@ impl Coupled {
             - walls.slope * apart
             - (jerk_2 - jerk) * walls.drag
             - apart * self.k2;
-        let g_bend = excitation[0] * (-omega * omega) - jerk * c1 - on_damper_bend;
+        let g_bend = excitation[0] * (-omega * returns) - jerk * c1 - on_damper_bend;
         [x1, v1, a1, jerk, (g_bend - a1 * k1) / m1]
     }
 

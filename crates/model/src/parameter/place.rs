@@ -2,8 +2,8 @@
 
 use super::Parameter;
 use crate::{
-    Bounce, Contact, Damper, Forcing, Loss, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution,
-    Scene, Source,
+    Bounce, Contact, Course, Damper, Forcing, History, Loss, NonNegative, OutOfRange, PoissonRatio, Positive,
+    Restitution, Scene, Source,
 };
 use schemars::{Schema, json_schema};
 
@@ -80,7 +80,7 @@ impl Place<'_> {
 impl Parameter {
     /// Where it stands in a scene.
     fn place(self, scene: &mut Scene) -> Result<Place<'_>, Absent> {
-        let has = scene.forcing.amplitude().map_or("start", |(own, _)| own.symbol());
+        let has = scene.forcing.given_by();
         let Scene { primary, forcing, damper } = scene;
         let place = match (self, &mut forcing.source) {
             (Self::M1, _) => Place::Positive(&mut primary.mass),
@@ -236,13 +236,23 @@ impl Parameter {
 }
 
 impl Forcing {
+    /// The field that gives it in a study.
+    pub fn given_by(&self) -> &'static str {
+        match (self.amplitude(), self.source) {
+            (Some((own, _)), _) => own.symbol(),
+            (None, Source::History(History { course: Course::Pulse(_), .. })) => "pulse",
+            (None, Source::History(History { course: Course::Record(_), .. })) => "record",
+            _ => "start",
+        }
+    }
+
     /// The number that sets the size of the motion, one of [`Parameter::AMPLITUDES`]. A free decay has none.
     pub fn amplitude(&self) -> Option<(Parameter, NonNegative)> {
         match self.source {
             Source::Force(amplitude) => Some((Parameter::P, amplitude)),
             Source::Imbalance(amplitude) => Some((Parameter::Imbalance, amplitude)),
             Source::Base(amplitude) => Some((Parameter::Base, amplitude)),
-            Source::Decay(_) => None,
+            Source::Decay(_) | Source::History(_) => None,
         }
     }
 }

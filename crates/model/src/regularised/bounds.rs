@@ -153,7 +153,8 @@ impl RegularisedContact {
             series
         };
         let [mut q, mut w, mut x1, mut v1] = [q0, w0, x0, v0].map(start);
-        let mut excitation = start(self.cos[0].hypot(self.sin[0]));
+        let is_linear = self.returns == 0.0;
+        let mut excitation = start(if is_linear { self.force[0] } else { self.cos[0].hypot(self.sin[0]) });
         let (mut z, mut stretch, mut cube, mut force) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
         let mut stages = bounds.stages.map(StageSeries::new);
@@ -177,7 +178,9 @@ impl RegularisedContact {
                 break;
             }
             let next = 1.0 / (k + 1) as f64;
-            let (along, turned) = (product(&q, &v1, k), self.omega * product(&q, &excitation, k));
+            let turned =
+                if is_linear { self.force[1] * q[k] } else { self.omega * product(&q, &excitation, k) };
+            let along = product(&q, &v1, k);
             (x1[k + 1], excitation[k + 1]) = (along * next, turned * next);
             (v1[k + 1], w[k + 1]) = (product(&q, &a1, k) * next, product(&q, &rate, k) * next);
             q[k + 1] = 0.5 * w[k] * next;
@@ -261,7 +264,9 @@ impl RegularisedContact {
             (cube, cube_rate) = (most * cube, most * cube_rate + cube * turn);
         }
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
-        let turning = self.omega * over.excitation + self.primary[1] * a1 + self.primary[2] * v;
+        let forced =
+            if self.returns == 0.0 { self.primary[0] * self.force[1] } else { self.omega * over.excitation };
+        let turning = forced + self.primary[1] * a1 + self.primary[2] * v;
         let jerk =
             |i: usize| turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate;
         [[x, v, 0.5 * a1], [v, a1, 0.5 * jerk(0)], [stretch, w, 0.5 * rate], [w, rate, 0.5 * jerk(1)]]

@@ -6,5 +6,6 @@ mod bounds;
 mod catalogue;
 mod derivatives;
 mod energies;
+mod histories;
 mod regularised;
 mod steady;

@@ -1,0 +1,149 @@
+//! A force, or an acceleration of the base, that is given in time: a pulse, or a record that is linear between its samples.
+//!
+//! Over a [`Stretch`] of time every one of them obeys `f'' = -ω² f`, a record with ω = 0. So its value and its slope are a pair like that
+//! of a harmonic force, and the exact flow, the bounds and the contacts of a harmonic force are those of a record; at known times the pair
+//! jumps.
+
+use crate::record::Record;
+use crate::unit::{ACCELERATION, FORCE};
+use crate::{Excitation, Finite, Positive, Unit};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// What is given in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct History {
+    /// What it acts on.
+    pub of: Of,
+    /// Its course.
+    pub course: Course,
+}
+
+/// What a [`History`] is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Of {
+    /// A force on the primary structure, N.
+    #[serde(rename = "force")]
+    Force,
+    /// The acceleration a of the base, m/s²: in coordinates that move with the base it is the force -m1 a on the structure and -m2 a on
+    /// the damper. Then x1, v1, x2, v2 and energies are relative to the base, and a1 is the acceleration of the structure that it feels,
+    /// of its motion and that of its base together.
+    #[serde(rename = "base acceleration")]
+    BaseAcceleration,
+}
+
+/// How it goes on in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Course {
+    /// A pulse from t = 0 on, and nothing after it.
+    Pulse(Pulse),
+    /// Samples with straight lines between them, and nothing before the first and after the last.
+    Record(Record),
+}
+
+/// A pulse that begins at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse {
+    /// Its shape.
+    pub shape: Shape,
+    /// Its largest value, in `unit`.
+    pub peak: Finite,
+    /// The unit of the peak.
+    pub unit: Unit,
+    /// How long it lasts, s.
+    pub duration: Positive,
+}
+
+/// The shape of a pulse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Shape {
+    /// peak sin(π t / duration).
+    #[serde(rename = "half sine")]
+    HalfSine,
+    /// The peak all the time.
+    #[serde(rename = "rectangle")]
+    Rectangle,
+}
+
+/// A stretch of time between two jumps of the pair, with the pair at its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Its start, s.
+    pub from: f64,
+    /// Its end, s; infinite if nothing changes any more.
+    pub to: f64,
+    /// `[f, -(df/dt) / ω]` at its start.
+    pub begin: Excitation,
+}
+
+impl Of {
+    /// The units in which it may be given, the SI unit first.
+    pub const fn units(self) -> &'static [Unit] {
+        match self {
+            Self::Force => FORCE,
+            Self::BaseAcceleration => ACCELERATION,
+        }
+    }
+}
+
+impl Course {
+    /// `[ω, ω again or 0]`, rad/s, of `df/dt = -ω s`, `ds/dt = ω f`: the pair of a half sine turns, and the second number of a straight
+    /// line stays, which is its slope in the units of ω = 1.
+    pub(crate) fn turning(&self) -> [f64; 2] {
+        match self {
+            Self::Pulse(Pulse { shape: Shape::HalfSine, duration, .. }) => [PI / duration.get(); 2],
+            _ => [1.0, 0.0],
+        }
+    }
+
+    /// Bounds on its value and on its slope wherever it has one.
+    pub(crate) fn bounds(&self) -> [f64; 2] {
+        match self {
+            Self::Pulse(pulse) => {
+                let peak = pulse.peak().abs();
+                [peak, if pulse.shape == Shape::HalfSine { peak * PI / pulse.duration.get() } else { 0.0 }]
+            }
+            Self::Record(record) => record.samples().map_or([f64::NAN; 2], |samples| samples.bounds()),
+        }
+    }
+
+    /// The stretch of time in which it is at `t` (s); at a jump the one that begins there.
+    pub(crate) fn stretch(&self, t: f64) -> Stretch {
+        match self {
+            Self::Pulse(pulse) => pulse.stretch(t),
+            Self::Record(record) => record.samples().map_or(
+                // A record that was not read has no value.
+                Stretch { from: 0.0, to: f64::INFINITY, begin: [f64::NAN; 2] },
+                |samples| samples.stretch(t),
+            ),
+        }
+    }
+
+    /// When it is over, s.
+    pub fn end(&self) -> f64 {
+        match self {
+            Self::Pulse(pulse) => pulse.duration.get(),
+            Self::Record(record) => record.samples().map_or(f64::NAN, |samples| samples.end()),
+        }
+    }
+}
+
+impl Pulse {
+    /// Its largest value, N or m/s².
+    pub fn peak(&self) -> f64 {
+        self.peak.get() * self.unit.1
+    }
+
+    fn stretch(&self, t: f64) -> Stretch {
+        let end = self.duration.get();
+        if t >= end {
+            return Stretch { from: end, to: f64::INFINITY, begin: [0.0; 2] };
+        }
+        let begin = match self.shape {
+            Shape::HalfSine => [0.0, -self.peak()],
+            Shape::Rectangle => [self.peak(), 0.0],
+        };
+        Stretch { from: 0.0, to: end, begin }
+    }
+}

@@ -1,0 +1,49 @@
+//! Pulses and records for tests, and scenes under them.
+
+use crate::scenes::{Numbers, Spread};
+use retune_model::{
+    Course, Finite, Forcing, History, NonNegative, Of, Positive, Pulse, Record, RecordFile, Samples, Scene,
+    Shape, Source,
+};
+
+/// A pulse in SI units.
+pub fn pulse(of: Of, shape: Shape, peak: f64, duration: f64) -> History {
+    let pulse = Pulse {
+        shape,
+        peak: Finite::new(peak).expect("finite"),
+        unit: of.units()[0],
+        duration: Positive::new(duration).expect("above 0"),
+    };
+    History { of, course: Course::Pulse(pulse) }
+}
+
+/// A record of these samples.
+pub fn record(of: Of, samples: Samples) -> History {
+    let file = RecordFile { file: "test.csv".to_owned(), column: None, unit: None, scale: None };
+    History { of, course: Course::Record(Record::new(file).with(samples)) }
+}
+
+/// A record of noise up to `size`, its samples about `step` (s) apart, equidistant or not.
+pub fn noise(of: Of, size: f64, (step, count, even): (f64, usize, bool), spread: &mut Spread) -> History {
+    let values: Vec<f64> = (0..count).map(|_| size * spread.signed()).collect();
+    let samples = if even {
+        Samples::every(step, values)
+    } else {
+        let mut now = 0.0;
+        let mut next = || {
+            let next = now + step * (1.0 + 0.7 * spread.signed());
+            std::mem::replace(&mut now, next)
+        };
+        Samples::at((0..count).map(|_| next()).collect(), values)
+    };
+    record(of, samples.expect("a record"))
+}
+
+impl Numbers {
+    /// The forcing of a history, from rest.
+    pub fn under(&self, history: History) -> Scene {
+        let forcing =
+            Forcing { source: Source::History(history), frequency: NonNegative::default(), start: None };
+        Scene { forcing, ..self.scene() }
+    }
+}
