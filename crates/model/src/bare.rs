@@ -21,6 +21,8 @@ pub struct Bare {
     amplitude: f64,
     phase: f64,
     lead: f64,
+    /// The stretch of time that it is to stay in.
+    stays: Option<Stretch>,
 }
 
 impl Bare {
@@ -38,6 +40,7 @@ impl Bare {
             amplitude: 0.0,
             phase: 0.0,
             lead: 0.0,
+            stays: None,
         };
         if let Source::History(history) = forcing.source {
             let [omega, returns] = history.course.turning();
@@ -87,6 +90,9 @@ impl Bare {
     /// stretch that begins there. None of a harmonic force, which has one alone.
     pub fn stretch(&self, t: f64) -> Option<Stretch> {
         let history = self.history()?;
+        if self.stays.is_some() {
+            return self.stays;
+        }
         let (stretch, unit) = (history.course.stretch(t), self.force_of(history));
         Some(Stretch { begin: stretch.begin.map(|of| unit * of), ..stretch })
     }
@@ -102,6 +108,12 @@ impl Bare {
         }
         let (sin, cos) = (self.omega * elapsed).sin_cos();
         [f * cos - s * sin, s * cos + f * sin]
+    }
+
+    /// The same as if a stretch of time, of its own, went on for ever.
+    #[must_use]
+    pub fn during(self, stretch: Stretch) -> Self {
+        Self { stays: Some(Stretch { to: f64::INFINITY, ..stretch }), ..self }
     }
 
     /// The largest force, N, and the largest rate of it where it has one, N/s.

@@ -7,7 +7,7 @@ mod structure;
 use crate::bare::largest;
 use crate::loss::{Factor, Law};
 use crate::{
-    Bare, Contact, Damper, Excitation, Finite, Forcing, Primary, Start, Surfaces, hertz_force,
+    Bare, Contact, Damper, Excitation, Finite, Forcing, Primary, Start, Stretch, Surfaces, hertz_force,
     hertz_force_slope, hertz_pressure,
 };
 use nalgebra::SMatrix;
@@ -88,6 +88,12 @@ impl Coupled {
     #[must_use]
     pub fn with_phase(self, phase: f64) -> Self {
         Self { bare: self.bare.with_phase(phase), ..self }
+    }
+
+    /// The same as if a stretch of time went on for ever, see [`Bare::during`].
+    #[must_use]
+    pub fn during(&self, stretch: Stretch) -> Self {
+        Self { bare: self.bare.during(stretch), ..self.clone() }
     }
 
     /// The same structure without its damper.

@@ -156,6 +156,11 @@ impl RegularisedContact {
         [polynomial(&self.cos, t), polynomial(&self.sin, t)]
     }
 
+    /// Whether the force is linear in time.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.returns != self.omega
+    }
+
     /// Angular frequency with which the force turns, rad/s; 0 where it is linear in time.
     pub fn frequency(&self) -> f64 {
         self.returns
@@ -179,7 +184,8 @@ impl RegularisedContact {
 
     /// The sum of the sizes of the terms that accelerate the PS, m/s², which sets the rounding error of its acceleration.
     pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &RegularisedState) -> f64 {
-        self.primary[0] * self.cos[0].hypot(self.sin[0])
+        let force = if self.is_linear() { self.cos[0].abs() } else { self.cos[0].hypot(self.sin[0]) };
+        self.primary[0] * force
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()
             + self.hertz[0] * q.abs().powi(3) * self.most(w)

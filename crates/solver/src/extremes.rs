@@ -259,6 +259,13 @@ impl Observer<4> for Peak<'_> {
             Self::Damper(range, _) => range.impact(impact),
         }
     }
+    fn seam(&mut self) {
+        match self {
+            Self::Energy(e1) => Observer::<4>::seam(e1),
+            Self::Motion(size) => size.seam(),
+            Self::Damper(range, _) => range.seam(),
+        }
+    }
     fn satisfied(&self) -> bool {
         match self {
             Self::Energy(e1) => Observer::<4>::satisfied(e1),

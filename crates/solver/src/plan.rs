@@ -53,9 +53,9 @@ pub enum General {
 pub trait Planned<const N: usize>: LinearSystem<N> {
     /// Whether there is a wall to touch.
     fn has_walls(&self) -> bool;
-    /// Whether it provably touches none in the run from its start.
+    /// Whether it provably touches none in the run from its start, and has a closed form.
     fn clears_walls(&self) -> bool;
-    /// Largest energy of the structure in its steady motion without walls, J.
+    /// Largest energy of the structure in its steady motion without walls, J; infinite if there is none.
     fn steady_energy(&self) -> f64;
     /// Period of the force, s.
     fn period(&self) -> f64;
@@ -106,10 +106,10 @@ impl Planned<2> for Bare {
         false
     }
     fn clears_walls(&self) -> bool {
-        true
+        self.history().is_none()
     }
     fn steady_energy(&self) -> f64 {
-        Bare::steady(self, self.frequency()).e1_max
+        if self.history().is_some() { f64::INFINITY } else { Bare::steady(self, self.frequency()).e1_max }
     }
     fn period(&self) -> f64 {
         TAU / self.frequency()
@@ -124,7 +124,8 @@ impl Planned<4> for Coupled {
         clears_walls(self)
     }
     fn steady_energy(&self) -> f64 {
-        Coupled::steady(self, self.bare().frequency()).e1_max
+        let is_steady = self.bare().history().is_none();
+        if is_steady { Coupled::steady(self, self.bare().frequency()).e1_max } else { f64::INFINITY }
     }
     fn period(&self) -> f64 {
         TAU / self.bare().frequency()

@@ -118,10 +118,36 @@ fn follow_by<S: LinearSystem<N>, const N: usize>(
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
-    let mut run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
-    method.follow(&mut run, window.from, before)?;
-    method.follow(&mut run, window.to, observer)?;
+    let run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
+    let run = follow_stretches(method, system, run, window.from, before)?;
+    let run = follow_stretches(method, system, run, window.to, observer)?;
     Ok((run.state(), run.work))
+}
+
+/// Continues a run to time `to` (s) by a general method. Its steps end where the force jumps or bends, and none sees the force beyond.
+fn follow_stretches<'a, S: LinearSystem<N>, const N: usize>(
+    method: General,
+    system: &'a S,
+    mut run: Run<'a, S, N>,
+    to: f64,
+    observer: &mut impl Observer<N>,
+) -> Result<Run<'a, S, N>, SolverError>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    run.allow(to);
+    while let Some(stretch) = system.structure().stretch(run.time()) {
+        observer.seam();
+        let during = system.during(stretch);
+        let mut part = run.on(&during);
+        method.follow(&mut part, stretch.to.min(to), observer)?;
+        run = part.on(system);
+        if stretch.to >= to || observer.satisfied() {
+            return Ok(run);
+        }
+    }
+    method.follow(&mut run, to, observer)?;
+    Ok(run)
 }
 
 /// A structure and its damper, followed from any moment on by the plan for its motion.
@@ -175,8 +201,8 @@ impl<'a> Follower<'a> {
             Way::Steps(_) if self.system.is_rigid() => Err(SolverError::RigidWalls { t: from.t }),
             Way::Steps(method) => {
                 let longest = self.settings.longest_step(to - from.t);
-                let mut run = Run::new(self.system, &self.settings, from.t, from.y, longest);
-                method.follow(&mut run, to, observer)?;
+                let run = Run::new(self.system, &self.settings, from.t, from.y, longest);
+                let run = follow_stretches(*method, self.system, run, to, observer)?;
                 Ok(Motion { t: run.time(), y: run.state(), phase: Phase::of(self.system, &run.state()) })
             }
         }

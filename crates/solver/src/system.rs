@@ -1,7 +1,7 @@
 //! The solver's view of a system: right-hand side, linear part, energy norm.
 
 use nalgebra::{Complex, SMatrix};
-use retune_model::{Bare, Coupled, Excitation};
+use retune_model::{Bare, Coupled, Excitation, Stretch};
 
 /// A first-order system `y' = f(t, y)` of `N` equations that general-purpose methods can integrate.
 pub trait System<const N: usize> {
@@ -21,20 +21,29 @@ pub trait System<const N: usize> {
     }
 }
 
-/// A system whose flow between contacts is linear: `y' = A (y - origin) + b P cos ωt`.
+/// A system whose flow between contacts is linear: `y' = A (y - origin) + b f`, with a force `f` that turns or is linear in time.
 pub trait LinearSystem<const N: usize>: System<N> {
+    /// The primary structure, which the force acts on.
+    fn structure(&self) -> &Bare;
+    /// The same as if a stretch of time went on for ever.
+    fn during(&self, stretch: Stretch) -> Self
+    where
+        Self: Sized;
     /// The numbers of that flow.
     fn linear(&self) -> Linear<N>;
     /// The state at t = 0.
     fn start(&self) -> [f64; N];
-    /// Complex amplitudes of the steady motion about the origin, or `None` if there is none (undamped resonance).
+    /// Complex amplitudes of the steady motion about the origin, or `None` if there is none (undamped resonance, a pulse, a record).
     fn steady(&self) -> Option<[Complex<f64>; N]>;
     /// A norm of the deviation of a state from the origin that never grows without force, √J: `√(2E)`.
     fn energy_norm(&self, y: &[f64; N]) -> f64;
     /// Largest growth of that norm under the force, √J/s.
     fn energy_norm_growth(&self) -> f64;
-    /// The amplitude of the force, N.
+    /// The amplitude of the force, N, or a bound on it.
     fn amplitude(&self) -> f64 {
+        if self.structure().history().is_some() {
+            return self.structure().force_bounds()[0];
+        }
         let [cos, sin] = self.excitation(0.0);
         cos.hypot(sin)
     }
@@ -51,8 +60,10 @@ pub struct Linear<const N: usize> {
     pub input: [f64; N],
     /// The state of rest.
     pub origin: [f64; N],
-    /// ω, rad/s.
+    /// ω, rad/s, of `df/dt = -ω s`, with the force `f` and its partner `s`.
     pub frequency: f64,
+    /// Its counterpart in `ds/dt = ω f`, rad/s: the same, or 0 where the force is linear in time.
+    pub returns: f64,
     /// A bound on the norm of `A` in the energy norm and on ω, 1/s: the flow has no shorter time scale than its inverse.
     pub rate: f64,
     /// Its largest contribution, in the symbols of a study file.
@@ -61,12 +72,13 @@ pub struct Linear<const N: usize> {
 
 /// The flow while a rigid wall holds the damper: both bodies as one.
 pub(crate) fn held(system: &Coupled) -> Linear<4> {
-    let (a, input) = system.held_linear_part();
+    let ((a, input), [frequency, returns]) = (system.held_linear_part(), system.bare().turning());
     Linear {
         columns: columns(&a),
         input,
         origin: [0.0; 4],
-        frequency: system.bare().frequency(),
+        frequency,
+        returns,
         rate: system.held_rate(),
         fastest: system.fastest(),
     }
@@ -110,13 +122,20 @@ impl System<4> for Coupled {
 }
 
 impl LinearSystem<2> for Bare {
+    fn structure(&self) -> &Bare {
+        self
+    }
+    fn during(&self, stretch: Stretch) -> Self {
+        Bare::during(*self, stretch)
+    }
     fn linear(&self) -> Linear<2> {
-        let (a, input) = self.linear_part();
+        let ((a, input), [frequency, returns]) = (self.linear_part(), self.turning());
         Linear {
             columns: columns(&a),
             input,
             origin: self.rest(),
-            frequency: self.frequency(),
+            frequency,
+            returns,
             rate: self.rate(),
             fastest: self.fastest(),
         }
@@ -125,6 +144,9 @@ impl LinearSystem<2> for Bare {
         Bare::start(self)
     }
     fn steady(&self) -> Option<[Complex<f64>; 2]> {
+        if self.history().is_some() {
+            return None;
+        }
         let steady = Bare::steady(self, self.frequency());
         finite([steady.x1], self.frequency()).map(|[x1]| x1)
     }
@@ -140,13 +162,20 @@ impl LinearSystem<2> for Bare {
 }
 
 impl LinearSystem<4> for Coupled {
+    fn structure(&self) -> &Bare {
+        self.bare()
+    }
+    fn during(&self, stretch: Stretch) -> Self {
+        Coupled::during(self, stretch)
+    }
     fn linear(&self) -> Linear<4> {
-        let (a, input) = self.linear_part();
+        let ((a, input), [frequency, returns]) = (self.linear_part(), self.bare().turning());
         Linear {
             columns: columns(&a),
             input,
             origin: self.rest(),
-            frequency: self.bare().frequency(),
+            frequency,
+            returns,
             rate: self.rate(),
             fastest: self.fastest(),
         }
@@ -155,6 +184,9 @@ impl LinearSystem<4> for Coupled {
         Coupled::start(self)
     }
     fn steady(&self) -> Option<[Complex<f64>; 4]> {
+        if self.bare().history().is_some() {
+            return None;
+        }
         let omega = self.bare().frequency();
         let steady = Coupled::steady(self, omega);
         finite([steady.x1, steady.x2], omega).map(|[[x1, v1], [x2, v2]]| [x1, v1, x2, v2])

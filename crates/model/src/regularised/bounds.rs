@@ -153,7 +153,7 @@ impl RegularisedContact {
             series
         };
         let [mut q, mut w, mut x1, mut v1] = [q0, w0, x0, v0].map(start);
-        let is_linear = self.returns == 0.0;
+        let is_linear = self.is_linear();
         let mut excitation = start(if is_linear { self.force[0] } else { self.cos[0].hypot(self.sin[0]) });
         let (mut z, mut stretch, mut cube, mut force) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
@@ -265,7 +265,7 @@ impl RegularisedContact {
         }
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
         let forced =
-            if self.returns == 0.0 { self.primary[0] * self.force[1] } else { self.omega * over.excitation };
+            if self.is_linear() { self.primary[0] * self.force[1] } else { self.omega * over.excitation };
         let turning = forced + self.primary[1] * a1 + self.primary[2] * v;
         let jerk =
             |i: usize| turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate;

@@ -54,7 +54,19 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
         let budget = self.budget(to);
-        self.go(to, observer, budget)
+        let Some(mut stretch) = self.system.structure().stretch(self.now.t) else {
+            return self.go(to, observer, budget);
+        };
+        loop {
+            self.now.excitation = self.system.structure().excitation_in(&stretch, self.now.t);
+            observer.seam();
+            self.go(stretch.to.min(to), observer, budget)?;
+            if stretch.to >= to || observer.satisfied() {
+                return Ok(());
+            }
+            self.now.t = stretch.to;
+            stretch = self.system.structure().stretch(stretch.to).unwrap_or(stretch);
+        }
     }
 
     fn budget(&self, to: f64) -> Budget {

@@ -7,6 +7,7 @@ use crate::contact::regularised::integrate::End;
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::observe::observer::Observer;
+use retune_model::Stretch;
 
 impl Hybrid<'_> {
     /// Follows the motion to time `to` (s) or until the observer is satisfied.
@@ -22,6 +23,29 @@ impl Hybrid<'_> {
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
         self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work, [from.t, to]);
+        self.stretch = self.system.bare().stretch(from.t);
+        let Some(Stretch { to: mut end, .. }) = self.stretch else { return self.within(from, to, observer) };
+        let mut now = from;
+        loop {
+            observer.seam();
+            now = self.within(now, end.min(to), observer)?;
+            if end >= to || observer.satisfied() {
+                return Ok(now);
+            }
+            now.t = end;
+            self.stretch = self.system.bare().stretch(end);
+            end = self.stretch.map_or(to, |stretch| stretch.to);
+        }
+    }
+
+    /// The same while the force neither jumps nor bends.
+    #[inline(always)]
+    fn within(
+        &mut self,
+        from: Motion,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<Motion, SolverError> {
         if let Some(rigid) = self.rigid.take() {
             let end = self.between_rigid(&rigid, from, to, observer);
             self.rigid = Some(rigid);

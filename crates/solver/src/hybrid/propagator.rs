@@ -9,7 +9,7 @@ use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::response::Work;
 use crate::system::LinearSystem;
-use retune_model::{Coupled, RegularisedContact, Side};
+use retune_model::{Coupled, RegularisedContact, Side, Stretch};
 
 /// The phase of the damper's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +65,8 @@ pub struct Hybrid<'a> {
     pub(super) fourth: [f64; 2],
     pub(super) rtol: f64,
     pub(super) max_steps: u64,
+    /// The stretch of time that the motion is in, of a force that has several.
+    pub(super) stretch: Option<Stretch>,
     pub(super) budget: Budget,
     /// Work done so far.
     pub work: Work,
@@ -89,13 +91,18 @@ impl<'a> Hybrid<'a> {
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
             rtol,
             max_steps,
+            stretch: None,
             work: Work::default(),
         }
     }
 
     /// The moment of flight with this state.
     pub(super) fn knot(&self, t: f64, y: [f64; 4]) -> Knot<4> {
-        Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] }
+        let excitation = match &self.stretch {
+            Some(stretch) => self.system.bare().excitation_in(stretch, t),
+            None => self.system.excitation(t),
+        };
+        Knot { t, excitation, y, clock: [1.0, 0.0] }
     }
 }
 

@@ -119,8 +119,7 @@ impl Hybrid<'_> {
                 return Err(SolverError::NonFinite { t: now.t });
             }
             let motion: Expansion<4> = held.expand(now.excitation, &now.y);
-            let [_, v, ..] = motion.0;
-            let inertia = Polynomial::<BLOCKS>(v.derivative().0.map(|terms| terms * weight));
+            let inertia = self.held_inertia(&motion, weight);
             let force = inertia.with_constant(inertia.coefficient(0) + constant);
             let longest = held.step().min(remaining);
             let end = first_contact(force, longest).map_err(|Lost| SolverError::NonFinite { t: now.t })?;
@@ -144,5 +143,16 @@ impl Hybrid<'_> {
             }
             clock.count(1);
         }
+    }
+
+    /// `weight` times the acceleration of both bodies, that of the base included: where the base is accelerated, what springs and dashpots of the
+    /// structure give them.
+    fn held_inertia(&self, motion: &Expansion<4>, weight: f64) -> Polynomial<BLOCKS> {
+        let [x, v, ..] = motion.0;
+        if !self.system.bare().moves_with_base() {
+            return Polynomial(v.derivative().0.map(|terms| terms * weight));
+        }
+        let (a, _) = self.system.held_linear_part();
+        Polynomial(std::array::from_fn(|b| (x.0[b] * a[(1, 0)] + v.0[b] * a[(1, 1)]) * weight))
     }
 }

@@ -29,12 +29,14 @@ pub struct Stride<const N: usize> {
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
     step: f64,
+    /// 1 of a force that turns, 0 of one that is linear in time.
+    back: f64,
     /// Columns of `Φ` and of its powers: `phi[j][i]` is the effect of component `j` on component `i` after each of the steps.
     phi: [[f64x4; N]; N],
     /// The same for the two components of the force.
     psi: [[f64x4; N]; 2],
-    /// Cosine and sine of the angles by which the force has turned.
-    turn: [f64x4; 2],
+    /// Cosine and sine of the angles by which the force has turned, and the sine by which it returns: 0 where it is linear in time.
+    turn: [f64x4; 3],
     /// Series of the cosine and the sine of the angle by which the force turns.
     rotation: [Polynomial<BLOCKS>; 2],
     /// The series of which `Φ` and `Ψ` are the values at the end of the step.
@@ -56,17 +58,19 @@ impl<const N: usize> Flow<N> {
         let mut coefficients = [[0.0; 2]; 4 * BLOCKS];
         coefficients[0] = [1.0, 0.0];
         for k in 1..coefficients.len() {
-            let ([c, s], rate) = (coefficients[k - 1], linear.frequency / k as f64);
-            coefficients[k] = [-rate * s, rate * c];
+            let ([c, s], order) = (coefficients[k - 1], k as f64);
+            coefficients[k] = [-(linear.returns / order) * s, (linear.frequency / order) * c];
         }
         let rotation = [0, 1].map(|part| Polynomial::new(&coefficients.map(|c| c[part])));
+        let back = if linear.returns == 0.0 { 0.0 } else { 1.0 };
         let turn = rotation.each_ref().map(|part: &Polynomial<BLOCKS>| part.at(step));
         let mut flow = Self {
             phi: [[f64x4::ZERO; N]; N],
             psi: [[f64x4::ZERO; N]; 2],
-            turn: [f64x4::ZERO; 2],
+            turn: [f64x4::ZERO; 3],
             linear,
             step,
+            back,
             rotation,
             free,
             forced,
@@ -83,7 +87,7 @@ impl<const N: usize> Flow<N> {
                         next[i] += column[i] * weight;
                     }
                 }
-                (*excitation, *y) = (turned(*excitation, turn), next);
+                (*excitation, *y) = (turned(*excitation, turn, back), next);
             }
             for i in 0..N {
                 for j in 0..N {
@@ -93,7 +97,10 @@ impl<const N: usize> Flow<N> {
                     flow.psi[j][i].as_mut_array()[lane] = forces[j].1[i];
                 }
             }
-            for (turn, now) in flow.turn.iter_mut().zip(forces[0].0) {
+            // The first force has become [cos, sin], the second [-sin, cos]: of a force that is linear in time [1, 0] and [-ωt, 1].
+            let [(ahead, _), (across, _)] = forces;
+            let sine = if back == 0.0 { -across[0] } else { ahead[1] };
+            for (turn, now) in flow.turn.iter_mut().zip([ahead[0], sine, back * sine]) {
                 turn.as_mut_array()[lane] = now;
             }
         }
@@ -159,14 +166,14 @@ impl<const N: usize> Flow<N> {
                 next[i] += column[i] * deviation;
             }
         }
-        let ([c, s], [cos, sin]) = (excitation, self.turn);
-        Stride { excitation: [cos * c - sin * s, cos * s + sin * c], y: next }
+        let ([c, s], [cos, sin, returning]) = (excitation, self.turn);
+        Stride { excitation: [cos * c - sin * s, cos * s + returning * c], y: next }
     }
 
     /// The force `s` seconds later, `0 <= s <= step`.
     #[inline(always)]
     pub fn excitation_after(&self, excitation: Excitation, s: f64) -> Excitation {
-        turned(excitation, self.rotation.each_ref().map(|part| part.at(s)))
+        turned(excitation, self.rotation.each_ref().map(|part| part.at(s)), self.back)
     }
 
     /// The motion from `y` over the next step.
@@ -188,13 +195,14 @@ impl<const N: usize> Flow<N> {
     }
 }
 
-/// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`.
+/// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`, with `J` without its
+/// second row where the force is linear in time.
 fn series<const N: usize>(
     linear: &Linear<N>,
     mut excitation: Excitation,
     deviation: [f64; N],
 ) -> Expansion<N> {
-    let Linear { columns, input, frequency, .. } = linear;
+    let Linear { columns, input, frequency, returns, .. } = linear;
     let mut coefficients = [deviation; 4 * BLOCKS];
     for k in 1..coefficients.len() {
         let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
@@ -208,7 +216,7 @@ fn series<const N: usize>(
             }
         }
         coefficients[k] = next.map(|c| c * scale);
-        excitation = [-frequency * scale * excitation[1], frequency * scale * excitation[0]];
+        excitation = [-frequency * scale * excitation[1], returns * scale * excitation[0]];
     }
     Expansion(std::array::from_fn(|i| Polynomial::new(&coefficients.map(|c| c[i]))))
 }
@@ -221,8 +229,8 @@ impl<const N: usize, const B: usize> Expansion<N, B> {
     }
 }
 
-/// `[f cos, f sin]` of a phase, turned by the angle whose cosine and sine are given.
+/// `[f cos, f sin]` of a phase, turned by the angle whose cosine and sine are given; `back` is 0 where the second stays as it is.
 #[inline(always)]
-fn turned([c, s]: Excitation, [cos, sin]: [f64; 2]) -> Excitation {
-    [c * cos - s * sin, s * cos + c * sin]
+fn turned([c, s]: Excitation, [cos, sin]: [f64; 2], back: f64) -> Excitation {
+    [c * cos - s * sin, s * cos + c * (back * sin)]
 }

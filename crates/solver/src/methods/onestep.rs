@@ -26,6 +26,8 @@ pub struct Run<'a, S, const N: usize> {
     /// The walls on which the damper has rested since the start: these contacts are no touch-downs.
     resting: [bool; 2],
     budget: Budget,
+    /// The time that the budget is for, s.
+    allowed: f64,
     /// Work done so far.
     pub work: Work,
 }
@@ -47,7 +49,37 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             leaving: false,
             resting: z.map(|z| z == 0.0),
             budget: Budget::new(Pace::Steps, settings.max_steps, Work::default(), [t; 2]),
+            allowed: t,
             work: Work { evaluations: 1, ..Work::default() },
+        }
+    }
+
+    /// The same run of another system, which goes on from the state reached.
+    pub fn on<'b>(self, system: &'b S) -> Run<'b, S, N> {
+        let Knot { t, y, .. } = self.now;
+        Run {
+            system,
+            settings: self.settings,
+            tolerance: self.tolerance,
+            longest: self.longest,
+            now: Knot { excitation: system.excitation(t), ..self.now },
+            slope: system.derivative(t, &y),
+            h: self.h,
+            contact: self.contact,
+            leaving: self.leaving,
+            resting: self.resting,
+            budget: self.budget,
+            allowed: self.allowed,
+            work: Work { evaluations: self.work.evaluations + 1, ..self.work },
+        }
+    }
+
+    /// Allows the work of a run to time `to` (s), unless that of one as long is allowed already.
+    pub fn allow(&mut self, to: f64) {
+        if to > self.allowed {
+            let span = [self.now.t, to];
+            self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.spent(), span);
+            self.allowed = to;
         }
     }
 
@@ -76,8 +108,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         to: f64,
         observer: &mut impl Observer<N>,
     ) -> Result<(), SolverError> {
-        let span = [self.now.t, to];
-        self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.spent(), span);
+        self.allow(to);
         while self.now.t < to && !observer.satisfied() {
             let t = self.now.t;
             let (h, attempt) = self.accepted::<M>(to)?;

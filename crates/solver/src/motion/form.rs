@@ -31,21 +31,31 @@ struct Rated<const N: usize> {
     /// Its size in flight: a weight for the size of each component of the state, and what the force adds.
     size: [f64; N],
     force: f64,
+    /// The row of the state that it is in flight less what the force adds, if that is what is meant.
+    unforced: Option<[f64; N]>,
 }
 
 /// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
 ///
-/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of the terms of the force.
+/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of the terms of the force. One that is
+/// linear in time has two of them.
 pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
     system: &S,
     row: [f64; N],
 ) -> [[f64; 2]; K] {
     let (linear, amplitude) = (system.linear(), system.amplitude());
     let dot = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (mut row, mut forced) = (row, 0.0);
+    let slope = system.structure().force_bounds()[1];
+    let (mut row, mut forced, mut latest) = (row, 0.0, 0.0);
     std::array::from_fn(|_| {
         let bound = [system.dual_energy_norm(&row), amplitude * forced];
-        forced = forced * linear.frequency + dot(&row, &linear.input).abs();
+        let felt = dot(&row, &linear.input).abs();
+        forced = if linear.returns == 0.0 {
+            felt + if slope > 0.0 { slope / amplitude * latest } else { 0.0 }
+        } else {
+            forced * linear.frequency + felt
+        };
+        latest = felt;
         row = linear.columns.map(|column| dot(&row, &column));
         bound
     })
@@ -94,8 +104,19 @@ impl<const N: usize> Form<N> {
             row: rated,
             size: linear.columns.map(|column| size(&column)),
             force: times(system.amplitude(), size(&linear.input)),
+            unforced: None,
         };
         Self { rated: Some(rated), sixth: [b0 + offset, b1 + slope, b2], ..of_row }
+    }
+
+    /// The same less what the force adds to the rate of the state. Its bounds are those with the force, whose terms all count by their sizes;
+    /// the sharp one is that of its own polynomial.
+    #[must_use]
+    pub fn unforced<S: LinearSystem<N>>(self, system: &S) -> Self {
+        let linear = system.linear();
+        let row = |of: [f64; N]| linear.columns.map(|column| of.iter().zip(column).map(|(w, a)| w * a).sum());
+        let rated = self.rated.map(|rated| Rated { unforced: Some(row(rated.row)), ..rated });
+        Self { rated, ..self }
     }
 
     /// What the force adds to it in flight at most.
@@ -119,10 +140,15 @@ impl<const N: usize> Form<N> {
         force[x] += stiffness;
         let speeds: [[f64; 2]; 6] = derivative_bounds(system, unit(v));
         let mut forces: [[f64; 2]; 6] = derivative_bounds(system, force);
-        let mut driving = mass * linear.input[v].abs() * system.amplitude();
-        for force in &mut forces {
+        let felt = mass * linear.input[v].abs();
+        let mut driving = felt * system.amplitude();
+        for (order, force) in forces.iter_mut().enumerate() {
             force[1] += driving;
-            driving *= linear.frequency;
+            driving = match order {
+                _ if linear.returns != 0.0 => driving * linear.frequency,
+                0 => felt * system.structure().force_bounds()[1],
+                _ => 0.0,
+            };
         }
         let mut sixth = [0.0; 3];
         for (k, binomial) in FIFTH.into_iter().enumerate() {
@@ -167,8 +193,13 @@ impl<const N: usize> Form<N> {
         let mut q = [0.0; 2 * TERMS];
         self.combined(&self.linear, motion, length).into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
         if let Some(rated) = &self.rated {
-            let rates = motion.each_ref().map(Polynomial::derivative);
-            let rated = Self { rest: [0.0; N], ..*self }.combined(&rated.row, &rates, length);
+            let rated = match &rated.unforced {
+                Some(row) => self.combined(row, motion, length),
+                None => {
+                    let rates = motion.each_ref().map(Polynomial::derivative);
+                    Self { rest: [0.0; N], ..*self }.combined(&rated.row, &rates, length)
+                }
+            };
             rated.into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
         }
         for (weight, row) in self.squares.iter().filter(|(weight, _)| *weight != 0.0) {

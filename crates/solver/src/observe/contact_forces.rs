@@ -81,4 +81,7 @@ impl Observer<4> for ContactForces<'_> {
         self.walls[side as usize].segment(segment);
     }
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}
+    fn seam(&mut self) {
+        self.walls.seam();
+    }
 }

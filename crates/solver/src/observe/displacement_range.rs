@@ -97,4 +97,8 @@ impl Observer<4> for DisplacementRange<'_> {
         self.ends.impact(impact);
         self.struck.get_or_insert(impact.after.t);
     }
+    fn seam(&mut self) {
+        self.ends.seam();
+        self.forces.seam();
+    }
 }

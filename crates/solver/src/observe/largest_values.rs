@@ -72,4 +72,9 @@ impl Observer<4> for LargestValues<'_> {
         self.motions.impact(impact);
         self.range.impact(impact);
     }
+    fn seam(&mut self) {
+        self.energy.seam();
+        self.motions.seam();
+        self.range.seam();
+    }
 }

@@ -53,6 +53,9 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
     fn impact(&mut self, impact: &Impact<N>) {
         self.0.impact(impact);
     }
+    fn seam(&mut self) {
+        Observer::<N>::seam(&mut self.0);
+    }
     fn satisfied(&self) -> bool {
         self.0.iter().any(Observer::satisfied)
     }

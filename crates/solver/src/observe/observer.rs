@@ -84,6 +84,8 @@ pub trait Observer<const N: usize> {
     fn follows_losses(&self) -> bool {
         false
     }
+    /// The force or its slope jumps between two segments: rates before are not those after.
+    fn seam(&mut self) {}
     /// Whether the run may stop here. It stops as soon as one of several observers says so.
     fn satisfied(&self) -> bool {
         false
@@ -122,6 +124,10 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
     fn follows_losses(&self) -> bool {
         self.0.follows_losses() || self.1.follows_losses()
     }
+    fn seam(&mut self) {
+        self.0.seam();
+        self.1.seam();
+    }
     fn satisfied(&self) -> bool {
         self.0.satisfied() || self.1.satisfied()
     }
@@ -146,6 +152,9 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
     }
     fn follows_losses(&self) -> bool {
         (**self).follows_losses()
+    }
+    fn seam(&mut self) {
+        (**self).seam();
     }
     fn satisfied(&self) -> bool {
         (**self).satisfied()
@@ -174,6 +183,9 @@ macro_rules! for_each_in {
             }
             fn follows_losses(&self) -> bool {
                 self.iter().any(|observer| observer.follows_losses())
+            }
+            fn seam(&mut self) {
+                self.iter_mut().for_each(Observer::seam);
             }
             fn satisfied(&self) -> bool {
                 self.iter().any(|observer| observer.satisfied())

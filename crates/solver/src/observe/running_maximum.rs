@@ -159,6 +159,10 @@ where
         self.search.note(rates[0], impact.after.t);
     }
 
+    fn seam(&mut self) {
+        self.last = None;
+    }
+
     fn satisfied(&self) -> bool {
         self.search.record.value > self.cutoff
     }

@@ -59,6 +59,9 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
             self.observer.impact(impact);
         }
     }
+    fn seam(&mut self) {
+        self.observer.seam();
+    }
 }
 
 /// The part of a segment after a moment inside it.

@@ -14,8 +14,10 @@ pub trait Structure<const N: usize>: LinearSystem<N> {
     fn motion_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 5];
     /// `[k1, c1]`: the weights of `x1` and `v1` in the force on the ground.
     fn ground_force_weights(&self) -> [f64; 2];
-    /// ω, where the base moves: the force that the structure feels goes through the ground.
-    fn through_ground(&self) -> Option<f64>;
+    /// Whether the base moves in coordinates that do not: the force that the structure feels goes through the ground.
+    fn through_ground(&self) -> bool {
+        self.structure().is_on_moving_base()
+    }
     /// The weights of the rates of the state in the sum of the bodies' inertia forces, kg.
     fn masses(&self) -> [f64; N];
     /// What contact forces add to the sizes of the terms of `a1`, m/s².
@@ -34,9 +36,6 @@ impl Structure<2> for Bare {
     fn ground_force_weights(&self) -> [f64; 2] {
         Bare::ground_force_weights(self)
     }
-    fn through_ground(&self) -> Option<f64> {
-        self.is_on_moving_base().then(|| self.frequency())
-    }
     fn masses(&self) -> [f64; 2] {
         [0.0, self.mass()]
     }
@@ -54,9 +53,6 @@ impl Structure<4> for Coupled {
     fn ground_force_weights(&self) -> [f64; 2] {
         self.bare().ground_force_weights()
     }
-    fn through_ground(&self) -> Option<f64> {
-        self.bare().through_ground()
-    }
     fn masses(&self) -> [f64; 4] {
         let [m1, m2] = Coupled::masses(self);
         [0.0, m1, 0.0, m2]
@@ -70,8 +66,8 @@ impl Structure<4> for Coupled {
 pub struct StructureMotion<'a, S, const N: usize> {
     system: &'a S,
     weights: [f64; 3],
-    /// The weight of the force, and its ω, rad/s.
-    force: [f64; 2],
+    /// The weight of the force, and how it turns, rad/s.
+    force: [f64; 3],
     form: Form<N>,
 }
 
@@ -83,7 +79,7 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
         let (mut row, mut rated) = ([0.0; N], [0.0; N]);
         [row[0], row[1], rated[1]] = [x1, v1, a1];
         let form = if a1 == 0.0 { Form::linear(system, row) } else { Form::rated(system, row, rated) };
-        Self { system, weights, force: [0.0; 2], form }
+        Self { system, weights, force: [0.0; 3], form }
     }
 
     /// `sign x1`, m.
@@ -96,9 +92,16 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
         Self::new(system, [0.0, sign, 0.0])
     }
 
-    /// `sign a1`, m/s².
+    /// `sign a1`, m/s². In coordinates that move with an accelerated base it is that of the structure all the same: the acceleration there less
+    /// `f/m1`, which is that of the base with the other sign.
     pub fn acceleration(system: &'a S, sign: f64) -> Self {
-        Self::new(system, [0.0, 0.0, sign])
+        let own = Self::new(system, [0.0, 0.0, sign]);
+        if !system.structure().moves_with_base() {
+            return own;
+        }
+        let [omega, returns] = system.structure().turning();
+        let form = own.form.unforced(system);
+        Self { force: [-sign / system.structure().mass(), omega, returns], form, ..own }
     }
 
     /// `sign` times the force on the ground, N: `k1 x1 + c1 v1`, and where the ground moves less the force that it exerts on the
@@ -106,9 +109,12 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
     pub fn ground_force(system: &'a S, sign: f64) -> Self {
         let [k1, c1] = system.ground_force_weights();
         let fixed = Self::new(system, [sign * k1, sign * c1, 0.0]);
-        let Some(omega) = system.through_ground() else { return fixed };
+        if !system.through_ground() {
+            return fixed;
+        }
+        let [omega, returns] = system.structure().turning();
         let form = Form::rated(system, [0.0; N], system.masses().map(|mass| -sign * mass));
-        Self { force: [-sign, omega], form, ..fixed }
+        Self { force: [-sign, omega, returns], form, ..fixed }
     }
 }
 
@@ -119,8 +125,8 @@ impl<S, const N: usize> StructureMotion<'_, S, N> {
     where
         T: Copy + std::ops::Mul<f64, Output = T>,
     {
-        let [weight, omega] = self.force;
-        [cos * weight, sin * (-weight * omega), cos * (-weight * omega * omega)]
+        let [weight, omega, returns] = self.force;
+        [cos * weight, sin * (-weight * omega), cos * (-weight * omega * returns)]
     }
 }
 
@@ -131,7 +137,10 @@ impl<S: Structure<N>, const N: usize> Quantity<N> for StructureMotion<'_, S, N> 
         let [a, b, c] = self.weights;
         if self.force[0] != 0.0 {
             let force = self.force_rates(excitation);
-            return [0, 1, 2].map(|i| a * motion[i] + b * motion[i + 1] + force[i]);
+            return [0, 1, 2].map(|i| {
+                let of_state = a * motion[i] + b * motion[i + 1];
+                (if c == 0.0 { of_state } else { of_state + c * motion[i + 2] }) + force[i]
+            });
         }
         // An acceleration's rates may be infinite, and 0 ∞ is no number.
         if c == 0.0 {
@@ -145,7 +154,10 @@ impl<S: Structure<N>, const N: usize> Quantity<N> for StructureMotion<'_, S, N> 
         let [a, b, c] = self.weights;
         if self.force[0] != 0.0 {
             let force = self.force_rates(*excitation);
-            return [0, 1, 2].map(|i| motion[i] * a + motion[i + 1] * b + force[i]);
+            return [0, 1, 2].map(|i| {
+                let of_state = motion[i] * a + motion[i + 1] * b;
+                (if c == 0.0 { of_state } else { of_state + motion[i + 2] * c }) + force[i]
+            });
         }
         [0, 1, 2].map(|i| motion[i] * a + motion[i + 1] * b + motion[i + 2] * c)
     }

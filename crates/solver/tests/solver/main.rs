@@ -11,6 +11,7 @@ mod extreme_values;
 mod extremes;
 mod forcings;
 mod general_methods;
+mod histories;
 mod hunt;
 mod invariant;
 mod loss;

@@ -3,6 +3,7 @@
 use super::lossy_rule::Loss;
 use crate::linear::flow::Flow;
 use crate::motion::linearised::MOMENTS;
+use crate::system::LinearSystem;
 use retune_model::{Coupled, RegularisedContact, Side};
 
 /// The numbers of all contacts with one wall.
@@ -61,8 +62,7 @@ impl Collisions {
             longest[terms] = least;
         }
         let equations = system.regularised_contact(side);
-        let [cos, sin] = system.excitation(0.0);
-        let amplitude = cos.hypot(sin);
+        let amplitude = system.amplitude();
         let loss = Loss::of(&equations);
         Self { equations, loss, side, wall: system.wall(side), kicks, gains, longest, rtol, amplitude }
     }
