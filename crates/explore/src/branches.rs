@@ -5,7 +5,7 @@ use crate::protocol::Answer;
 use crate::response::{Stale, band};
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_dynamics::periodic::{Branch, Branches, Control, Event, EventKind, Largest, Orbit, branches};
-use retune_model::{Parameter, Source};
+use retune_model::Parameter;
 use retune_study::{Study, rounded};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
@@ -33,7 +33,7 @@ pub fn follow(
 ) -> Result<Answer, Stale> {
     let answer = Answer::new("branches");
     let strikes = study.scene.damper.is_some_and(|damper| damper.contact.is_some());
-    if !strikes || matches!(study.scene.forcing.source, Source::Decay(_)) {
+    if !strikes || study.scene.forcing.is_transient() {
         return Ok(answer.with("problem", "nothing is struck: there is one motion, the response"));
     }
     if let Err(rule) = study.begins_at_rest() {

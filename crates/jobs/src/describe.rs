@@ -1,6 +1,6 @@
 //! Descriptions of study files in words, for `check`.
 
-use retune_model::{Contact, Forcing, Loss, Measure, Source};
+use retune_model::{Contact, Course, Forcing, History, Loss, Measure, Of, Shape, Source};
 use retune_optim::{Part, Response};
 use retune_solver::{Method, least_steps};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
@@ -110,6 +110,40 @@ fn forced(forcing: &Forcing) -> String {
         Source::Imbalance(imbalance) => format!("forced by an imbalance of {} kg·m {at}", imbalance.get()),
         Source::Base(base) => format!("on a base that moves by {} m {at}", base.get()),
         Source::Decay(_) => "decaying freely".to_owned(),
+        Source::History(history) => given(&history),
+    }
+}
+
+/// What is given in time, in words.
+fn given(History { of, course }: &History) -> String {
+    let of_what = match of {
+        Of::Force => "a force on the structure",
+        Of::BaseAcceleration => {
+            "an acceleration of the base (x1, v1 and energies are relative to it, a1 is not)"
+        }
+    };
+    let unit = of.units()[0].0;
+    match course {
+        Course::Pulse(pulse) => {
+            let shape = match pulse.shape {
+                Shape::HalfSine => "a half sine",
+                Shape::Rectangle => "a rectangle",
+            };
+            let (peak, duration) = (short(pulse.peak()), short(pulse.duration.get()));
+            format!("under {shape} of {peak} {unit} for {duration} s, {of_what}")
+        }
+        Course::Record(record) => {
+            let file = &record.source().file;
+            let Some(samples) = record.samples() else {
+                return format!("under the record {file}, {of_what}");
+            };
+            let ([most, _], end) = (samples.bounds(), short(samples.end()));
+            let count = counted(samples.len() as u64, "sample");
+            format!(
+                "under the record {file}, {count} to {end} s with at most {} {unit}, {of_what}",
+                short(most)
+            )
+        }
     }
 }
 

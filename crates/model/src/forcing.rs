@@ -3,16 +3,11 @@
 
 use crate::history::{Course, History, Of, Pulse, Shape};
 use crate::record::{Column, Record, RecordFile};
+use crate::record_file;
 use crate::unit::named;
 use crate::{Finite, NonNegative, Positive, Unit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// The harmonic force and its quarter-turn: `[P cos(ωt + φ), P sin(ωt + φ)]`, N.
-///
-/// The formulas of this crate take this pair instead of `t`, so that a caller who steps in time may turn it by a rotation instead
-/// of calling `cos` at every step. Of a force that is given in time ([`History`]) it is `[f, -(df/dt) / ω]`.
-pub type Excitation = [f64; 2];
 
 /// What makes the primary structure move, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -62,6 +57,24 @@ impl Forcing {
     /// A force P cos ωt on the structure: P, N, and ω, rad/s.
     pub const fn force(amplitude: NonNegative, frequency: NonNegative) -> Self {
         Self { source: Source::Force(amplitude), frequency, start: None }
+    }
+
+    /// Whether it has no frequency: of a free decay, a pulse and a record. All there is of such a motion is in its run.
+    pub fn is_transient(&self) -> bool {
+        matches!(self.source, Source::Decay(_) | Source::History(_))
+    }
+
+    /// What is given in time, if anything is.
+    pub fn history(&self) -> Option<&History> {
+        if let Source::History(history) = &self.source { Some(history) } else { None }
+    }
+
+    /// The record that it names, if it does.
+    pub fn record_mut(&mut self) -> Option<(Of, &mut Record)> {
+        match &mut self.source {
+            Source::History(History { of, course: Course::Record(record) }) => Some((*of, record)),
+            _ => None,
+        }
     }
 
     /// Where the motion starts; none at rest.
@@ -123,9 +136,9 @@ struct InFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pulse: Option<Shape>,
     /// record, a file with samples, straight lines between them: CSV with a header and the time in its first column, s, or PEER's AT2, whose
-    /// unit is g. A path that is not absolute begins at the directory of the study. Before the first and after the last sample there is nothing.
+    /// unit is g; or samples in SI units. A path that is not absolute begins at the directory of the study. Before the first and after the last sample there is nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    record: Option<String>,
+    record: Option<record_file::InFile>,
     /// of, what a pulse or a record gives: a force on the structure, or an acceleration of the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     of: Option<Of>,
@@ -159,9 +172,13 @@ impl From<History> for InFile {
                 ..file
             },
             Course::Record(record) => {
-                let RecordFile { file: path, column, unit, scale } = record.source().clone();
+                let written = record_file::InFile::from(&record);
+                if let record_file::InFile::Whole(_) = written {
+                    return Self { record: Some(written), ..file };
+                }
+                let RecordFile { column, unit, scale, .. } = record.source().clone();
                 let unit = unit.map(|unit| unit.0.to_owned());
-                Self { record: Some(path), column, unit, scale, ..file }
+                Self { record: Some(written), column, unit, scale, ..file }
             }
         }
     }
@@ -181,7 +198,7 @@ impl From<Forcing> for InFile {
 }
 
 /// Why what a file says is no forcing.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Refused {
     #[error("give one of `P`, `imbalance`, `base`, `pulse` and `record`, or `start` alone, not {0} of them")]
     Count(usize),
@@ -193,6 +210,8 @@ pub(crate) enum Refused {
     Beside { field: &'static str, beside: &'static str },
     #[error("missing field `{field}` beside `{beside}`: {what}")]
     Without { field: &'static str, beside: &'static str, what: &'static str },
+    #[error(transparent)]
+    Record(#[from] record_file::Refused),
     #[error("`unit`: \"{given}\" is not allowed here: give one of {allowed}")]
     Unit { given: String, allowed: String },
 }
@@ -230,10 +249,10 @@ impl InFile {
             (None, Some(_)) => "record",
         };
         let without = |field, what| Refused::Without { field, beside, what };
-        let known: &[&str] = if beside == "pulse" {
-            &["of", "peak", "duration", "unit"]
-        } else {
-            &["of", "unit", "scale", "column"]
+        let known: &[&str] = match (beside, &self.record) {
+            ("pulse", _) => &["of", "peak", "duration", "unit"],
+            (_, Some(record_file::InFile::Whole(_))) => &["of"],
+            _ => &["of", "unit", "scale", "column"],
         };
         if let Some(field) = self.stray(known) {
             return Err(Refused::Beside { field, beside });
@@ -247,12 +266,14 @@ impl InFile {
                 duration: self.duration.ok_or(without("duration", "how long it lasts, s"))?,
                 unit: unit.unwrap_or(of.units()[0]),
             }),
-            (None, file) => Course::Record(Record::new(RecordFile {
-                file: file.clone().unwrap_or_default(),
+            (None, Some(record_file::InFile::Whole(whole))) => Course::Record(whole.clone().record()?),
+            (None, Some(record_file::InFile::File(file))) => Course::Record(Record::new(RecordFile {
+                file: file.clone(),
                 column: self.column.clone(),
                 unit,
                 scale: self.scale,
             })),
+            (None, None) => return Ok(None),
         };
         Ok(Some(History { of, course }))
     }
@@ -321,6 +342,9 @@ mod tests {
             r#"{"record":"quake.csv","of":"base acceleration"}"#,
             r#"{"record":"quake.csv","of":"base acceleration","unit":"g","scale":-2.0,"column":"north"}"#,
             r#"{"record":"push.csv","of":"force","column":3}"#,
+            r#"{"record":{"step":0.1,"values":[1.0,-2.0]},"of":"force"}"#,
+            r#"{"record":{"file":"a.csv","start":0.5,"step":0.1,"values":[1.0,-2.0]},"of":"force"}"#,
+            r#"{"record":{"times":[0.0,0.1,0.3],"values":[1.0,-2.0,0.5]},"of":"base acceleration"}"#,
         ] {
             let forcing = read(text).expect(text);
             assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
@@ -351,6 +375,12 @@ mod tests {
                 r#"{"record":"a.csv","of":"base acceleration","unit":"N"}"#,
                 "\"N\" is not allowed here: give one of m/s²",
             ),
+            (r#"{"record":{"step":1,"values":[1]},"of":"force"}"#, "it has 1 samples: give at least two"),
+            (r#"{"record":{"values":[1,2]},"of":"force"}"#, "give one of `step` and `times`"),
+            (r#"{"record":{"times":[0],"values":[1,2]},"of":"force"}"#, "2 values for 1 times"),
+            (r#"{"record":{"times":[0,0],"values":[1,2]},"of":"force"}"#, "sample 2: the time 0 s does not"),
+            (r#"{"record":{"step":1,"values":[1,2]},"of":"force","unit":"N"}"#, "`unit` has no meaning"),
+            (r#"{"record":3,"of":"force"}"#, "a file, or samples"),
             (r#"{"P":1,"omega":1,"of":"force"}"#, "`of` has no meaning beside `P`"),
             (
                 r#"{"P":1,"omega":1,"pulse":"rectangle","of":"force","peak":1,"duration":1}"#,

@@ -4,9 +4,10 @@
 //! of a harmonic force, and the exact flow, the bounds and the contacts of a harmonic force are those of a record; at known times the pair
 //! jumps.
 
+use crate::excitation::Stretch;
 use crate::record::Record;
 use crate::unit::{ACCELERATION, FORCE};
-use crate::{Excitation, Finite, Positive, Unit};
+use crate::{Finite, Positive, Unit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -64,17 +65,6 @@ pub enum Shape {
     /// The peak all the time.
     #[serde(rename = "rectangle")]
     Rectangle,
-}
-
-/// A stretch of time between two jumps of the pair, with the pair at its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// Its start, s.
-    pub from: f64,
-    /// Its end, s; infinite if nothing changes any more.
-    pub to: f64,
-    /// `[f, -(df/dt) / ω]` at its start.
-    pub begin: Excitation,
 }
 
 impl Of {

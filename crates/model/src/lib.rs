@@ -44,6 +44,7 @@ mod bare;
 mod coupled;
 mod damper;
 mod design;
+mod excitation;
 mod forcing;
 mod hertz;
 mod history;
@@ -53,6 +54,7 @@ mod parameter;
 mod per_variable;
 mod polynomial;
 mod record;
+mod record_file;
 mod regularised;
 mod scene;
 mod sensitivity;
@@ -67,12 +69,13 @@ pub use bare::Bare;
 pub use coupled::{Coupled, Side};
 pub use damper::Damper;
 pub use design::{Design, NoDesign};
-pub use forcing::{Excitation, Forcing, Source, Start};
+pub use excitation::{Excitation, Stretch};
+pub use forcing::{Forcing, Source, Start};
 pub use hertz::{
     HERTZ_YIELD, hertz_energy, hertz_force, hertz_force_curvature, hertz_force_slope, hertz_pressure,
     hertz_stiffness,
 };
-pub use history::{Course, History, Of, Pulse, Shape, Stretch};
+pub use history::{Course, History, Of, Pulse, Shape};
 pub use loss::{Loss, Restoring};
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;

@@ -1,6 +1,6 @@
 //! A record: samples in time with straight lines between them.
 
-use crate::history::Stretch;
+use crate::excitation::Stretch;
 use crate::{Finite, Unit};
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, PoisonError};
@@ -12,6 +12,8 @@ use std::sync::{Mutex, PoisonError};
 pub struct Record {
     source: &'static RecordFile,
     samples: Option<&'static Samples>,
+    /// Whether a study is written with the samples and not with the name of the file.
+    whole: bool,
 }
 
 /// Where a record is read from, and how.
@@ -90,13 +92,25 @@ fn kept<T: PartialEq>(all: &Mutex<Vec<&'static T>>, new: T) -> &'static T {
 impl Record {
     /// The record of a file that is still to be read.
     pub fn new(source: RecordFile) -> Self {
-        Self { source: kept(&FILES, source), samples: None }
+        let whole = source.file.is_empty();
+        Self { source: kept(&FILES, source), samples: None, whole }
     }
 
     /// The same with its samples, in SI units.
     #[must_use]
     pub fn with(self, samples: Samples) -> Self {
         Self { samples: Some(kept(&SAMPLES, samples)), ..self }
+    }
+
+    /// The same, to be written with its samples, so that a study needs no other file.
+    #[must_use]
+    pub fn whole(self) -> Self {
+        Self { whole: true, ..self }
+    }
+
+    /// Whether it is written with its samples.
+    pub fn is_whole(&self) -> bool {
+        self.whole
     }
 
     /// Where it is read from.
@@ -148,15 +162,15 @@ impl Samples {
         Self::new(if even { Times::Every(first, step) } else { Times::At(times) }, values)
     }
 
-    /// Samples from t = 0 on, `step` (s) apart.
+    /// Samples from the time `start` (s) on, `step` (s) apart.
     ///
     /// # Errors
     /// [`BadSamples`]: the first fault.
-    pub fn every(step: f64, values: Vec<f64>) -> Result<Self, BadSamples> {
-        if !step.is_finite() || step <= 0.0 {
-            return Err(BadSamples::Unsorted(2, step, 0.0));
+    pub fn every(start: f64, step: f64, values: Vec<f64>) -> Result<Self, BadSamples> {
+        if !(step.is_finite() && step > 0.0 && start + step > start) {
+            return Err(BadSamples::Unsorted(2, start + step, start));
         }
-        Self::new(Times::Every(0.0, step), values)
+        Self::new(Times::Every(start, step), values)
     }
 
     fn new(times: Times, values: Vec<f64>) -> Result<Self, BadSamples> {
@@ -180,6 +194,11 @@ impl Samples {
     /// There are never none.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
+    }
+
+    /// The first time and the time between two, s, of equidistant samples.
+    pub fn even(&self) -> Option<[f64; 2]> {
+        if let Times::Every(start, step) = self.times { Some([start, step]) } else { None }
     }
 
     /// The values, SI units.
@@ -265,7 +284,7 @@ mod tests {
     #[test]
     fn exact_the_time_of_a_sample_begins_its_stretch() {
         let count = 4001;
-        let samples = Samples::every(0.01, (0..count).map(f64::from).collect()).expect("a record");
+        let samples = Samples::every(0.0, 0.01, (0..count).map(f64::from).collect()).expect("a record");
         for i in 0..count as usize - 1 {
             let stretch = samples.stretch(samples.time(i));
             assert_eq!([stretch.from, stretch.to], [samples.time(i), samples.time(i + 1)]);
@@ -284,7 +303,8 @@ mod tests {
         assert!(refused(&[0.0, f64::INFINITY], &[1.0, 1.0]).starts_with("sample 2: inf is not allowed"));
         assert!(refused(&[-1.0, 1.0], &[1.0, 1.0]).starts_with("sample 1: the time -1 s"));
         assert!(refused(&[0.0, 1.0, 1.0], &[1.0, 1.0, 1.0]).starts_with("sample 3: the time 1 s does not"));
-        assert!(Samples::every(0.0, vec![1.0, 1.0]).is_err() && Samples::every(0.1, vec![]).is_err());
+        assert!(Samples::every(0.0, 0.0, vec![1.0, 1.0]).is_err());
+        assert!(Samples::every(0.0, 0.1, vec![]).is_err());
     }
 
     #[test]
@@ -295,7 +315,8 @@ mod tests {
             unit: None,
             scale: Finite::new(2.0).ok(),
         };
-        let read = || Record::new(file(None)).with(Samples::every(0.1, vec![1.0, 2.0]).expect("a record"));
+        let read =
+            || Record::new(file(None)).with(Samples::every(0.0, 0.1, vec![1.0, 2.0]).expect("a record"));
         assert_eq!(read(), read());
         assert!(std::ptr::eq(read().samples().expect("read"), read().samples().expect("read")));
         assert_ne!(read(), Record::new(file(None)));

@@ -27,7 +27,7 @@ pub fn extremes_by(
     ask: Ask,
     parameters: &[Parameter],
 ) -> Result<Vec<f64>, SolverError> {
-    let Some((system, settings)) = exact(scene, settings, ask) else {
+    let Some((system, settings)) = exact(scene, settings, ask)? else {
         return Ok(vec![0.0; parameters.len()]);
     };
     let ask = Ask { also: None, cutoff: f64::INFINITY, ..ask };
@@ -48,7 +48,7 @@ pub fn settled_by(
     ask: Ask,
     parameters: &[Parameter],
 ) -> Result<Vec<f64>, SolverError> {
-    let Some((system, settings)) = exact(scene, settings, ask) else {
+    let Some((system, settings)) = exact(scene, settings, ask)? else {
         return Ok(vec![0.0; parameters.len()]);
     };
     if Plan::of(&system, &settings, Request::Settled) == Plan::Closed {
@@ -60,10 +60,13 @@ pub fn settled_by(
 }
 
 /// The system, and the settings by the exact method; none without a damper.
-fn exact(scene: &Scene, settings: &Settings, ask: Ask) -> Option<(Coupled, Settings)> {
-    let damper = scene.damper.as_ref()?;
+fn exact(scene: &Scene, settings: &Settings, ask: Ask) -> Result<Option<(Coupled, Settings)>, SolverError> {
+    let Some(damper) = scene.damper.as_ref() else { return Ok(None) };
+    if scene.forcing.history().is_some() {
+        return Err(SolverError::NoDerivatives { t: 0.0 });
+    }
     let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-    Some((system, settings.exact()))
+    Ok(Some((system, settings.exact())))
 }
 
 fn by(

@@ -136,6 +136,7 @@ pub fn error(window: Window, error: SolverError) -> SolverError {
         SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
         SolverError::RigidWalls { t } => SolverError::RigidWalls { t: sound(t) },
         SolverError::Grazing { t } => SolverError::Grazing { t: sound(t) },
+        SolverError::NoPeriod { .. } | SolverError::NoDerivatives { .. } => error,
         SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
         SolverError::Implausible { .. } => error,
     }

@@ -116,6 +116,20 @@ pub enum SolverError {
         /// When it does, s.
         t: f64,
     },
+    /// A pulse or a record has no period.
+    #[error(
+        "a pulse or a record has no period, and its motion no settled response: ask for the largest values in a window"
+    )]
+    NoPeriod {
+        /// Start of the run, s.
+        t: f64,
+    },
+    /// The derivatives of a motion under a pulse or a record are not taken.
+    #[error("derivatives are not taken under a pulse or a record: search without them")]
+    NoDerivatives {
+        /// Start of the run, s.
+        t: f64,
+    },
     /// The state overflowed.
     #[error(
         "the motion is no longer a finite number at t = {} s; the parameters are beyond what can be computed", plain(*.t)
@@ -139,6 +153,8 @@ impl SolverError {
             | Self::Implausible { t, .. }
             | Self::RigidWalls { t }
             | Self::Grazing { t }
+            | Self::NoPeriod { t }
+            | Self::NoDerivatives { t }
             | Self::Missed { t, .. }
             | Self::NonFinite { t } => t,
         }

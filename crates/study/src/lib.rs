@@ -35,6 +35,7 @@ mod instead;
 mod kind;
 mod objective;
 pub mod read;
+mod records;
 mod rigid;
 mod rule;
 mod search;

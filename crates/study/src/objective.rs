@@ -21,7 +21,7 @@ const MOST_STARTS: usize = 1000;
 pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
     let forcing = &scene.forcing;
     let omega = forcing.frequency.get();
-    let decays = matches!(forcing.source, Source::Decay(_));
+    let passes = forcing.is_transient();
     let field = |name: &str| format!("{path}.{name}");
     let bad =
         |field: String, value: String, allowed: &'static str| Err(Rule::NotAllowed { field, value, allowed });
@@ -56,9 +56,9 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
         let allowed = "another response: on a moving base this quantity has no closed form here";
         return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
     }
-    if decays && (objective.omega.is_some() || objective.response != Response::Window) {
+    if passes && (objective.omega.is_some() || objective.response != Response::Window) {
         let name = if objective.omega.is_some() { "omega" } else { "response" };
-        let allowed = "nothing: a free decay has no frequency, and all there is of it is in the window";
+        let allowed = "nothing: a free decay, a pulse and a record have no frequency, and all there is of the motion is in the window";
         return bad(field(name), "what is given".to_owned(), allowed);
     }
     let band = |name: &str, unit, [from, to]: [f64; 2], samples: usize| {
@@ -101,7 +101,7 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
     }
     if objective.omega.is_none()
         && omega == 0.0
-        && !decays
+        && !passes
         && (objective.ensemble.is_some() || objective.response == Response::Settled)
     {
         return bad(

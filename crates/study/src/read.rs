@@ -5,6 +5,7 @@ use super::file::{StudyError, expect, parse, read_text};
 use super::format::Study;
 use super::instead::{OPTIMUM, STUDY, instead};
 use super::kind::Kind;
+use super::records;
 use super::rule::Rule;
 use super::search::name_from;
 use super::window;
@@ -102,10 +103,13 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
 /// As [`read`].
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
-    let settled = window::resolved(text).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
+    let base = Path::new(file).parent().unwrap_or(Path::new(""));
+    let settled =
+        window::resolved(text, base).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     let mut study: Study = parse(settled.as_deref().unwrap_or(text), file)?;
     let stem = Path::new(file).file_stem().map(|stem| name_from(&stem.to_string_lossy()));
     study.name = study.name.or(stem);
+    records::read(&mut study.scene, base).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     Ok(study)
 }

@@ -162,6 +162,14 @@ pub enum Rule {
         /// The allowed values, in words.
         allowed: &'static str,
     },
+    /// A record that cannot be read.
+    #[error("scene.forcing.record: {file}: {problem}")]
+    Record {
+        /// The file as given.
+        file: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A sum together with fields that it replaces.
     #[error(
         "{path}.sum: stands in the place of quantity, omega, k1, response, starts, settle and ensemble: move them into its parts"

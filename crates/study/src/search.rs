@@ -151,10 +151,13 @@ impl Study {
         Ok(Search { damper, variables, surf, starts, apart, global, given, options })
     }
 
-    /// The same study with every default written out, and the version that did it.
+    /// The same study with every default written out, the samples of a record in it, and the version that did it.
     pub fn resolved(&self) -> Self {
         let mut study = self.clone();
         study.schema = None;
+        if let Some((_, record)) = study.scene.forcing.record_mut() {
+            *record = record.whole();
+        }
         study.retune = Some(env!("CARGO_PKG_VERSION").to_owned());
         if let Some(optimize) = &mut study.optimize {
             for &variable in &optimize.vary {

@@ -2,10 +2,12 @@
 
 use crate::Rule;
 use crate::format::Span;
-use retune_model::{NonNegative, Positive, Scene, Source};
+use crate::records;
+use retune_model::{NonNegative, Positive, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 use std::f64::consts::TAU;
+use std::path::Path;
 
 /// Share of the slowest transient that is left where a settled window begins.
 pub const LEFT: f64 = 1e-3;
@@ -18,7 +20,7 @@ const MOST_PERIODS: f64 = 10_000.0;
 
 impl Span {
     /// The window that begins once the slowest transient of a scene, with its walls open, is below [`LEFT`] of its start, and lasts 50
-    /// periods of the force; of a free decay, until then.
+    /// periods of the force; of a free decay, from the start until then, and of a pulse or a record as long after its end.
     ///
     /// # Errors
     /// Nothing damps the scene enough.
@@ -26,11 +28,12 @@ impl Span {
         let rate = scene.slowest_decay();
         let period = TAU / scene.forcing.frequency.get();
         let until = -LEFT.ln() / rate;
-        let decays = matches!(scene.forcing.source, Source::Decay(_));
-        let span = if decays { [0.0, until] } else { [until, until + PERIODS * period] };
+        let passes = scene.forcing.is_transient();
+        let over = scene.forcing.history().map_or(0.0, |history| history.course.end());
+        let span = if passes { [0.0, over + until] } else { [until, until + PERIODS * period] };
         let [t0, end] = [NonNegative::new(span[0]).ok(), NonNegative::new(span[1]).ok()];
         match (t0, end.and_then(|end| Positive::new(end.get()).ok())) {
-            (Some(t0), Some(end)) if decays || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
+            (Some(t0), Some(end)) if passes || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
             _ => Err(Rule::NotAllowed {
                 field: "window".to_owned(),
                 value: format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
@@ -43,15 +46,16 @@ impl Span {
 /// Where a study says that its window is settled, its text with the numbers of that window, on the same lines.
 ///
 /// # Errors
-/// As [`Span::settled`].
-pub fn resolved(text: &str) -> Result<Option<String>, Rule> {
+/// As [`Span::settled`]; a record of the scene cannot be read. `base` is the directory where its path begins.
+pub fn resolved(text: &str, base: &Path) -> Result<Option<String>, Rule> {
     #[derive(Deserialize)]
     struct Part {
         window: Value,
         scene: Scene,
     }
     let part = serde_json::from_str::<Part>(text).ok().filter(|part| part.window == "settled");
-    let (Some(Part { scene, .. }), Some(place)) = (part, place(text)) else { return Ok(None) };
+    let (Some(Part { mut scene, .. }), Some(place)) = (part, place(text)) else { return Ok(None) };
+    records::read(&mut scene, base)?;
     let Span { t0, end } = Span::settled(&scene)?;
     let window = format!("{{ \"t0\": {}, \"T\": {} }}", t0.get(), end.get());
     Ok(Some(format!("{}{window}{}", &text[..place.start], &text[place.end..])))
@@ -72,9 +76,9 @@ impl crate::Study {
     pub fn transient(&self) -> Option<String> {
         let (rate, t0) = (self.scene.slowest_decay(), self.window.t0.get());
         let left = (-rate * t0).exp();
-        let decays = matches!(self.scene.forcing.source, Source::Decay(_));
+        let passes = self.scene.forcing.is_transient();
         let windowed = self.objective().response == retune_optim::Response::Window;
-        if t0 == 0.0 || decays || !windowed || left < MATTERS {
+        if t0 == 0.0 || passes || !windowed || left < MATTERS {
             return None; // the whole run is asked for, or what is long after its start
         }
         let later = match Span::settled(&self.scene) {

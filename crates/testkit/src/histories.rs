@@ -27,7 +27,7 @@ pub fn record(of: Of, samples: Samples) -> History {
 pub fn noise(of: Of, size: f64, (step, count, even): (f64, usize, bool), spread: &mut Spread) -> History {
     let values: Vec<f64> = (0..count).map(|_| size * spread.signed()).collect();
     let samples = if even {
-        Samples::every(step, values)
+        Samples::every(0.0, step, values)
     } else {
         let mut now = 0.0;
         let mut next = || {

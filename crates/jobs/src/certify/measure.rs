@@ -84,7 +84,8 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
         found.energy
     });
     let motion = match own.worst.scene.forcing.source {
-        Source::Decay(_) => Motion::decay(),
+        Source::Decay(_) => Motion::decay("free decay"),
+        Source::History(_) => Motion::decay("transient"),
         _ => Motion::new(&classify(&follow(&own.worst.scene, None, Stretch::default(), &settings)?)),
     };
     let Place { largest, scene, phase, .. } = own.worst;

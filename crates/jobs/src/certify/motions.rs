@@ -7,7 +7,7 @@ use retune_dynamics::Error;
 use retune_dynamics::periodic::branches::Plan;
 use retune_dynamics::periodic::worst::width_missed;
 use retune_dynamics::periodic::{Branches, Control, branches};
-use retune_model::{Measure, NonNegative, Parameter, Scene, Source};
+use retune_model::{Measure, NonNegative, Parameter, Scene};
 use retune_optim::{Evaluation, Goal, Limit, Limits, PerLimit, Stiffnesses, Unusable};
 use retune_solver::Settings;
 use retune_study::Margins;
@@ -60,7 +60,7 @@ pub(super) fn coexisting(
     needed: Margins,
 ) -> Result<Option<Found>, Unusable> {
     let strikes = scene.damper.is_some_and(|damper| damper.contact.is_some());
-    if !strikes || matches!(scene.forcing.source, Source::Decay(_)) {
+    if !strikes || scene.forcing.is_transient() {
         return Ok(None);
     }
     let places = places(scene, own, goal, settings)?;

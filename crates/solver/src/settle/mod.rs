@@ -37,6 +37,9 @@ pub fn settled(
     settings: &Settings,
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
+    if scene.forcing.history().is_some() {
+        return Err(SolverError::NoPeriod { t: 0.0 });
+    }
     let omega = scene.forcing.frequency.get();
     let closed = |steady: Steady, structure: &Bare, before: PerMeasure<f64>| {
         let of = |measure| steady.largest(structure, omega, measure);

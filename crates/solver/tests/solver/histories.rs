@@ -118,7 +118,7 @@ fn exact_a_sample_on_a_line_changes_nothing() {
             };
             let many: Vec<f64> = (0..=(values.len() - 1) * parts).map(fine).collect();
             let [coarse, fine] = [(step, values.clone()), (step / parts as f64, many)]
-                .map(|(step, values)| record(of, Samples::every(step, values).expect("a record")))
+                .map(|(step, values)| record(of, Samples::every(0.0, step, values).expect("a record")))
                 .map(|history| run(&numbers.under(history), 5.0));
             touched += coarse.impacts.iter().sum::<u64>();
             assert_eq!(coarse.impacts, fine.impacts, "{of:?} {numbers:?}");

@@ -101,9 +101,9 @@ impl Run {
 
 impl Motion {
     /// A free decay, which has no periods to classify it by.
-    pub fn decay() -> Self {
+    pub fn decay(regime: &str) -> Self {
         Self {
-            regime: "free decay".to_owned(),
+            regime: regime.to_owned(),
             sentence: "dies out".to_owned(),
             irregular: false,
             exponent: f64::NAN,

@@ -1,0 +1,239 @@
+//! Records that a study names: read from their files, line by line.
+
+use super::rule::Rule;
+use retune_model::{Column, Of, Record, RecordFile, Samples, Scene, Unit, unit};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+/// Reads the record of a scene, if it names a file with one; a path that is not absolute begins at `base`.
+///
+/// # Errors
+/// [`Rule::Record`]: the file and what is wrong with it.
+pub(super) fn read(scene: &mut Scene, base: &Path) -> Result<(), Rule> {
+    let Some((of, record)) = scene.forcing.record_mut() else { return Ok(()) };
+    if record.samples().is_none() {
+        *record = whole(of, record, base)
+            .map_err(|problem| Rule::Record { file: record.source().file.clone(), problem })?;
+    }
+    Ok(())
+}
+
+fn whole(of: Of, record: &Record, base: &Path) -> Result<Record, String> {
+    let source = record.source();
+    let path = base.join(&source.file);
+    let file = std::fs::File::open(&path).map_err(|error| format!("cannot be read: {error}"))?;
+    let lines = Lines { file: BufReader::new(file), line: String::new(), number: 0 };
+    let is_at2 = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
+    let samples = if is_at2 { at2(of, source, lines)? } else { csv(of, source, lines)? };
+    Ok(record.with(samples))
+}
+
+/// The lines of a file, one at a time.
+struct Lines {
+    file: BufReader<std::fs::File>,
+    line: String,
+    number: usize,
+}
+
+impl Lines {
+    /// The next line with something on it.
+    fn next(&mut self) -> Result<Option<&str>, String> {
+        loop {
+            self.line.clear();
+            self.number += 1;
+            let read = self.file.read_line(&mut self.line);
+            match read.map_err(|error| format!("line {}: {error}", self.number))? {
+                0 => return Ok(None),
+                _ if self.line.trim().is_empty() => {}
+                _ => return Ok(Some(self.line.trim().trim_start_matches('\u{feff}'))),
+            }
+        }
+    }
+}
+
+/// By how much the numbers of a file are multiplied.
+fn factor(source: &RecordFile, own: Unit) -> f64 {
+    let (_, size) = source.unit.unwrap_or(own);
+    size * source.scale.map_or(1.0, |scale| scale.get())
+}
+
+/// CSV: a header, the time in the first column.
+fn csv(of: Of, source: &RecordFile, mut lines: Lines) -> Result<Samples, String> {
+    let factor = factor(source, of.units()[0]);
+    let Some(head) = lines.next()? else { return Err("is empty".to_owned()) };
+    let separator = [',', ';', '\t'].into_iter().find(|mark| head.contains(*mark)).unwrap_or(',');
+    let names: Vec<&str> = head.split(separator).map(|name| name.trim().trim_matches('"')).collect();
+    if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+        return Err("line 1: is no header: give the names of its columns, the time first".to_owned());
+    }
+    let place = column(source.column.as_ref(), &names)?;
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    loop {
+        let number = lines.number + 1;
+        let Some(line) = lines.next()? else { break };
+        let mut fields = line.split(separator).map(str::trim);
+        let mut at = |place: usize| {
+            let field = fields.nth(place);
+            let field = field.ok_or_else(|| format!("line {number}: too few columns"))?;
+            field.parse::<f64>().map_err(|_| format!("line {number}: \"{field}\" is not a number"))
+        };
+        times.push(at(0)?);
+        values.push(factor * at(place - 1)?);
+    }
+    Samples::at(times, values).map_err(|bad| bad.to_string())
+}
+
+/// The index of the column of the values.
+fn column(wanted: Option<&Column>, names: &[&str]) -> Result<usize, String> {
+    let place = match wanted {
+        None => Some(1),
+        Some(Column::Number(number)) => number.checked_sub(1),
+        Some(Column::Name(wanted)) => names.iter().position(|name| name == wanted),
+    };
+    place.filter(|place| (1..names.len()).contains(place)).ok_or_else(|| {
+        let wanted = match wanted {
+            None => "no second column".to_owned(),
+            Some(Column::Number(number)) => format!("no values in a column {number}"),
+            Some(Column::Name(name)) => format!("no values in a column \"{name}\""),
+        };
+        let names: Vec<String> =
+            names.iter().enumerate().map(|(i, name)| format!("{} \"{name}\"", i + 1)).collect();
+        format!("has {wanted}: its columns are {}, the first that of the time", names.join(", "))
+    })
+}
+
+/// PEER's AT2: accelerations in g after a head of four lines, the last of which tells their number and their distance.
+fn at2(of: Of, source: &RecordFile, mut lines: Lines) -> Result<Samples, String> {
+    if of != Of::BaseAcceleration {
+        return Err("an AT2 file holds accelerations: give \"of\": \"base acceleration\"".to_owned());
+    }
+    if source.column.is_some() {
+        return Err("an AT2 file has no columns: leave out `column`".to_owned());
+    }
+    let g = unit::named("g", of.units()).unwrap_or(("g", f64::NAN));
+    let factor = factor(source, g);
+    let mut head = None;
+    for _ in 0..4 {
+        head = lines.next()?.and_then(spacing);
+        if head.is_some() {
+            break;
+        }
+    }
+    let (count, step) =
+        head.ok_or("its first four lines do not tell NPTS and DT, as those of an AT2 file do")?;
+    let mut values = Vec::new();
+    loop {
+        let number = lines.number + 1;
+        let Some(line) = lines.next()? else { break };
+        for field in line.split_whitespace() {
+            let value: Result<f64, _> = field.parse();
+            values.push(factor * value.map_err(|_| format!("line {number}: \"{field}\" is not a number"))?);
+        }
+    }
+    if values.len() != count {
+        return Err(format!("has {} values, but says NPTS = {count}", values.len()));
+    }
+    Samples::every(0.0, step, values).map_err(|bad| bad.to_string())
+}
+
+/// Number and distance of the samples, s: `NPTS= 4000, DT= .0050 SEC`, or as older files have it `4000 .0050 NPTS, DT`.
+fn spacing(line: &str) -> Option<(usize, f64)> {
+    let upper = line.to_uppercase();
+    if !(upper.contains("NPTS") && upper.contains("DT")) {
+        return None;
+    }
+    let mut numbers = upper
+        .split(|c: char| c.is_whitespace() || c == ',' || c == '=')
+        .filter_map(|word| word.trim_end_matches("SEC").parse::<f64>().ok());
+    let (count, step) = (numbers.next()?, numbers.next()?);
+    (count >= 0.0 && count.fract() == 0.0).then_some((count as usize, step))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::Course;
+
+    fn file(name: &str, text: &str) -> std::path::PathBuf {
+        let place = std::env::temp_dir().join(format!("retune-records-{}", std::process::id()));
+        std::fs::create_dir_all(&place).expect("a directory");
+        let path = place.join(name);
+        std::fs::write(&path, text).expect("a file");
+        path
+    }
+
+    fn scene(record: serde_json::Value) -> Scene {
+        let primary = serde_json::json!({ "m1": 1.0, "c1": 0.0, "k1": 1.0 });
+        serde_json::from_value(serde_json::json!({ "primary": primary, "forcing": record })).expect("a scene")
+    }
+
+    fn samples(name: &str, text: &str, more: serde_json::Value) -> Result<&'static Samples, String> {
+        let path = file(name, text);
+        let mut forcing = serde_json::json!({ "record": name, "of": "base acceleration" });
+        forcing.as_object_mut().expect("an object").extend(more.as_object().expect("an object").clone());
+        let mut scene = scene(forcing);
+        read(&mut scene, path.parent().expect("a directory")).map_err(|rule| rule.to_string())?;
+        let retune_model::Source::History(history) = scene.forcing.source else { panic!("a history") };
+        let Course::Record(record) = history.course else { panic!("a record") };
+        Ok(record.samples().expect("read"))
+    }
+
+    #[test]
+    fn exact_records_are_read_in_si_units() {
+        let none = serde_json::json!({});
+        let found = samples("a.csv", "t,a,b\n0,1,4\n0.5,-2,5\n2,3,6\n", none.clone()).expect("a record");
+        assert_eq!((found.values(), found.time(1), found.end()), (&[1.0, -2.0, 3.0][..], 0.5, 2.0));
+        let more = serde_json::json!({ "column": "b", "unit": "g", "scale": -2.0 });
+        let found = samples("b.csv", "\u{feff}t;a;\"b\"\n\n0;1;4\n0.1;2;5\n", more).expect("a record");
+        assert_eq!(found.values(), [-2.0 * 9.80665 * 4.0, -2.0 * 9.80665 * 5.0]);
+        let found = samples("c.csv", "t,a,b\n0,1,4\n0.1,2,5\n", serde_json::json!({ "column": 3 }));
+        assert_eq!(found.expect("a record").values(), [4.0, 5.0]);
+        for head in ["NPTS=   5, DT=   .0050 SEC", "   5   .0050   NPTS, DT"] {
+            let text =
+                format!("PEER\nA QUAKE 2\nACCELERATION IN UNITS OF G\n{head}\n .1E-01 -.2E-01\n 0 1 2\n");
+            let found = samples("d.AT2", &text, none.clone()).expect("a record");
+            assert_eq!(found.even(), Some([0.0, 0.005]));
+            assert_eq!(found.values()[1], 9.80665 * -0.02);
+        }
+        // Seconds that were rounded to decimals are equidistant all the same.
+        let text: String = (0..500).map(|i| format!("{:.3},{i}\n", 0.005 * f64::from(i))).collect();
+        let found = samples("e.csv", &format!("t,a\n{text}"), none).expect("a record");
+        assert!(found.even().is_some_and(|[_, step]| (step - 0.005).abs() < 1e-15));
+    }
+
+    #[test]
+    fn contract_what_is_no_record_is_refused_with_the_file() {
+        let none = serde_json::json!({});
+        let column = serde_json::json!({ "column": "c" });
+        let first = serde_json::json!({ "column": 1 });
+        let head = "a\nb\nc\nNPTS= 3, DT= .01 SEC\n";
+        for (name, text, more, said) in [
+            ("a.csv", "", &none, "is empty"),
+            ("a.csv", "t,a\n", &none, "it has 0 samples: give at least two"),
+            ("a.csv", "t,a\n0,1\n", &none, "it has 1 samples"),
+            ("a.csv", "0,1\n1,2\n", &none, "line 1: is no header"),
+            ("a.csv", "t,a\n0,1\n1,x\n", &none, "line 3: \"x\" is not a number"),
+            ("a.csv", "t,a\n0,1\n\n1\n", &none, "too few columns"),
+            ("a.csv", "t,a\n0,1\n1,NaN\n", &none, "sample 2: NaN is not allowed"),
+            ("a.csv", "t,a\n1,1\n0,1\n", &none, "sample 2: the time 0 s does not come after"),
+            (
+                "a.csv",
+                "t,a\n0,1\n1,2\n",
+                &column,
+                "no values in a column \"c\": its columns are 1 \"t\", 2 \"a\"",
+            ),
+            ("a.csv", "t,a\n0,1\n1,2\n", &first, "no values in a column 1"),
+            ("a.csv", "t\n0\n1\n", &none, "no second column"),
+            ("a.at2", "1\n2\n3\n4\n5\n", &none, "do not tell NPTS and DT"),
+            ("a.at2", &format!("{head}1 2"), &none, "has 2 values, but says NPTS = 3"),
+            ("a.at2", &format!("{head}1 2 3x"), &none, "line 5: \"3x\" is not a number"),
+            ("a.at2", &format!("{head}1 2 3"), &column, "has no columns"),
+        ] {
+            let error = samples(name, text, more.clone()).expect_err(said);
+            assert!(error.contains(said) && error.starts_with("scene.forcing.record: a."), "{error}");
+        }
+        let mut missing = scene(serde_json::json!({ "record": "none.csv", "of": "force" }));
+        let error = read(&mut missing, Path::new("")).expect_err("no file").to_string();
+        assert!(error.starts_with("scene.forcing.record: none.csv: cannot be read"), "{error}");
+    }
+}
