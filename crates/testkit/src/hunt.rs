@@ -6,6 +6,8 @@ pub mod bands;
 pub mod branches;
 #[cfg(feature = "dynamics")]
 pub mod dampers;
+#[cfg(feature = "anything")]
+mod histories;
 #[cfg(feature = "desk")]
 pub mod kills;
 #[cfg(feature = "anything")]

@@ -18,6 +18,16 @@ fn invariant_nor_where_contacts_lose_energy() {
 }
 
 #[test]
+fn invariant_nor_under_pulses_and_records() {
+    beside_everywhere(Scenes::Histories, 150).passes();
+}
+
+#[test]
+fn reference_the_hybrid_sees_what_dop853_sees_under_pulses_and_records() {
+    beside_dop853(Scenes::Histories, 75).passes();
+}
+
+#[test]
 fn reference_rigid_walls_beside_a_path_that_trusts_nothing() {
     retune_testkit::hunt::rigid::rigid(60).passes();
 }

@@ -2,9 +2,10 @@
 //! everything in the same motion, and the hybrid beside DOP853.
 
 use super::Hunt;
+use super::histories::given;
 use crate::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
-use retune_model::{Coupled, Side};
+use retune_model::{Coupled, Scene, Side};
 use retune_solver::observe::{
     ContactForces, DamperEnergy, Knot, Magnitude, Observer, PrimaryEnergy, Quantity, RelativePosition,
     RunningMaximum, Segment, StructureMotion, Unobserved, WallForce,
@@ -61,8 +62,18 @@ fn lossy(draw: &mut Spread) -> Numbers {
     Numbers { e, e_obstacle: (draw.unit() < 0.5).then_some(other), ..numbers }
 }
 
+/// Any scene under a pulse or a record, one in five with contacts that lose energy.
+fn under_history(draw: &mut Spread) -> Scene {
+    let numbers = if draw.unit() < 0.2 { lossy(draw) } else { anywhere(draw) };
+    given(numbers, draw)
+}
+
 /// How a scene is drawn.
-type Draw = fn(&mut Spread) -> Numbers;
+type Draw = fn(&mut Spread) -> Scene;
+
+const ANYWHERE: Draw = |draw| anywhere(draw).scene();
+const DENSE: Draw = |draw| dense(draw).scene();
+const LOSSY: Draw = |draw| lossy(draw).scene();
 
 /// What scenes are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +84,8 @@ pub enum Scenes {
     TwoMaxima,
     /// Any, with contacts that lose energy.
     Lossy,
+    /// Any, under a pulse or a record.
+    Histories,
 }
 
 /// The largest value by looking everywhere: many moments in each piece, and every sign change of the slope between them.
@@ -164,8 +177,9 @@ impl Observer<4> for ContactPieces {
 
 /// The gains that the search missed in a scene, of E1, E2, both ends of the relative displacement, and the sizes of x1, v1, a1 and the
 /// force on the ground, and the forces of walls that lose energy; and the number of contact pieces.
-fn search(numbers: &Numbers, from: f64, rtol: f64) -> Result<([Missed; 10], u64), SolverError> {
-    let system = numbers.coupled();
+fn search(scene: &Scene, from: f64, rtol: f64) -> Result<([Missed; 10], u64), SolverError> {
+    let damper = scene.damper.as_ref().expect("a damper");
+    let system = Coupled::new(&scene.primary, &scene.forcing, damper);
     let energies = (pair(|| PrimaryEnergy::new(&system)), pair(|| DamperEnergy::new(&system)));
     let sides = [1.0, -1.0].map(|sign| pair(|| RelativePosition::new(&system, sign)));
     let structure = [
@@ -208,19 +222,19 @@ fn apart(a: f64, b: f64, size: f64) -> f64 {
 }
 
 /// What a method makes of a scene at a relative tolerance.
-fn run(numbers: &Numbers, window: Window, method: Method, rtol: f64) -> Result<Response, SolverError> {
+fn run(scene: &Scene, window: Window, method: Method, rtol: f64) -> Result<Response, SolverError> {
     let settings = Settings { method, rtol, atol: 1e-3 * rtol, max_steps: 20_000_000, ..Settings::default() };
-    simulate(&numbers.scene(), window, &settings)
+    simulate(scene, window, &settings)
 }
 
 /// The largest difference between the hybrid and DOP853 over 20 s, by quantity; `None` where their final states part, so that the
 /// motion cannot be predicted so far, or where DOP853 gives up. Where they differ DOP853 runs again, a hundred times as exact: after
 /// tens of contacts its own error may show.
-fn compare(numbers: &Numbers, from: f64) -> Option<([f64; 11], Response)> {
+fn compare(scene: &Scene, from: f64) -> Option<([f64; 11], Response)> {
     let window = Window { from, to: 20.0 };
     let hybrid =
-        run(numbers, window, Method::Hybrid, 1e-12).unwrap_or_else(|error| panic!("{error}: {numbers:?}"));
-    let reference = |rtol| run(numbers, window, Method::Dop853, rtol).ok();
+        run(scene, window, Method::Hybrid, 1e-12).unwrap_or_else(|error| panic!("{error}: {scene:?}"));
+    let reference = |rtol| run(scene, window, Method::Dop853, rtol).ok();
     let first = reference(1e-12)?;
     let apart = |i: usize| apart(hybrid.final_state[i], first.final_state[i], 1.0);
     if (0..4).any(|i| apart(i) > 1e-10) {
@@ -260,25 +274,26 @@ fn differences(a: &Response, b: &Response) -> [f64; 11] {
 }
 
 /// A scene, the beginning of its window and its tolerance, by number.
-fn drawn(number: u64, scene: Draw) -> (Numbers, f64, f64) {
+fn drawn(number: u64, scene: Draw) -> (Scene, f64, f64) {
     let mut draw = Spread::new(number + 1);
-    let numbers = scene(&mut draw);
+    let scene = scene(&mut draw);
     let from = if draw.unit() < 0.5 { 0.0 } else { 15.0 * draw.unit() };
-    (numbers, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
+    (scene, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
 }
 
 /// The search beside a look everywhere on `count` scenes.
 pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
     let (what, scene): (_, Draw) = match scenes {
-        Scenes::Any => ("search beside a look everywhere, any scene", anywhere),
-        Scenes::TwoMaxima => ("the same where two maxima in a step are common", dense),
-        Scenes::Lossy => ("the same where contacts lose energy", lossy),
+        Scenes::Any => ("search beside a look everywhere, any scene", ANYWHERE),
+        Scenes::TwoMaxima => ("the same where two maxima in a step are common", DENSE),
+        Scenes::Lossy => ("the same where contacts lose energy", LOSSY),
+        Scenes::Histories => ("the same under pulses and records", under_history),
     };
     let looked: Vec<_> = (0..count)
         .into_par_iter()
         .map(|number| {
-            let (numbers, from, rtol) = drawn(number, scene);
-            (number, search(&numbers, from, rtol))
+            let (scene, from, rtol) = drawn(number, scene);
+            (number, search(&scene, from, rtol))
         })
         .collect();
     let (mut pieces, mut contact_scenes, mut faults, mut undecided) = (0, 0, Vec::new(), 0);
@@ -311,15 +326,16 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
 pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
     let (what, scene): (_, fn(u64) -> Draw) = match scenes {
         // Two in three are anywhere, one where two maxima in a step are common.
-        Scenes::Any => ("hybrid beside DOP853", |number| if number % 3 == 0 { dense } else { anywhere }),
-        Scenes::TwoMaxima => ("the same where two maxima in a step are common", |_| dense),
-        Scenes::Lossy => ("the same where contacts lose energy", |_| lossy),
+        Scenes::Any => ("hybrid beside DOP853", |number| if number % 3 == 0 { DENSE } else { ANYWHERE }),
+        Scenes::TwoMaxima => ("the same where two maxima in a step are common", |_| DENSE),
+        Scenes::Lossy => ("the same where contacts lose energy", |_| LOSSY),
+        Scenes::Histories => ("the same under pulses and records", |_| under_history),
     };
     let compared: Vec<_> = (0..count)
         .into_par_iter()
         .filter_map(|number| {
-            let (numbers, from, _) = drawn(number, scene(number));
-            let (differences, run) = compare(&numbers, from)?;
+            let (scene, from, _) = drawn(number, scene(number));
+            let (differences, run) = compare(&scene, from)?;
             Some((number, differences, run.impacts[0] + run.impacts[1]))
         })
         .collect();
@@ -341,7 +357,7 @@ pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
 
 /// The gains that the search missed or could not decide in scene `number` of those drawn anywhere, and the most that is allowed.
 pub fn missed_in(number: u64) -> ([f64; 10], f64) {
-    let (numbers, from, rtol) = drawn(number, anywhere);
-    let (missed, _) = search(&numbers, from, rtol).expect("a run");
+    let (scene, from, rtol) = drawn(number, ANYWHERE);
+    let (missed, _) = search(&scene, from, rtol).expect("a run");
     (missed.map(|[missed, doubt]| missed.max(doubt)), ALLOWED)
 }
