@@ -8,6 +8,7 @@ use crate::thin::Spread;
 use rayon::prelude::*;
 use retune_dynamics::record::state;
 use retune_dynamics::{Kind, Record, Regime, Stretch, classify, follow};
+use retune_model::Source;
 use retune_optim::Ensemble;
 use retune_solver::{Sample, Window, trajectory};
 use retune_study::{Study, rounded};
@@ -20,8 +21,12 @@ const NEIGHBOURS: Ensemble =
 pub fn kind(study: &Study) -> (Answer, bool) {
     let answer = Answer::new("motion kind");
     let scene = &study.scene;
-    if scene.damper.is_none() || scene.forcing.frequency.get() == 0.0 {
-        let label = if scene.forcing.frequency.get() == 0.0 { "free decay" } else { "1T, linear" };
+    if scene.damper.is_none() || scene.forcing.frequency.get() == 0.0 || scene.forcing.is_transient() {
+        let label = match scene.forcing.source {
+            Source::History(_) => "transient",
+            _ if scene.forcing.frequency.get() == 0.0 => "free decay",
+            _ => "1T, linear",
+        };
         return (answer.with("label", label).with("irregular", false), false);
     }
     let record = match follow(scene, None, Stretch::default(), &of_periods(study)) {

@@ -103,7 +103,7 @@ fn steps(study: &Study) -> Option<String> {
 }
 
 /// The forcing in words.
-fn forced(forcing: &Forcing) -> String {
+pub(crate) fn forced(forcing: &Forcing) -> String {
     let at = format!("at omega = {} rad/s", forcing.frequency.get());
     match forcing.source {
         Source::Force(amplitude) => format!("forced by P = {} N {at}", amplitude.get()),

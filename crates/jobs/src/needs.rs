@@ -124,7 +124,7 @@ impl Largest {
     /// A value with its unit and its place: `31.6 m/s² at 5.85 rad/s`.
     pub fn words(&self, measure: Measure) -> String {
         let Need { value, omega, .. } = self.0.whole.get(measure);
-        format!("{} at {} rad/s", sized(measure, value), rounded(omega, 4))
+        format!("{}{}", sized(measure, value), at(omega))
     }
 
     /// The values that are [`TOLD`], in a list.
@@ -250,9 +250,10 @@ impl Needs {
             ("needs", self.damper.damper_words()),
             ("there", format!("the structure {}", self.damper.structure_words())),
         ];
-        let place = rounded(self.damper.omega(Measure::ContactForce), 4);
+        let place = self.damper.omega(Measure::ContactForce);
+        let place = if place > 0.0 { format!(",{}", at(place)) } else { String::new() };
         let contacts = self.contacts.iter().flat_map(Contacts::words);
-        lines.extend(contacts.map(|words| ("contact", format!("{words}, at {place} rad/s"))));
+        lines.extend(contacts.map(|words| ("contact", format!("{words}{place}"))));
         lines.extend(self.damper.own_words(study).map(|words| ("later", words)));
         let none = self.none.iter().map(|none| format!("no damper: {}", beside(none, false)));
         let linear = self.linear.iter().map(|Linear { k2, c2, needs, .. }| {
@@ -310,4 +311,8 @@ fn excluded(study: &Study, search: &Search, design: &Scene, linear: &Scene, need
         return format!("the study excludes it: it {}", why.join(" and "));
     }
     "the bounds of the study on k2 and c2 allow it".to_owned()
+}
+/// Where a value is, after it; nothing of a motion that has no frequency.
+fn at(omega: f64) -> String {
+    if omega > 0.0 { format!(" at {} rad/s", rounded(omega, 4)) } else { String::new() }
 }

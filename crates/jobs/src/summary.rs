@@ -6,6 +6,7 @@ mod tuned_damper;
 pub use baseline::{baseline, how_many};
 pub use tuned_damper::TunedDamper;
 
+use crate::describe::forced;
 use retune_model::{Measure, Scene, Source, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
@@ -145,7 +146,10 @@ impl std::fmt::Display for MadeBy {
         let (t0, end) = (window.t0.get(), window.end.get());
         let rtol = solver.rtol;
         write!(f, "study {study}, ")?;
-        write!(f, "{}, ", over(objective, *omega))?;
+        let over = over(objective, *omega);
+        if !over.is_empty() {
+            write!(f, "{over}, ")?;
+        }
         if objective.is_steady() {
             return write!(f, "steady; Retune {retune}");
         }
@@ -240,7 +244,11 @@ impl std::fmt::Display for Summary {
         writeln!(f, "{}", self.made_by)?;
         let omega = self.omega();
         let [hertz, rpm] = hertz_and_rpm(omega).map(|value| rounded(value, 5));
-        writeln!(f, "frequency   {} rad/s = {hertz} Hz = {rpm} rpm", rounded(omega, 5))?;
+        if self.parameters.forcing.is_transient() {
+            writeln!(f, "forcing     {}", forced(&self.parameters.forcing))?;
+        } else {
+            writeln!(f, "frequency   {} rad/s = {hertz} Hz = {rpm} rpm", rounded(omega, 5))?;
+        }
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;

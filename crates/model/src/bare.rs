@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{Excitation, Forcing, History, Of, Primary, Source, Start, Stretch};
+use crate::{Course, EvenForce, Excitation, Forcing, History, Of, Primary, Source, Start, Stretch};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -47,6 +47,7 @@ impl Bare {
             return Self {
                 omega,
                 returns,
+                frequency: 0.0,
                 amplitude: bare.force_of(&history).abs() * history.course.bounds()[0],
                 ..bare
             };
@@ -108,6 +109,13 @@ impl Bare {
         }
         let (sin, cos) = (self.omega * elapsed).sin_cos();
         [f * cos - s * sin, s * cos + f * sin]
+    }
+
+    /// The samples of an equidistant record.
+    pub fn even_force(&self) -> Option<EvenForce> {
+        let history = self.history()?;
+        let Course::Record(record) = &history.course else { return None };
+        EvenForce::new(record.samples()?, self.force_of(history))
     }
 
     /// The same as if a stretch of time, of its own, went on for ever.
@@ -218,7 +226,7 @@ impl Bare {
 
     /// What turns the force, in the symbols of a study file.
     pub(crate) fn turns_by(&self) -> &'static str {
-        if self.history().is_some() { "pulse" } else { "omega" }
+        if self.history().is_some() { "1/duration" } else { "omega" }
     }
 
     /// The largest contribution to [`Self::rate`], in the symbols of a study file.

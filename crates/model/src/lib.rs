@@ -81,7 +81,7 @@ pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
-pub use record::{BadSamples, Column, Record, RecordFile, Samples};
+pub use record::{BadSamples, Column, EvenForce, Record, RecordFile, Samples};
 pub use regularised::bounds::{Change, Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};

@@ -257,6 +257,42 @@ impl Samples {
     }
 }
 
+/// The equidistant samples of a force.
+#[derive(Clone, Copy, Debug)]
+pub struct EvenForce {
+    /// The first time and the time between two, s.
+    pub even: [f64; 2],
+    values: &'static [f64],
+    /// The force of a value of 1, N.
+    unit: f64,
+}
+
+impl EvenForce {
+    /// The force of some samples; none if they are not equidistant.
+    pub(crate) fn new(samples: &'static Samples, unit: f64) -> Option<Self> {
+        Some(Self { even: samples.even()?, values: samples.values(), unit })
+    }
+
+    /// The time of a sample, s.
+    pub fn time(&self, i: usize) -> f64 {
+        let [first, step] = self.even;
+        first + i as f64 * step
+    }
+
+    /// The sample at exactly this time, s.
+    pub fn at(&self, t: f64) -> Option<usize> {
+        let [first, step] = self.even;
+        let i = ((t - first) / step).round().max(0.0) as usize;
+        (self.time(i) == t).then_some(i)
+    }
+
+    /// So many forces from a sample on, N, if there are as many.
+    pub fn forces<const K: usize>(&self, from: usize) -> Option<[f64; K]> {
+        let values = self.values.get(from..from + K)?;
+        Some(std::array::from_fn(|i| self.unit * values[i]))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

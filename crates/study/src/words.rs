@@ -5,7 +5,8 @@ use retune_optim::{Ensemble, FrequencyBand, Objective, Statistic, StiffnessRange
 use std::f64::consts::TAU;
 use std::fmt::Display;
 
-/// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s".
+/// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s". Nothing of a
+/// scene without a frequency, where it is a single value.
 pub fn over(objective: &Objective, omega: f64) -> String {
     if !objective.sum.is_empty() {
         return format!("weighted sum of {}", counted(objective.sum.len() as u64, "objective"));
@@ -20,7 +21,9 @@ pub fn over(objective: &Objective, omega: f64) -> String {
         objective.restitution.as_deref().map(restitutions),
     ];
     let over: Vec<String> = over.into_iter().flatten().collect();
-    let own = if objective.omega.is_none() { format!("omega = {omega} rad/s") } else { String::new() };
+    // A decay, a pulse and a record have no frequency.
+    let single = objective.omega.is_none() && omega > 0.0;
+    let own = if single { format!("omega = {omega} rad/s") } else { String::new() };
     let worst = if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
     let mut parts: Vec<String> = objective.ensemble.iter().map(ensemble).collect();
     parts.extend([own, worst].into_iter().filter(|part| !part.is_empty()));

@@ -194,7 +194,11 @@ impl Anything {
             | SolverError::Unstable { t }
             | SolverError::NonFinite { t }
             | SolverError::Implausible { t, .. } => t,
-            SolverError::Missed { .. } | SolverError::RigidWalls { .. } | SolverError::Grazing { .. } => {
+            SolverError::Missed { .. }
+            | SolverError::RigidWalls { .. }
+            | SolverError::Grazing { .. }
+            | SolverError::NoPeriod { .. }
+            | SolverError::NoDerivatives { .. } => {
                 panic!("{error}: {self:?}")
             }
             SolverError::TooManySteps { t, limit, .. } | SolverError::TooSlow { t, limit, .. } => {

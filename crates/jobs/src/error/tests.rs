@@ -63,6 +63,7 @@ fn rules() -> Vec<Rule> {
             value: "0".into(),
             allowed: "a whole number above 0",
         },
+        Rule::Record { file: "quake.csv".into(), problem: "line 3: \"x\" is not a number".into() },
         Rule::SumAndMore { path: "optimize.objective".into() },
         Rule::NoEnd { variable },
     ]
@@ -128,6 +129,8 @@ fn solvers() -> Vec<SolverError> {
         SolverError::Missed { t: 4.0, depth: 1e-6 },
         SolverError::RigidWalls { t: 0.0 },
         SolverError::Grazing { t: 1.5 },
+        SolverError::NoPeriod { t: 0.0 },
+        SolverError::NoDerivatives { t: 0.0 },
         SolverError::NonFinite { t: 1.5 },
     ]
 }
@@ -243,10 +246,10 @@ fn regress_the_words_of_every_error() {
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
         each!(rules(), Rule: Name EmptyWindow Rtol Atol NoDamper NoOptimize NoRestitutions NoGrid NothingVaried VariedTwice EmptyBand
             Samples NotVaried Bounds Axis GridOutside Grid StartOutside NoStarts NoRows SameName Tolerance
-            NotAllowed SumAndMore NoEnd),
+            NotAllowed Record SumAndMore NoEnd),
         each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
-            RigidWalls Grazing NonFinite),
+            RigidWalls Grazing NoPeriod NoDerivatives NonFinite),
         each!(lines(), LineError: Count Number Long Unusable),
     ]
     .concat();

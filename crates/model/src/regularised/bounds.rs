@@ -173,7 +173,13 @@ impl RegularisedContact {
             let outside = self.primary[0] * excitation[k] + self.primary[1] * v1[k] + self.primary[2] * x1[k];
             let push =
                 |i: usize| self.hertz[i] * force[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
-            (a1[k], rate[k]) = (outside + push(0), outside + push(1));
+            // A force that accelerates both bodies alike is not felt between them.
+            let apart = if self.felt == 0.0 {
+                self.primary[1] * v1[k] + self.primary[2] * x1[k]
+            } else {
+                outside
+            };
+            (a1[k], rate[k]) = (outside + push(0), apart + push(1));
             if k + 1 == K {
                 break;
             }
@@ -217,9 +223,10 @@ impl RegularisedContact {
         let gain = self.restoring.as_ref().map_or(2.0, |law| 2.0_f64.max(1.0 / law.restitution()));
         let within = |[w, v]: [f64; 2]| {
             let most = [x1 + duration * v, v, depth(w).powi(2) + self.stretch.abs(), w];
-            let resisting = excitation + self.primary[1] * v + self.primary[2] * most[0];
-            let [on_primary, apart] =
-                [0, 1].map(|i| resisting + self.dashpot[i] * w + self.spring[i] * most[2]);
+            let outside = |excitation: f64| excitation + self.primary[1] * v + self.primary[2] * most[0];
+            let felt = if self.felt == 0.0 { 0.0 } else { excitation };
+            let [on_primary, apart] = [(0, excitation), (1, felt)]
+                .map(|(i, force)| outside(force) + self.dashpot[i] * w + self.spring[i] * most[2]);
             (most, [v, on_primary, w, apart])
         };
         let impulse = |w: f64, apart: f64| w0 + w + apart * duration;
@@ -266,9 +273,11 @@ impl RegularisedContact {
         let (a1, rate) = (on_primary + self.hertz[0] * cube, apart + self.hertz[1] * cube);
         let forced =
             if self.is_linear() { self.primary[0] * self.force[1] } else { self.omega * over.excitation };
-        let turning = forced + self.primary[1] * a1 + self.primary[2] * v;
-        let jerk =
-            |i: usize| turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate;
+        let jerk = |i: usize| {
+            let forced = if i == 1 && self.felt == 0.0 { 0.0 } else { forced };
+            let turning = forced + self.primary[1] * a1 + self.primary[2] * v;
+            turning + self.dashpot[i] * rate + self.spring[i] * w + self.hertz[i] * cube_rate
+        };
         [[x, v, 0.5 * a1], [v, a1, 0.5 * jerk(0)], [stretch, w, 0.5 * rate], [w, rate, 0.5 * jerk(1)]]
     }
 }

@@ -3,6 +3,7 @@
 //! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Damping only takes energy from the transient, so its
 //! energy norm bounds its later motion: it decides whether a wall can ever be reached, and whether the record can still be broken.
 
+use super::samples::{clock, forces, in_steps};
 use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::linear::flow::Flow;
@@ -17,12 +18,14 @@ use crate::response::{Extreme, Work};
 use crate::settings::Window;
 use crate::system::{Linear, LinearSystem};
 use nalgebra::Complex;
-use retune_model::{Coupled, Side};
+use retune_model::{Coupled, EvenForce, Side};
 
 /// A linear scene at a moment of its run.
 pub struct ContactFree<'a, S, const N: usize> {
     system: &'a S,
     flow: Flow<N>,
+    /// The record, if the flow takes a step for each of its pieces.
+    samples: Option<EvenForce>,
     now: Knot<N>,
     max_steps: u64,
     /// Work done so far.
@@ -32,9 +35,12 @@ pub struct ContactFree<'a, S, const N: usize> {
 impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// The scene at t = 0; no step will be longer than `longest` (s).
     pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
-        let linear = system.linear();
+        let (linear, force) = (system.linear(), system.structure().even_force());
+        let longest = force.map_or(longest, |force| longest.min(force.even[1]));
         let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: system.start(), clock: [1.0, 0.0] };
-        Self { system, flow: Flow::new(linear, longest), now, max_steps, work: Work::default() }
+        let flow = Flow::new(linear, longest);
+        let samples = in_steps(force, flow.step());
+        Self { system, flow, samples, now, max_steps, work: Work::default() }
     }
 
     /// The same in another state at another time, s.
@@ -54,10 +60,15 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
         let budget = self.budget(to);
-        let Some(mut stretch) = self.system.structure().stretch(self.now.t) else {
+        if self.system.structure().history().is_none() {
             return self.go(to, observer, budget);
-        };
+        }
         loop {
+            self.over_samples(to, observer, budget)?;
+            let Some(stretch) = self.system.structure().stretch(self.now.t) else { return Ok(()) };
+            if self.now.t >= to || observer.satisfied() {
+                return Ok(());
+            }
             self.now.excitation = self.system.structure().excitation_in(&stretch, self.now.t);
             observer.seam();
             self.go(stretch.to.min(to), observer, budget)?;
@@ -65,8 +76,35 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 return Ok(());
             }
             self.now.t = stretch.to;
-            stretch = self.system.structure().stretch(stretch.to).unwrap_or(stretch);
         }
+    }
+
+    /// Steps from a sample of an equidistant record over whole pieces of it, at most to time `to`.
+    fn over_samples(
+        &mut self,
+        to: f64,
+        observer: &mut impl Observer<N>,
+        budget: Budget,
+    ) -> Result<(), SolverError> {
+        let Some(force) = self.samples else { return Ok(()) };
+        let Some(mut i) = force.at(self.now.t) else { return Ok(()) };
+        let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
+        while let Some(forces) = forces(&force, i, to) {
+            let energy = self.system.energy_norm(&self.now.y) + growth;
+            let steps = Steps::bent(&self.flow, self.now, &forces, clock(&force, i), energy);
+            observer.steps(&steps);
+            self.now = steps.knot(LANES);
+            i += LANES;
+            self.work.steps += LANES as u64;
+            budget.check(&self.work, self.now.t)?;
+            if !self.now.y.iter().all(|v| v.is_finite()) {
+                return Err(SolverError::NonFinite { t: self.now.t });
+            }
+            if observer.satisfied() {
+                break;
+            }
+        }
+        Ok(())
     }
 
     fn budget(&self, to: f64) -> Budget {

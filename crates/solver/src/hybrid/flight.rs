@@ -98,7 +98,7 @@ impl Hybrid<'_> {
 
     /// The number of steps that are certified to touch no wall, and the walls that the next one may touch.
     #[inline(always)]
-    fn open_steps(&self, steps: &Steps<'_, 4>, leaving: Option<Side>) -> (usize, [bool; 2]) {
+    pub(super) fn open_steps(&self, steps: &Steps<'_, 4>, leaving: Option<Side>) -> (usize, [bool; 2]) {
         let (from, to, whole) = (steps.from(), steps.ends(), self.flow.step());
         let margin = CUBIC * whole.powi(4) * (self.fourth[0] * steps.energy() + self.fourth[1]);
         let [x1, v1, x2, v2] = to.y;

@@ -13,4 +13,5 @@ mod held;
 mod propagate;
 pub mod propagator;
 mod rigid;
+mod samples;
 mod sustained;

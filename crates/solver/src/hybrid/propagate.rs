@@ -7,7 +7,6 @@ use crate::contact::regularised::integrate::End;
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::observe::observer::Observer;
-use retune_model::Stretch;
 
 impl Hybrid<'_> {
     /// Follows the motion to time `to` (s) or until the observer is satisfied.
@@ -23,18 +22,23 @@ impl Hybrid<'_> {
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
         self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work, [from.t, to]);
-        self.stretch = self.system.bare().stretch(from.t);
-        let Some(Stretch { to: mut end, .. }) = self.stretch else { return self.within(from, to, observer) };
+        if self.system.bare().history().is_none() {
+            return self.within(from, to, observer);
+        }
         let mut now = from;
         loop {
+            now = self.over_samples(now, to, observer)?;
+            self.stretch = self.system.bare().stretch(now.t);
+            let end = self.stretch.map_or(to, |stretch| stretch.to.min(to));
+            if now.t >= to || observer.satisfied() {
+                return Ok(now);
+            }
             observer.seam();
-            now = self.within(now, end.min(to), observer)?;
+            now = self.within(now, end, observer)?;
             if end >= to || observer.satisfied() {
                 return Ok(now);
             }
             now.t = end;
-            self.stretch = self.system.bare().stretch(end);
-            end = self.stretch.map_or(to, |stretch| stretch.to);
         }
     }
 

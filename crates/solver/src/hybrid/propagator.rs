@@ -1,6 +1,7 @@
 //! The data of the hybrid propagator: prepared once for a system, then used for any stretch of its motion.
 
 use super::held::RigidWalls;
+use super::samples::in_steps;
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};
@@ -9,7 +10,7 @@ use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::response::Work;
 use crate::system::LinearSystem;
-use retune_model::{Coupled, RegularisedContact, Side, Stretch};
+use retune_model::{Coupled, EvenForce, RegularisedContact, Side, Stretch};
 
 /// The phase of the damper's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +66,8 @@ pub struct Hybrid<'a> {
     pub(super) fourth: [f64; 2],
     pub(super) rtol: f64,
     pub(super) max_steps: u64,
+    /// The record, if the flow takes a step for each of its pieces.
+    pub(super) samples: Option<EvenForce>,
     /// The stretch of time that the motion is in, of a force that has several.
     pub(super) stretch: Option<Stretch>,
     pub(super) budget: Budget,
@@ -80,7 +83,9 @@ impl<'a> Hybrid<'a> {
     /// flight step, `max_steps` the most steps a run may take.
     pub fn new(system: &'a Coupled, rtol: f64, longest: f64, max_steps: u64) -> Self {
         let linear = system.linear();
+        let longest = system.bare().even_force().map_or(longest, |force| longest.min(force.even[1]));
         let flow = Flow::new(linear, longest);
+        let step = flow.step();
         Self {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
@@ -91,6 +96,7 @@ impl<'a> Hybrid<'a> {
             fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
             rtol,
             max_steps,
+            samples: in_steps(system.bare().even_force(), step),
             stretch: None,
             work: Work::default(),
         }

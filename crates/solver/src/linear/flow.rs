@@ -25,6 +25,12 @@ pub struct Stride<const N: usize> {
     pub y: [f64x4; N],
 }
 
+/// A stride whose force bends at every step: the pair that begins each of them, and that with which it ends.
+pub struct BentStride<const N: usize> {
+    pub begin: [f64x4; 2],
+    pub stride: Stride<N>,
+}
+
 /// The flow over a fixed step: `y(t + h) = origin + Φ (y(t) - origin) + Ψ [P cos ωt, P sin ωt]`.
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
@@ -39,6 +45,8 @@ pub struct Flow<const N: usize> {
     turn: [f64x4; 3],
     /// Series of the cosine and the sine of the angle by which the force turns.
     rotation: [Polynomial<BLOCKS>; 2],
+    /// What the force at the start and at the end of each of the steps does to the states, where it is linear in each of them: zero before.
+    bends: [[f64x4; N]; LANES + 1],
     /// The series of which `Φ` and `Ψ` are the values at the end of the step.
     free: [Expansion<N>; N],
     forced: [Expansion<N>; 2],
@@ -67,6 +75,7 @@ impl<const N: usize> Flow<N> {
         let mut flow = Self {
             phi: [[f64x4::ZERO; N]; N],
             psi: [[f64x4::ZERO; N]; 2],
+            bends: [[f64x4::ZERO; N]; LANES + 1],
             turn: [f64x4::ZERO; 3],
             linear,
             step,
@@ -104,7 +113,65 @@ impl<const N: usize> Flow<N> {
                 turn.as_mut_array()[lane] = now;
             }
         }
+        if back == 0.0 {
+            flow.bends = flow.bent();
+        }
         flow
+    }
+
+    /// A straight line from `f` to `g` is `f` with the partner `-(g - f) / (ω h)`; what it does in its own step goes on by `Φ`.
+    fn bent(&self) -> [[f64x4; N]; LANES + 1] {
+        let lane = |column: &[f64x4; N], lane: usize| column.map(|lanes| lanes.to_array()[lane]);
+        let [value, partner] = self.psi.each_ref().map(|column| lane(column, 0));
+        let slope = 1.0 / (self.linear.frequency * self.step);
+        let own: [[f64; N]; 2] =
+            [std::array::from_fn(|i| value[i] + partner[i] * slope), partner.map(|of| -of * slope)];
+        let mut bends = [[f64x4::ZERO; N]; LANES + 1];
+        for step in 0..LANES {
+            for (end, own) in own.iter().enumerate() {
+                for after in step..LANES {
+                    // So many whole steps after this one.
+                    let moved = match (after - step).checked_sub(1) {
+                        None => *own,
+                        Some(steps) => {
+                            let mut sum = [0.0; N];
+                            for (column, weight) in self.phi.iter().zip(own) {
+                                let column = lane(column, steps);
+                                for i in 0..N {
+                                    sum[i] += column[i] * weight;
+                                }
+                            }
+                            sum
+                        }
+                    };
+                    for i in 0..N {
+                        bends[step + end][i].as_mut_array()[after] += moved[i];
+                    }
+                }
+            }
+        }
+        bends
+    }
+
+    /// The moments after the next whole steps, each of them under a straight line from one of these forces to the next.
+    #[inline(always)]
+    pub fn bent_stride(&self, forces: &[f64; LANES + 1], y: &[f64; N]) -> BentStride<N> {
+        let mut next = self.linear.origin.map(f64x4::splat);
+        for (column, &force) in self.bends.iter().zip(forces) {
+            for i in 0..N {
+                next[i] += column[i] * force;
+            }
+        }
+        for (j, column) in self.phi.iter().enumerate() {
+            let deviation = y[j] - self.linear.origin[j];
+            for i in 0..N {
+                next[i] += column[i] * deviation;
+            }
+        }
+        let [a, b, c, d, e] = *forces;
+        let (begin, end) = (f64x4::from([a, b, c, d]), f64x4::from([b, c, d, e]));
+        let partner = (begin - end) * (1.0 / (self.linear.frequency * self.step));
+        BentStride { begin: [begin, partner], stride: Stride { excitation: [end, partner], y: next } }
     }
 
     /// Length of a whole step, s.

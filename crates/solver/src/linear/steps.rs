@@ -1,11 +1,12 @@
 //! Steps of the exact flow, several of them side by side, as they are handed to observers.
 
-use super::flow::{Expansion, Flow, Stride};
+use super::flow::{BentStride, Expansion, Flow, Stride};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
 use crate::motion::segment::Segment;
 use std::cell::OnceCell;
+use wide::f64x4;
 
 /// An exact step, or the first part of one.
 pub struct Step<'a, const N: usize> {
@@ -82,6 +83,8 @@ pub struct Steps<'a, const N: usize> {
     clock: StepClock,
     from: Knot<N>,
     stride: Stride<N>,
+    /// The force with which each begins, where that is not the one with which the last one ends.
+    begin: Option<[f64x4; 2]>,
     count: usize,
     energy: f64,
 }
@@ -117,7 +120,28 @@ impl<'a, const N: usize> Steps<'a, N> {
     /// all of them.
     #[inline(always)]
     pub fn new(flow: &'a Flow<N>, from: Knot<N>, clock: StepClock, energy: f64) -> Self {
-        Self { flow, clock, from, stride: flow.stride(from.excitation, &from.y), count: LANES, energy }
+        let stride = flow.stride(from.excitation, &from.y);
+        Self { flow, clock, from, stride, begin: None, count: LANES, energy }
+    }
+
+    /// The same under straight lines from one of these forces to the next, a line for each step; the first begins at `from`.
+    #[inline(always)]
+    pub fn bent(
+        flow: &'a Flow<N>,
+        mut from: Knot<N>,
+        forces: &[f64; LANES + 1],
+        clock: StepClock,
+        energy: f64,
+    ) -> Self {
+        let BentStride { begin, stride } = flow.bent_stride(forces, &from.y);
+        from.excitation = begin.map(|lanes| lanes.to_array()[0]);
+        Self { flow, clock, from, stride, begin: Some(begin), count: LANES, energy }
+    }
+
+    /// The force with which each begins, where the force bends between them.
+    #[inline(always)]
+    pub fn begin(&self) -> Option<&[f64x4; 2]> {
+        self.begin.as_ref()
     }
 
     /// Keeps the first `count` of them.
@@ -171,6 +195,10 @@ impl<'a, const N: usize> Steps<'a, N> {
 
     /// One of them.
     pub fn step(&self, number: usize) -> Step<'a, N> {
-        Step::whole(self.flow, [self.knot(number), self.knot(number + 1)], self.energy)
+        let mut first = self.knot(number);
+        if let Some(begin) = self.begin {
+            first.excitation = begin.map(|lanes| lanes.to_array()[number]);
+        }
+        Step::whole(self.flow, [first, self.knot(number + 1)], self.energy)
     }
 }

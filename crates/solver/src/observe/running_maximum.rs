@@ -120,18 +120,28 @@ where
     #[inline(always)]
     fn steps(&mut self, steps: &Steps<'_, N>) {
         let (from, to) = (steps.from(), steps.ends());
-        let first = match self.last {
-            Some((t, true, rates)) if t == from.t => rates,
-            _ => from.rates(&self.search.quantity, true),
-        };
         let ends = self.search.quantity.rates_in_flight(&to.excitation, &to.y);
-        let begins = [0, 1, 2].map(|order| shifted(first[order], ends[order]));
+        let begins = match steps.begin() {
+            None => {
+                let first = match self.last {
+                    Some((t, true, rates)) if t == from.t => rates,
+                    _ => from.rates(&self.search.quantity, true),
+                };
+                [0, 1, 2].map(|order| shifted(first[order], ends[order]))
+            }
+            // Rates jump between the steps.
+            Some(force) => {
+                let y: [f64x4; N] = std::array::from_fn(|i| shifted(from.y[i], to.y[i]));
+                self.search.quantity.rates_in_flight(force, &y)
+            }
+        };
         let h = steps.length();
         let sixth = self.search.quantity.form().sixth_in_flight(steps.energy());
         let remainder = QUINTIC * h.powi(6) * sixth;
         let highest = highest(quintic(h, begins, ends), f64x4::splat(remainder));
         let last = steps.count() - 1;
-        self.last = Some((steps.time(last + 1), true, ends.map(|lanes| lanes.to_array()[last])));
+        let end = (steps.time(last + 1), true, ends.map(|lanes| lanes.to_array()[last]));
+        self.last = steps.begin().is_none().then_some(end);
         // The values at both ends are among the coefficients.
         let dropped = highest.simd_le(f64x4::splat(self.search.record.value)).to_bitmask();
         let wanted = !dropped & ((2 << last) - 1);

@@ -77,7 +77,11 @@ fn check_advice(name: &str, numbers: &Numbers, window: Window, settings: &Settin
             by_hybrid();
         }
         SolverError::NonFinite { .. } | SolverError::Implausible { .. } => assert!(!hybrid, "{what}"),
-        SolverError::Missed { .. } | SolverError::RigidWalls { .. } | SolverError::Grazing { .. } => {
+        SolverError::Missed { .. }
+        | SolverError::RigidWalls { .. }
+        | SolverError::Grazing { .. }
+        | SolverError::NoPeriod { .. }
+        | SolverError::NoDerivatives { .. } => {
             panic!("{what}")
         }
     }

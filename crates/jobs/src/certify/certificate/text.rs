@@ -29,8 +29,9 @@ impl std::fmt::Display for Certificate {
         writeln!(f, "{name:<14}{}, {predictable}: {}", said(value), self.compared())?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
-        let (omega, k1) = (short(*omega), short(*k1));
-        writeln!(f, "worst run     {} at omega = {omega} rad/s, k1 = {k1} N/m{phase}", said(value.value))?;
+        let omega = if *omega > 0.0 { format!("omega = {} rad/s, ", short(*omega)) } else { String::new() };
+        let k1 = short(*k1);
+        writeln!(f, "worst run     {} at {omega}k1 = {k1} N/m{phase}", said(value.value))?;
         for Run { method, rtol, value } in &self.convergence {
             let (method, value) = (format!("{} {rtol:e}", method.name()), value.value);
             let digits = if value.is_finite() { format!("{value:.10} {unit}") } else { NONE.to_owned() };

@@ -79,15 +79,17 @@ impl Optimum {
         }
         let (out, omega) = (out.display(), rounded(self.simulation.omega(), 6));
         // Another motion may coexist with that from rest only where the damper strikes.
-        let others = if self.simulation.has_impacts() {
+        let others = if self.simulation.has_impacts() && omega > 0.0 {
             format!("next: see what it does from other starts than rest with\n  `retune branches {out}`\n")
         } else {
             String::new()
         };
-        format!(
-            "{others}next: record the motion at the worst frequency with\n  \
-             `retune simulate {out} --set omega={omega} --trajectory motion.csv`"
-        )
+        let (at, set) = if omega > 0.0 {
+            (" at the worst frequency", format!(" --set omega={omega}"))
+        } else {
+            ("", String::new())
+        };
+        format!("{others}next: record the motion{at} with\n  `retune simulate {out}{set} --trajectory motion.csv`")
     }
 
     /// The digits of a parameter that tell; four of one that was not varied.
@@ -101,6 +103,7 @@ impl Optimum {
                 let e = goal.worst_restitution.map_or(String::new(), |e| format!(" and restitution {e}"));
                 format!(", worst at omega = {}{e}", frequency(goal.worst_omega))
             }
+            None if self.simulation.omega() == 0.0 => String::new(),
             None => format!(" at omega = {}", frequency(self.simulation.omega())),
         };
         format!("{}: {} {}{at}", self.damper_type, self.value.quantity.name(), self.value.words())

@@ -53,7 +53,9 @@ pub fn objective(findings: &Findings) -> String {
     };
     let mut hows: Vec<String> = objective.terms().iter().map(|(_, term)| how(term.response)).collect();
     hows.dedup();
-    format!("{}, {}", over(&objective, omega), hows.join(" and "))
+    let over = over(&objective, omega);
+    let over = if over.is_empty() { over } else { format!("{over}, ") };
+    format!("{over}{}", hows.join(" and "))
 }
 
 fn lead(findings: &Findings) -> Markup {
@@ -200,14 +202,16 @@ fn next(findings: &Findings, flags: &[Flag]) -> Markup {
     let (omega, k1) = (findings.worst_omega(), findings.worst.primary.stiffness);
     let other = k1 != findings.study.scene.primary.stiffness;
     let k1 = if other { format!(" --set k1={}", k1.get()) } else { String::new() };
-    let simulate = format!("retune simulate optimum.json --set omega={omega}{k1} --trajectory motion.csv");
+    let (at, set) =
+        if omega > 0.0 { (" at the worst frequency", format!(" --set omega={omega}")) } else { ("", String::new()) };
+    let simulate = format!("retune simulate optimum.json{set}{k1} --trajectory motion.csv");
     html! {
         h3 { "What to do next" }
         @if !changes.is_empty() {
             p { "Give " code { "study.json" } " " (changes.join("; ")) ", and search again:" }
             pre { code { "retune optimize study.json --out again" } }
         }
-        p { "Look at the motion at the worst frequency, row by row:" }
+        p { "Look at the motion" (at) ", row by row:" }
         pre { code { (simulate) } }
         p { "Compute a sample of these results again, on your machine:" }
         pre { code { "retune verify ." } }

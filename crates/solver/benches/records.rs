@@ -1,0 +1,60 @@
+//! A run of 40 s under a record of 4001 samples beside the same length under a harmonic force, with about as many impacts: the least time of
+//! many, of E1max. `cargo bench -p retune-solver --bench records`.
+#![expect(clippy::print_stdout, reason = "a measurement is printed")]
+
+use retune_model::{Of, Samples, Scene};
+use retune_solver::{Settings, Window, e1_max, simulate};
+use retune_testkit::histories::record;
+use retune_testkit::scenes::{Numbers, SSVI, Spread};
+use std::hint::black_box;
+use std::time::Instant;
+
+const WHOLE: Window = Window { from: 0.0, to: 40.0 };
+/// The damper of `results/ssvi`.
+const TUNED: Numbers = Numbers { k2: 583.9, c2: 94.97, d: 0.02885, c: 1.105, ..SSVI };
+
+/// Noise on ground of 2.5 Hz, of at most `peak` (m/s²).
+fn ground(peak: f64, step: f64, even: bool) -> Samples {
+    let (mut spread, mut x, mut v) = (Spread::new(1940), 0.0, 0.0);
+    let count = (40.0 / step) as usize;
+    let mut values = Vec::new();
+    for _ in 0..=count {
+        let w = (0..12).map(|_| spread.signed()).sum::<f64>();
+        values.push(2.0 * 0.6 * 15.6 * v + 15.6 * 15.6 * x);
+        for _ in 0..20 {
+            v += step / 20.0 * (w - 2.0 * 0.6 * 15.6 * v - 15.6 * 15.6 * x);
+            x += step / 20.0 * v;
+        }
+    }
+    let most = values.iter().fold(0.0, |most: f64, a: &f64| most.max(a.abs()));
+    values.iter_mut().for_each(|a| *a *= peak / most);
+    if even {
+        return Samples::every(0.0, step, values).expect("a record");
+    }
+    let times = (0..=count).map(|i| step * (i as f64 + 0.2 * spread.signed())).map(f64::abs).collect();
+    Samples::at(times, values).expect("a record")
+}
+
+fn main() {
+    let under = |peak, step, even| TUNED.under(record(Of::BaseAcceleration, ground(peak, step, even)));
+    let scenes: [(&str, Scene); 5] = [
+        ("harmonic", TUNED.scene()),
+        ("4001 samples", under(4.0, 0.01, true)),
+        ("4001 samples, not equidistant", under(4.0, 0.01, false)),
+        ("401 samples", under(4.0, 0.1, true)),
+        ("40001 samples", under(4.0, 0.001, true)),
+    ];
+    let settings = Settings::default();
+    let mut first = None;
+    for (name, scene) in scenes {
+        let found = simulate(&scene, WHOLE, &settings).expect("a run");
+        let mut least = f64::INFINITY;
+        for _ in 0..400 {
+            let start = Instant::now();
+            black_box(e1_max(black_box(&scene), WHOLE, &settings, f64::INFINITY).expect("a run"));
+            least = least.min(start.elapsed().as_secs_f64());
+        }
+        let share = least / *first.get_or_insert(least);
+        println!("{name}: {:.1} µs, {share:.2} times, impacts {:?}, {:?}", 1e6 * least, found.impacts, found.work);
+    }
+}
