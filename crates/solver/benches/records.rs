@@ -55,6 +55,11 @@ fn main() {
             least = least.min(start.elapsed().as_secs_f64());
         }
         let share = least / *first.get_or_insert(least);
-        println!("{name}: {:.1} µs, {share:.2} times, impacts {:?}, {:?}", 1e6 * least, found.impacts, found.work);
+        println!(
+            "{name}: {:.1} µs, {share:.2} times, impacts {:?}, {:?}",
+            1e6 * least,
+            found.impacts,
+            found.work
+        );
     }
 }

@@ -174,11 +174,8 @@ impl RegularisedContact {
             let push =
                 |i: usize| self.hertz[i] * force[k] + self.dashpot[i] * w[k] + self.spring[i] * stretch[k];
             // A force that accelerates both bodies alike is not felt between them.
-            let apart = if self.felt == 0.0 {
-                self.primary[1] * v1[k] + self.primary[2] * x1[k]
-            } else {
-                outside
-            };
+            let apart =
+                if self.felt == 0.0 { self.primary[1] * v1[k] + self.primary[2] * x1[k] } else { outside };
             (a1[k], rate[k]) = (outside + push(0), apart + push(1));
             if k + 1 == K {
                 break;

@@ -19,7 +19,11 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<End, SolverError> {
-        integrate(equations, from, regularised, to, (self.rtol, self.budget), &mut self.work, observer)
+        // Walls give back at most what they hold.
+        let energy = (2.0 * self.system.total_energy(&from.y)).sqrt()
+            + (to - from.t) * self.system.energy_norm_growth();
+        let limits = (self.rtol, self.budget, energy);
+        integrate(equations, from, regularised, to, limits, &mut self.work, observer)
     }
 
     /// Starts a contact at a touch-down. A contact that begins (almost) at rest has no time scale of its own at `q = 0`: the flight

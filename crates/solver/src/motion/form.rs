@@ -21,6 +21,8 @@ pub struct Form<const N: usize> {
     rest: [f64; N],
     /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
     sixth: [f64; 3],
+    /// Those of a bound on the quantity itself, see [`Form::most`].
+    most: [f64; 3],
     slope: SlopeInFlight<N>,
 }
 
@@ -81,12 +83,14 @@ impl<const N: usize> Form<N> {
     /// `row · d`.
     pub fn linear<S: LinearSystem<N>>(system: &S, row: [f64; N]) -> Self {
         let [.., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
-        let squares = [(0.0, row); 2];
+        let (squares, rest) = ([(0.0, row); 2], system.linear().origin);
+        let at_rest = row.iter().zip(rest).map(|(weight, rest)| weight * rest).sum();
         Self {
+            most: [at_rest, system.dual_energy_norm(&row), 0.0],
             linear: row,
             rated: None,
             squares,
-            rest: system.linear().origin,
+            rest,
             sixth: [offset, slope, 0.0],
             slope: SlopeInFlight::new(system, &row, &squares),
         }
@@ -106,7 +110,9 @@ impl<const N: usize> Form<N> {
             force: times(system.amplitude(), size(&linear.input)),
             unforced: None,
         };
-        Self { rated: Some(rated), sixth: [b0 + offset, b1 + slope, b2], ..of_row }
+        // In a contact it has no bound by the energy alone.
+        let most = [f64::INFINITY, 0.0, 0.0];
+        Self { rated: Some(rated), sixth: [b0 + offset, b1 + slope, b2], most, ..of_row }
     }
 
     /// The same less what the force adds to the rate of the state. Its bounds are those with the force, whose terms all count by their sizes;
@@ -159,7 +165,18 @@ impl<const N: usize> Form<N> {
         }
         let (none, squares) = ([0.0; N], [(mass, unit(v)), (stiffness, unit(x))]);
         let slope = SlopeInFlight::new(system, &none, &squares);
-        Self { linear: none, rated: None, squares, rest: linear.origin, sixth, slope }
+        // The structure's energy is a part of the whole; the paper's of the damper is not, for its spring is stretched by another length.
+        let norms = [v, x].map(|i| system.dual_energy_norm(&unit(i)).powi(2));
+        let share = if x == 0 { 0.5 } else { 0.5 * (times(mass, norms[0]) + times(stiffness, norms[1])) };
+        let most = [0.0, 0.0, share];
+        Self { linear: none, rated: None, squares, rest: linear.origin, sixth, most, slope }
+    }
+
+    /// A bound on the quantity wherever the energy norm of the state is at most `energy` (√J); NaN or infinite where there is none.
+    #[inline(always)]
+    pub fn most(&self, energy: f64) -> f64 {
+        let [m0, m1, m2] = self.most;
+        m0 + (m1 + m2 * energy) * energy
     }
 
     /// A bound on the sixth time derivative in flight, wherever the energy norm of the state is at most `energy` (√J).

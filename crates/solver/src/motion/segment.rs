@@ -17,6 +17,10 @@ pub trait Segment<const N: usize> {
     fn in_flight(&self) -> bool {
         false
     }
+    /// A bound on the energy norm of the motion in it (√J), where one is known.
+    fn energy(&self) -> f64 {
+        f64::INFINITY
+    }
     /// How far a quantity may leave the quintic that meets its value, slope and curvature (with respect to `θ`) at two places `h`
     /// apart: `h⁶/46080` times a bound on its sixth derivative between them; a `sharp` bound may cost more. Infinite where they are
     /// too far apart for a bound; `None` for a motion without a known bound.

@@ -66,6 +66,11 @@ where
 {
     #[inline(always)]
     fn segment(&mut self, segment: &impl Segment<N>) {
+        let energy = segment.energy();
+        if energy.is_finite() && self.search.quantity.form().most(energy) <= self.search.record.value {
+            self.last = None;
+            return;
+        }
         let ([a, b], in_flight) = (segment.ends(), segment.in_flight());
         let rates_a = match self.last {
             Some((t, flown, rates)) if t == a.t && flown == in_flight => rates,
@@ -120,6 +125,13 @@ where
     #[inline(always)]
     fn steps(&mut self, steps: &Steps<'_, N>) {
         let (from, to) = (steps.from(), steps.ends());
+        // Pieces of a record are many: most of a run has too little energy for any of them to matter.
+        if steps.begin().is_some()
+            && self.search.quantity.form().most(steps.energy()) <= self.search.record.value
+        {
+            self.last = None;
+            return;
+        }
         let ends = self.search.quantity.rates_in_flight(&to.excitation, &to.y);
         let begins = match steps.begin() {
             None => {

@@ -8,7 +8,8 @@ use retune_model::{Of, Scene, Shape};
 /// acceleration of the base.
 pub(super) fn given(numbers: Numbers, draw: &mut Spread) -> Scene {
     let size = draw.logarithmic(300.0, 6000.0);
-    let (of, size) = if draw.unit() < 0.5 { (Of::Force, size) } else { (Of::BaseAcceleration, size / numbers.m1) };
+    let (of, size) =
+        if draw.unit() < 0.5 { (Of::Force, size) } else { (Of::BaseAcceleration, size / numbers.m1) };
     let kind = draw.unit();
     let history = if kind < 0.15 {
         pulse(of, Shape::HalfSine, 3.0 * size, draw.logarithmic(0.03, 2.0))

@@ -89,7 +89,9 @@ impl Optimum {
         } else {
             ("", String::new())
         };
-        format!("{others}next: record the motion{at} with\n  `retune simulate {out}{set} --trajectory motion.csv`")
+        format!(
+            "{others}next: record the motion{at} with\n  `retune simulate {out}{set} --trajectory motion.csv`"
+        )
     }
 
     /// The digits of a parameter that tell; four of one that was not varied.

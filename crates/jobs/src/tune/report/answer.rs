@@ -202,8 +202,11 @@ fn next(findings: &Findings, flags: &[Flag]) -> Markup {
     let (omega, k1) = (findings.worst_omega(), findings.worst.primary.stiffness);
     let other = k1 != findings.study.scene.primary.stiffness;
     let k1 = if other { format!(" --set k1={}", k1.get()) } else { String::new() };
-    let (at, set) =
-        if omega > 0.0 { (" at the worst frequency", format!(" --set omega={omega}")) } else { ("", String::new()) };
+    let (at, set) = if omega > 0.0 {
+        (" at the worst frequency", format!(" --set omega={omega}"))
+    } else {
+        ("", String::new())
+    };
     let simulate = format!("retune simulate optimum.json{set}{k1} --trajectory motion.csv");
     html! {
         h3 { "What to do next" }

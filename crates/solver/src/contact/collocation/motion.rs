@@ -215,6 +215,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             length,
             steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
             ends,
+            energy: f64::INFINITY,
             bounds: Default::default(),
         };
         // On the clock of lossy contacts, which suits their force, the integral of 1/√z has fewer digits: an error of 1e-11 was seen.

@@ -21,7 +21,7 @@ pub enum End {
 /// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
 ///
 /// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a sustained contact,
-/// relative to the recent ones.
+/// relative to the recent ones. `energy` bounds the energy norm (√J) of the motion up to `to`.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
@@ -31,7 +31,7 @@ pub fn integrate(
     from: &Knot<4>,
     y: RegularisedState,
     to: f64,
-    (rtol, budget): (f64, Budget),
+    (rtol, budget, energy): (f64, Budget, f64),
     work: &mut Work,
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
@@ -51,6 +51,7 @@ pub fn integrate(
             length,
             steps: 1,
             ends: [contact.start, end],
+            energy,
             bounds: Default::default(),
         };
         if length > 0.0 {

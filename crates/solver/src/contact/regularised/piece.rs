@@ -26,6 +26,8 @@ pub struct Piece<'a> {
     /// Steps in which it is reached.
     pub steps: u32,
     pub ends: [Knot<4>; 2],
+    /// A bound on the energy norm of the motion in it, √J.
+    pub energy: f64,
     /// Bounds over all of it, for observers of the state and of its rate.
     pub bounds: [OnceCell<[Growth<ORDERS>; 2]>; 2],
 }
@@ -52,6 +54,9 @@ pub fn step(
 }
 
 impl Segment<4> for Piece<'_> {
+    fn energy(&self) -> f64 {
+        self.energy
+    }
     fn ends(&self) -> [&Knot<4>; 2] {
         [&self.ends[0], &self.ends[1]]
     }
