@@ -33,19 +33,21 @@ pub const FILE: &str = "report.html";
 pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Error> {
     let flags = flags::flags(findings);
     let compared = findings.compared();
-    let (response, motion) =
-        rayon::join(|| response::section(findings, &compared), || motion::section(findings));
+    // A motion without a frequency has no response over frequencies.
+    let over_frequency =
+        || (!findings.study.scene.forcing.is_transient()).then(|| response::section(findings, &compared));
+    let (response, motion) = rayon::join(over_frequency, || motion::section(findings));
     let mut files = results.whole()?;
     files.retain(|name| name != FILE); // that of a run that was cut off
-    let sections = vec![
-        answer::section(findings, &compared, &flags),
-        response,
+    let answer = answer::section(findings, &compared, &flags);
+    let mut sections: Vec<_> = [answer].into_iter().chain(response).collect();
+    sections.extend([
         motion?,
         sensitivity::section(findings),
         place::section(findings, &files, results),
         course::section(findings, results),
         origin::section(findings, &files, &study_text(findings.study)?),
-    ];
+    ]);
     let name = findings.study.name();
     let title = format!("{name}: {}", answer::title(findings));
     let page = Document { title, command: "retune optimize", opening: Vec::new(), sections };

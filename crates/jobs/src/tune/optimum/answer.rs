@@ -79,12 +79,12 @@ impl Optimum {
         }
         let (out, omega) = (out.display(), rounded(self.simulation.omega(), 6));
         // Another motion may coexist with that from rest only where the damper strikes.
-        let others = if self.simulation.has_impacts() && omega > 0.0 {
+        let others = if self.simulation.has_impacts() && self.simulation.omega() > 0.0 {
             format!("next: see what it does from other starts than rest with\n  `retune branches {out}`\n")
         } else {
             String::new()
         };
-        let (at, set) = if omega > 0.0 {
+        let (at, set) = if self.simulation.omega() > 0.0 {
             (" at the worst frequency", format!(" --set omega={omega}"))
         } else {
             ("", String::new())

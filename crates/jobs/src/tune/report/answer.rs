@@ -4,6 +4,7 @@ use super::findings::{Compared, Findings};
 use super::flags::Flag;
 use super::numbers::{amount, compared, digits, four, frequency};
 use crate::certify::Walls;
+use crate::describe::forced;
 use crate::needs::{Needs, sized};
 use crate::summary::baseline;
 use maud::{Markup, html};
@@ -70,10 +71,20 @@ fn lead(findings: &Findings) -> Markup {
     html! {
         p.lead {
             "With this damper " (quantity.words()) ", " (quantity.name()) ", is " strong { (amount(*energy, quantity)) }
-            " (" (objective(findings)) "). " @if several { "It is worst at" } @else { "The frequency is" }
-            " ω = " strong { (frequency(findings.worst_omega())) } "; there the damper " (touches) "."
+            " (" (objective(findings)) "). "
+            @if findings.study.scene.forcing.is_transient() {
+                "It is " (forced(&findings.study.scene.forcing)) "; the damper " (touches) "."
+            } @else {
+                @if several { "It is worst at" } @else { "The frequency is" }
+                " ω = " strong { (frequency(findings.worst_omega())) } "; there the damper " (touches) "."
+            }
         }
     }
+}
+
+/// Words and the frequency after them; nothing of a motion without one.
+fn placed(words: &str, omega: f64) -> String {
+    if omega > 0.0 { format!("{words}{}", frequency(omega)) } else { String::new() }
 }
 
 fn facts(findings: &Findings, beside: &Compared) -> Markup {
@@ -84,9 +95,9 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             (
                 words,
                 format!(
-                    "{}, worst at {}",
+                    "{}{}",
                     amount(other.value, quantity),
-                    frequency(other.worst.scene.forcing.frequency.get())
+                    placed(", worst at ", other.worst.scene.forcing.frequency.get())
                 ),
             )
         }
@@ -113,7 +124,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             @if let Some(walls) = &certificate.walls { (fact("Contacts", &contacts(walls, energy, quantity), walls.words())) }
             @if let Some(needs) = &findings.optimum.needs {
                 @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
-                    "{what}, from rest on, at {}{}{}", frequency(needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
+                    "{what}, from rest on{}{}{}", placed(", at ", needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
                 ));
                 (say("Stroke", Measure::Stroke, "largest spring deflection |x2 − x1 − D|"))
                 (say("Contact force", Measure::ContactForce, "largest force on a wall"))

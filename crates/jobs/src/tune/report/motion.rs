@@ -33,12 +33,13 @@ pub fn section(findings: &Findings) -> Result<Section, Error> {
     let body = html! {
         (words(findings).markup())
         (figure(&picture(findings, window, &rows), html! {
-            "The motion from t = " (four(window.from)) " s to " (four(window.to)) " s of a run from rest at ω = "
-            (frequency(findings.worst_omega())) ". Grey: the walls of the cavity; dotted: where the damper rests."
+            "The motion from t = " (four(window.from)) " s to " (four(window.to)) " s of a run from rest"
+            @if findings.worst_omega() > 0.0 { " at ω = " (frequency(findings.worst_omega())) } ". Grey: the walls of the cavity; dotted: where the damper rests."
         }))
         (methods(findings).markup())
     };
-    Ok(("motion", "Motion at the worst frequency", vec![Block::Elements(body)]))
+    let title = if findings.worst_omega() > 0.0 { "Motion at the worst frequency" } else { "Motion" };
+    Ok(("motion", title, vec![Block::Elements(body)]))
 }
 
 /// The last periods of the window.
