@@ -266,7 +266,9 @@ impl InFile {
                 duration: self.duration.ok_or(without("duration", "how long it lasts, s"))?,
                 unit: unit.unwrap_or(of.units()[0]),
             }),
-            (None, Some(record_file::InFile::Whole(whole))) => Course::Record(whole.clone().record()?),
+            (None, Some(record_file::InFile::Whole(whole))) => {
+                Course::Record(whole.clone().record(of.units())?)
+            }
             (None, Some(record_file::InFile::File(file))) => Course::Record(Record::new(RecordFile {
                 file: file.clone(),
                 column: self.column.clone(),
@@ -322,78 +324,4 @@ impl TryFrom<InFile> for Forcing {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn read(text: &str) -> Result<Forcing, String> {
-        serde_json::from_str(text).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn contract_one_kind_of_forcing_and_what_it_needs() {
-        for text in [
-            r#"{"P":800.0,"omega":6.28}"#,
-            r#"{"imbalance":0.5,"omega":6.28}"#,
-            r#"{"base":0.01,"omega":6.28}"#,
-            r#"{"P":800.0,"start":{"x1":0.1,"v1":0.0,"x2":0.2,"v2":0.0},"omega":6.28}"#,
-            r#"{"start":{"x1":0.1,"v1":0.0,"v2":0.0}}"#,
-            r#"{"pulse":"half sine","of":"base acceleration","peak":3.0,"duration":0.1}"#,
-            r#"{"start":{"x1":0.1,"v1":0.0,"v2":0.0},"pulse":"rectangle","of":"force","peak":-3.0,"duration":0.1,"unit":"kN"}"#,
-            r#"{"record":"quake.csv","of":"base acceleration"}"#,
-            r#"{"record":"quake.csv","of":"base acceleration","unit":"g","scale":-2.0,"column":"north"}"#,
-            r#"{"record":"push.csv","of":"force","column":3}"#,
-            r#"{"record":{"step":0.1,"values":[1.0,-2.0]},"of":"force"}"#,
-            r#"{"record":{"file":"a.csv","start":0.5,"step":0.1,"values":[1.0,-2.0]},"of":"force"}"#,
-            r#"{"record":{"times":[0.0,0.1,0.3],"values":[1.0,-2.0,0.5]},"of":"base acceleration"}"#,
-        ] {
-            let forcing = read(text).expect(text);
-            assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
-        }
-        for (text, said) in [
-            (
-                r#"{"omega":6.28}"#,
-                "give one of `P`, `imbalance`, `base`, `pulse` and `record`, or `start` alone, not 0",
-            ),
-            (
-                r#"{"pulse":"half sine","of":"force","peak":1,"duration":1,"omega":1}"#,
-                "`omega` has no meaning beside `pulse`",
-            ),
-            (r#"{"pulse":"half sine","of":"force","peak":1}"#, "missing field `duration` beside `pulse`"),
-            (
-                r#"{"pulse":"half sine","peak":1,"duration":1}"#,
-                "missing field `of` beside `pulse`: `force` or",
-            ),
-            (r#"{"pulse":"saw","of":"force","peak":1,"duration":1}"#, "unknown variant `saw`"),
-            (r#"{"pulse":"rectangle","of":"force","peak":1,"duration":0}"#, "0 is not allowed here"),
-            (
-                r#"{"pulse":"rectangle","of":"force","peak":1,"duration":1,"unit":"g"}"#,
-                "`unit`: \"g\" is not allowed here: give one of N, kN",
-            ),
-            (r#"{"record":"a.csv","of":"force","peak":1}"#, "`peak` has no meaning beside `record`"),
-            (r#"{"record":"a.csv","pulse":"rectangle","of":"force","peak":1,"duration":1}"#, "not 2 of them"),
-            (
-                r#"{"record":"a.csv","of":"base acceleration","unit":"N"}"#,
-                "\"N\" is not allowed here: give one of m/s²",
-            ),
-            (r#"{"record":{"step":1,"values":[1]},"of":"force"}"#, "it has 1 samples: give at least two"),
-            (r#"{"record":{"values":[1,2]},"of":"force"}"#, "give one of `step` and `times`"),
-            (r#"{"record":{"times":[0],"values":[1,2]},"of":"force"}"#, "2 values for 1 times"),
-            (r#"{"record":{"times":[0,0],"values":[1,2]},"of":"force"}"#, "sample 2: the time 0 s does not"),
-            (r#"{"record":{"step":1,"values":[1,2]},"of":"force","unit":"N"}"#, "`unit` has no meaning"),
-            (r#"{"record":3,"of":"force"}"#, "a file, or samples"),
-            (r#"{"P":1,"omega":1,"of":"force"}"#, "`of` has no meaning beside `P`"),
-            (
-                r#"{"P":1,"omega":1,"pulse":"rectangle","of":"force","peak":1,"duration":1}"#,
-                "`omega` has no meaning beside `pulse`",
-            ),
-            (r#"{"start":{},"scale":1}"#, "`scale` has no meaning beside `start`"),
-            (r#"{"P":1,"base":1,"omega":6.28}"#, "not 2 of them"),
-            (r#"{"P":1}"#, "missing field `omega`"),
-            (r#"{"start":{},"omega":1}"#, "`omega` has no meaning beside `start`"),
-            (r#"{"base":-1,"omega":1}"#, "-1 is not allowed here"),
-        ] {
-            let error = read(text).expect_err(text);
-            assert!(error.contains(said), "{error}");
-        }
-    }
-}
+mod tests;

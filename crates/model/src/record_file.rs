@@ -1,7 +1,8 @@
 //! How a record stands in a study: as the file to read, or as samples in SI units.
 
-use crate::record::{BadSamples, Record, RecordFile, Samples};
-use crate::{NonNegative, Positive};
+use crate::record::{BadSamples, Column, Record, RecordFile, Samples};
+use crate::unit::named;
+use crate::{Finite, NonNegative, Positive, Unit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,9 +21,18 @@ pub(crate) enum InFile {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Samples", extend("oneOf" = [{ "required": ["step"] }, { "required": ["times"] }]))]
 pub(crate) struct Whole {
-    /// file, where they come from; for readers alone.
+    /// file, where they come from; for readers alone, as are column, unit and scale.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     file: String,
+    /// column, which of that file they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    column: Option<Column>,
+    /// unit, in which they stand there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    /// scale, by how much they were multiplied.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scale: Option<Finite>,
     /// start, the time of the first sample, s; 0 if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<NonNegative>,
@@ -49,16 +59,15 @@ pub(crate) enum Refused {
 
 impl From<&Record> for InFile {
     fn from(record: &Record) -> Self {
-        let RecordFile { file, .. } = record.source();
         match record.samples().filter(|_| record.is_whole()) {
-            None => Self::File(file.clone()),
-            Some(samples) => Self::Whole(Whole::new(file.clone(), samples)),
+            None => Self::File(record.source().file.clone()),
+            Some(samples) => Self::Whole(Whole::new(record.source().clone(), samples)),
         }
     }
 }
 
 impl Whole {
-    fn new(file: String, samples: &Samples) -> Self {
+    fn new(RecordFile { file, column, unit, scale }: RecordFile, samples: &Samples) -> Self {
         let values = samples.values().to_vec();
         let (start, step, times) = match samples.even() {
             Some([start, step]) => (
@@ -68,12 +77,13 @@ impl Whole {
             ),
             None => (None, None, Some((0..samples.len()).map(|i| samples.time(i)).collect())),
         };
-        Self { file, start, step, times, values }
+        let unit = unit.map(|unit| unit.0.to_owned());
+        Self { file, column, unit, scale, start, step, times, values }
     }
 
     /// The record of these samples.
-    pub(crate) fn record(self) -> Result<Record, Refused> {
-        let Self { file, start, step, times, values } = self;
+    pub(crate) fn record(self, units: &[Unit]) -> Result<Record, Refused> {
+        let Self { file, column, unit, scale, start, step, times, values } = self;
         let samples = match (step, times) {
             (Some(step), None) => Samples::every(start.unwrap_or_default().get(), step.get(), values)?,
             (None, Some(times)) if start.is_none() => {
@@ -84,6 +94,7 @@ impl Whole {
             }
             _ => return Err(Refused::Times),
         };
-        Ok(Record::new(RecordFile { file, column: None, unit: None, scale: None }).with(samples).whole())
+        let unit = unit.and_then(|unit| named(&unit, units));
+        Ok(Record::new(RecordFile { file, column, unit, scale }).with(samples))
     }
 }

@@ -48,7 +48,7 @@ pub fn study_text(path: PathBuf) -> PyResult<String> {
             let text = std::fs::read_to_string(&path).unwrap_or_default();
             Fault::of_study(&error, &text, true)
         })?;
-        json(&study)
+        json(&study.whole())
     };
     Ok(caught(read)?)
 }

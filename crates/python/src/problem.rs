@@ -189,14 +189,14 @@ impl Core {
     /// The text of the same study with another design of its damper.
     #[pyo3(name = "_tuned")]
     fn tuned(&self, x: &Bound<'_, PyAny>) -> PyResult<String> {
-        Ok(json(&self.at(Some(x))?)?)
+        Ok(json(&self.at(Some(x))?.whole())?)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let py = slf.py();
         let rebuilt = py.import("retune._problem")?.getattr("rebuilt")?;
         let core = slf.get();
-        (rebuilt, (slf.get_type(), json(&core.study)?, core.file.clone())).into_pyobject(py)
+        (rebuilt, (slf.get_type(), json(&core.study.whole())?, core.file.clone())).into_pyobject(py)
     }
 }
 

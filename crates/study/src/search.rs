@@ -151,13 +151,20 @@ impl Study {
         Ok(Search { damper, variables, surf, starts, apart, global, given, options })
     }
 
-    /// The same study with every default written out, the samples of a record in it, and the version that did it.
-    pub fn resolved(&self) -> Self {
+    /// The same study with the samples of its record, which needs no other file.
+    #[must_use]
+    pub fn whole(&self) -> Self {
         let mut study = self.clone();
-        study.schema = None;
         if let Some((_, record)) = study.scene.forcing.record_mut() {
             *record = record.whole();
         }
+        study
+    }
+
+    /// The same study with every default written out, the samples of a record in it, and the version that did it.
+    pub fn resolved(&self) -> Self {
+        let mut study = self.whole();
+        study.schema = None;
         study.retune = Some(env!("CARGO_PKG_VERSION").to_owned());
         if let Some(optimize) = &mut study.optimize {
             for &variable in &optimize.vary {

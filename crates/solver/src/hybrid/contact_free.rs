@@ -3,10 +3,10 @@
 //! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Damping only takes energy from the transient, so its
 //! energy norm bounds its later motion: it decides whether a wall can ever be reached, and whether the record can still be broken.
 
-use super::samples::{clock, forces, in_steps};
 use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::linear::flow::Flow;
+use crate::linear::pieces::{clock, forces, in_steps};
 use crate::linear::steps::{Step, StepClock, Steps};
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;

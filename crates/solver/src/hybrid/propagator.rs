@@ -1,10 +1,10 @@
 //! The data of the hybrid propagator: prepared once for a system, then used for any stretch of its motion.
 
 use super::held::RigidWalls;
-use super::samples::in_steps;
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};
+use crate::linear::pieces::in_steps;
 use crate::motion::form::derivative_bounds;
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};

@@ -2,30 +2,11 @@
 
 use super::propagator::{Hybrid, Motion, Phase};
 use crate::error::SolverError;
-use crate::linear::steps::{StepClock, Steps};
+use crate::linear::pieces::{clock, forces};
+use crate::linear::steps::Steps;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
 use crate::observe::observer::Observer;
-use retune_model::EvenForce;
-
-/// The samples of a record, if a flow may take its steps from one to the next: no step of its own is shorter.
-pub(super) fn in_steps(force: Option<EvenForce>, step: f64) -> Option<EvenForce> {
-    force.filter(|force| force.even[1] == step)
-}
-
-/// From sample `i` on the next four pieces that end by the time `to`, as steps from a moment.
-#[inline(always)]
-pub(super) fn forces(force: &EvenForce, i: usize, to: f64) -> Option<[f64; LANES + 1]> {
-    force.forces(i).filter(|_| force.time(i + LANES) <= to)
-}
-
-/// The clock of a record at sample `i`.
-pub(super) fn clock(force: &EvenForce, i: usize) -> StepClock {
-    let [first, step] = force.even;
-    let mut clock = StepClock::new(first, step);
-    clock.count(i);
-    clock
-}
 
 impl Hybrid<'_> {
     /// Flies from a sample over whole pieces of the record, as far as no wall is near, at most to time `to`.

@@ -5,4 +5,5 @@
 
 pub mod flow;
 pub mod gap;
+pub mod pieces;
 pub mod steps;
