@@ -90,7 +90,12 @@ impl RegularisedContact {
     pub fn change(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Change> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let mut most = ends;
-        let excitation = self.primary[0] * self.cos[0].hypot(self.sin[0]);
+        let (excitation, turn) = if self.is_linear() {
+            (self.primary[0] * self.force[0], self.primary[0] * self.force[1])
+        } else {
+            let excitation = self.primary[0] * self.cos[0].hypot(self.sin[0]);
+            (excitation, self.omega * excitation)
+        };
         for _ in 0..8 {
             let [q, w, x1, v1] = most;
             let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
@@ -102,7 +107,7 @@ impl RegularisedContact {
             if (0..4).all(|i| reach[i] <= most[i]) {
                 let [of_q, of_w, of_x1, of_v1] = change;
                 let of_stretch = 2.0 * q * of_q;
-                let turning = 0.5 * h * q * self.omega * excitation;
+                let turning = 0.5 * h * q * turn;
                 let outside = turning + self.primary[1] * of_v1 + self.primary[2] * of_x1;
                 let [of_a1, of_rate] = [0, 1].map(|i| {
                     outside + self.hertz[i] * contact + self.dashpot[i] * of_w + self.spring[i] * of_stretch
