@@ -20,6 +20,7 @@ BELOW = {
     "solver": "model",
     "dynamics": "model solver",
     "optim": "model solver dynamics",
+    "proof": "model",
     "store": "",
     "report": "",
     "study": "model solver optim dynamics",
