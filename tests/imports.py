@@ -24,7 +24,7 @@ BELOW = {
     "store": "",
     "report": "",
     "study": "model solver optim dynamics",
-    "jobs": "model solver optim dynamics study store report",
+    "jobs": "model solver optim dynamics proof study store report",
     "explore": "model solver optim dynamics study report jobs",
     "retune": "model solver optim dynamics study store report jobs explore",
     "testkit": "model solver dynamics optim jobs",

@@ -6,21 +6,38 @@ use crate::number::Box5;
 use crate::range::Range;
 use crate::segment::Passage;
 use crate::step::Piece;
-use serde::Serialize;
+use retune_model::Measure;
+use serde::{Serialize, Serializer};
 
 /// The series of a quantity from that of a motion; none where the mode has no such quantity.
 type Quantity<'a> = &'a dyn Fn(Mode, &[Box5]) -> Option<Vec<Interval>>;
 
-/// Largest values, in the words of the catalogue.
-#[derive(Clone, Copy, Debug, Serialize)]
+/// Largest values.
+#[derive(Clone, Copy, Debug)]
 pub struct Largest {
     /// E1max, J.
-    #[serde(rename = "E1max")]
     pub energy: Interval,
     /// Largest stretch of the damper's spring, m.
     pub stroke: Interval,
     /// Largest contact force, N.
     pub contact_force: Interval,
+}
+
+impl Largest {
+    /// Each with its quantity.
+    pub fn all(&self) -> [(Measure, Interval); 3] {
+        [
+            (Measure::Energy, self.energy),
+            (Measure::Stroke, self.stroke),
+            (Measure::ContactForce, self.contact_force),
+        ]
+    }
+}
+
+impl Serialize for Largest {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.all().map(|(measure, value)| (measure.name(), value)))
+    }
 }
 
 /// The largest values over all segments of a motion.

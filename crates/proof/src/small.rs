@@ -56,7 +56,8 @@ impl Frame {
 
     /// Its directions as the columns of a matrix.
     pub fn matrix(&self) -> Matrix5 {
-        std::array::from_fn(|i| std::array::from_fn(|j| Interval::point(self.q[(i, j)] / self.scales[i])))
+        let scaled = |i: usize, j: usize| Interval::point(self.q[(i, j)]) / Interval::point(self.scales[i]);
+        std::array::from_fn(|i| std::array::from_fn(|j| scaled(i, j)))
     }
 
     /// The coordinates of all vectors of a box along the directions; none if these are not nearly orthogonal.
