@@ -2,8 +2,8 @@
 
 use crate::Interval;
 use crate::equations::{Equations, Mode};
-use crate::number::Box5;
-use crate::small::{Matrix5, times};
+use crate::number::State;
+use crate::small::{Matrix, times};
 use crate::step::{States, derivatives_within, enclosure};
 
 /// Attempts to enclose the time of a crossing.
@@ -13,11 +13,11 @@ const ATTEMPTS: usize = 12;
 #[derive(Clone, Debug)]
 pub struct Crossing {
     /// The motion from the centre.
-    pub centre: Box5,
+    pub centre: State,
     /// The derivatives of the state on the section by the first state.
-    pub by: Matrix5,
+    pub by: Matrix,
     /// All motions, from where they were to where they cross.
-    pub near: Box5,
+    pub near: State,
     /// The independent variable until they cross.
     pub delay: Interval,
 }
@@ -37,7 +37,7 @@ pub struct Section {
 pub fn cross(equations: &Equations, mode: Mode, states: &States, section: &Section) -> Option<Crossing> {
     let start = states.centre();
     let (delay, _, slopes) = reach(equations, mode, &start, section)?;
-    let mut centre: Box5 = std::array::from_fn(|i| start[i] + delay * slopes[i]);
+    let mut centre: State = std::array::from_fn(|i| start[i] + delay * slopes[i]);
     centre[section.index] = section.value;
 
     let (delay, near, slopes) = reach(equations, mode, &states.all(), section)?;
@@ -62,13 +62,13 @@ pub fn cross(equations: &Equations, mode: Mode, states: &States, section: &Secti
 fn reach(
     equations: &Equations,
     mode: Mode,
-    start: &Box5,
+    start: &State,
     section: &Section,
-) -> Option<(Interval, Box5, Box5)> {
+) -> Option<(Interval, State, State)> {
     let off = start[section.index] - section.value;
     let is_right =
         |slope: Interval| if section.is_rising { slope.is_positive() } else { slope.is_negative() };
-    let newton = |slopes: &Box5| {
+    let newton = |slopes: &State| {
         let slope = slopes[section.index];
         is_right(slope).then(|| -(off / slope))
     };

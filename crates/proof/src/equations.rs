@@ -1,11 +1,11 @@
 //! Equation (1) in intervals, and the Taylor series of its solutions.
 //!
-//! A state of a flight is `[r, w, x1, v1, φ]` with `r = x2 - x1`, `w = dr/dt` and the phase `φ = ωt` of the force. A state of a contact with a
-//! wall is `[q, w, x1, v1, φ]` with the indentation `z = q²` and `w = dz/dt`; its independent variable is `θ`, `dt = q dθ` (equation (5) of
+//! A state of a flight is `[r, w, x1, v1, φ, ω]` with `r = x2 - x1`, `w = dr/dt`, the phase `φ` of the force and its rate `ω`, which is a constant. A state of a contact with a
+//! wall is `[q, w, x1, v1, φ, ω]` with the indentation `z = q²` and `w = dz/dt`; its independent variable is `θ`, `dt = q dθ` (equation (5) of
 //! `docs/theory.md`), in which Hertz's force `K q³` is polynomial.
 
 use crate::elementary::pi;
-use crate::number::{Box5, Number, STATE};
+use crate::number::{Number, OMEGA, STATE, State};
 use crate::{Failure, Interval};
 use retune_model::{Contact, Scene, Side, Source, Surfaces};
 
@@ -30,8 +30,8 @@ pub struct Equations {
     inverse_m1: Interval,
     damping: Interval,
     stiffness: Interval,
-    /// The force over m1, as weights of `[cos φ, sin φ]`.
-    force: [Interval; 2],
+    /// The force over m1, as weights of `[cos φ, ω² cos φ, ω sin φ]`.
+    force: [Interval; 3],
     inverse_m2: Interval,
     c2: Interval,
     k2: Interval,
@@ -62,10 +62,10 @@ impl Equations {
             return Err(Failure::Scene("a forcing whose omega is not above 0"));
         }
         let force = match scene.forcing.source {
-            Source::Force(p) => [number(p.get()), Interval::ZERO],
-            Source::Imbalance(me) => [number(me.get()) * omega.square(), Interval::ZERO],
+            Source::Force(p) => [number(p.get()), Interval::ZERO, Interval::ZERO],
+            Source::Imbalance(me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
             // k1 y + c1 dy/dt with y = Y cos φ.
-            Source::Base(y) => [number(y.get()) * k1, -(number(y.get()) * c1 * omega)],
+            Source::Base(y) => [number(y.get()) * k1, Interval::ZERO, -(number(y.get()) * c1)],
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
         };
         let rest = number(damper.rest_distance.get());
@@ -96,6 +96,11 @@ impl Equations {
         })
     }
 
+    /// The same at a frequency, exactly.
+    pub fn at(&self, omega: f64) -> Self {
+        Self { omega: Interval::point(omega), ..self.clone() }
+    }
+
     /// The position of a wall; none of a damper without.
     pub fn wall(&self, side: Side) -> Option<Interval> {
         self.walls.map(|walls| walls[side as usize])
@@ -114,11 +119,14 @@ impl Equations {
         };
         let (sign, half) = (Interval::point(sign), Interval::point(0.5));
         let mut y = vec![*start];
+        let omega = start[OMEGA];
+        let force =
+            [T::constant(self.force[0]) + (omega * omega).times(self.force[1]), omega.times(self.force[2])];
         let mut circle = vec![start[4].cos_sin()];
         // Of a contact: z = q², q³, and the two accelerations, which are multiplied by dt/dθ = q.
         let (mut squares, mut cubes, mut accelerations): (Vec<T>, Vec<T>, Vec<[T; 2]>) = Default::default();
         for k in 0..order {
-            let [u, w, x1, v1, _] = y[k];
+            let [u, w, x1, v1, ..] = y[k];
             let [cos, sin] = circle[k];
             let mut depth = u;
             let mut push = w.times(self.c2);
@@ -133,15 +141,12 @@ impl Equations {
                 push = push + T::constant(self.k2 * stretch);
             }
             // m1 a1 = F - c1 v1 - k1 x1 + s push, and m2 a2 = -s push.
-            let a1 = cos.times(self.force[0]) + sin.times(self.force[1])
-                - v1.times(self.damping)
-                - x1.times(self.stiffness)
+            let a1 = cos * force[0] + sin * force[1] - v1.times(self.damping) - x1.times(self.stiffness)
                 + push.times(sign * self.inverse_m1);
             let rate = T::constant(Interval::ZERO) - push.times(self.inverse_m2) - a1.times(sign);
             accelerations.push([rate, a1]);
             let slopes = if mode == Mode::Flight {
-                let turn = if k == 0 { T::constant(self.omega) } else { zero };
-                [w, rate, v1, a1, turn]
+                [w, rate, v1, a1, y[k][OMEGA], zero]
             } else {
                 let by_clock = |other: &dyn Fn(usize) -> T| product(k, zero, |i| y[i][0], other);
                 [
@@ -149,7 +154,8 @@ impl Equations {
                     by_clock(&|i| accelerations[i][0]),
                     by_clock(&|i| y[i][3]),
                     by_clock(&|i| accelerations[i][1]),
-                    u.times(self.omega),
+                    u * omega,
+                    zero,
                 ]
             };
             let share = Interval::ONE / Interval::point((k + 1) as f64);
@@ -169,11 +175,11 @@ impl Equations {
     }
 }
 
-/// The powers of two next to `[√(m2/m1), √(m2/m1)/σ, 1, 1/σ, 1/σ]`, by `m1/m2` and `σ²`.
+/// The powers of two next to `[√(m2/m1), √(m2/m1)/σ, 1, 1/σ, 1/σ, 1]`, by `m1/m2` and `σ²`.
 fn scales(ratio: Interval, square: Interval) -> [f64; STATE] {
     let power = |square: f64| (0.5 * square.log2()).round().exp2();
     let (mass, speed) = (power(1.0 / ratio.mid()), power(1.0 / square.mid()));
-    [mass, mass * speed, 1.0, speed, speed]
+    [mass, mass * speed, 1.0, speed, speed, 1.0]
 }
 
 /// The coefficient of the power `k` of a product of two series.
@@ -199,6 +205,6 @@ fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
 }
 
 /// The series at an independent variable, the last coefficient first (Horner).
-pub fn at(series: &[Box5], h: Interval) -> Box5 {
+pub fn at(series: &[State], h: Interval) -> State {
     std::array::from_fn(|i| series.iter().rev().fold(Interval::ZERO, |sum, c| sum * h + c[i]))
 }

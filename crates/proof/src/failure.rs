@@ -1,6 +1,7 @@
 //! Why something was not proven.
 
 use crate::event::Event;
+use serde::{Serialize, Serializer};
 
 /// Why something was not proven: it may be true all the same.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -57,4 +58,24 @@ pub enum Failure {
         /// The width of what became of it.
         image: f64,
     },
+    /// A motion that is to be stable was not proven to be.
+    #[error("the motion is not proven to be stable")]
+    NotStable,
+    /// A motion may have more energy than it is to have.
+    #[error("the motion may have an E1max of {bound} J, and at most {most} J are to be proven")]
+    Above {
+        /// What it has at most.
+        bound: f64,
+        /// What it is to have at most.
+        most: f64,
+    },
+    /// No motion to prove anything of.
+    #[error("none found: the run settles on no periodic motion")]
+    NoGuess,
+}
+
+impl Serialize for Failure {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
 }

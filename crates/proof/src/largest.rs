@@ -2,7 +2,7 @@
 
 use crate::Interval;
 use crate::equations::{Equations, Mode, product};
-use crate::number::Box5;
+use crate::number::State;
 use crate::range::Range;
 use crate::segment::Passage;
 use crate::step::Piece;
@@ -10,7 +10,7 @@ use retune_model::Measure;
 use serde::{Serialize, Serializer};
 
 /// The series of a quantity from that of a motion; none where the mode has no such quantity.
-type Quantity<'a> = &'a dyn Fn(Mode, &[Box5]) -> Option<Vec<Interval>>;
+type Quantity<'a> = &'a dyn Fn(Mode, &[State]) -> Option<Vec<Interval>>;
 
 /// Largest values.
 #[derive(Clone, Copy, Debug)]
@@ -80,19 +80,19 @@ fn over_passage(passage: &Passage, of: Quantity<'_>, most: &mut Interval) {
     }
 }
 
-fn square(motion: &[Box5], k: usize, i: usize) -> Interval {
+fn square(motion: &[State], k: usize, i: usize) -> Interval {
     product(k, Interval::ZERO, |n| motion[n][i], |n| motion[n][i])
 }
 
 /// `E1 = (m1 v1² + k1 x1²)/2`.
-fn energy(equations: &Equations, motion: &[Box5]) -> Vec<Interval> {
+fn energy(equations: &Equations, motion: &[State]) -> Vec<Interval> {
     let half = Interval::point(0.5);
     let at = |k: usize| half * (equations.m1 * square(motion, k, 3) + equations.k1 * square(motion, k, 2));
     (0..motion.len()).map(at).collect()
 }
 
 /// `r - D`; in a contact `r` is the wall's position and `z = q²` beyond it.
-fn stretch(equations: &Equations, mode: Mode, motion: &[Box5]) -> Vec<Interval> {
+fn stretch(equations: &Equations, mode: Mode, motion: &[State]) -> Vec<Interval> {
     let mut series: Vec<Interval> = match mode {
         Mode::Flight => motion.iter().map(|c| c[0]).collect(),
         Mode::Contact(side) => {
@@ -109,7 +109,7 @@ fn stretch(equations: &Equations, mode: Mode, motion: &[Box5]) -> Vec<Interval> 
 }
 
 /// `K q³`; none in flight.
-fn force(equations: &Equations, mode: Mode, motion: &[Box5]) -> Option<Vec<Interval>> {
+fn force(equations: &Equations, mode: Mode, motion: &[State]) -> Option<Vec<Interval>> {
     let Mode::Contact(side) = mode else { return None };
     let squares: Vec<Interval> = (0..motion.len()).map(|k| square(motion, k, 0)).collect();
     let cube = |k: usize| product(k, Interval::ZERO, |n| squares[n], |n| motion[n][0]);

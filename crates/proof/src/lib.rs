@@ -3,7 +3,7 @@
 //!
 //! Read `interval` and `elementary` (numbers), `number` and `equations` (equation (1) and its Taylor series), `step` (a validated step, with
 //! `small`), `range` (what a quantity does during one), `crossing` and `segment` (from one event to the next), `orbit` (the ring of events), then
-//! `theorem`, with `stability` and `largest`.
+//! `theorem`, with `stability` and `largest`, and `band`.
 //!
 //! ```
 //! use retune_proof::{Stability, prove};
@@ -22,6 +22,7 @@
 //! ```
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod band;
 mod crossing;
 mod elementary;
 mod equations;
@@ -38,6 +39,7 @@ mod stability;
 mod step;
 mod theorem;
 
+pub use band::{Band, Guesses, LeftOut, Piece, band};
 pub use event::Event;
 pub use failure::Failure;
 pub use interval::Interval;

@@ -4,11 +4,15 @@ use crate::Interval;
 use crate::elementary::cos_sin;
 use std::ops::{Add, Mul, Sub};
 
-/// Coordinates of a state.
-pub const STATE: usize = 5;
+/// Coordinates of a state: four of the motion, the phase of the force, and its frequency, which does not change.
+pub const STATE: usize = 6;
+/// The place of the frequency.
+pub const OMEGA: usize = 5;
+/// Coordinates that are free on a section.
+pub const FREE: usize = 4;
 
-/// Five intervals, one for each coordinate.
-pub type Box5 = [Interval; STATE];
+/// Intervals, one for each coordinate.
+pub type State = [Interval; STATE];
 
 /// A quantity that sums and products can be taken of.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
@@ -40,12 +44,12 @@ pub struct Gradient {
     /// The quantity.
     pub value: Interval,
     /// Its derivatives.
-    pub by: Box5,
+    pub by: State,
 }
 
 impl Gradient {
     /// The coordinates of a state as quantities: the derivative of each by itself is one.
-    pub fn coordinates(state: &Box5) -> [Self; STATE] {
+    pub fn coordinates(state: &State) -> [Self; STATE] {
         std::array::from_fn(|i| {
             let by = std::array::from_fn(|j| if i == j { Interval::ONE } else { Interval::ZERO });
             Self { value: state[i], by }

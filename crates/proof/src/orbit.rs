@@ -3,8 +3,8 @@
 use crate::elementary::pi;
 use crate::equations::Equations;
 use crate::event::Event;
-use crate::number::{Box5, STATE};
-use crate::segment::{Node, Passage, Plan, follow, plan, rest_of_contact};
+use crate::number::{FREE, OMEGA, STATE, State};
+use crate::segment::{ALONE, Node, Passage, Plan, follow, plan, rest_of_contact};
 use crate::{Failure, Interval};
 use nalgebra::{DMatrix, DVector};
 use retune_model::Side;
@@ -33,6 +33,12 @@ pub struct Orbit {
     turns: Vec<usize>,
 }
 
+/// The event after a crest; the crest itself if none comes before it has come round.
+fn next_event(equations: &Equations, crest: Node, full: Interval) -> Result<Node, Failure> {
+    let Plan { end, reached, .. } = plan(equations, &crest, Some(full))?;
+    Ok(if end == Event::Crest { crest } else { Node { event: end, state: reached, slope: ALONE } })
+}
+
 /// The equations of a repeating motion at a box: unknowns are the free coordinates of all nodes.
 #[derive(Clone, Debug)]
 pub struct Residual {
@@ -48,29 +54,37 @@ fn turn(turns: usize) -> Interval {
 }
 
 impl Orbit {
-    /// The ring of events of the motion from a state at a crest of the force. It begins at the crest if the damper is in flight there, otherwise where the
-    /// contact ends.
+    /// The ring of events of the motion from a state at a crest of the force. It begins at the crest if the damper is in flight there and either `at_crest` is asked for
+    /// or no wall is struck; otherwise at the next event.
     ///
     /// # Errors
     /// The motion grazes, or does not come back.
-    pub fn guess(equations: &Equations, [x1, v1, x2, v2]: [f64; 4], periods: usize) -> Result<Self, Failure> {
-        let (r, w) = (x2 - x1, v2 - v1);
+    pub fn guess(
+        equations: &Equations,
+        [x1, v1, x2, v2]: [f64; 4],
+        periods: usize,
+        at_crest: bool,
+    ) -> Result<Self, Failure> {
+        let (r, w, omega) = (x2 - x1, v2 - v1, equations.omega.mid());
         let indented = Side::BOTH.into_iter().find_map(|side| {
             let depth = side.sign() * (r - equations.wall(side)?.mid());
             (depth >= 0.0).then_some((side, depth))
         });
         let first = match indented {
-            None => Node { event: Event::Crest, state: [r, w, x1, v1, 0.0] },
+            None => {
+                let crest = Node { event: Event::Crest, state: [r, w, x1, v1, 0.0, omega], slope: ALONE };
+                if at_crest { crest } else { next_event(equations, crest, turn(periods))? }
+            }
             Some((side, depth)) => {
                 // The rest of a contact that began before.
-                rest_of_contact(equations, side, [depth.sqrt(), side.sign() * w, x1, v1, 0.0])?
+                rest_of_contact(equations, side, [depth.sqrt(), side.sign() * w, x1, v1, 0.0, omega])?
             }
         };
         let mut orbit = Self { periods, nodes: vec![first], plans: Vec::new(), turns: Vec::new() };
         while orbit.nodes.len() < EVENTS {
             let k = orbit.plans.len();
             let next = plan(equations, &orbit.nodes[k], orbit.crest(k))?;
-            let mut reached = Node { event: next.end, state: next.reached };
+            let mut reached = Node { event: next.end, state: next.reached, slope: ALONE };
             orbit.plans.push(next);
             let left = periods - orbit.turns.iter().sum::<usize>();
             let past = reached.state[4] - first.state[4] - turn(left).mid();
@@ -91,7 +105,7 @@ impl Orbit {
 
     /// The number of unknowns.
     pub fn unknowns(&self) -> usize {
-        (STATE - 1) * self.nodes.len()
+        FREE * self.nodes.len()
     }
 
     /// The phase of the crest where it ends, as it is counted in a segment, if it begins at one.
@@ -109,14 +123,16 @@ impl Orbit {
     ///
     /// # Errors
     /// A segment cannot be proven.
-    pub fn residual(&self, equations: &Equations, away: &[Box5]) -> Result<Residual, Failure> {
+    pub fn residual(&self, equations: &Equations, away: &[State]) -> Result<Residual, Failure> {
         let (mut passages, mut gaps) = (Vec::new(), Vec::new());
         for (k, node) in self.nodes.iter().enumerate() {
             let passage = follow(equations, node, &away[k], &self.plans[k], self.crest(k))?;
             let (next, shift) = self.next(k);
             for i in next.event.free() {
                 let shift = if i == 4 { shift } else { Interval::ZERO };
-                gaps.push(passage.centre[i] - (Interval::point(next.state[i]) + shift));
+                // The family is followed along its slopes; what these leave of a change of ω counts as a gap.
+                let drift = (passage.by[i][OMEGA] - Interval::point(next.slope[i])) * away[k][OMEGA];
+                gaps.push(passage.centre[i] - (Interval::point(next.state[i]) + shift) + drift);
             }
             passages.push(passage);
         }
@@ -125,7 +141,7 @@ impl Orbit {
 
     /// The derivatives of the equations by the unknowns: rows of blocks, that of each segment and minus one at the next node.
     pub fn jacobian(&self, passages: &[Passage]) -> Vec<Vec<Interval>> {
-        let (n, size) = (self.unknowns(), STATE - 1);
+        let (n, size) = (self.unknowns(), FREE);
         let mut all = vec![vec![Interval::ZERO; n]; n];
         for (k, node) in self.nodes.iter().enumerate() {
             let next = (k + 1) % self.nodes.len();
@@ -149,13 +165,52 @@ impl Orbit {
         let mut nodes = self.nodes.clone();
         for (k, node) in nodes.iter_mut().enumerate() {
             for (place, i) in node.event.free().enumerate() {
-                node.state[i] += change[(STATE - 1) * k + place];
+                node.state[i] += change[FREE * k + place];
             }
         }
         let plans = nodes.iter().enumerate().map(|(k, node)| plan(equations, node, self.crest(k)));
         let plans = plans.collect::<Result<Vec<_>, _>>()?;
         let same = plans.iter().zip(&self.plans).all(|(new, old)| new.end == old.end);
         if same { Ok(Self { nodes, plans, ..self.clone() }) } else { Err(Failure::Sequence) }
+    }
+
+    /// The motion of a family at another frequency, to first order.
+    ///
+    /// # Errors
+    /// Its events are others there.
+    pub fn leant(&self, equations: &Equations, omega: f64) -> Result<Self, Failure> {
+        let mut change = DVector::zeros(self.unknowns());
+        for (k, node) in self.nodes.iter().enumerate() {
+            for (place, i) in node.event.free().enumerate() {
+                change[FREE * k + place] = node.slope[i] * (omega - node.state[OMEGA]);
+            }
+        }
+        let mut next = self.clone();
+        for node in &mut next.nodes {
+            (node.state[OMEGA], node.slope) = (omega, ALONE);
+        }
+        next.moved(equations, &change)
+    }
+
+    /// The same with the slopes of its family: the equations hold along it to first order.
+    ///
+    /// # Errors
+    /// A segment cannot be followed.
+    pub fn leaning(mut self, equations: &Equations, inverse: &DMatrix<f64>) -> Result<Self, Failure> {
+        let none = vec![[Interval::ZERO; STATE]; self.nodes.len()];
+        let known = self.residual(equations, &none)?;
+        let by_omega = |k: usize| {
+            let next = self.nodes[(k + 1) % self.nodes.len()].event;
+            next.free().map(|i| known.passages[k].by[i][OMEGA].mid()).collect::<Vec<_>>()
+        };
+        let by_omega: Vec<f64> = (0..self.nodes.len()).flat_map(by_omega).collect();
+        let slopes = -(inverse * DVector::from_vec(by_omega));
+        for (k, node) in self.nodes.iter_mut().enumerate() {
+            for (place, i) in node.event.free().enumerate() {
+                node.slope[i] = slopes[FREE * k + place];
+            }
+        }
+        Ok(self)
     }
 
     /// The same, improved by Newton's iteration on the middles of all intervals; with the inverse of the derivatives there.

@@ -3,21 +3,26 @@
 use crate::crossing::{Crossing, Section, cross};
 use crate::equations::{Equations, Mode};
 use crate::event::Event;
-use crate::number::{Box5, STATE};
+use crate::number::{OMEGA, STATE, State};
 use crate::range::Range;
-use crate::small::Matrix5;
+use crate::small::Matrix;
 use crate::step::{Piece, States, step};
 use crate::{Failure, Interval};
 use retune_model::Side;
 
-/// An event and the state there, `[r, w, x1, v1, φ]`.
+/// An event and the state there, `[r, w, x1, v1, φ, ω]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     /// What happens.
     pub event: Event,
     /// The state; the fixed coordinate has its value to rounding.
     pub state: [f64; STATE],
+    /// How it changes with ω from motion to motion of a family; the last is one.
+    pub slope: [f64; STATE],
 }
+
+/// The slope of a motion that is not one of a family.
+pub const ALONE: [f64; STATE] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
 /// How to get from an event to the next one: the steps to near it, and which it is.
 #[derive(Clone, Debug)]
@@ -34,13 +39,13 @@ pub struct Plan {
 #[derive(Clone, Debug)]
 pub struct Passage {
     /// What the motion from the centre has come to.
-    pub centre: Box5,
+    pub centre: State,
     /// The derivatives of the state at the end by that at the beginning.
-    pub by: Matrix5,
+    pub by: Matrix,
     /// What is known in between.
     pub pieces: Vec<Piece>,
     /// All motions about the end, in the coordinates of the mode, and from where to where it may be, counted from the end of the last piece.
-    pub near: Box5,
+    pub near: State,
     /// When the end is reached, counted from that of the last piece.
     pub delay: Interval,
 }
@@ -67,19 +72,21 @@ fn mode_after(event: Event) -> Mode {
 }
 
 /// A state as the first states of a mode, the fixed coordinate exact.
-fn first(equations: &Equations, node: &Node, away: &Box5) -> States {
+fn first(equations: &Equations, node: &Node, away: &State) -> States {
     let mut centre = node.state.map(Interval::point);
-    let mut away = *away;
+    centre[OMEGA] = equations.omega;
+    let (mut away, mut slope) = (*away, node.slope);
     away[node.event.fixed()] = Interval::ZERO;
     match node.event {
         Event::Crest => centre[4] = Interval::ZERO,
         Event::Touch(side) => {
             let sign = Interval::point(side.sign());
             (centre[0], centre[1], away[1]) = (Interval::ZERO, sign * centre[1], sign * away[1]);
+            slope[1] *= side.sign();
         }
         Event::Leave(side) => centre[0] = equations.wall(side).unwrap_or(Interval::ENTIRE),
     }
-    States::first(&centre, away)
+    States::first(&centre, away, &slope)
 }
 
 /// The quantities that are above zero until an event ends the segment, each with the event and its section.
@@ -182,7 +189,7 @@ fn sharp_step(
 }
 
 /// A crossing in the coordinates of a flight.
-fn in_flight(equations: &Equations, mode: Mode, crossing: &Crossing) -> Box5 {
+fn in_flight(equations: &Equations, mode: Mode, crossing: &Crossing) -> State {
     let mut centre = crossing.centre;
     if let Mode::Contact(side) = mode {
         centre[0] = equations.wall(side).unwrap_or(Interval::ENTIRE);
@@ -198,7 +205,7 @@ fn in_flight(equations: &Equations, mode: Mode, crossing: &Crossing) -> Box5 {
 pub fn follow(
     equations: &Equations,
     node: &Node,
-    away: &Box5,
+    away: &State,
     plan: &Plan,
     crest: Option<Interval>,
 ) -> Result<Passage, Failure> {
@@ -247,7 +254,7 @@ fn starts_at(from: Event, event: Event) -> bool {
 }
 
 /// Derivatives by the state of a contact as those by a state of a flight: the speed changes its sign at the structure's wall.
-fn turned(sign: f64, by: &Matrix5) -> Matrix5 {
+fn turned(sign: f64, by: &Matrix) -> Matrix {
     let sign = |i: usize| Interval::point(if i == 1 { sign } else { 1.0 });
     std::array::from_fn(|i| std::array::from_fn(|j| sign(i) * by[i][j] * sign(j)))
 }
@@ -256,12 +263,12 @@ fn too_wide(least: f64, states: &States) -> Failure {
     Failure::Step { least, width: states.all().iter().map(|x| x.width()).fold(0.0, f64::max) }
 }
 
-/// Where the rest of a contact ends that has come to a state `[q, w, x1, v1, φ]`.
+/// Where the rest of a contact ends that has come to a state `[q, w, x1, v1, φ, ω]`.
 ///
 /// # Errors
 /// See [`plan`].
 pub fn rest_of_contact(equations: &Equations, side: Side, state: [f64; STATE]) -> Result<Node, Failure> {
-    let states = States::first(&state.map(Interval::point), [Interval::ZERO; STATE]);
+    let states = States::first(&state.map(Interval::point), [Interval::ZERO; STATE], &ALONE);
     let Plan { end, reached, .. } = plan_from(equations, Mode::Contact(side), states, None)?;
-    Ok(Node { event: end, state: reached })
+    Ok(Node { event: end, state: reached, slope: ALONE })
 }

@@ -1,31 +1,31 @@
-//! Matrices of five rows in intervals, and a frame of nearly orthogonal directions with its inverse.
+//! Matrices of as many rows as a state has, in intervals, and a frame of nearly orthogonal directions with its inverse.
 
 use crate::Interval;
-use crate::number::{Box5, STATE};
+use crate::number::{STATE, State};
 use nalgebra::SMatrix;
 
 /// A matrix in intervals, `[row][column]`.
-pub type Matrix5 = [Box5; STATE];
+pub type Matrix = [State; STATE];
 
 /// The identity.
-pub fn identity() -> Matrix5 {
+pub fn identity() -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Interval::ONE } else { Interval::ZERO }))
 }
 
 /// A matrix times a vector.
-pub fn times_vector(a: &Matrix5, x: &Box5) -> Box5 {
+pub fn times_vector(a: &Matrix, x: &State) -> State {
     std::array::from_fn(|i| (0..STATE).fold(Interval::ZERO, |sum, j| sum + a[i][j] * x[j]))
 }
 
 /// A matrix times a matrix.
-pub fn times(a: &Matrix5, b: &Matrix5) -> Matrix5 {
+pub fn times(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| (0..STATE).fold(Interval::ZERO, |sum, k| sum + a[i][k] * b[k][j]))
     })
 }
 
 /// Sums of the coordinates.
-pub fn plus(a: &Box5, b: &Box5) -> Box5 {
+pub fn plus(a: &State, b: &State) -> State {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
@@ -45,7 +45,7 @@ impl Frame {
     }
 
     /// Directions near the columns of a matrix, the one with the largest column times `weights` first, orthogonal once scaled.
-    pub fn along(columns: &Matrix5, weights: &[f64; STATE], scales: [f64; STATE]) -> Self {
+    pub fn along(columns: &Matrix, weights: &[f64; STATE], scales: [f64; STATE]) -> Self {
         let entry = |i: usize, j: usize| scales[i] * columns[i][j].mid() * weights[j];
         let all = SMatrix::<f64, STATE, STATE>::from_fn(entry);
         let mut order: [usize; STATE] = std::array::from_fn(|j| j);
@@ -55,7 +55,7 @@ impl Frame {
     }
 
     /// Its directions as the columns of a matrix.
-    pub fn matrix(&self) -> Matrix5 {
+    pub fn matrix(&self) -> Matrix {
         let scaled = |i: usize, j: usize| Interval::point(self.q[(i, j)]) / Interval::point(self.scales[i]);
         std::array::from_fn(|i| std::array::from_fn(|j| scaled(i, j)))
     }
@@ -63,10 +63,10 @@ impl Frame {
     /// The coordinates of all vectors of a box along the directions; none if these are not nearly orthogonal.
     ///
     /// With `Qᵀ Q = I + Δ` and `δ = ‖Δ‖∞ < 1` the inverse of `Q` is `(I + Δ)⁻¹ Qᵀ`, and `(I + Δ)⁻¹ b` differs from `b` by at most `δ/(1 - δ) ‖b‖∞`.
-    pub fn coordinates(&self, x: &Box5) -> Option<Box5> {
+    pub fn coordinates(&self, x: &State) -> Option<State> {
         let entries = |i: usize, j: usize| Interval::point(self.q[(i, j)]);
-        let q: Matrix5 = std::array::from_fn(|i| std::array::from_fn(|j| entries(i, j)));
-        let transposed: Matrix5 = std::array::from_fn(|i| std::array::from_fn(|j| entries(j, i)));
+        let q: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entries(i, j)));
+        let transposed: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entries(j, i)));
         let (one, square) = (identity(), times(&transposed, &q));
         let row = |i: usize| (0..STATE).fold(Interval::ZERO, |sum, j| sum + (square[i][j] - one[i][j]).abs());
         let delta = (0..STATE).map(|i| row(i).hi()).fold(0.0, f64::max);

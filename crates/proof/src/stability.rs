@@ -1,14 +1,13 @@
 //! Whether small changes of a motion die out: its multipliers, the eigenvalues of the product of all segments' derivatives.
 
 use crate::Interval;
+use crate::number::FREE;
 use crate::orbit::Orbit;
 use crate::segment::Passage;
 use nalgebra::{Matrix4, SMatrix};
 use serde::Serialize;
 use std::array;
 
-/// Free coordinates of a section.
-const FREE: usize = 4;
 /// Where between the largest multiplier in doubles and 1 a bound on it is tried.
 const SHARP: [f64; 5] = [1e-6, 1e-4, 1e-2, 0.1, 0.5];
 

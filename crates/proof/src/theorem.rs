@@ -3,7 +3,7 @@
 use crate::equations::Equations;
 use crate::event::Event;
 use crate::largest::{Largest, largest};
-use crate::number::{Box5, STATE};
+use crate::number::{OMEGA, STATE, State};
 use crate::orbit::{Orbit, Residual};
 use crate::segment::Node;
 use crate::stability::{Stability, stability};
@@ -57,7 +57,7 @@ pub struct Theorem {
 /// See [`Failure`].
 pub fn prove(scene: &Scene, start: [f64; 4], periods: usize) -> Result<Theorem, Failure> {
     let equations = Equations::new(scene)?;
-    let (orbit, inverse) = Orbit::guess(&equations, start, periods)?.improved(&equations)?;
+    let (orbit, inverse) = Orbit::guess(&equations, start, periods, true)?.improved(&equations)?;
     let (alone, mut away) = alone(&equations, &orbit, &inverse)?;
     let mut known = orbit.residual(&equations, &away)?;
     for _ in 0..SMALLER {
@@ -84,27 +84,17 @@ fn alone(
     equations: &Equations,
     orbit: &Orbit,
     inverse: &DMatrix<f64>,
-) -> Result<(Vec<Box5>, Vec<Box5>), Failure> {
+) -> Result<(Vec<State>, Vec<State>), Failure> {
     let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
     let least = krawczyk(orbit, inverse, &orbit.residual(equations, &none)?, &none);
     let mut failure = Failure::Sequence;
     for times in TRIED {
-        let about = |(node, least): (&Node, &Box5)| {
-            let half_width = |i: usize| {
-                let size = node.state[i].abs().max(1e-3);
-                (times * least[i].magnitude()).max(NARROWEST * size).min(WIDEST * size)
-            };
-            let free = |i: usize| i != node.event.fixed();
-            array::from_fn(|i| if free(i) { Interval::around_zero(half_width(i)) } else { Interval::ZERO })
-        };
-        let away: Vec<Box5> = orbit.nodes.iter().zip(&least).map(about).collect();
+        let away = about(orbit, &least, times, WIDEST);
         match orbit.residual(equations, &away) {
             Err(why) => failure = why,
             Ok(known) => {
                 let image = krawczyk(orbit, inverse, &known, &away);
-                let inside =
-                    |k: usize| orbit.nodes[k].event.free().all(|i| image[k][i].is_inside(away[k][i]));
-                if (0..away.len()).all(inside) {
+                if is_inside(orbit, &image, &away) {
                     return Ok((away, image));
                 }
                 failure = Failure::Krawczyk { width: width(&away), image: width(&image) };
@@ -114,10 +104,30 @@ fn alone(
     Err(failure)
 }
 
+/// Boxes about the nodes of so many times a width, but no narrower than rounding and no wider than a share of the states.
+pub fn about(orbit: &Orbit, least: &[State], times: f64, widest: f64) -> Vec<State> {
+    let of_node = |(node, least): (&Node, &State)| {
+        let half_width = |i: usize| {
+            let size = node.state[i].abs().max(1e-3);
+            (times * least[i].magnitude()).max(NARROWEST * size).min(widest * size)
+        };
+        let mut away = [Interval::ZERO; STATE];
+        node.event.free().for_each(|i| away[i] = Interval::around_zero(half_width(i)));
+        away
+    };
+    orbit.nodes.iter().zip(least).map(of_node).collect()
+}
+
+/// Whether a box is in the interior of another one.
+pub fn is_inside(orbit: &Orbit, image: &[State], away: &[State]) -> bool {
+    let inside = |k: usize| orbit.nodes[k].event.free().all(|i| image[k][i].is_inside(away[k][i]));
+    (0..away.len()).all(inside)
+}
+
 /// Krawczyk's operator on the box `x̂ + away`, from `x̂`: `-A F(x̂) + (I - A F'(box)) away`, with `A` near the inverse of the derivatives.
 ///
 /// If it is in the interior of `away`, the box holds exactly one solution, and the solution is in it (R. Krawczyk, 1969; R. E. Moore, 1977).
-fn krawczyk(orbit: &Orbit, inverse: &DMatrix<f64>, known: &Residual, away: &[Box5]) -> Vec<Box5> {
+pub fn krawczyk(orbit: &Orbit, inverse: &DMatrix<f64>, known: &Residual, away: &[State]) -> Vec<State> {
     let n = orbit.unknowns();
     let jacobian = orbit.jacobian(&known.passages);
     let a = |i: usize, k: usize| Interval::point(inverse[(i, k)]);
@@ -139,12 +149,12 @@ fn krawczyk(orbit: &Orbit, inverse: &DMatrix<f64>, known: &Residual, away: &[Box
 }
 
 /// The largest width.
-fn width(boxes: &[Box5]) -> f64 {
-    boxes.iter().flatten().map(|x| x.width()).fold(0.0, f64::max)
+pub fn width(boxes: &[State]) -> f64 {
+    boxes.iter().flat_map(|x| &x[..OMEGA]).map(|x| x.width()).fold(0.0, f64::max)
 }
 
 /// The walls in turn.
-fn impacts(orbit: &Orbit) -> String {
+pub fn impacts(orbit: &Orbit) -> String {
     let letter = |event: Event| match event {
         Event::Touch(Side::Primary) => Some('S'),
         Event::Touch(Side::Obstacle) => Some('O'),
@@ -154,9 +164,11 @@ fn impacts(orbit: &Orbit) -> String {
 }
 
 /// The states at the events.
-fn events(equations: &Equations, orbit: &Orbit, away: &[Box5]) -> Vec<Proven> {
-    let at = |(node, away): (&Node, &Box5)| {
-        let mut state: Box5 = array::from_fn(|i| Interval::point(node.state[i]) + away[i]);
+fn events(equations: &Equations, orbit: &Orbit, away: &[State]) -> Vec<Proven> {
+    let at = |(node, away): (&Node, &State)| {
+        let mut state: State = array::from_fn(|i| {
+            Interval::point(node.state[i]) + Interval::point(node.slope[i]) * away[OMEGA] + away[i]
+        });
         let (event, wall) = match node.event {
             Event::Crest => ("crest of the force", None),
             Event::Touch(Side::Primary) => ("touches the structure", equations.wall(Side::Primary)),
@@ -165,7 +177,7 @@ fn events(equations: &Equations, orbit: &Orbit, away: &[Box5]) -> Vec<Proven> {
             Event::Leave(Side::Obstacle) => ("leaves the obstacle", equations.wall(Side::Obstacle)),
         };
         state[0] = wall.unwrap_or(state[0]);
-        let [r, w, x1, v1, phase] = state;
+        let [r, w, x1, v1, phase, _] = state;
         Proven { event, phase, state: [x1, v1, x1 + r, v1 + w] }
     };
     orbit.nodes.iter().zip(away).map(at).collect()

@@ -1,7 +1,7 @@
 //! What is proven of motions of the paper's dampers, and what is not.
 
 use retune_model::{Coupled, Forcing, NonNegative, Parameter, Scene, Source};
-use retune_proof::{Failure, Interval, Stability, prove};
+use retune_proof::{Failure, Interval, Stability, band, prove};
 
 const STRUCTURE: &str =
     r#""primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 }"#;
@@ -168,4 +168,49 @@ fn contract_scenes_beyond_the_proof_are_refused() {
         let error = prove(&scene, [0.0; 4], 1).expect_err(said).to_string();
         assert!(error.starts_with(said), "{error}");
     }
+}
+
+/// Newton's iteration ends on this motion of three periods, but Krawczyk's operator maps no box into itself.
+#[test]
+fn contract_a_box_that_is_not_mapped_into_itself_proves_nothing() {
+    // `results/branches/tuned`, branch 4, place 11.
+    let start = [-0.03863853586667433, 0.06781323051956932, 0.17923569560361668, -0.388852885074336];
+    match prove(&tuned(7.574111387946436), start, 3) {
+        Err(Failure::Krawczyk { width, image }) => assert!(width > 0.0 && image > 0.0),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// One proof holds for all frequencies of a piece: those of its ends and of one in between are in its bounds.
+#[test]
+fn invariant_a_piece_of_a_band_holds_the_motions_at_its_frequencies() {
+    let guess = |_| Some((WORST.1, 1));
+    let found = band(&tuned(6.6), [6.62, 6.6202], 226.0, &guess).expect("a scene");
+    assert!(found.left_out.is_empty() && found.pieces.len() < 9, "{found:?}");
+    let ends: Vec<f64> = found.pieces.iter().flat_map(|piece| piece.omega).collect();
+    assert_eq!((ends[0], ends[ends.len() - 1]), (6.62, 6.6202));
+    assert!(ends[1..ends.len() - 1].chunks(2).all(|two| two[0] == two[1]), "{ends:?}");
+    for piece in &found.pieces {
+        let [from, to] = piece.omega;
+        for omega in [from, from + 0.3 * (to - from), to] {
+            let own = prove(&tuned(omega), WORST.1, 1).expect("a proof");
+            assert_eq!((own.impacts.as_str(), piece.impacts.as_str()), ("S", "S"));
+            for ((_, own), (_, all)) in own.largest.all().into_iter().zip(piece.largest.all()) {
+                assert!(own.is_in(all), "{omega}: {own} {all}");
+            }
+        }
+    }
+}
+
+/// What is beyond the goal, or has no guess, is left out with its reason, and no more than that.
+#[test]
+fn contract_what_is_not_proven_of_a_band_is_named() {
+    let few = band(&tuned(6.6), [6.62, 6.6202], 225.0, &|_| Some((WORST.1, 1))).expect("a scene");
+    assert!(
+        few.pieces.is_empty() && few.left_out[0].why.to_string().contains("at most 225 J are to be proven"),
+        "{few:?}"
+    );
+    let none = band(&tuned(6.6), [6.0, 6.01], 1e3, &|_| None).expect("a scene");
+    assert_eq!((none.left_out.len(), none.left_out[0].omega), (1, [6.0, 6.01]));
+    assert_eq!(none.left_out[0].why, Failure::NoGuess);
 }
