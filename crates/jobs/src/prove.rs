@@ -2,9 +2,10 @@
 
 use crate::Error;
 use crate::again::json;
+use rayon::prelude::*;
 use retune_dynamics::periodic::settle::settled;
 use retune_model::{Finite, Parameter, Start};
-use retune_proof::{Stability, Theorem};
+use retune_proof::{Band, Interval, LeftOut, Stability, Theorem};
 use retune_study::{self as study, Setting, Study, counted};
 use serde::Serialize;
 use std::fmt;
@@ -105,5 +106,64 @@ impl fmt::Display for Proof {
             format!("{:<14}from {} to {} {}", measure.name(), value.lo(), value.hi(), measure.unit())
         });
         f.write_str(&lines.join("\n"))
+    }
+}
+
+/// What is proven of a band of frequencies.
+#[derive(Clone, Debug, Serialize)]
+pub struct BandProof {
+    study: String,
+    omega: [f64; 2],
+    /// Bounds on the largest E1max over the band, J.
+    #[serde(rename = "E1max")]
+    energy: Interval,
+    /// Its pieces, and what they leave out.
+    #[serde(flatten)]
+    pub band: Band,
+}
+
+/// Frequencies that are proven one after another, rad/s; the shares of a band are proven side by side.
+const SHARE: f64 = 0.02;
+
+/// Proves stable motions with an E1max of at most `most` (J) over a band, at each frequency one near that on which the run of the scene settles.
+///
+/// # Errors
+/// The input is wrong, or nothing of the band can be proven.
+pub fn prove_band(path: &Path, [from, to]: [Setting; 2], most: f64) -> Result<BandProof, Error> {
+    let study = study::read(path)?.with(&[to])?.with(&[from])?;
+    let [from, to] = [from.value(), to.value()];
+    if to <= from {
+        let problem = format!("{to} rad/s is not allowed here: give a number above that of --omega, {from}");
+        return Err(Error::Argument { option: "--to", problem });
+    }
+    let not_proven = |why: String| Error::NotProven { name: study.name().to_owned(), why };
+    let guess = |omega: f64| {
+        let scene = Parameter::Omega.at(study.scene, omega).ok()?;
+        settled(&scene, &study.solver.settings()).ok()?.map(|(periods, start)| (start, periods))
+    };
+    let shares = ((to - from) / SHARE).ceil().max(1.0) as usize;
+    let end = |k: usize| if k == shares { to } else { from + (to - from) * (k as f64 / shares as f64) };
+    let share = |k: usize| retune_proof::band(&study.scene, [end(k), end(k + 1)], most, &guess);
+    let parts = (0..shares).into_par_iter().map(share).collect::<Result<Vec<_>, _>>();
+    let band = Band::joined(parts.map_err(|failure| not_proven(failure.to_string()))?);
+    match band.left_out.first() {
+        Some(LeftOut { why, .. }) if band.pieces.is_empty() => Err(not_proven(why.to_string())),
+        _ => Ok(BandProof { study: study.name().to_owned(), omega: [from, to], energy: band.energy(), band }),
+    }
+}
+
+impl fmt::Display for BandProof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { study, omega: [from, to], energy, band } = self;
+        let pieces = counted(band.pieces.len() as u64, "piece");
+        writeln!(
+            f,
+            "study {study}, omega from {from} to {to} rad/s: proven by interval arithmetic in {pieces}"
+        )?;
+        write!(f, "every omega   has a stable motion with an E1max of at most {} J", energy.hi())?;
+        for LeftOut { omega: [from, to], why } in &band.left_out {
+            write!(f, "\nbut for       {from} to {to} rad/s: {why}")?;
+        }
+        Ok(())
     }
 }

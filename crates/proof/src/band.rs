@@ -3,7 +3,7 @@
 use crate::equations::Equations;
 use crate::largest::{Largest, largest};
 use crate::number::{OMEGA, STATE, State};
-use crate::orbit::{Orbit, Residual};
+use crate::orbit::Orbit;
 use crate::stability::{Stability, stability};
 use crate::theorem::{about, impacts, is_inside, krawczyk, width};
 use crate::{Failure, Interval};
@@ -86,6 +86,15 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
 }
 
 impl Band {
+    /// Bands that follow one another, as one.
+    pub fn joined(parts: Vec<Self>) -> Self {
+        parts.into_iter().fold(Self::default(), |mut all, part| {
+            all.pieces.extend(part.pieces);
+            part.left_out.into_iter().for_each(|part| all.leave_out(part));
+            all
+        })
+    }
+
     /// Adds a part, as one with that before it if they meet.
     fn leave_out(&mut self, part: LeftOut) {
         match self.left_out.last_mut() {
@@ -120,7 +129,8 @@ fn piece(
     };
     let (orbit, inverse) = start.improved(&equations)?;
     let orbit = orbit.leaning(&equations, &inverse)?;
-    let known = family(&equations, &orbit, &inverse, Interval::around_zero(half))?;
+    let boxes = family(&equations, &orbit, &inverse, Interval::around_zero(half))?;
+    let known = orbit.residual(&equations, &boxes)?;
     let largest = largest(&equations, &known.passages);
     let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
         return Err(Failure::NotStable);
@@ -131,13 +141,13 @@ fn piece(
     Ok((Piece { omega, impacts: impacts(&orbit), largest, multipliers }, orbit))
 }
 
-/// What is known of a family over all frequencies that are `away` from the middle, once it is proven.
+/// The boxes about a family that hold, at each frequency that is `away` from the middle, exactly one motion.
 fn family(
     equations: &Equations,
     orbit: &Orbit,
     inverse: &DMatrix<f64>,
     away: Interval,
-) -> Result<Residual, Failure> {
+) -> Result<Vec<State>, Failure> {
     let with = |boxes: Vec<State>| -> Vec<State> {
         boxes.into_iter().map(|x| array::from_fn(|i| if i == OMEGA { away } else { x[i] })).collect()
     };
@@ -149,9 +159,48 @@ fn family(
         let known = orbit.residual(equations, &boxes)?;
         let image = krawczyk(orbit, inverse, &known, &boxes);
         if is_inside(orbit, &image, &boxes) {
-            return orbit.residual(equations, &with(image));
+            return Ok(with(image));
         }
         failure = Failure::Krawczyk { width: width(&boxes), image: width(&image) };
     }
     Err(failure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The motions at the ends of a piece are in the boxes about its family, which are much smaller than the way between these motions.
+    #[test]
+    fn invariant_the_boxes_of_a_family_hold_its_motions() {
+        let text = r#"{
+            "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.62 },
+            "damper": { "m2": 60, "k2": 584, "c2": 95, "D": 0.029, "C": 1.1, "contact": { "R": 2, "q": 0.318,
+                "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 } }
+        }"#;
+        let scene: Scene = serde_json::from_str(text).expect("a scene");
+        let (omega, half) = (6.62, 1e-4);
+        let equations = Equations::new(&scene).expect("equations").at(omega);
+        let guess = Orbit::guess(&equations, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
+        let (orbit, inverse) = guess.improved(&equations).expect("a motion");
+        let orbit = orbit.leaning(&equations, &inverse).expect("slopes");
+        let boxes = family(&equations, &orbit, &inverse, Interval::around_zero(half)).expect("a family");
+        for end in [-half, half] {
+            let there = equations.at(omega + end);
+            let (own, _) =
+                orbit.leant(&there, omega + end).and_then(|own| own.improved(&there)).expect("a motion");
+            for (k, node) in orbit.nodes.iter().enumerate() {
+                for i in node.event.free() {
+                    let way = own.nodes[k].state[i] - node.state[i];
+                    let off = way - node.slope[i] * end;
+                    assert!(boxes[k][i].wider(1e-12).contains(off), "{k} {i}: {off:e} {}", boxes[k][i]);
+                    assert!(
+                        boxes[k][i].magnitude() < 0.5 * way.abs() + 1e-6,
+                        "{k} {i}: {way:e} {}",
+                        boxes[k][i]
+                    );
+                }
+            }
+        }
+    }
 }

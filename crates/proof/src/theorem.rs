@@ -109,7 +109,8 @@ pub fn about(orbit: &Orbit, least: &[State], times: f64, widest: f64) -> Vec<Sta
     let of_node = |(node, least): (&Node, &State)| {
         let half_width = |i: usize| {
             let size = node.state[i].abs().max(1e-3);
-            (times * least[i].magnitude()).max(NARROWEST * size).min(widest * size)
+            let least = least[i].magnitude();
+            (times * least).max(NARROWEST * size).min((widest * size).max(2.0 * least))
         };
         let mut away = [Interval::ZERO; STATE];
         node.event.free().for_each(|i| away[i] = Interval::around_zero(half_width(i)));

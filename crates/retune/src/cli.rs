@@ -209,6 +209,12 @@ pub struct Prove {
     /// Frequency of the force, rad/s or with its unit [default: that of the worst run of a search, or of the scene]
     #[arg(long, value_name = "W", value_parser = omega)]
     pub omega: Option<Setting>,
+    /// Prove all frequencies from --omega to this one instead: piece by piece, minutes for a band
+    #[arg(long, value_name = "W", value_parser = omega, requires = "omega", conflicts_with = "from")]
+    pub to: Option<Setting>,
+    /// Prove that E1max is at most this at each of these frequencies, J; the nearer it is to the largest, the longer it takes
+    #[arg(long, value_name = "J", default_value_t = f64::INFINITY, hide_default_value = true, requires = "to")]
+    pub most: f64,
     /// Guess this state at a crest of the force: x1,v1,x2,v2 in m and m/s [default: what the run of the scene settles on]
     #[arg(long, value_name = "X1,V1,X2,V2", value_parser = retune_study::start, allow_hyphen_values = true)]
     pub from: Option<Start>,

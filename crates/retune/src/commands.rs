@@ -142,6 +142,10 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
 }
 
 fn prove(arguments: &cli::Prove, screen: &Screen) -> Result<(), Error> {
+    if let (Some(from), Some(to)) = (arguments.omega, arguments.to) {
+        let proof = retune_jobs::prove::prove_band(&arguments.study, [from, to], arguments.most)?;
+        return screen.line(if arguments.json { json(&proof)? } else { proof.to_string() });
+    }
     let from = arguments.from.map(|start| (start, usize::from(arguments.periods)));
     let proof = retune_jobs::prove::prove(&arguments.study, &Guess { omega: arguments.omega, from })?;
     screen.line(if arguments.json { json(&proof)? } else { proof.to_string() })

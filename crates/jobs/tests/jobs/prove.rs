@@ -1,7 +1,7 @@
 //! `prove`: motions that the solver finds, proven by interval arithmetic.
 
 use retune_jobs::Error;
-use retune_jobs::prove::{Guess, Proof, prove};
+use retune_jobs::prove::{Guess, Proof, prove, prove_band};
 use retune_model::{Finite, Parameter, Start};
 use retune_study::Setting;
 use retune_testkit::observers::{good, refused};
@@ -63,7 +63,7 @@ fn contract_what_cannot_be_proven_says_why() {
     for (study, omega, said) in [
         (
             "studies/ssvi.json",
-            6.28,
+            6.3,
             "study ssvi: not proven: none found: the run settles on no periodic motion",
         ),
         (
@@ -86,4 +86,26 @@ fn contract_what_cannot_be_proven_says_why() {
         assert!(matches!(error, Error::NotProven { .. }), "{error}");
         assert!(error.to_string().starts_with(said), "{error}");
     }
+}
+
+#[test]
+fn reference_a_band_of_the_tuned_damper_is_proven() {
+    let at = |omega| Setting::new(Parameter::Omega, omega);
+    let proof = good(prove_band(&place("results/ssvi"), [at(6.62), at(6.6201)], 226.0));
+    let all = json!(proof);
+    assert_eq!((&all["omega"], all["left_out"].as_array().map(Vec::len)), (&json!([6.62, 6.6201]), Some(0)));
+    let [lo, hi] = [0, 1].map(|i| all["E1max"][i].as_f64().expect("a bound"));
+    // `results/branches/tuned` has 225.7923 J at 6.6241 rad/s, a little beyond.
+    assert!(lo < 225.7923 && (225.75..226.0).contains(&hi), "{proof}");
+    assert!(
+        proof.to_string().contains("\nevery omega   has a stable motion with an E1max of at most 225."),
+        "{proof}"
+    );
+    let error = refused(prove_band(&place("results/ssvi"), [at(6.62), at(6.62)], 226.0));
+    assert_eq!(
+        error.to_string(),
+        "command line: --to: 6.62 rad/s is not allowed here: give a number above that of --omega, 6.62"
+    );
+    let error = refused(prove_band(&place("results/ssvi"), [at(6.62), at(6.6201)], 200.0)).to_string();
+    assert!(error.starts_with("study ssvi: not proven: the motion may have an E1max of 225."), "{error}");
 }
