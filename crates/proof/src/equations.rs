@@ -7,7 +7,7 @@
 use crate::elementary::pi;
 use crate::number::{Number, OMEGA, STATE, State};
 use crate::{Failure, Interval};
-use retune_model::{Contact, Scene, Side, Source, Surfaces};
+use retune_model::{Contact, Loss, Scene, Side, Source, Surfaces};
 
 /// The numbers of a scene.
 #[derive(Clone, Debug)]
@@ -72,7 +72,7 @@ impl Equations {
         let hertz = match &damper.contact {
             None => None,
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),
-            Some(Contact::Hertz(surfaces)) if !surfaces.loss.is_none() => {
+            Some(Contact::Hertz(surfaces)) if !surfaces.losses().iter().all(Loss::is_none) => {
                 return Err(Failure::Scene("contacts that lose energy"));
             }
             Some(Contact::Hertz(surfaces)) => Some(hertz_stiffness(surfaces)),

@@ -164,6 +164,7 @@ fn contract_scenes_beyond_the_proof_are_refused() {
         (tmd(0.0), "a forcing whose omega is not above 0"),
         (with(r#"{ "rigid": { "restitution": 0.7 } }"#), "rigid walls"),
         (with(&lossy), "contacts that lose energy"),
+        (with(&lossy.replace("loss", "loss_obstacle")), "contacts that lose energy"),
     ] {
         let error = prove(&scene, [0.0; 4], 1).expect_err(said).to_string();
         assert!(error.starts_with(said), "{error}");

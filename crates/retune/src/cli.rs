@@ -221,9 +221,8 @@ pub struct Prove {
     /// Periods of the force after which the motion from there repeats
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64), requires = "from")]
     pub periods: u8,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub common: Common,
 }
 
 /// `simulate`.

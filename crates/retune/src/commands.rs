@@ -50,7 +50,7 @@ pub fn run(command: Command) -> Result<(), Error> {
         }
         Command::Sweep(arguments) => sweep(arguments),
         Command::Branches(arguments) => branches(arguments),
-        Command::Prove(arguments) => prove(&arguments, &all),
+        Command::Prove(arguments) => prove(&arguments),
         Command::Evaluate(arguments) => evaluate(&arguments),
         Command::Table2 { study, running } => {
             let (request, screen) = running.request(&study);
@@ -141,14 +141,20 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
     arguments.common.screen(false).line(text)
 }
 
-fn prove(arguments: &cli::Prove, screen: &Screen) -> Result<(), Error> {
+fn prove(arguments: &cli::Prove) -> Result<(), Error> {
+    let request = arguments.common.request(&arguments.study);
     if let (Some(from), Some(to)) = (arguments.omega, arguments.to) {
-        let proof = retune_jobs::prove::prove_band(&arguments.study, [from, to], arguments.most)?;
-        return screen.line(if arguments.json { json(&proof)? } else { proof.to_string() });
+        let band = || retune_jobs::prove::prove_band(&arguments.study, [from, to], arguments.most);
+        return shown(&request.on_threads(band)?, &arguments.common);
     }
     let from = arguments.from.map(|start| (start, usize::from(arguments.periods)));
-    let proof = retune_jobs::prove::prove(&arguments.study, &Guess { omega: arguments.omega, from })?;
-    screen.line(if arguments.json { json(&proof)? } else { proof.to_string() })
+    let guess = Guess { omega: arguments.omega, from };
+    shown(&request.on_threads(|| retune_jobs::prove::prove(&arguments.study, &guess))?, &arguments.common)
+}
+
+/// Prints an answer, in words or as JSON.
+fn shown(answer: &(impl serde::Serialize + std::fmt::Display), common: &cli::Common) -> Result<(), Error> {
+    common.screen(false).line(if common.json { answer::text(answer)? } else { answer.to_string() })
 }
 
 fn sweep(arguments: cli::Sweep) -> Result<(), Error> {
