@@ -48,6 +48,11 @@ evaluate STUDY *OPTIONS:
 simulate STUDY="studies/ssvi.json" *OPTIONS:
     {{retune}} simulate "$@"
 
+# Prove a periodic motion by interval arithmetic, e.g. `just prove results/ssvi`
+[group('examine')]
+prove STUDY *OPTIONS:
+    {{retune}} prove "$@"
+
 # Turn the parameters of a damper in the browser and see its motion and response, e.g. `just explore results/ssvi`
 [group('examine')]
 explore *OPTIONS:

@@ -94,6 +94,14 @@ pub enum Error {
         /// The parts that cannot be checked.
         problem: String,
     },
+    /// A motion that was not proven.
+    #[error("study {name}: not proven: {why}")]
+    NotProven {
+        /// The study.
+        name: String,
+        /// Which step failed, and at which width.
+        why: String,
+    },
     /// None found that keeps the limits: the results are those of the nearest design.
     #[error(
         "study {name}: the limits are not kept: {words}; loosen a limit, widen a bound, or look at more designs"

@@ -5,7 +5,7 @@
 //!
 //! [`tune()`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
 //! [`table2`] makes several searches and compares them, as the jobs of this crate do; [`verify`] checks results by computing them
-//! again; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
+//! again; [`prove`] proves one periodic motion; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
 //!
 //! ```
 //! use retune_jobs::simulate::simulate;
@@ -62,6 +62,7 @@ pub mod observer;
 mod pages;
 pub mod paper;
 pub mod parts;
+pub mod prove;
 pub mod request;
 pub mod resampled;
 pub mod resolved;

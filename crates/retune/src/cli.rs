@@ -97,6 +97,9 @@ pub enum Command {
     /// Follow every periodic motion along omega or another parameter: branches, bifurcations, what coexists and how likely
     #[command(allow_negative_numbers = true)]
     Branches(Branches),
+    /// Prove a periodic motion by interval arithmetic: it exists, alone in a box, is stable, and has E1max in an interval
+    #[command(allow_negative_numbers = true)]
+    Prove(Prove),
     /// Evaluate the objective that `optimize` minimises for designs read from standard input, one per line
     #[command(after_help = retune_jobs::evaluate::PROTOCOL)]
     Evaluate(Evaluate),
@@ -197,6 +200,31 @@ pub struct Reproduce {
     pub running: Running,
 }
 
+/// `prove`.
+#[derive(Debug, Args)]
+pub struct Prove {
+    /// A study (its scene is looked at), the optimum.json of a search, or the directory of its results
+    #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
+    pub study: PathBuf,
+    /// Frequency of the force, rad/s or with its unit [default: that of the worst run of a search, or of the scene]
+    #[arg(long, value_name = "W", value_parser = omega)]
+    pub omega: Option<Setting>,
+    /// Prove all frequencies from --omega to this one instead: piece by piece, minutes for a band
+    #[arg(long, value_name = "W", value_parser = omega, requires = "omega", conflicts_with = "from")]
+    pub to: Option<Setting>,
+    /// Prove that E1max is at most this at each of these frequencies, J; the nearer it is to the largest, the longer it takes
+    #[arg(long, value_name = "J", default_value_t = f64::INFINITY, hide_default_value = true, requires = "to")]
+    pub most: f64,
+    /// Guess this state at a crest of the force: x1,v1,x2,v2 in m and m/s [default: what the run of the scene settles on]
+    #[arg(long, value_name = "X1,V1,X2,V2", value_parser = retune_study::start, allow_hyphen_values = true)]
+    pub from: Option<Start>,
+    /// Periods of the force after which the motion from there repeats
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64), requires = "from")]
+    pub periods: u8,
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// `simulate`.
 #[derive(Debug, Args)]
 pub struct Simulate {
@@ -259,6 +287,10 @@ fn settings() -> String {
 
 fn stiffness(text: &str) -> Result<Setting, SettingError> {
     format!("k1={text}").parse()
+}
+
+fn omega(text: &str) -> Result<Setting, SettingError> {
+    format!("omega={text}").parse()
 }
 
 fn method(name: String) -> Method {

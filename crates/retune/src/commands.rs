@@ -6,6 +6,7 @@ use clap::CommandFactory;
 use retune_jobs::design::Wishes;
 use retune_jobs::designs::Designs;
 use retune_jobs::evaluate::Streams;
+use retune_jobs::prove::Guess;
 use retune_jobs::simulate::Trajectory;
 use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
@@ -49,6 +50,7 @@ pub fn run(command: Command) -> Result<(), Error> {
         }
         Command::Sweep(arguments) => sweep(arguments),
         Command::Branches(arguments) => branches(arguments),
+        Command::Prove(arguments) => prove(&arguments),
         Command::Evaluate(arguments) => evaluate(&arguments),
         Command::Table2 { study, running } => {
             let (request, screen) = running.request(&study);
@@ -137,6 +139,22 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
     let summary = request.on_threads(|| retune_jobs::simulate::simulate(&study, trajectory))?;
     let text = if arguments.common.json { answer::text(&summary)? } else { summary.to_string() };
     arguments.common.screen(false).line(text)
+}
+
+fn prove(arguments: &cli::Prove) -> Result<(), Error> {
+    let request = arguments.common.request(&arguments.study);
+    if let (Some(from), Some(to)) = (arguments.omega, arguments.to) {
+        let band = || retune_jobs::prove::prove_band(&arguments.study, [from, to], arguments.most);
+        return shown(&request.on_threads(band)?, &arguments.common);
+    }
+    let from = arguments.from.map(|start| (start, usize::from(arguments.periods)));
+    let guess = Guess { omega: arguments.omega, from };
+    shown(&request.on_threads(|| retune_jobs::prove::prove(&arguments.study, &guess))?, &arguments.common)
+}
+
+/// Prints an answer, in words or as JSON.
+fn shown(answer: &(impl serde::Serialize + std::fmt::Display), common: &cli::Common) -> Result<(), Error> {
+    common.screen(false).line(if common.json { answer::text(answer)? } else { answer.to_string() })
 }
 
 fn sweep(arguments: cli::Sweep) -> Result<(), Error> {

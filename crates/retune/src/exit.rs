@@ -2,7 +2,7 @@
 
 use retune_jobs::Error;
 
-/// The computation failed; results do not hold (`verify`); a line had no value (`evaluate`).
+/// The computation failed; results do not hold (`verify`); a line had no value (`evaluate`); a proof failed (`prove`).
 pub const FAILED: u8 = 1;
 /// The input is wrong, or a file or directory cannot be read or written.
 pub const WRONG: u8 = 2;
@@ -37,6 +37,7 @@ pub fn code_of(error: &Error) -> u8 {
         | Error::Search { .. }
         | Error::Figure { .. }
         | Error::Lines { .. }
+        | Error::NotProven { .. }
         | Error::NotHeld { .. } => FAILED,
     }
 }
@@ -45,7 +46,7 @@ pub fn code_of(error: &Error) -> u8 {
 pub const HELP: &str = "\
 Exit codes:
     0  done; results hold (`verify`)
-    1  the computation failed, results do not hold (`verify`), or a line had no value (`evaluate`)
+    1  the computation failed, results do not hold (`verify`), a line had no value (`evaluate`), or a proof failed (`prove`)
     2  the command line, a study or another file is wrong, or a file cannot be read or written
     3  none found that keeps the limits: the nearest design is written, without a verdict
     4  something cannot be checked, and all that can be holds (`verify`)

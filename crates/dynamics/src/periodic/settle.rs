@@ -64,6 +64,24 @@ pub fn settle(shooting: &Shooting, value: f64, y: [f64; 4]) -> Result<Settled, E
     Ok(Settled::Irregular(seen(&scene, shooting.settings(), WATCHED, &[motion.y])?))
 }
 
+/// The periodic motion that the run of a scene from its start settles on: after how many periods of the force it repeats, and its state at a
+/// crest of the force; none if it settles on none.
+///
+/// # Errors
+/// The run cannot be finished.
+pub fn settled(scene: &Scene, settings: &Settings) -> Result<Option<(usize, [f64; 4])>, Error> {
+    let omega = scene.forcing.frequency.get();
+    let size = (2.0 * most_energy(scene)).sqrt().max(f64::MIN_POSITIVE);
+    let shooting = Shooting::new(*scene, Parameter::Omega, 1, (omega, size), settings);
+    let start = shooting.system(omega)?.start();
+    Ok(match settle(&shooting, omega, start)? {
+        Settled::Irregular(_) => None,
+        Settled::On(periods, solution) => {
+            shooting.of_periods(periods).states(&solution.x).first().map(|state| (periods, *state))
+        }
+    })
+}
+
 /// The stable motion that the latest states of a run repeat, by the least number of periods.
 fn repeated(shooting: &Shooting, scene: &Scene, value: f64, last: &[[f64; 4]]) -> Option<(usize, Solution)> {
     let end = last.len().checked_sub(1)?;

@@ -215,6 +215,7 @@ fn errors() -> Vec<Error> {
             place: path.join("parts"),
         },
         Error::NotHeld { path: path.clone(), problem: "does not hold: surf.csv is missing".into() },
+        Error::NotProven { name: "ssvi".into(), why: retune_proof::Failure::Sequence.to_string() },
         Error::NotChecked { path: path.clone(), problem: "there is no manifest.json".into() },
         Error::Infeasible {
             name: "ssvi".into(),
@@ -240,7 +241,7 @@ fn errors() -> Vec<Error> {
 fn regress_the_words_of_every_error() {
     let words = [
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
-        each!(errors(), Error: Store Study Setting Rule Requirement Argument Interval Part MissingParts NotHeld NotChecked Infeasible Lines Threads Run Motion
+        each!(errors(), Error: Store Study Setting Rule Requirement Argument Interval Part MissingParts NotHeld NotChecked NotProven Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
         each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several NoResults Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),

@@ -14,6 +14,7 @@ mod links;
 mod losses;
 mod motions;
 mod paper;
+mod prove;
 mod quantity;
 mod replaced;
 mod report;

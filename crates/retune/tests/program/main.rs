@@ -10,5 +10,6 @@ mod evaluate;
 mod interrupted;
 mod kills;
 mod numbers;
+mod prove;
 mod refused;
 mod schema;

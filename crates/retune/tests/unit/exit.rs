@@ -16,6 +16,7 @@ fn contract_exit_codes_say_whose_fault_it_is() {
         (Error::Infeasible { name: name(), words: String::new() }, INFEASIBLE),
         (Error::NotChecked { path: place(), problem: String::new() }, UNCHECKED),
         (Error::NotHeld { path: place(), problem: String::new() }, FAILED),
+        (Error::NotProven { name: name(), why: String::new() }, FAILED),
         (Error::Lines { failed: 1, lines: 24 }, FAILED),
         (Error::Run(retune_solver::SolverError::NonFinite { t: 1.5 }), FAILED),
     ];

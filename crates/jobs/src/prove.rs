@@ -1,0 +1,169 @@
+//! `prove`: a proof by interval arithmetic of the periodic motion of a scene. The solver guesses the motion, and `retune_proof` owes it nothing else.
+
+use crate::Error;
+use crate::again::json;
+use rayon::prelude::*;
+use retune_dynamics::periodic::settle::settled;
+use retune_model::{Finite, Parameter, Start};
+use retune_proof::{Band, Interval, LeftOut, Stability, Theorem};
+use retune_study::{self as study, Setting, Study, counted};
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+
+/// Where the motion is looked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Guess {
+    /// The frequency of the force, rad/s; that of the worst run of a search's results, or of the scene, if left out.
+    pub omega: Option<Setting>,
+    /// A state at a crest of the force, and after how many periods of the force the motion repeats; what the run of the scene settles on if left out.
+    pub from: Option<(Start, usize)>,
+}
+
+/// What is proven.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proof {
+    study: String,
+    omega: f64,
+    /// The theorem.
+    #[serde(flatten)]
+    pub theorem: Theorem,
+}
+
+/// Proves the periodic motion of a study's scene, or of the design that a search found.
+///
+/// # Errors
+/// The input is wrong, no motion is found, or it cannot be proven.
+pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
+    let given = study::read(path)?;
+    let omega = match guess.omega {
+        Some(omega) => Some(omega),
+        None => worst(path)?,
+    };
+    let study = given.with(&omega.into_iter().collect::<Vec<_>>())?;
+    let (periods, start) = match guess.from {
+        Some((start, periods)) => (periods, state(&study, start)),
+        None => found(&study)?,
+    };
+    let theorem = retune_proof::prove(&study.scene, start, periods)
+        .map_err(|failure| Error::NotProven { name: study.name().to_owned(), why: failure.to_string() })?;
+    Ok(Proof { study: study.name().to_owned(), omega: study.scene.forcing.frequency.get(), theorem })
+}
+
+/// The frequency of the worst run of a search's results.
+fn worst(path: &Path) -> Result<Option<Setting>, Error> {
+    let Some(place) = study::found_in(path)? else { return Ok(None) };
+    if !place.join("optimum.json").exists() {
+        return Ok(None);
+    }
+    let worst = json(&place, "optimum.json")?["objective"]["worst_omega"].as_f64();
+    Ok(worst.map(|omega| Setting::new(Parameter::Omega, omega)))
+}
+
+/// A state with the damper's spring at rest if the place of the damper is left out.
+fn state(study: &Study, Start { x1, v1, x2, v2 }: Start) -> [f64; 4] {
+    let rest = study.scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
+    [x1.get(), v1.get(), x2.map_or(x1.get() + rest, Finite::get), v2.get()]
+}
+
+/// What the run settles on.
+fn found(study: &Study) -> Result<(usize, [f64; 4]), Error> {
+    let none = || Error::NotProven {
+        name: study.name().to_owned(),
+        why:
+            "none found: the run settles on no periodic motion; give --from and --periods, or another --omega"
+                .to_owned(),
+    };
+    // Whatever has no such run is refused by the proof, in its words.
+    let has_period = study.scene.damper.is_some() && study.scene.forcing.frequency.get() > 0.0;
+    if !has_period {
+        return Ok((1, [0.0; 4]));
+    }
+    settled(&study.scene, &study.solver.settings())?.ok_or_else(none)
+}
+
+impl fmt::Display for Proof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { study, omega, theorem } = self;
+        let Theorem { periods, impacts, alone_within, width, stability, largest, .. } = theorem;
+        let strikes = if impacts.is_empty() { "no wall".to_owned() } else { impacts.clone() };
+        writeln!(f, "study {study}, omega = {omega} rad/s: proven by interval arithmetic")?;
+        writeln!(
+            f,
+            "exists        a motion that repeats after {} of the force and strikes {strikes}",
+            counted(*periods as u64, "period")
+        )?;
+        writeln!(
+            f,
+            "alone         no other such motion is in a box {alone_within:.1e} wide about its states at the events; it is within {width:.1e} (m, m/s, rad)"
+        )?;
+        match stability {
+            Stability::Stable(bound) => writeln!(f, "stable        all multipliers are below {bound}")?,
+            Stability::Unstable => writeln!(f, "unstable      a multiplier is above 1")?,
+            Stability::Open => writeln!(f, "stability     neither stable nor unstable is proven")?,
+        }
+        let lines = largest.all().map(|(measure, value)| {
+            format!("{:<14}from {} to {} {}", measure.name(), value.lo(), value.hi(), measure.unit())
+        });
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+/// What is proven of a band of frequencies.
+#[derive(Clone, Debug, Serialize)]
+pub struct BandProof {
+    study: String,
+    omega: [f64; 2],
+    /// Bounds on the largest E1max over the band, J.
+    #[serde(rename = "E1max")]
+    energy: Interval,
+    /// Its pieces, and what they leave out.
+    #[serde(flatten)]
+    pub band: Band,
+}
+
+/// Frequencies that are proven one after another, rad/s; the shares of a band are proven side by side.
+const SHARE: f64 = 0.02;
+
+/// Proves stable motions with an E1max of at most `most` (J) over a band, at each frequency one near that on which the run of the scene settles.
+///
+/// # Errors
+/// The input is wrong, or nothing of the band can be proven.
+pub fn prove_band(path: &Path, [from, to]: [Setting; 2], most: f64) -> Result<BandProof, Error> {
+    let study = study::read(path)?.with(&[to])?.with(&[from])?;
+    let [from, to] = [from.value(), to.value()];
+    if to <= from {
+        let problem = format!("{to} rad/s is not allowed here: give a number above that of --omega, {from}");
+        return Err(Error::Argument { option: "--to", problem });
+    }
+    let not_proven = |why: String| Error::NotProven { name: study.name().to_owned(), why };
+    let guess = |omega: f64| {
+        let scene = Parameter::Omega.at(study.scene, omega).ok()?;
+        settled(&scene, &study.solver.settings()).ok()?.map(|(periods, start)| (start, periods))
+    };
+    let shares = ((to - from) / SHARE).ceil().max(1.0) as usize;
+    let end = |k: usize| if k == shares { to } else { from + (to - from) * (k as f64 / shares as f64) };
+    let share = |k: usize| retune_proof::band(&study.scene, [end(k), end(k + 1)], most, &guess);
+    let parts = (0..shares).into_par_iter().map(share).collect::<Result<Vec<_>, _>>();
+    let band = Band::joined(parts.map_err(|failure| not_proven(failure.to_string()))?);
+    match band.left_out.first() {
+        Some(LeftOut { why, .. }) if band.pieces.is_empty() => Err(not_proven(why.to_string())),
+        _ => Ok(BandProof { study: study.name().to_owned(), omega: [from, to], energy: band.energy(), band }),
+    }
+}
+
+impl fmt::Display for BandProof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { study, omega: [from, to], energy, band } = self;
+        let pieces = counted(band.pieces.len() as u64, "piece");
+        writeln!(
+            f,
+            "study {study}, omega from {from} to {to} rad/s: proven by interval arithmetic in {pieces}"
+        )?;
+        write!(f, "every omega   has a stable motion with an E1max of at most {} J", energy.hi())?;
+        for LeftOut { omega: [from, to], why } in &band.left_out {
+            write!(f, "\nbut for       {from} to {to} rad/s: {why}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,206 @@
+//! A whole band of frequencies: pieces of it, over each of which one family of motions is proven at once.
+
+use crate::equations::Equations;
+use crate::largest::{Largest, largest};
+use crate::number::{OMEGA, STATE, State};
+use crate::orbit::Orbit;
+use crate::stability::{Stability, stability};
+use crate::theorem::{about, impacts, is_inside, krawczyk, width};
+use crate::{Failure, Interval};
+use nalgebra::DMatrix;
+use retune_model::Scene;
+use serde::Serialize;
+use std::array;
+
+/// Half-widths that are tried, in what Krawczyk's operator leaves of the family's curvature.
+const TRIED: [f64; 3] = [1.5, 3.0, 10.0];
+/// The longest piece and the shortest, rad/s.
+const LONGEST: f64 = 0.02;
+const SHORTEST: f64 = 1e-6;
+/// By how much a piece is longer than the last one, or shorter where the last one failed.
+const LONGER: f64 = 1.4;
+const SHORTER: f64 = 0.5;
+/// What is left out where no piece can be proven, rad/s; twice as much each time that nothing beyond can be proven either, up to the most.
+const LEFT_OUT: [f64; 2] = [1e-4, 0.05];
+
+/// A piece of the band over which a family of motions is proven: at each of its frequencies there is exactly one in a box.
+#[derive(Clone, Debug, Serialize)]
+pub struct Piece {
+    /// From where to where, rad/s.
+    pub omega: [f64; 2],
+    /// The walls that each motion strikes in turn.
+    pub impacts: String,
+    /// Bounds that hold at all frequencies: the largest value at each is in them.
+    pub largest: Largest,
+    /// No multiplier is larger than this: all are below 1.
+    pub multipliers: f64,
+}
+
+/// What was proven of a band.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Band {
+    /// The pieces, in the order of their frequencies.
+    pub pieces: Vec<Piece>,
+    /// What they leave out.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A part of a band over which nothing is proven.
+#[derive(Clone, Debug, Serialize)]
+pub struct LeftOut {
+    /// From where to where, rad/s.
+    pub omega: [f64; 2],
+    /// Why not.
+    pub why: Failure,
+}
+
+/// A state at a crest of the force at a frequency, and after how many periods it repeats.
+pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<([f64; 4], usize)>;
+
+/// Proves stable motions with an E1max of at most `most` (J) over a band, as far as it can. A motion is followed from piece to piece, which need not be one branch:
+/// where it is lost, a new one is guessed.
+///
+/// # Errors
+/// The proof does not cover such scenes.
+pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>) -> Result<Band, Failure> {
+    let equations = Equations::new(scene)?;
+    let (mut band, mut at, mut length, mut gap) = (Band::default(), from, LONGEST, LEFT_OUT[0]);
+    let mut last: Option<Orbit> = None;
+    while at < to {
+        let end = if at + 1.01 * length >= to { to } else { at + length };
+        match piece(&equations, [at, end], most, last.as_ref(), guesses) {
+            Ok((piece, orbit)) => {
+                band.pieces.push(piece);
+                (length, gap) = ((LONGER * (end - at)).min(LONGEST), LEFT_OUT[0]);
+                (at, last) = (end, Some(orbit));
+            }
+            Err(_) if end - at > SHORTEST => length = SHORTER * (end - at),
+            Err(why) => {
+                let next = (at + gap).min(to);
+                band.leave_out(LeftOut { omega: [at, next], why });
+                (at, last, length, gap) = (next, None, LONGEST, (2.0 * gap).min(LEFT_OUT[1]));
+            }
+        }
+    }
+    Ok(band)
+}
+
+impl Band {
+    /// Bands that follow one another, as one.
+    pub fn joined(parts: Vec<Self>) -> Self {
+        parts.into_iter().fold(Self::default(), |mut all, part| {
+            all.pieces.extend(part.pieces);
+            part.left_out.into_iter().for_each(|part| all.leave_out(part));
+            all
+        })
+    }
+
+    /// Adds a part, as one with that before it if they meet.
+    fn leave_out(&mut self, part: LeftOut) {
+        match self.left_out.last_mut() {
+            Some(last) if last.omega[1] == part.omega[0] => last.omega[1] = part.omega[1],
+            _ => self.left_out.push(part),
+        }
+    }
+
+    /// Bounds on the largest E1max over the frequencies of all pieces, J: what one of them has at least, and what none exceeds; zero if there are none.
+    pub fn energy(&self) -> Interval {
+        self.pieces.iter().fold(Interval::ZERO, |most, piece| most.max(piece.largest.energy))
+    }
+}
+
+/// A piece, and the motion in its middle.
+fn piece(
+    equations: &Equations,
+    omega: [f64; 2],
+    most: f64,
+    last: Option<&Orbit>,
+    guesses: Guesses<'_>,
+) -> Result<(Piece, Orbit), Failure> {
+    let middle = 0.5 * (omega[0] + omega[1]);
+    let equations = equations.at(middle);
+    let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
+    let start = match last {
+        Some(last) => last.leant(&equations, middle)?,
+        None => {
+            let (state, periods) = guesses(middle).ok_or(Failure::NoGuess)?;
+            Orbit::guess(&equations, state, periods, false)?
+        }
+    };
+    let (orbit, inverse) = start.improved(&equations)?;
+    let orbit = orbit.leaning(&equations, &inverse)?;
+    let boxes = family(&equations, &orbit, &inverse, Interval::around_zero(half))?;
+    let known = orbit.residual(&equations, &boxes)?;
+    let largest = largest(&equations, &known.passages);
+    let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
+        return Err(Failure::NotStable);
+    };
+    if largest.energy.hi() > most {
+        return Err(Failure::Above { bound: largest.energy.hi(), most });
+    }
+    Ok((Piece { omega, impacts: impacts(&orbit), largest, multipliers }, orbit))
+}
+
+/// The boxes about a family that hold, at each frequency that is `away` from the middle, exactly one motion.
+fn family(
+    equations: &Equations,
+    orbit: &Orbit,
+    inverse: &DMatrix<f64>,
+    away: Interval,
+) -> Result<Vec<State>, Failure> {
+    let with = |boxes: Vec<State>| -> Vec<State> {
+        boxes.into_iter().map(|x| array::from_fn(|i| if i == OMEGA { away } else { x[i] })).collect()
+    };
+    let none = with(vec![[Interval::ZERO; STATE]; orbit.nodes.len()]);
+    let least = krawczyk(orbit, inverse, &orbit.residual(equations, &none)?, &none);
+    let mut failure = Failure::Sequence;
+    for times in TRIED {
+        let boxes = with(about(orbit, &least, times, f64::INFINITY));
+        let known = orbit.residual(equations, &boxes)?;
+        let image = krawczyk(orbit, inverse, &known, &boxes);
+        if is_inside(orbit, &image, &boxes) {
+            return Ok(with(image));
+        }
+        failure = Failure::Krawczyk { width: width(&boxes), image: width(&image) };
+    }
+    Err(failure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The motions at the ends of a piece are in the boxes about its family, which are much smaller than the way between these motions.
+    #[test]
+    fn invariant_the_boxes_of_a_family_hold_its_motions() {
+        let text = r#"{
+            "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.62 },
+            "damper": { "m2": 60, "k2": 584, "c2": 95, "D": 0.029, "C": 1.1, "contact": { "R": 2, "q": 0.318,
+                "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 } }
+        }"#;
+        let scene: Scene = serde_json::from_str(text).expect("a scene");
+        let (omega, half) = (6.62, 1e-4);
+        let equations = Equations::new(&scene).expect("equations").at(omega);
+        let guess = Orbit::guess(&equations, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
+        let (orbit, inverse) = guess.improved(&equations).expect("a motion");
+        let orbit = orbit.leaning(&equations, &inverse).expect("slopes");
+        let boxes = family(&equations, &orbit, &inverse, Interval::around_zero(half)).expect("a family");
+        for end in [-half, half] {
+            let there = equations.at(omega + end);
+            let (own, _) =
+                orbit.leant(&there, omega + end).and_then(|own| own.improved(&there)).expect("a motion");
+            for (k, node) in orbit.nodes.iter().enumerate() {
+                for i in node.event.free() {
+                    let way = own.nodes[k].state[i] - node.state[i];
+                    let off = way - node.slope[i] * end;
+                    assert!(boxes[k][i].wider(1e-12).contains(off), "{k} {i}: {off:e} {}", boxes[k][i]);
+                    assert!(
+                        boxes[k][i].magnitude() < 0.5 * way.abs() + 1e-6,
+                        "{k} {i}: {way:e} {}",
+                        boxes[k][i]
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Proofs by interval arithmetic that a damper has a periodic motion: that it exists and is alone in a small box, its sequence of impacts, whether it is
+//! stable, and its largest values. Nothing of the solver is used: a motion that it found is the guess. `docs/proof.md` has the theorem.
+//!
+//! Read `interval` and `elementary` (numbers), `number` and `equations` (equation (1) and its Taylor series), `step` (a validated step, with
+//! `small`), `range` (what a quantity does during one), `crossing` and `segment` (from one event to the next), `orbit` (the ring of events), then
+//! `theorem`, with `stability` and `largest`, and `band`.
+//!
+//! ```
+//! use retune_proof::{Stability, prove};
+//!
+//! // A tuned mass damper: from rest, Newton's iteration finds its one steady motion.
+//! let scene = serde_json::from_str(
+//!     r#"{
+//!         "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 },
+//!         "damper": { "m2": 60, "k2": 2000, "c2": 85 }
+//!     }"#,
+//! )?;
+//! let proven = prove(&scene, [0.0; 4], 1)?;
+//! assert!(proven.impacts.is_empty() && matches!(proven.stability, Stability::Stable(_)));
+//! assert!(proven.largest.energy.width() < 1e-10 * proven.largest.energy.hi());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
+
+mod band;
+mod crossing;
+mod elementary;
+mod equations;
+mod event;
+mod failure;
+mod interval;
+mod largest;
+mod number;
+mod orbit;
+mod range;
+mod segment;
+mod small;
+mod stability;
+mod step;
+mod theorem;
+
+pub use band::{Band, Guesses, LeftOut, Piece, band};
+pub use event::Event;
+pub use failure::Failure;
+pub use interval::Interval;
+pub use largest::Largest;
+pub use stability::Stability;
+pub use theorem::{Proven, Theorem, prove};

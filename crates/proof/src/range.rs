@@ -1,0 +1,137 @@
+//! What values a quantity has during a step, from its Taylor series with the last coefficient anywhere in the step.
+
+use crate::Interval;
+
+/// Halvings of a step before nothing more is tried.
+const DEPTH: u32 = 24;
+/// A bound is sharp enough if it exceeds a value by no more than this share.
+const SHARP: f64 = 1e-12;
+
+/// A quantity over a step from 0 to `h`.
+///
+/// For each motion it is `Σ cₖ tᵏ` with the coefficients in their intervals, the last one depending on `t`; its derivative is
+/// `Σ k cₖ tᵏ⁻¹` in the same sense, since the remainder of the derivative has `N c_N` somewhere in the step.
+#[derive(Clone, Debug)]
+pub struct Range {
+    series: Vec<Interval>,
+    slope: Vec<Interval>,
+    h: f64,
+}
+
+/// Horner's scheme.
+fn horner(series: &[Interval], t: Interval) -> Interval {
+    series.iter().rev().fold(Interval::ZERO, |sum, c| sum * t + *c)
+}
+
+impl Range {
+    /// From its series.
+    pub fn new(series: Vec<Interval>, h: f64) -> Self {
+        let slope = series.iter().enumerate().skip(1).map(|(k, c)| Interval::point(k as f64) * *c).collect();
+        Self { series, slope, h }
+    }
+
+    /// Its values at one time or during a stretch.
+    pub fn at(&self, t: Interval) -> Interval {
+        horner(&self.series, t)
+    }
+
+    /// Its derivatives.
+    pub fn slope(&self, t: Interval) -> Interval {
+        horner(&self.slope, t)
+    }
+
+    /// Its values during a stretch by the mean value theorem, which is sharper on a short one.
+    fn over(&self, [a, b]: [f64; 2]) -> Interval {
+        let (t, middle) = (Interval::new(a, b), Interval::point(0.5 * (a + b)));
+        let from_middle = self.at(middle) + self.slope(t) * (t - middle);
+        let direct = self.at(t);
+        from_middle.meet(direct).unwrap_or(direct)
+    }
+
+    /// Whether it is above zero during the step, but for the beginning if it is zero there (`starts`), and up to an only crossing near the end, if it ends
+    /// there (`ends`).
+    pub fn is_positive(&self, starts: bool, ends: bool) -> bool {
+        self.is_positive_in([0.0, self.h], [starts, ends], DEPTH)
+    }
+
+    fn is_positive_in(&self, [a, b]: [f64; 2], [starts, ends]: [bool; 2], depth: u32) -> bool {
+        let t = Interval::new(a, b);
+        if self.over([a, b]).is_positive()
+            || (starts && a == 0.0 && self.slope(t).is_positive())
+            || (ends && b == self.h && self.slope(t).is_negative())
+        {
+            return true;
+        }
+        let middle = 0.5 * (a + b);
+        depth > 0
+            && self.is_positive_in([a, middle], [starts, ends], depth - 1)
+            && self.is_positive_in([middle, b], [starts, ends], depth - 1)
+    }
+
+    /// Raises `most`, which encloses the largest value so far, to enclose that of this step too. Motions are known to be in the step up to `sure`.
+    pub fn raise(&self, most: &mut Interval, sure: f64) {
+        self.raise_in([0.0, self.h], most, sure, DEPTH);
+    }
+
+    fn raise_in(&self, [a, b]: [f64; 2], most: &mut Interval, sure: f64, depth: u32) {
+        let (t, middle) = (Interval::new(a, b), 0.5 * (a + b));
+        let slope = self.slope(t);
+        let mut lower = |t: f64| {
+            let value = self.at(Interval::point(t));
+            if t <= sure {
+                *most = most.max(Interval::new(value.lo(), most.hi().max(value.lo())));
+            }
+            value.hi()
+        };
+        let ends = lower(a).max(lower(b));
+        let inner = lower(middle).max(ends);
+        let bound = if slope.is_positive() || slope.is_negative() { ends } else { self.over([a, b]).hi() };
+        let done = bound <= most.hi() || bound - inner <= SHARP * bound.abs() || depth == 0;
+        if done || slope.is_positive() || slope.is_negative() {
+            *most = most.max(Interval::new(most.lo(), bound.max(most.lo())));
+        } else {
+            self.raise_in([a, middle], most, sure, depth - 1);
+            self.raise_in([middle, b], most, sure, depth - 1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(series: &[f64], h: f64) -> Range {
+        Range::new(series.iter().map(|c| Interval::point(*c)).collect(), h)
+    }
+
+    /// `t (1 - t) (2 - t)` on [0, 1] is largest at `1 - 1/√3`, with `2/(3√3)`; on [0, 3] at the end.
+    #[test]
+    fn exact_the_largest_value_of_a_cubic() {
+        for (h, largest) in [(1.0, 2.0 / 27.0_f64.sqrt()), (3.0, 6.0)] {
+            let mut most = Interval::ZERO;
+            range(&[0.0, 2.0, -3.0, 1.0], h).raise(&mut most, h);
+            assert!(most.wider(1e-15).contains(largest) && most.width() < 3e-12 * largest, "{most}");
+        }
+    }
+
+    /// Where motions may not be, no value is known to be reached.
+    #[test]
+    fn exact_what_is_not_surely_reached_is_no_lower_bound() {
+        let mut most = Interval::ZERO;
+        range(&[0.0, 1.0], 2.0).raise(&mut most, 1.0);
+        assert!(most.lo() <= 1.0 && most.hi() >= 2.0, "{most}");
+    }
+
+    #[test]
+    fn exact_a_touch_is_no_gap() {
+        assert!(range(&[0.1, -1.0, 3.0], 1.0).is_positive(false, false));
+        assert!(!range(&[0.25, -1.0, 1.0], 1.0).is_positive(false, false), "(t - 1/2)²");
+        assert!(!range(&[0.25, -1.0, 0.9], 1.0).is_positive(false, false));
+        let rises = range(&[0.0, 1.0, 1.0], 1.0);
+        assert!(rises.is_positive(true, false) && !rises.is_positive(false, false));
+        let falls = range(&[1.0, -1.0], 1.0);
+        assert!(falls.is_positive(false, true) && !falls.is_positive(false, false));
+        // It begins by falling.
+        assert!(!range(&[0.0, -1.0, 3.0], 1.0).is_positive(true, false));
+    }
+}

@@ -1,0 +1,274 @@
+//! From one event of a motion to the next: a flight to a wall or to a crest of the force, a contact to its end.
+
+use crate::crossing::{Crossing, Section, cross};
+use crate::equations::{Equations, Mode};
+use crate::event::Event;
+use crate::number::{OMEGA, STATE, State};
+use crate::range::Range;
+use crate::small::Matrix;
+use crate::step::{Piece, States, step};
+use crate::{Failure, Interval};
+use retune_model::Side;
+
+/// An event and the state there, `[r, w, x1, v1, φ, ω]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// What happens.
+    pub event: Event,
+    /// The state; the fixed coordinate has its value to rounding.
+    pub state: [f64; STATE],
+    /// How it changes with ω from motion to motion of a family; the last is one.
+    pub slope: [f64; STATE],
+}
+
+/// The slope of a motion that is not one of a family.
+pub const ALONE: [f64; STATE] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+
+/// How to get from an event to the next one: the steps to near it, and which it is.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Lengths of the steps.
+    pub steps: Vec<f64>,
+    /// The event.
+    pub end: Event,
+    /// The state there, to rounding.
+    pub reached: [f64; STATE],
+}
+
+/// A segment of all motions of a box of first states.
+#[derive(Clone, Debug)]
+pub struct Passage {
+    /// What the motion from the centre has come to.
+    pub centre: State,
+    /// The derivatives of the state at the end by that at the beginning.
+    pub by: Matrix,
+    /// What is known in between.
+    pub pieces: Vec<Piece>,
+    /// All motions about the end, in the coordinates of the mode, and from where to where it may be, counted from the end of the last piece.
+    pub near: State,
+    /// When the end is reached, counted from that of the last piece.
+    pub delay: Interval,
+}
+
+/// The least step, of a second or of a second per root of a metre.
+const LEAST: f64 = 1e-7;
+/// The greatest step.
+const GREATEST: f64 = 0.5;
+/// Most steps of a segment.
+const STEPS: usize = 4000;
+/// Largest share of the states that a step of a plan leaves out: rounding.
+const LEFT_OUT: f64 = 1e-17;
+/// Places of a step at which an event is looked for.
+const PLACES: usize = 32;
+/// Halvings to find it.
+const HALVINGS: usize = 60;
+
+/// What the damper does after an event.
+fn mode_after(event: Event) -> Mode {
+    match event {
+        Event::Touch(side) => Mode::Contact(side),
+        Event::Crest | Event::Leave(_) => Mode::Flight,
+    }
+}
+
+/// A state as the first states of a mode, the fixed coordinate exact.
+fn first(equations: &Equations, node: &Node, away: &State) -> States {
+    let mut centre = node.state.map(Interval::point);
+    centre[OMEGA] = equations.omega;
+    let (mut away, mut slope) = (*away, node.slope);
+    away[node.event.fixed()] = Interval::ZERO;
+    match node.event {
+        Event::Crest => centre[4] = Interval::ZERO,
+        Event::Touch(side) => {
+            let sign = Interval::point(side.sign());
+            (centre[0], centre[1], away[1]) = (Interval::ZERO, sign * centre[1], sign * away[1]);
+            slope[1] *= side.sign();
+        }
+        Event::Leave(side) => centre[0] = equations.wall(side).unwrap_or(Interval::ENTIRE),
+    }
+    States::first(&centre, away, &slope)
+}
+
+/// The quantities that are above zero until an event ends the segment, each with the event and its section.
+fn events(equations: &Equations, mode: Mode, crest: Option<Interval>) -> Vec<(Event, Section)> {
+    let mut all = Vec::new();
+    match mode {
+        Mode::Contact(side) => {
+            let section = Section { index: 0, value: Interval::ZERO, is_rising: false };
+            all.push((Event::Leave(side), section));
+        }
+        Mode::Flight => {
+            for side in Side::BOTH {
+                if let Some(value) = equations.wall(side) {
+                    let section = Section { index: 0, value, is_rising: side == Side::Obstacle };
+                    all.push((Event::Touch(side), section));
+                }
+            }
+            all.extend(crest.map(|value| (Event::Crest, Section { index: 4, value, is_rising: true })));
+        }
+    }
+    all
+}
+
+/// How far a motion is from a section, during a piece.
+fn distance(piece: &Piece, section: &Section) -> Range {
+    let series = piece.series_of(|motion| {
+        let mut series: Vec<Interval> = motion.iter().map(|c| c[section.index]).collect();
+        series[0] = series[0] - section.value;
+        if section.is_rising { series.into_iter().map(|c| -c).collect() } else { series }
+    });
+    Range::new(series, piece.h)
+}
+
+/// The first event during a piece, by its middles: when and which.
+fn first_event(sections: &[(Event, Section)], piece: &Piece) -> Option<(f64, Event)> {
+    let found = sections.iter().filter_map(|(event, section)| {
+        let range = distance(piece, section);
+        let is_past = |t: f64| range.at(Interval::point(t)).mid() <= 0.0;
+        let place = |i: usize| piece.h * (i as f64 / PLACES as f64);
+        let next = (1..=PLACES).find(|&i| is_past(place(i)))?;
+        let (mut a, mut b) = (place(next - 1), place(next));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            if is_past(middle) { b = middle } else { a = middle }
+        }
+        Some((b, *event))
+    });
+    found.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Plans the way from an event to the next one. `crest` is the phase of a crest at which it ends, if it comes to it.
+///
+/// # Errors
+/// No next event, or none that is crossed with a speed.
+pub fn plan(equations: &Equations, node: &Node, crest: Option<Interval>) -> Result<Plan, Failure> {
+    let states = first(equations, node, &[Interval::ZERO; STATE]);
+    plan_from(equations, mode_after(node.event), states, crest)
+}
+
+fn plan_from(
+    equations: &Equations,
+    mode: Mode,
+    mut states: States,
+    crest: Option<Interval>,
+) -> Result<Plan, Failure> {
+    let (mut steps, mut h) = (Vec::new(), GREATEST);
+    let sections = events(equations, mode, crest);
+    while steps.len() < STEPS {
+        let (next, piece, taken) = sharp_step(equations, mode, &states, h)?;
+        if let Some((when, end)) = first_event(&sections, &piece) {
+            let (near, _) = step(equations, mode, &states, when).ok_or(Failure::Graze { event: end })?;
+            let section = sections.iter().find(|(event, _)| *event == end).map(|(_, section)| section);
+            let crossing = section.and_then(|section| cross(equations, mode, &near, section));
+            let crossing = crossing.ok_or(Failure::Graze { event: end })?;
+            steps.push(when);
+            let reached = in_flight(equations, mode, &crossing).map(Interval::mid);
+            return Ok(Plan { steps, end, reached });
+        }
+        (states, h) = (next, (1.5 * taken).min(GREATEST));
+        steps.push(taken);
+    }
+    Err(Failure::Endless { steps: STEPS })
+}
+
+/// A step that leaves out no more than rounding, as long as possible: what it comes to, what is known in between, and its length.
+fn sharp_step(
+    equations: &Equations,
+    mode: Mode,
+    states: &States,
+    longest: f64,
+) -> Result<(States, Piece, f64), Failure> {
+    let mut h = longest;
+    while h > LEAST {
+        match step(equations, mode, states, h) {
+            Some((next, piece)) if piece.left_out() <= LEFT_OUT => return Ok((next, piece, h)),
+            _ => h *= 0.75,
+        }
+    }
+    Err(too_wide(LEAST, states))
+}
+
+/// A crossing in the coordinates of a flight.
+fn in_flight(equations: &Equations, mode: Mode, crossing: &Crossing) -> State {
+    let mut centre = crossing.centre;
+    if let Mode::Contact(side) = mode {
+        centre[0] = equations.wall(side).unwrap_or(Interval::ENTIRE);
+        centre[1] = Interval::point(side.sign()) * centre[1];
+    }
+    centre
+}
+
+/// Follows all motions of a box about a node, by the steps of a plan, and proves that they come to its end and to nothing before.
+///
+/// # Errors
+/// It cannot be proven for a box as wide.
+pub fn follow(
+    equations: &Equations,
+    node: &Node,
+    away: &State,
+    plan: &Plan,
+    crest: Option<Interval>,
+) -> Result<Passage, Failure> {
+    let mode = mode_after(node.event);
+    let mut states = first(equations, node, away);
+    let sections = events(equations, mode, crest);
+    let mut pieces = Vec::with_capacity(plan.steps.len());
+    for (k, &h) in plan.steps.iter().enumerate() {
+        let (next, piece) = step(equations, mode, &states, h).ok_or_else(|| too_wide(h, &states))?;
+        let is_last = k + 1 == plan.steps.len();
+        for (event, section) in sections.iter().filter(|(event, _)| *event != Event::Crest) {
+            let starts = k == 0 && starts_at(node.event, *event);
+            let ends = is_last && *event == plan.end;
+            if !distance(&piece, section).is_positive(starts, ends) {
+                return Err(Failure::Graze { event: *event });
+            }
+        }
+        pieces.push(piece);
+        states = next;
+    }
+    let section = sections.iter().find(|(event, _)| *event == plan.end).map(|(_, section)| section);
+    let crossing = section.and_then(|section| cross(equations, mode, &states, section));
+    let crossing = crossing.ok_or(Failure::Graze { event: plan.end })?;
+    // The walls that it does not end at are not reached about the end either.
+    for (event, section) in sections.iter().filter(|(event, _)| ![Event::Crest, plan.end].contains(event)) {
+        let off = crossing.near[section.index] - section.value;
+        if !(if section.is_rising { off.is_negative() } else { off.is_positive() }) {
+            return Err(Failure::Graze { event: *event });
+        }
+    }
+    let centre = in_flight(equations, mode, &crossing);
+    let by = match mode {
+        Mode::Flight => crossing.by,
+        Mode::Contact(side) => turned(side.sign(), &crossing.by),
+    };
+    Ok(Passage { centre, by, pieces, near: crossing.near, delay: crossing.delay })
+}
+
+/// Whether a motion is on the section of an event when it starts from another: on a wall that it leaves, or whose contact begins.
+fn starts_at(from: Event, event: Event) -> bool {
+    match (from, event) {
+        (Event::Touch(_), Event::Leave(_)) => true,
+        (Event::Leave(left), Event::Touch(wall)) => left == wall,
+        _ => false,
+    }
+}
+
+/// Derivatives by the state of a contact as those by a state of a flight: the speed changes its sign at the structure's wall.
+fn turned(sign: f64, by: &Matrix) -> Matrix {
+    let sign = |i: usize| Interval::point(if i == 1 { sign } else { 1.0 });
+    std::array::from_fn(|i| std::array::from_fn(|j| sign(i) * by[i][j] * sign(j)))
+}
+
+fn too_wide(least: f64, states: &States) -> Failure {
+    Failure::Step { least, width: states.all().iter().map(|x| x.width()).fold(0.0, f64::max) }
+}
+
+/// Where the rest of a contact ends that has come to a state `[q, w, x1, v1, φ, ω]`.
+///
+/// # Errors
+/// See [`plan`].
+pub fn rest_of_contact(equations: &Equations, side: Side, state: [f64; STATE]) -> Result<Node, Failure> {
+    let states = States::first(&state.map(Interval::point), [Interval::ZERO; STATE], &ALONE);
+    let Plan { end, reached, .. } = plan_from(equations, Mode::Contact(side), states, None)?;
+    Ok(Node { event: end, state: reached, slope: ALONE })
+}

@@ -1,0 +1,83 @@
+//! Matrices of as many rows as a state has, in intervals, and a frame of nearly orthogonal directions with its inverse.
+
+use crate::Interval;
+use crate::number::{STATE, State};
+use nalgebra::SMatrix;
+
+/// A matrix in intervals, `[row][column]`.
+pub type Matrix = [State; STATE];
+
+/// The identity.
+pub fn identity() -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Interval::ONE } else { Interval::ZERO }))
+}
+
+/// A matrix times a vector.
+pub fn times_vector(a: &Matrix, x: &State) -> State {
+    std::array::from_fn(|i| (0..STATE).fold(Interval::ZERO, |sum, j| sum + a[i][j] * x[j]))
+}
+
+/// A matrix times a matrix.
+pub fn times(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..STATE).fold(Interval::ZERO, |sum, k| sum + a[i][k] * b[k][j]))
+    })
+}
+
+/// Sums of the coordinates.
+pub fn plus(a: &State, b: &State) -> State {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// Coordinates of a box in directions that turn with the flow, so that boxes do not grow by being wrapped in boxes (R. Lohner, 1987).
+///
+/// The directions are the columns of `S⁻¹ Q` with a nearly orthogonal `Q` and a diagonal `S` of powers of two, exact as factors.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    q: SMatrix<f64, STATE, STATE>,
+    scales: [f64; STATE],
+}
+
+impl Frame {
+    /// The directions of the coordinates.
+    pub fn identity() -> Self {
+        Self { q: SMatrix::identity(), scales: [1.0; STATE] }
+    }
+
+    /// Directions near the columns of a matrix, the one with the largest column times `weights` first, orthogonal once scaled.
+    pub fn along(columns: &Matrix, weights: &[f64; STATE], scales: [f64; STATE]) -> Self {
+        let entry = |i: usize, j: usize| scales[i] * columns[i][j].mid() * weights[j];
+        let all = SMatrix::<f64, STATE, STATE>::from_fn(entry);
+        let mut order: [usize; STATE] = std::array::from_fn(|j| j);
+        order.sort_by(|a, b| all.column(*b).norm().total_cmp(&all.column(*a).norm()));
+        let sorted = SMatrix::<f64, STATE, STATE>::from_fn(|i, j| all[(i, order[j])]);
+        Self { q: sorted.qr().q(), scales }
+    }
+
+    /// Its directions as the columns of a matrix.
+    pub fn matrix(&self) -> Matrix {
+        let scaled = |i: usize, j: usize| Interval::point(self.q[(i, j)]) / Interval::point(self.scales[i]);
+        std::array::from_fn(|i| std::array::from_fn(|j| scaled(i, j)))
+    }
+
+    /// The coordinates of all vectors of a box along the directions; none if these are not nearly orthogonal.
+    ///
+    /// With `Qᵀ Q = I + Δ` and `δ = ‖Δ‖∞ < 1` the inverse of `Q` is `(I + Δ)⁻¹ Qᵀ`, and `(I + Δ)⁻¹ b` differs from `b` by at most `δ/(1 - δ) ‖b‖∞`.
+    pub fn coordinates(&self, x: &State) -> Option<State> {
+        let entries = |i: usize, j: usize| Interval::point(self.q[(i, j)]);
+        let q: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entries(i, j)));
+        let transposed: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entries(j, i)));
+        let (one, square) = (identity(), times(&transposed, &q));
+        let row = |i: usize| (0..STATE).fold(Interval::ZERO, |sum, j| sum + (square[i][j] - one[i][j]).abs());
+        let delta = (0..STATE).map(|i| row(i).hi()).fold(0.0, f64::max);
+        if delta >= 0.5 || delta.is_nan() {
+            return None;
+        }
+        let scaled = std::array::from_fn(|i| Interval::point(self.scales[i]) * x[i]);
+        let b = times_vector(&transposed, &scaled);
+        let size = Interval::point(b.iter().map(|b| b.magnitude()).fold(0.0, f64::max));
+        let delta = Interval::point(delta);
+        let off = Interval::around_zero((delta / (Interval::ONE - delta) * size).hi());
+        Some(b.map(|b| b + off))
+    }
+}

@@ -1,0 +1,198 @@
+//! Whether small changes of a motion die out: its multipliers, the eigenvalues of the product of all segments' derivatives.
+
+use crate::Interval;
+use crate::number::FREE;
+use crate::orbit::Orbit;
+use crate::segment::Passage;
+use nalgebra::{Matrix4, SMatrix};
+use serde::Serialize;
+use std::array;
+
+/// Where between the largest multiplier in doubles and 1 a bound on it is tried.
+const SHARP: [f64; 5] = [1e-6, 1e-4, 1e-2, 0.1, 0.5];
+
+/// A matrix of the free coordinates in intervals.
+type Section = [[Interval; FREE]; FREE];
+
+/// What is proven of the multipliers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stability {
+    /// All are smaller than this, which is below 1.
+    Stable(f64),
+    /// One is larger than 1.
+    Unstable,
+    /// Neither is proven.
+    Open,
+}
+
+/// Whether a motion is stable, from what is known of its segments.
+pub fn stability(orbit: &Orbit, passages: &[Passage]) -> Stability {
+    let segments: Vec<Section> =
+        passages.iter().enumerate().map(|(k, passage)| section(orbit, k, passage)).collect();
+    stability_of(&segments)
+}
+
+/// The derivatives of the free coordinates at the end of a segment by those at its beginning.
+fn section(orbit: &Orbit, k: usize, passage: &Passage) -> Section {
+    let (from, to) = (orbit.nodes[k].event, orbit.nodes[(k + 1) % orbit.nodes.len()].event);
+    let (rows, columns): (Vec<usize>, Vec<usize>) = (to.free().collect(), from.free().collect());
+    array::from_fn(|i| array::from_fn(|j| passage.by[rows[i]][columns[j]]))
+}
+
+fn times(a: &Section, b: &Section) -> Section {
+    let entry = |i: usize, j: usize| (0..FREE).fold(Interval::ZERO, |sum, k| sum + a[i][k] * b[k][j]);
+    array::from_fn(|i| array::from_fn(|j| entry(i, j)))
+}
+
+/// Whether all multipliers of all matrices in intervals are below 1, or one of each is above.
+fn stability_of(segments: &[Section]) -> Stability {
+    match are_below(segments, 1.0) {
+        None => Stability::Open,
+        Some(false) => Stability::Unstable,
+        Some(true) => {
+            let product = segments.iter().fold(Matrix4::identity(), |product, m| middle(m) * product);
+            let largest = product.complex_eigenvalues().iter().fold(0.0, |most, x| f64::max(most, x.norm()));
+            // The bound on the multipliers is the product of those on the segments.
+            let tried = SHARP.iter().filter_map(|share| {
+                let bound = (largest + share * (1.0 - largest)).powf(1.0 / segments.len() as f64);
+                let power =
+                    segments.iter().fold(Interval::ONE, |power, _| power * Interval::point(bound)).hi();
+                (power < 1.0 && are_below(segments, bound) == Some(true)).then_some(power)
+            });
+            Stability::Stable(tried.into_iter().next().unwrap_or(1.0))
+        }
+    }
+}
+
+fn middle(matrix: &Section) -> Matrix4<f64> {
+    Matrix4::from_fn(|i, j| matrix[i][j].mid())
+}
+
+fn points(matrix: &Matrix4<f64>) -> Section {
+    array::from_fn(|i| array::from_fn(|j| Interval::point(matrix[(i, j)])))
+}
+
+/// Whether all multipliers of the product of so many matrices, each over `bound`, are below 1 (true), or one is above (false); none if neither is proven.
+///
+/// Let symmetric `V₀, …, Vₘ = V₀` have positive definite `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ`. Then `V₀ - Nᵀ V₀ N` is positive definite for the product `N` too, so `xᵀ V₀ x`
+/// falls along `x, N x, N² x, …`, and no multiplier has the size 1, as `v* V₀ v` would not fall for its vector. If `V₀` is positive definite
+/// itself, all are below 1 (P. Stein, 1952). If `xᵀ V₀ x` is negative for some `x`, it stays so and falls for ever: `Nᵏ x` does not tend to
+/// zero, and one is above 1.
+fn are_below(segments: &[Section], bound: f64) -> Option<bool> {
+    let scaled: Vec<Section> =
+        segments.iter().map(|m| m.map(|row| row.map(|x| x / Interval::point(bound)))).collect();
+    // Any symmetric matrices will do that pass.
+    let forms = forms(&scaled.iter().map(middle).collect::<Vec<_>>())?;
+    if are_falling(&scaled, &forms) { is_positive(&forms[0]) } else { None }
+}
+
+/// The symmetric matrices `Vₖ` with `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ = 1`, in doubles.
+fn forms(middles: &[Matrix4<f64>]) -> Option<Vec<Matrix4<f64>>> {
+    let before =
+        |k: usize, v: &Matrix4<f64>| symmetric(Matrix4::identity() + middles[k].transpose() * v * middles[k]);
+    let segments = 0..middles.len();
+    let product = middles.iter().fold(Matrix4::identity(), |product, n| n * product);
+    let right = segments.clone().rev().fold(Matrix4::zeros(), |v, k| before(k, &v));
+    let equations = SMatrix::<f64, 16, 16>::identity() - product.transpose().kronecker(&product.transpose());
+    let solution = equations.lu().solve(&SMatrix::<f64, 16, 1>::from_column_slice(right.as_slice()))?;
+    let first = symmetric(Matrix4::from_column_slice(solution.as_slice()));
+    let mut all = vec![first; middles.len()];
+    for k in segments.skip(1).rev() {
+        all[k] = before(k, &all[(k + 1) % middles.len()]);
+    }
+    Some(all)
+}
+
+fn symmetric(a: Matrix4<f64>) -> Matrix4<f64> {
+    (a + a.transpose()) * 0.5
+}
+
+/// Whether all `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ` are positive definite.
+fn are_falling(scaled: &[Section], forms: &[Matrix4<f64>]) -> bool {
+    scaled.iter().enumerate().all(|(k, n)| {
+        let turned: Section = array::from_fn(|i| array::from_fn(|j| n[j][i]));
+        let (v, next) = (points(&forms[k]), points(&forms[(k + 1) % forms.len()]));
+        let after = times(&times(&turned, &next), n);
+        is_positive_definite(&array::from_fn(|i| array::from_fn(|j| v[i][j] - after[i][j])))
+    })
+}
+
+/// Whether a symmetric matrix is positive definite (true), or negative in some direction (false); none if neither is proven.
+fn is_positive(form: &Matrix4<f64>) -> Option<bool> {
+    let v = points(form);
+    if is_positive_definite(&v) {
+        return Some(true);
+    }
+    let axes = form.symmetric_eigen();
+    let lowest = axes.eigenvectors.column(axes.eigenvalues.imin());
+    let x: [Interval; FREE] = array::from_fn(|i| Interval::point(lowest[i]));
+    let terms = (0..FREE).flat_map(|i| (0..FREE).map(move |j| x[i] * v[i][j] * x[j]));
+    terms.fold(Interval::ZERO, |sum, term| sum + term).is_negative().then_some(false)
+}
+
+/// Whether all symmetric matrices in intervals are positive definite: all pivots of Gauss's elimination are positive.
+fn is_positive_definite(matrix: &Section) -> bool {
+    let mut a = *matrix;
+    for k in 0..FREE {
+        if !a[k][k].is_positive() {
+            return false;
+        }
+        for i in k + 1..FREE {
+            for j in k + 1..FREE {
+                a[i][j] = a[i][j] - a[i][k] * a[k][j] / a[k][k];
+            }
+        }
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block-triangular matrix with the eigenvalues `a`, `b` and `r e^{±iα}`, in other coordinates.
+    fn with(a: f64, b: f64, r: f64, angle: f64) -> Section {
+        let (c, s) = (r * angle.cos(), r * angle.sin());
+        let m = [[a, 3.0, 0.0, 7.0], [0.0, b, 5.0, 0.0], [0.0, 0.0, c, -s], [0.0, 0.0, s, c]];
+        let m: Section = m.map(|row| row.map(Interval::point));
+        let mut shear: Section =
+            array::from_fn(|i| array::from_fn(|j| Interval::point(if i == j { 1.0 } else { 0.0 })));
+        (shear[3][0], shear[2][1]) = (Interval::point(2.0), Interval::point(-1.0));
+        let mut back = shear;
+        (back[3][0], back[2][1]) = (Interval::point(-2.0), Interval::point(1.0));
+        times(&times(&shear, &m), &back)
+    }
+
+    #[test]
+    fn exact_the_bound_is_just_above_the_largest_multiplier() {
+        for (matrix, largest) in [(with(0.5, -0.3, 0.2, 1.0), 0.5), (with(0.1, -0.9, 0.99, 2.0), 0.99)] {
+            let Stability::Stable(bound) = stability_of(&[matrix]) else { panic!("not stable") };
+            assert!(bound >= largest && bound < 1.03 * largest, "{bound} {largest}");
+        }
+    }
+
+    #[test]
+    fn exact_what_is_unstable_is_not_called_stable() {
+        for matrix in [with(1.01, 0.5, 0.5, 1.0), with(0.2, -1.5, 0.5, 1.0), with(0.3, 0.1, 1.001, 1.0)] {
+            assert_eq!(stability_of(&[matrix]), Stability::Unstable);
+        }
+        for matrix in [with(1.0, 0.5, 0.5, 1.0), with(0.2, -1.0, 0.5, 1.0), with(0.3, 0.1, 1.0, 1.0)] {
+            let wide = matrix.map(|row| row.map(|x| x.wider(1e-9)));
+            assert_eq!(stability_of(&[wide]), Stability::Open);
+        }
+    }
+
+    /// Each of two matrices alone is unstable, their product stable; and the other way round.
+    #[test]
+    fn exact_of_several_segments_the_product_counts() {
+        let diagonal = |d: [f64; 4]| -> Section {
+            array::from_fn(|i| array::from_fn(|j| Interval::point(if i == j { d[i] } else { 0.0 })))
+        };
+        let pair = [diagonal([4.0, 0.1, 0.2, 0.3]), diagonal([0.125, 5.0, 0.2, 0.3])];
+        let Stability::Stable(bound) = stability_of(&pair) else { panic!("not stable") };
+        assert!((0.5..0.51).contains(&bound), "{bound}");
+        let pair = [diagonal([4.0, 0.1, 0.2, 0.3]), diagonal([0.26, 5.0, 0.2, 0.3])];
+        assert_eq!(stability_of(&pair), Stability::Unstable);
+    }
+}

@@ -1,0 +1,277 @@
+//! One validated step of the motions from a set of states, together with their derivatives by the first state.
+
+use crate::Interval;
+use crate::equations::{Equations, Mode, at};
+use crate::number::{Gradient, OMEGA, STATE, State};
+use crate::small::{Frame, Matrix, identity, plus, times, times_vector};
+
+/// Terms of a Taylor polynomial: the first power that is left out.
+pub const ORDER: usize = 20;
+/// A coordinate that hardly moves, in SI units.
+const SMALL: f64 = 1e-6;
+/// Attempts to find a box that no motion leaves during a step.
+const ATTEMPTS: usize = 24;
+/// How much a box that is too small is widened, as a share of its width.
+const WIDER: f64 = 0.1;
+
+/// The states that motions have come to, from all first states `x` of a box around `x̂`.
+///
+/// The motion from `x̂` is in `middle + frame · spread`, and another one is away from it by `by · (x - x̂)`: the mean value theorem, with
+/// the derivatives at all states of the box.
+#[derive(Clone, Debug)]
+pub struct States {
+    middle: [f64; STATE],
+    frame: Frame,
+    spread: State,
+    /// Derivatives by the first state.
+    pub by: Matrix,
+    /// `x - x̂`.
+    away: State,
+}
+
+impl States {
+    /// The first states: `x̂` in `centre`, and what they are away from it in `away`, which contains zero: in the directions of the coordinates, but
+    /// for the last one, along which the whole state changes by `slope`.
+    pub fn first(centre: &State, away: State, slope: &[f64; STATE]) -> Self {
+        let middle = centre.map(Interval::mid);
+        let spread = std::array::from_fn(|i| centre[i] - Interval::point(middle[i]));
+        let mut by = identity();
+        (0..STATE).for_each(|i| by[i][OMEGA] = Interval::point(slope[i]));
+        Self { middle, frame: Frame::identity(), spread, by, away }
+    }
+
+    /// What the motion from `x̂` has come to.
+    pub fn centre(&self) -> State {
+        plus(&self.middle.map(Interval::point), &times_vector(&self.frame.matrix(), &self.spread))
+    }
+
+    /// What all of them have come to.
+    pub fn all(&self) -> State {
+        plus(&self.centre(), &times_vector(&self.by, &self.away))
+    }
+}
+
+/// What is known of all motions during a step.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// What the damper does.
+    pub mode: Mode,
+    /// The length of the step.
+    pub h: f64,
+    /// Taylor coefficients at the beginning.
+    pub at_start: Vec<State>,
+    /// Taylor coefficients anywhere in the step; the last one, of the power that `at_start` has no more, bounds what a polynomial leaves out.
+    pub anywhere: Vec<State>,
+}
+
+/// A box that the motions from all states of `start` are in while the independent variable changes by any of `h`, which contains zero.
+///
+/// If `start + h f(E)` is in `E`, they are in `E` (Picard and Lindelöf): a motion that left `E` first would be in `E` up to then, so its change
+/// would be in `h f(E)`.
+pub fn enclosure(equations: &Equations, mode: Mode, start: &State, h: Interval) -> Option<State> {
+    let reached = |e: &State| {
+        let slopes = equations.derivative(mode, e);
+        std::array::from_fn(|i| start[i] + h * slopes[i])
+    };
+    fixed(reached(start), reached)
+}
+
+/// A box that holds what a map makes of it, from a first guess.
+fn fixed(guess: State, map: impl Fn(&State) -> State) -> Option<State> {
+    let mut e = guess;
+    for _ in 0..ATTEMPTS {
+        e = e.map(|x| x.wider(WIDER * x.width() + f64::MIN_POSITIVE));
+        let next = map(&e);
+        if (0..STATE).all(|i| next[i].is_in(e[i])) {
+            return Some(next);
+        }
+        if !next.iter().all(|x| x.is_bounded()) {
+            return None;
+        }
+        e = next;
+    }
+    None
+}
+
+/// The derivatives by the state at the beginning of a step, anywhere in it, where the motions are in `e`: `W` with `I + h f'(e) W` in `W`.
+pub fn derivatives_within(equations: &Equations, mode: Mode, e: &State, h: Interval) -> Option<Matrix> {
+    let slopes = equations.derivative(mode, &Gradient::coordinates(e)).map(|slope| slope.by);
+    let mut within = identity();
+    for j in 0..STATE {
+        let unit: State = std::array::from_fn(|i| within[i][j]);
+        let change = |column: &State| times_vector(&slopes, column).map(|slope| h * slope);
+        let column = fixed(plus(&unit, &change(&unit)), |column| plus(&unit, &change(column)))?;
+        (0..STATE).for_each(|i| within[i][j] = column[i]);
+    }
+    Some(within)
+}
+
+/// A step of the length `h`: what the states have become, and what is known in between. None if no box was found that the motions stay in.
+pub fn step(equations: &Equations, mode: Mode, states: &States, h: f64) -> Option<(States, Piece)> {
+    step_of(ORDER, equations, mode, states, h)
+}
+
+fn step_of(
+    order: usize,
+    equations: &Equations,
+    mode: Mode,
+    states: &States,
+    h: f64,
+) -> Option<(States, Piece)> {
+    let (length, during) = (Interval::point(h), Interval::new(0.0, h));
+    let all = states.all();
+    let e = enclosure(equations, mode, &all, during)?;
+    let within = derivatives_within(equations, mode, &e, during)?;
+    let rough = equations.series(mode, &Gradient::coordinates(&e), order);
+    let last = (0..order).fold(Interval::ONE, |power, _| power * length);
+    let left_out: State = rough[order].map(|c| c.value * last);
+    let by_left_out = times(&rough[order].map(|c| c.by.map(|by| by * last)), &within);
+
+    let over = |start: &State| {
+        let series = equations.series(mode, &Gradient::coordinates(start), order - 1);
+        let by = |j: usize| at(&series.iter().map(|c| c.map(|c| c.by[j])).collect::<Vec<_>>(), length);
+        let columns: [State; STATE] = std::array::from_fn(by);
+        let by: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i] + by_left_out[i][j]));
+        (by, series.iter().map(|c| c.map(|c| c.value)).collect::<Vec<_>>())
+    };
+    let (by_all, at_start) = over(&all);
+    let by = times(&by_all, &states.by);
+
+    // The motion from the centre: that from the middle of its box, and what its box becomes.
+    let (by_centre, _) = over(&states.centre());
+    let from_middle = equations.series(mode, &states.middle.map(Interval::point), order - 1);
+    let reached = plus(&at(&from_middle, length), &left_out);
+    let middle = reached.map(Interval::mid);
+    let turned = times(&by_centre, &states.frame.matrix());
+    let frame = Frame::along(&turned, &states.spread.map(Interval::magnitude), equations.scales);
+    let rest: State = std::array::from_fn(|i| reached[i] - Interval::point(middle[i]));
+    let mut spread = frame.coordinates(&rest)?;
+    for j in 0..STATE {
+        let column = frame.coordinates(&turned.map(|row| row[j]))?;
+        (0..STATE).for_each(|i| spread[i] = spread[i] + column[i] * states.spread[j]);
+    }
+    let next = States { middle, frame, spread, by, away: states.away };
+    let anywhere = rough.iter().map(|c| c.map(|c| c.value)).collect();
+    Some((next, Piece { mode, h, at_start, anywhere }))
+}
+
+impl Piece {
+    /// The largest share of a coordinate that the polynomials leave out; of one that hardly moves, of [`SMALL`].
+    pub fn left_out(&self) -> f64 {
+        let power = |k: usize| self.h.powi(k as i32);
+        let share = |i: usize| {
+            let size: f64 = self.at_start.iter().enumerate().map(|(k, c)| c[i].magnitude() * power(k)).sum();
+            let order = self.at_start.len();
+            self.anywhere[order][i].magnitude() * power(order) / size.max(SMALL)
+        };
+        (0..STATE).map(share).fold(0.0, f64::max)
+    }
+
+    /// The Taylor series of one quantity over the step: the coefficients at its beginning, and the last one anywhere in it.
+    ///
+    /// `of` makes the series of the quantity from that of the motion.
+    pub fn series_of(&self, of: impl Fn(&[State]) -> Vec<Interval>) -> Vec<Interval> {
+        let order = self.at_start.len();
+        let mut series = of(&self.at_start);
+        series.truncate(order);
+        series.extend(of(&self.anywhere).get(order));
+        series
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_model::{Scene, Side};
+
+    fn scene() -> Equations {
+        let text = r#"{
+            "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 },
+            "damper": { "m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36, "contact": { "R": 2, "q": 0.318,
+                "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 } }
+        }"#;
+        let scene: Scene = serde_json::from_str(text).expect("a scene");
+        Equations::new(&scene).expect("equations")
+    }
+
+    /// The states from one state after `n` equal steps, and the motion between.
+    fn after(
+        order: usize,
+        equations: &Equations,
+        mode: Mode,
+        start: [f64; STATE],
+        h: f64,
+        n: usize,
+    ) -> (States, f64) {
+        let mut states = States::first(&start.map(Interval::point), [Interval::ZERO; STATE], &ALONE);
+        let mut left_out = 0.0;
+        for _ in 0..n {
+            let (next, piece) = step_of(order, equations, mode, &states, h / n as f64)
+                .unwrap_or_else(|| panic!("no step: {mode:?} {n}"));
+            left_out = f64::max(left_out, piece.left_out());
+            states = next;
+        }
+        (states, left_out)
+    }
+
+    /// The frequency changes nothing at the beginning.
+    const ALONE: [f64; STATE] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+
+    const STARTS: [(Mode, [f64; STATE], f64); 3] = [
+        (Mode::Flight, [0.2, -1.0, 0.05, 0.3, 1.0, 6.3], 0.07),
+        (Mode::Contact(Side::Primary), [0.05, 0.8, 0.05, 0.3, 1.0, 6.3], 0.02),
+        (Mode::Contact(Side::Obstacle), [0.06, -0.3, 0.05, 0.3, 2.0, 6.3], 0.02),
+    ];
+
+    /// In one step a polynomial of the fifth degree leaves out much more than rounding; in sixteen of the twentieth order, nothing. Both enclose the same motion and the same derivatives.
+    #[test]
+    fn invariant_one_long_step_holds_what_many_short_ones_say() {
+        for (mode, start, h) in STARTS {
+            let equations = scene();
+            let (one, rough) = after(6, &equations, mode, start, h, 1);
+            let (many, sharp) = after(ORDER, &equations, mode, start, h, 16);
+            assert!(rough > 1e-10 && sharp < 1e-18, "{mode:?}: {rough:e} {sharp:e}");
+            for i in 0..STATE {
+                let (wide, narrow) = (one.centre()[i], many.centre()[i]);
+                assert!(narrow.is_in(wide.wider(narrow.width())), "{mode:?} {i}: {narrow} {wide}");
+                assert!(narrow.width() < 1e-13, "{mode:?} {i}: {narrow}");
+                for j in 0..STATE {
+                    let (wide, narrow) = (one.by[i][j], many.by[i][j]);
+                    assert!(wide.meet(narrow).is_some(), "{mode:?} {i} {j}: {narrow} {wide}");
+                }
+            }
+        }
+    }
+
+    /// Motions from the corners of a box stay in what the box becomes.
+    #[test]
+    fn invariant_a_box_holds_the_motions_from_its_corners() {
+        for (mode, start, h) in STARTS {
+            let equations = scene();
+            let r = 1e-5;
+            let mut states =
+                States::first(&start.map(Interval::point), [Interval::around_zero(r); STATE], &ALONE);
+            for _ in 0..8 {
+                states = step(&equations, mode, &states, h / 8.0).expect("a step").0;
+            }
+            for corner in 0..1 << STATE {
+                let from = std::array::from_fn(|i| start[i] + if corner >> i & 1 == 0 { -r } else { r });
+                let (own, _) = after(ORDER, &equations, mode, from, h, 8);
+                for i in 0..STATE {
+                    let (own, all) = (own.centre()[i], states.all()[i]);
+                    assert!(own.is_in(all.wider(own.width())), "{mode:?} {corner} {i}: {own} {all}");
+                    assert!(all.width() < 100.0 * r, "{mode:?} {i}: {all}");
+                }
+            }
+        }
+    }
+
+    /// A box that the motions leave during a step is no enclosure.
+    #[test]
+    fn contract_no_box_is_found_for_too_long_a_step() {
+        for (mode, start, _) in STARTS {
+            let start = start.map(Interval::point);
+            assert_eq!(enclosure(&scene(), mode, &start, Interval::new(0.0, 3.0)), None, "{mode:?}");
+        }
+    }
+}

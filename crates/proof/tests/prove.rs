@@ -1,0 +1,217 @@
+//! What is proven of motions of the paper's dampers, and what is not.
+
+use retune_model::{Coupled, Forcing, NonNegative, Parameter, Scene, Source};
+use retune_proof::{Failure, Interval, Stability, band, prove};
+
+const STRUCTURE: &str =
+    r#""primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 }"#;
+const SURFACES: &str = r#"{ "R": 2, "q": 0.318, "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4,
+    "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 }"#;
+
+fn scene(damper: &str, omega: f64) -> Scene {
+    let scene = serde_json::from_str(&format!("{{ {STRUCTURE}, \"damper\": {damper} }}")).expect("a scene");
+    Parameter::Omega.at(scene, omega).expect("a frequency")
+}
+
+/// The tuned SSVI NES of `results/ssvi`.
+fn tuned(omega: f64) -> Scene {
+    let damper = format!(
+        r#"{{ "m2": 60, "k2": 583.9214076890732, "c2": 94.97051688885965, "D": 0.02884977844071534,
+            "C": 1.1045445737539366, "contact": {SURFACES} }}"#
+    );
+    scene(&damper, omega)
+}
+
+/// That of `results/branches/isola`, whose damper strikes both walls in some motions.
+fn with_isola(omega: f64) -> Scene {
+    let damper = format!(
+        r#"{{ "m2": 60, "k2": 597.2737982898645, "c2": 95.72415913882642, "D": 0.6072128825900359,
+            "C": 0.03740508433492577, "contact": {SURFACES} }}"#
+    );
+    scene(&damper, omega)
+}
+
+fn tmd(omega: f64) -> Scene {
+    scene(r#"{ "m2": 60, "k2": 2000, "c2": 85 }"#, omega)
+}
+
+/// About the worst frequency: `results/branches/tuned`, branch 0, place 128.
+const WORST: (f64, [f64; 4]) =
+    (6.624128731514711, [-0.02820555307031281, 0.6083072322136185, 0.1833641390932657, -1.121482573779919]);
+
+/// Branch 0, place 160, beyond the period doubling at 7.5067 rad/s.
+const UNSTABLE: (f64, [f64; 4]) = (
+    7.531425492418166,
+    [-0.04618206941599734, 0.12210602044391623, 0.11191069155584588, -0.23375919700486558],
+);
+/// `results/branches/isola`, branch 4, place 18.
+const BOTH_WALLS: (f64, [f64; 4]) =
+    (6.025174847652773, [-0.01742425621462693, 0.7113522489291041, 0.024470135969196602, 1.5288347514858798]);
+
+/// Whether an interval is as narrow as the share `narrow` of a value and holds it, up to the share `off`.
+fn is_about(interval: Interval, value: f64, [narrow, off]: [f64; 2]) -> bool {
+    interval.width() <= narrow * value && interval.wider(off * value).contains(value)
+}
+
+/// Off by the rounding of a closed form; by what the solver's contacts may be.
+const CLOSED: [f64; 2] = [1e-10, 3e-15];
+const SOLVER: [f64; 2] = [1e-10, 1e-10];
+
+#[test]
+fn exact_the_closed_form_of_a_tmd_is_in_the_proven_intervals() {
+    for omega in [2.5, 5.0, 5.9, 6.3, 7.3] {
+        for source in [Source::Force as fn(NonNegative) -> Source, Source::Imbalance, Source::Base] {
+            let mut scene = tmd(omega);
+            let amplitude = NonNegative::new(if matches!(source(NonNegative::default()), Source::Base(_)) {
+                0.02
+            } else {
+                30.5
+            });
+            let source = source(amplitude.expect("an amplitude"));
+            scene.forcing = Forcing { source, ..scene.forcing };
+            let steady =
+                Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper")).steady(omega);
+            let proven = prove(&scene, [0.0; 4], 1).expect("a proof");
+            assert!(proven.impacts.is_empty() && proven.width < 1e-11, "{proven:?}");
+            let Stability::Stable(_) = proven.stability else { panic!("{proven:?}") };
+            assert!(is_about(proven.largest.energy, steady.e1_max, CLOSED), "{proven:?} {steady:?}");
+            assert!(is_about(proven.largest.stroke, steady.stroke(), CLOSED), "{proven:?} {steady:?}");
+            assert_eq!(proven.largest.contact_force.hi(), 0.0);
+        }
+    }
+}
+
+#[test]
+fn reference_the_tuned_dampers_motion_at_its_worst_frequency_is_proven() {
+    let proven = prove(&tuned(WORST.0), WORST.1, 1).expect("a proof");
+    assert_eq!(proven.impacts, "S");
+    assert!(proven.width < 1e-10 && proven.alone_within > 100.0 * proven.width, "{proven:?}");
+    // The solver's multiplier, energy, stroke and contact force, from the same line.
+    let Stability::Stable(bound) = proven.stability else { panic!("{proven:?}") };
+    assert!((0.6602065..0.6603).contains(&bound), "{bound}");
+    assert!(is_about(proven.largest.energy, 225.7923331035133, SOLVER), "{proven:?}");
+    assert!(is_about(proven.largest.stroke, 0.5111341429141772, SOLVER), "{proven:?}");
+    assert!(is_about(proven.largest.contact_force, 23964.417596389438, SOLVER), "{proven:?}");
+    assert!(proven.largest.energy.hi() < 225.82);
+}
+
+#[test]
+fn reference_unstable_motions_are_proven_and_not_called_stable() {
+    for (scene, start, periods, impacts) in
+        [(tuned(UNSTABLE.0), UNSTABLE.1, 1, "S"), (with_isola(BOTH_WALLS.0), BOTH_WALLS.1, 2, "OOS")]
+    {
+        let proven = prove(&scene, start, periods).expect("a proof");
+        assert_eq!((proven.stability, proven.impacts.as_str()), (Stability::Unstable, impacts));
+    }
+}
+
+/// What does not come back is refused. From a guess that is only poor, Newton's iteration finds a motion, and what is proven is proven of that.
+#[test]
+fn contract_a_wrong_guess_is_refused() {
+    let (omega, start) = WORST;
+    let own = prove(&tuned(omega), start, 1).expect("a proof");
+    let mut refused = 0;
+    for by in [1.5, 0.5, 0.1, 0.0, -1.0] {
+        match prove(&tuned(omega), start.map(|x| by * x), 1) {
+            Ok(poor) => assert!(own.largest.energy.meet(poor.largest.energy).is_some(), "{own:?} {poor:?}"),
+            Err(Failure::Guess { gap, .. }) => refused += usize::from(gap > 1e-3),
+            Err(_) => refused += 1,
+        }
+    }
+    assert!((2..5).contains(&refused), "{refused}");
+}
+
+/// Walls as far from the damper's place of rest as it swings, and a little nearer and farther.
+#[test]
+fn contract_a_graze_cannot_be_proven() {
+    let omega = 6.3;
+    let free = tmd(omega);
+    let system = Coupled::new(&free.primary, &free.forcing, &free.damper.expect("a damper"));
+    let stroke = system.steady(omega).stroke();
+    let walled = |d: f64| {
+        scene(
+            &format!(r#"{{ "m2": 60, "k2": 2000, "c2": 85, "D": {d}, "C": 1, "contact": {SURFACES} }}"#),
+            omega,
+        )
+    };
+    for near in [0.0, 1e-15, -1e-15] {
+        match prove(&walled(stroke + near), [0.0, 0.0, stroke, 0.0], 1) {
+            Err(why @ Failure::Graze { .. }) => {
+                assert_eq!(
+                    why.to_string(),
+                    "cannot be proven here: the motion grazes, that is, it may or may not touch the structure"
+                );
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    let proven = prove(&walled(stroke + 1e-9), [0.0, 0.0, stroke, 0.0], 1).expect("a gap of a nanometre");
+    assert!(proven.impacts.is_empty());
+    assert!(is_about(proven.largest.stroke, stroke, CLOSED));
+}
+
+#[test]
+fn contract_scenes_beyond_the_proof_are_refused() {
+    let with = |contact: &str| {
+        scene(
+            &format!(r#"{{ "m2": 60, "k2": 2000, "c2": 85, "D": 0.1, "C": 1, "contact": {contact} }}"#),
+            6.0,
+        )
+    };
+    let lossy = SURFACES.replace('}', r#", "loss": { "lambda": 0.1 } }"#);
+    for (scene, said) in [
+        (Scene { damper: None, ..tmd(6.0) }, "a scene without damper"),
+        (tmd(0.0), "a forcing whose omega is not above 0"),
+        (with(r#"{ "rigid": { "restitution": 0.7 } }"#), "rigid walls"),
+        (with(&lossy), "contacts that lose energy"),
+        (with(&lossy.replace("loss", "loss_obstacle")), "contacts that lose energy"),
+    ] {
+        let error = prove(&scene, [0.0; 4], 1).expect_err(said).to_string();
+        assert!(error.starts_with(said), "{error}");
+    }
+}
+
+/// Newton's iteration ends on this motion of eight periods, whose largest multiplier is 0.998, but Krawczyk's operator maps no box into itself.
+#[test]
+fn contract_a_box_that_is_not_mapped_into_itself_proves_nothing() {
+    // `results/branches/isola`, branch 3, place 62.
+    let start = [-0.038065392671756404, 0.10383126534211681, 0.598070957397342, 0.167707584961897];
+    match prove(&with_isola(7.710298498129456), start, 8) {
+        Err(Failure::Krawczyk { width, image }) => assert!(image > 0.5 * width, "{image:e} {width:e}"),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// One proof holds for all frequencies of a piece: those of its ends and of one in between are in its bounds.
+#[test]
+fn invariant_a_piece_of_a_band_holds_the_motions_at_its_frequencies() {
+    let guess = |_| Some((WORST.1, 1));
+    let found = band(&tuned(6.6), [6.62, 6.6202], 226.0, &guess).expect("a scene");
+    assert!(found.left_out.is_empty() && found.pieces.len() < 9, "{found:?}");
+    let ends: Vec<f64> = found.pieces.iter().flat_map(|piece| piece.omega).collect();
+    assert_eq!((ends[0], ends[ends.len() - 1]), (6.62, 6.6202));
+    assert!(ends[1..ends.len() - 1].chunks(2).all(|two| two[0] == two[1]), "{ends:?}");
+    for piece in &found.pieces {
+        let [from, to] = piece.omega;
+        for omega in [from, from + 0.3 * (to - from), to] {
+            let own = prove(&tuned(omega), WORST.1, 1).expect("a proof");
+            assert_eq!((own.impacts.as_str(), piece.impacts.as_str()), ("S", "S"));
+            for ((_, own), (_, all)) in own.largest.all().into_iter().zip(piece.largest.all()) {
+                assert!(own.is_in(all), "{omega}: {own} {all}");
+            }
+        }
+    }
+}
+
+/// What is beyond the goal, or has no guess, is left out with its reason, and no more than that.
+#[test]
+fn contract_what_is_not_proven_of_a_band_is_named() {
+    let few = band(&tuned(6.6), [6.62, 6.6202], 225.0, &|_| Some((WORST.1, 1))).expect("a scene");
+    assert!(
+        few.pieces.is_empty() && few.left_out[0].why.to_string().contains("at most 225 J are to be proven"),
+        "{few:?}"
+    );
+    let none = band(&tuned(6.6), [6.0, 6.01], 1e3, &|_| None).expect("a scene");
+    assert_eq!((none.left_out.len(), none.left_out[0].omega), (1, [6.0, 6.01]));
+    assert_eq!(none.left_out[0].why, Failure::NoGuess);
+}

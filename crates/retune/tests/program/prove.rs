@@ -1,0 +1,61 @@
+//! `prove` from its arguments to the screen.
+
+use crate::common::{Answer, Desk, Program};
+use retune_testkit::desk::committed;
+use serde_json::Value;
+
+fn desk() -> Desk {
+    let desk = Desk::new();
+    for name in ["tmd.json", "ssvi.json"] {
+        desk.write_json(name, &committed(name));
+    }
+    desk
+}
+
+#[test]
+fn contract_prove_shows_the_theorem_in_words_and_as_json() {
+    let desk = desk();
+    let words = desk.good(&["prove", "tmd.json", "--omega", "57.3rpm"]);
+    assert!(words.starts_with("study tmd, omega = 6.0004"), "{words}");
+    assert!(words.contains(" rad/s: proven by interval arithmetic\n"), "{words}");
+    let answer = desk.good(&["prove", "tmd.json", "--omega", "57.3rpm", "--json"]);
+    let answer: Value = serde_json::from_str(&answer).expect("JSON");
+    for key in [
+        "/omega",
+        "/periods",
+        "/alone_within",
+        "/width",
+        "/events/0/phase/0",
+        "/events/0/state/3/1",
+        "/stability/stable",
+        "/largest/E1max/0",
+        "/largest/stroke/1",
+        "/largest/contact_force/1",
+    ] {
+        assert!(answer.pointer(key).is_some_and(Value::is_number), "{key}");
+    }
+    assert!(words.contains(&answer["largest"]["E1max"][1].to_string()), "{words}");
+    // Any guess will do where there is one motion only.
+    let from = ["prove", "tmd.json", "--omega", "57.3rpm", "--from", "0.1,-0.2,0.3,0"];
+    assert!(desk.good(&from).contains("\nstable        all multipliers are below "));
+}
+
+#[test]
+fn contract_what_is_not_proven_ends_with_code_1() {
+    let desk = desk();
+    let Answer { code, stdout, stderr } = desk.run(&["prove", "ssvi.json"]);
+    assert_eq!((code, stdout.as_str()), (Some(1), ""));
+    assert!(stderr.starts_with("error: study ssvi: not proven: none found: "), "{stderr}");
+    for (arguments, said) in [
+        (
+            &["prove", "tmd.json", "--omega", "-1"] as &[&str],
+            "omega: -1 is not allowed here: give a finite number not below 0",
+        ),
+        (&["prove", "tmd.json", "--periods", "2"], "--from <X1,V1,X2,V2>"),
+        (&["prove", "tmd.json", "--from", "1"], "\"1\" is no state: give x1,v1,x2,v2"),
+        (&["prove", "none.json"], "none.json: cannot be read"),
+    ] {
+        let refused = desk.refused(arguments);
+        assert!(refused.contains(said), "{refused}");
+    }
+}
