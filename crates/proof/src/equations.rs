@@ -67,6 +67,9 @@ impl Equations {
             // k1 y + c1 dy/dt with y = Y cos φ.
             Source::Base(y) => [number(y.get()) * k1, Interval::ZERO, -(number(y.get()) * c1)],
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
+            Source::History(_) => {
+                return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));
+            }
         };
         let rest = number(damper.rest_distance.get());
         let hertz = match &damper.contact {

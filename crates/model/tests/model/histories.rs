@@ -88,6 +88,7 @@ fn exact_a_held_damper_on_an_accelerated_base() {
 /// Rates of every quantity by finite differences along the motion.
 #[test]
 fn exact_rates_under_every_history() {
+    type Rates<'a> = dyn Fn([f64; 2], &[f64; 4]) -> [f64; 3] + 'a;
     let mut spread = Spread::new(5);
     for (numbers, history) in [SSVI, TWO_SIDED, LOSSY]
         .into_iter()
@@ -99,7 +100,7 @@ fn exact_rates_under_every_history() {
             let f = system.derivative(system.excitation(T), &y);
             let h = 3e-5 / f[3].abs().max(f[1].abs()).max(3.0);
             let moved = |s: f64| -> [f64; 4] { std::array::from_fn(|i| y[i] + s * f[i]) };
-            let check = |name: &str, rates: &dyn Fn([f64; 2], &[f64; 4]) -> [f64; 3]| {
+            let check = |name: &str, rates: &Rates<'_>| {
                 let differences: [f64; 3] = slope(h, |s| rates(system.excitation(T + s), &moved(s)));
                 let found = rates(system.excitation(T), &y);
                 for i in 0..2 {
