@@ -100,7 +100,8 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     assert_eq!(conjectures, 2);
     assert!(page.contains(&format!("Of {} statements", verdicts - conjectures)), "conjectures do not count");
     let settings = desk.read("one/figures-table-1.csv");
-    let head = "figure,statement,R = 0.1 m,R = 0.5 m,R = 2 m,R = 5 m,R = 10 m,0 to 10 s,2.5 to 10 s\n";
+    let head =
+        "figure,statement,R = 0.1 m,R = 0.5 m,R = 2 m,R = 5 m,R = 10 m,0 to 10 s,2.5 to 10 s,e = 0.7\n";
     assert!(settings.starts_with(head) && settings.lines().count() > 20, "{settings}");
     assert!(said.trim_end().ends_with("table2-table-2.csv"), "{said}");
 }

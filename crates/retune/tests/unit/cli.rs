@@ -14,7 +14,7 @@ fn contract_common_options_mean_the_same_of_every_command() {
         argument.get_help().map(ToString::to_string)
     };
     let prints_text = ["explore", "schema", "completions", "help"];
-    let makes_no_directory = ["verify", "simulate", "check", "evaluate"];
+    let makes_no_directory = ["verify", "simulate", "check", "evaluate", "prove"];
     let mut seen = 0;
     for command in
         cli.get_subcommands().map(clap::Command::get_name).filter(|name| !prints_text.contains(name))

@@ -196,7 +196,13 @@ impl<const N: usize> Form<N> {
                 .map(|((r, y), y0)| times(r.abs(), y.abs() + y0.abs()))
                 .sum::<f64>()
         };
-        let squares = self.squares.iter().map(|(weight, row)| 0.5 * weight * size(row).powi(2));
+        // Of a square, the rounding error of its root times that root: far below the square of what cancels in it.
+        let square = |(weight, row): &(f64, [f64; N])| {
+            let (size, deviations) = (size(row), y.iter().zip(&self.rest).map(|(y, y0)| y - y0));
+            let root: f64 = row.iter().zip(deviations).map(|(r, d)| times(*r, d)).sum();
+            0.5 * weight * size * root.abs().max(f64::EPSILON * size)
+        };
+        let squares = self.squares.iter().map(square);
         let rated = self.rated.as_ref().map_or(0.0, |rated| size(&rated.size) + rated.force);
         size(&self.linear) + squares.sum::<f64>() + rated
     }
