@@ -10,6 +10,7 @@ use retune_jobs::job::Done;
 use retune_jobs::{Request, tune, verify as verification};
 use retune_model::{Parameter, Positive, Surfaces};
 use retune_store::Begin;
+use retune_study::Setting;
 use std::path::PathBuf;
 
 /// What a job is asked beside its study: the directory of its results, whether to go on or to begin anew, whether to replace other results,
@@ -172,6 +173,19 @@ pub fn branches(
             }
         }
     })
+}
+
+/// Proves the periodic motion of a study, or of the design in a directory of results; the theorem as JSON.
+#[pyfunction]
+pub fn prove(
+    py: Python<'_>,
+    study: PathBuf,
+    omega: Option<f64>,
+    tell: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let omega = omega.map(|omega| Setting::new(Parameter::Omega, omega));
+    let guess = retune_jobs::prove::Guess { omega, from: None };
+    monitored(py, tell.as_ref(), |_| json(&retune_jobs::prove::prove(&study, &guess)?))
 }
 
 /// The catalogue of parameters: the symbol, the SI unit and the words of each.

@@ -29,7 +29,9 @@ mod _core {
     #[pymodule_export]
     use crate::files::job;
     #[pymodule_export]
-    use crate::jobs::{branches, certify, contact, design_study, optimize, parameters, study_text, verify};
+    use crate::jobs::{
+        branches, certify, contact, design_study, optimize, parameters, prove, study_text, verify,
+    };
     #[pymodule_export]
     use crate::motion::{run, sweep};
     #[pymodule_export]

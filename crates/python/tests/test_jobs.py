@@ -273,11 +273,20 @@ def test_contract_jobs_on_files_have_the_bytes_of_the_command_line(program: Path
     assert below(out("paper")) == below(line("paper", "figure", 6, "--study", STUDIES / "paper.json"))
 
 
+def test_contract_a_motion_is_proven(program: Path) -> None:
+    design = STUDIES.parent / "results" / "tmd-free"
+    theorem = rt.prove(design)
+    said = subprocess.run([program, "prove", design, "--json"], capture_output=True, text=True, check=True)
+    assert theorem == json.loads(said.stdout)
+    with pytest.raises(rt.Error, match="omega"):
+        rt.prove(design, omega=-1.0)
+
+
 def test_contract_every_command_is_reachable(program: Path) -> None:
     """A command that comes new is missed here until it has its place."""
     said = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
     commands = re.findall(r"^  (\w+) {2,}", said.partition("Commands:")[2].partition("Options:")[0], re.M)
-    functions = {"optimize", "design", "merge", "verify", "certify", "sweep", "branches", "table2", "retention", "fronts", "losses", "reproduce"}
+    functions = {"optimize", "design", "merge", "verify", "certify", "sweep", "branches", "table2", "retention", "fronts", "losses", "prove", "reproduce"}
     assert functions <= set(dir(rt))
     # By another name: `problem.simulate`, `problem.batch`, `reproduce("figure3")`, `Problem.from_study`.
     elsewhere = {"simulate", "evaluate", "figure", "table", "check"}

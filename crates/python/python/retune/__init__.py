@@ -15,7 +15,7 @@ from retune._compare import Comparison, compare
 from retune._core import __version__
 from retune._errors import Error, SolverError, StudyError
 from retune._files import Design, certify_file, design, fronts, losses, merge, reproduce, retention, share, sweep, table2
-from retune._jobs import Certificate, Result, branches, certify, optimize, verify
+from retune._jobs import Certificate, Result, branches, certify, optimize, prove, verify
 from retune._problem import Evaluation, Problem
 from retune._run import Run
 from retune._scene import SSVI, TMD, Contact, Structure
@@ -47,6 +47,7 @@ __all__ = [
     "losses",
     "merge",
     "optimize",
+    "prove",
     "reproduce",
     "retention",
     "share",

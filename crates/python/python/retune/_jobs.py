@@ -136,6 +136,16 @@ def verify(path: Directory, *, sample: int = 20, within: float = 0.0) -> list[st
     return told.lines
 
 
+def prove(study: Directory, omega: float | None = None) -> dict[str, Any]:
+    """Proves by interval arithmetic that a study, or the design in a directory of results, has a periodic motion, as `retune prove` does.
+
+    Returns the theorem: the box in which the motion is alone, its stability, bounds on E1max, stroke and contact force. ``omega`` (rad/s) is
+    the frequency of the force, by default that of the worst run. ``retune.Error`` where it cannot be proven.
+    """
+    found: dict[str, Any] = json.loads(_core.prove(os.fspath(study), omega, Progress(False)))
+    return found
+
+
 def branches(
     study: Directory,
     out: Directory | None = None,
