@@ -23,7 +23,7 @@ LARGEST = 3_000_000
 
 PARTS = [
     ("", ["README.md", "docs/tutorial.md", "docs/tuning.md", "docs/nomenclature.md"]),
-    ("Why it can be trusted", ["docs/theory.md", "docs/bounds.md", "docs/decisions.md", "results/robustness/README.md"]),
+    ("Why it can be trusted", ["docs/theory.md", "docs/bounds.md", "docs/proof.md", "docs/decisions.md", "results/robustness/README.md"]),
     ("Other programs", ["docs/python.md", "docs/matlab.md", "docs/scale.md", "docs/performance.md"]),
     ("Development", ["ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"]),
     ("Results", ["gallery.md"]),
