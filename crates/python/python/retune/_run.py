@@ -63,7 +63,9 @@ class Run:
         return [*found, ["impacts", sum(self.maxima["impacts"].values()), ""]]
 
     def _title(self) -> str:
-        return f"run at omega = {self.maxima['omega']:g} rad/s, {self.motion.rows} rows, {self.contacts.rows} contacts"
+        omega = self.maxima["omega"]
+        at = f" at omega = {omega:g} rad/s" if omega > 0 else ""  # a pulse and a record have none
+        return f"run{at}, {self.motion.rows} rows, {self.contacts.rows} contacts"
 
     def __repr__(self) -> str:
         return f"{self._title()}\n{_show.text(['largest', 'value', 'unit'], self._rows())}"
