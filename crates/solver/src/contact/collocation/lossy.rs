@@ -92,23 +92,32 @@ impl<const N: usize, const M: usize> Contact<'_, N, M> {
     }
 }
 
-/// Broyden's steps, each with the square of its length.
-struct Broyden<const M: usize>(Vec<(Unknowns<M>, f64)>);
+/// Broyden's steps, each with the square of its length; on the stack, as a contact is done in a microsecond.
+struct Broyden<const M: usize> {
+    steps: [(Unknowns<M>, f64); MAX_ITERATIONS as usize],
+    taken: usize,
+}
 
 impl<const M: usize> Broyden<M> {
+    fn new() -> Self {
+        Self { steps: [(([f64x4::ZERO; M], 0.0), 0.0); MAX_ITERATIONS as usize], taken: 0 }
+    }
+
     /// The next step, from that by the inverse Jacobian at the beginning.
     fn step(&mut self, plain: Unknowns<M>) -> Unknowns<M> {
         let mut step = plain;
-        for pair in self.0.windows(2) {
+        let before = &self.steps[..self.taken];
+        for pair in before.windows(2) {
             let share = inner(&pair[0].0, &step) / pair[0].1;
             let (forces, stretch) = pair[1].0;
             step = (std::array::from_fn(|i| step.0[i] + forces[i] * share), step.1 + stretch * share);
         }
-        if let Some((before, square)) = self.0.last() {
-            let share = 1.0 / (1.0 - inner(before, &step) / square);
+        if let Some((last, square)) = before.last() {
+            let share = 1.0 / (1.0 - inner(last, &step) / square);
             step = (step.0.map(|step| step * share), step.1 * share);
         }
-        self.0.push((step, inner(&step, &step)));
+        self.steps[self.taken] = (step, inner(&step, &step));
+        self.taken += 1;
         step
     }
 }
@@ -144,7 +153,7 @@ impl Collisions {
         }
         let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace };
         let mut unknowns: Unknowns<M> = (of.forces, 1.0);
-        let mut broyden = Broyden(Vec::with_capacity(MAX_ITERATIONS as usize));
+        let mut broyden = Broyden::new();
         let mut before = 1.0_f64;
         for iterations in 1..=MAX_ITERATIONS {
             let Motion { depths, speeds, end } = contact.motion(unknowns.1, moments, last);
