@@ -2,9 +2,10 @@
 
 use crate::Error;
 use crate::again::json;
+use crate::tune::OPTIMUM;
 use rayon::prelude::*;
 use retune_dynamics::periodic::settle::settled;
-use retune_model::{Finite, Parameter, Start};
+use retune_model::{Parameter, Start};
 use retune_proof::{Band, Interval, LeftOut, Stability, Theorem};
 use retune_study::{self as study, Setting, Study, counted};
 use serde::Serialize;
@@ -42,7 +43,10 @@ pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
     };
     let study = given.with(&omega.into_iter().collect::<Vec<_>>())?;
     let (periods, start) = match guess.from {
-        Some((start, periods)) => (periods, state(&study, start)),
+        Some((start, periods)) => {
+            let rest = study.scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
+            (periods, start.state(rest))
+        }
         None => found(&study)?,
     };
     let theorem = retune_proof::prove(&study.scene, start, periods)
@@ -53,17 +57,11 @@ pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
 /// The frequency of the worst run of a search's results.
 fn worst(path: &Path) -> Result<Option<Setting>, Error> {
     let Some(place) = study::found_in(path)? else { return Ok(None) };
-    if !place.join("optimum.json").exists() {
+    if !place.join(OPTIMUM).exists() {
         return Ok(None);
     }
-    let worst = json(&place, "optimum.json")?["objective"]["worst_omega"].as_f64();
+    let worst = json(&place, OPTIMUM)?["objective"]["worst_omega"].as_f64();
     Ok(worst.map(|omega| Setting::new(Parameter::Omega, omega)))
-}
-
-/// A state with the damper's spring at rest if the place of the damper is left out.
-fn state(study: &Study, Start { x1, v1, x2, v2 }: Start) -> [f64; 4] {
-    let rest = study.scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
-    [x1.get(), v1.get(), x2.map_or(x1.get() + rest, Finite::get), v2.get()]
 }
 
 /// What the run settles on.

@@ -79,7 +79,7 @@ impl Bare {
 
     /// What is given in time, if anything is.
     pub fn history(&self) -> Option<&History> {
-        if let Source::History(history) = &self.source { Some(history) } else { None }
+        self.source.history()
     }
 
     /// Whether the coordinates move with a base that is accelerated: every mass then feels a force in proportion to it.

@@ -7,8 +7,8 @@ mod structure;
 use crate::bare::largest;
 use crate::loss::{Factor, Law};
 use crate::{
-    Bare, Contact, Damper, Excitation, Finite, Forcing, Primary, Start, Stretch, Surfaces, hertz_force,
-    hertz_force_slope, hertz_pressure,
+    Bare, Contact, Damper, Excitation, Forcing, Primary, Stretch, Surfaces, hertz_force, hertz_force_slope,
+    hertz_pressure,
 };
 use nalgebra::SMatrix;
 
@@ -118,8 +118,7 @@ impl Coupled {
 
     /// State at t = 0: at rest unless told otherwise, by default with the damper's spring at rest.
     pub fn start(&self) -> [f64; 4] {
-        let Some(Start { x1, v1, x2, v2 }) = self.bare.away else { return self.rest() };
-        [x1.get(), v1.get(), x2.map_or(x1.get() + self.d, Finite::get), v2.get()]
+        self.bare.away.map_or_else(|| self.rest(), |start| start.state(self.d))
     }
 
     /// Whether the damper's spring is at rest at t = 0, so that the damper starts at D from the structure.

@@ -53,6 +53,21 @@ pub struct Start {
     pub v2: Finite,
 }
 
+impl Source {
+    /// What is given in time, if anything is.
+    pub fn history(&self) -> Option<&History> {
+        if let Self::History(history) = self { Some(history) } else { None }
+    }
+}
+
+impl Start {
+    /// The state `[x1, v1, x2, v2]` (m, m/s) of a damper that is at the distance `rest` (m) from the structure where its spring is at rest.
+    pub fn state(&self, rest: f64) -> [f64; 4] {
+        let Self { x1, v1, x2, v2 } = self;
+        [x1.get(), v1.get(), x2.map_or(x1.get() + rest, Finite::get), v2.get()]
+    }
+}
+
 impl Forcing {
     /// A force P cos ωt on the structure: P, N, and ω, rad/s.
     pub const fn force(amplitude: NonNegative, frequency: NonNegative) -> Self {
@@ -66,7 +81,7 @@ impl Forcing {
 
     /// What is given in time, if anything is.
     pub fn history(&self) -> Option<&History> {
-        if let Source::History(history) = &self.source { Some(history) } else { None }
+        self.source.history()
     }
 
     /// The record that it names, if it does.

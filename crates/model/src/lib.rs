@@ -48,6 +48,7 @@ mod excitation;
 mod forcing;
 mod hertz;
 mod history;
+mod kept;
 mod loss;
 mod measure;
 mod parameter;
@@ -76,6 +77,7 @@ pub use hertz::{
     hertz_stiffness,
 };
 pub use history::{Course, History, Of, Pulse, Shape};
+pub use kept::Kept;
 pub use loss::{Loss, Restoring};
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;

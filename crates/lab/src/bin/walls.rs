@@ -7,6 +7,7 @@ use retune_model::{Contact, Damper, Loss, Parameter, Positive, Restitution, Scen
 use retune_report::colour::{BLACK, BLUE, VERMILION};
 use retune_report::table::Table;
 use retune_report::{Axis, Shape, cells};
+use retune_solver::collisions;
 use retune_study::{Setting, Study, read};
 use retune_testkit::scenes::rigid;
 use std::fs;
@@ -19,10 +20,7 @@ const STUDY: &str = "studies/ssvi.json";
 const RESTITUTIONS: [f64; 9] = [1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3];
 /// Hertz's K over that of the study.
 const STIFFNESSES: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
-/// Its greatest impact speed, m/s, at which one λ has the restitution.
-const AT: f64 = 1.46;
-/// Frequencies, and how often a cost is measured: the least counts.
-const SAMPLES: usize = 31;
+/// How often a cost is measured: the least counts.
 const REPEATS: usize = 5;
 
 /// The models of a wall, from the smallest to the largest.
@@ -50,8 +48,8 @@ impl Wall {
         }
     }
 
-    /// A scene with this wall.
-    fn of(self, scene: &Scene, stiffness: f64, e: f64) -> Any<Scene> {
+    /// A scene with this wall; one λ has the restitution at the speed `at` (m/s).
+    fn of(self, scene: &Scene, stiffness: f64, e: f64, at: Positive) -> Any<Scene> {
         let mut scene = *scene;
         let Some(Damper { contact: Some(contact), .. }) = &mut scene.damper else {
             return Err("a damper without walls".into());
@@ -68,7 +66,7 @@ impl Wall {
         }
         surfaces.loss = match self {
             Self::Full if e < 1.0 => Loss::Restoring(Restitution::new(e)?),
-            Self::Damped => Loss::restoring_at(Restitution::new(e)?, Positive::new(AT)?)?,
+            Self::Damped => Loss::restoring_at(Restitution::new(e)?, at)?,
             _ => Loss::default(),
         };
         Ok(scene)
@@ -78,6 +76,14 @@ impl Wall {
 /// Worst E1max over the band, J.
 fn worst(study: &Study, scene: &Scene) -> Any<f64> {
     Ok(study.goal().evaluate(scene, &study.solver.settings(), f64::INFINITY)?.value)
+}
+
+/// The greatest impact speed of the worst run, m/s.
+fn impact_speed(study: &Study) -> Any<Positive> {
+    let (goal, settings) = (study.goal(), study.solver.settings());
+    let run = goal.evaluate(&study.scene, &settings, f64::INFINITY)?.worst_run(study.scene, &goal);
+    let walls = collisions(&run, study.window.window(), &settings)?;
+    Ok(Positive::new(walls.iter().map(|wall| wall.speed).fold(0.0, f64::max))?)
 }
 
 /// What the models find at one stiffness and restitution, J.
@@ -100,10 +106,11 @@ fn main() -> Any<()> {
     let design = [Parameter::K2, Parameter::C2, Parameter::D, Parameter::C];
     let design = design.map(|own| Setting::new(own, optimum[own.symbol()].as_f64().unwrap_or(f64::NAN)));
     let study = read(Path::new(STUDY))?.with(&design)?;
+    let at = impact_speed(&study)?;
     let grid: Vec<(f64, f64)> =
         STIFFNESSES.iter().flat_map(|&k| RESTITUTIONS.iter().map(move |&e| (k, e))).collect();
     let point = |&(stiffness, e): &(f64, f64)| -> Result<Point, String> {
-        let value = |wall: Wall| -> Any<f64> { worst(&study, &wall.of(&study.scene, stiffness, e)?) };
+        let value = |wall: Wall| -> Any<f64> { worst(&study, &wall.of(&study.scene, stiffness, e, at)?) };
         let mut values = [f64::NAN; 4];
         for wall in Wall::ALL {
             values[wall as usize] = value(wall).map_err(|error| error.to_string())?;
@@ -121,17 +128,17 @@ fn main() -> Any<()> {
     }
     fs::write(folder.join("walls.csv"), table.csv())?;
     draw(&folder.join("walls.svg"), &points)?;
-    fs::write(folder.join("README.md"), page(&points, &costs(&study)?))?;
+    fs::write(folder.join("README.md"), page(&points, &costs(&study, at)?, at))?;
     Ok(())
 }
 
 /// Processor time of an evaluation at the study's stiffness with e = 0.7, over that without loss, on one thread: the least of several.
-fn costs(study: &Study) -> Any<[f64; 4]> {
+fn costs(study: &Study, at: Positive) -> Any<[f64; 4]> {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut least = [f64::INFINITY; 4];
     for _ in 0..REPEATS {
         for wall in Wall::ALL {
-            let scene = wall.of(&study.scene, 1.0, 0.7)?;
+            let scene = wall.of(&study.scene, 1.0, 0.7, at)?;
             let since = Instant::now();
             alone.install(|| worst(study, &scene).map_err(|error| error.to_string()))?;
             least[wall as usize] = least[wall as usize].min(since.elapsed().as_secs_f64());
@@ -165,7 +172,7 @@ fn draw(path: &Path, points: &[Point]) -> Any<()> {
 }
 
 /// The page.
-fn page(points: &[Point], costs: &[f64; 4]) -> String {
+fn page(points: &[Point], costs: &[f64; 4], at: Positive) -> String {
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     let mut rows = String::new();
     for &stiffness in &STIFFNESSES {
@@ -190,11 +197,12 @@ fn page(points: &[Point], costs: &[f64; 4]) -> String {
     let heads = RESTITUTIONS.map(|e| e.to_string()).join(" | ");
     let prices: Vec<String> =
         Wall::ALL.iter().map(|wall| format!("{} {:.2}", wall.name(), costs[*wall as usize])).collect();
+    let at = format!("{:.2}", at.get());
     format!(
         "# Which model of a wall it takes\n\n\
-         Made by `just lab walls`; do not edit. Worst E1max over 5 to 8 rad/s ({SAMPLES} frequencies and refinement, as in `{STUDY}`) of the tuned\n\
+         Made by `just lab walls`; do not edit. Worst E1max over 5 to 8 rad/s (the objective of `{STUDY}`) of the tuned\n\
          damper of `results/ssvi`, with walls of four models. The full one is Hertz's contact with one restitution at every speed; the others are\n\
-         smaller. λ is that which has the restitution at {AT} m/s, the greatest impact speed without loss. K is Hertz's stiffness over that of the study.\n\n\
+         smaller. λ is that which has the restitution at {at} m/s, the greatest impact speed of the worst run without loss. K is Hertz's stiffness over that of the study.\n\n\
          {found}\n\n\
          ![Errors of the smaller models](walls.svg)\n\n\
          ## Errors of E1max\n\n\

@@ -4,7 +4,7 @@
 //! `x = ż / √(ż² + 2 S)`, which alone determines the stage, `h = x r` and `v = √(ż² + 2 S) / r`. `r` is analytic in `x` from -1 to 1, with a
 //! branch point of a square root not far beyond touch-down: as a function of the root of the distance from it, r is smooth there, too.
 
-use crate::polynomial::{self as few, polynomial};
+use crate::polynomial::{self as few, Number, polynomial};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 use wide::f64x4;
@@ -77,10 +77,7 @@ impl Remainder {
         let piece = piece(x);
         let [middle, scale] = self.places[piece];
         let t = (self.variable(piece, x) - middle) * scale;
-        let [a, b, c, d] = &self.pieces[piece];
-        let t2 = t * t;
-        let t8 = (t2 * t2) * (t2 * t2);
-        (polynomial(a, t) + t8 * polynomial(b, t)) + (t8 * t8) * (polynomial(c, t) + t8 * polynomial(d, t))
+        sum(&self.pieces[piece], t)
     }
 
     /// The same, bit by bit, of four x at once: of each polynomial that one of them needs.
@@ -92,14 +89,20 @@ impl Remainder {
             let [middle, scale] = self.places[piece];
             let variable = if piece < 2 { x } else { (f64x4::splat(self.branch) - x).sqrt() };
             let t = (variable - middle) * scale;
-            let [a, b, c, d] = self.pieces[piece].each_ref().map(|few| polynomial(few, t));
-            let t2 = t * t;
-            let t8 = (t2 * t2) * (t2 * t2);
-            let here = (a + t8 * b) + (t8 * t8) * (c + t8 * d);
+            let here = sum(&self.pieces[piece], t);
             all = if piece == first { here } else { x.simd_ge(f64x4::splat(ENDS[piece])).select(here, all) };
         }
         all
     }
+}
+
+/// `Σ c_k t^k` of a number or of four.
+#[inline(always)]
+fn sum<T: Number>(pieces: &[[f64; few::TERMS]; 4], t: T) -> T {
+    let [a, b, c, d] = pieces.each_ref().map(|few| polynomial(few, t));
+    let t2 = t * t;
+    let t8 = (t2 * t2) * (t2 * t2);
+    (a + t8 * b) + (t8 * t8) * (c + t8 * d)
 }
 
 /// The polynomial for an x.

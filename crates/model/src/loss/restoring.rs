@@ -16,8 +16,8 @@
 
 use super::collision::chi;
 use super::remainder::Remainder;
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use crate::kept::Kept;
+use std::sync::Arc;
 use wide::f64x4;
 
 /// The factor `f` of Hertz's force at an indentation `z` that changes at the rate `w`, with its derivatives: those by `z` times `z`, and
@@ -68,25 +68,13 @@ const TERMS: i32 = 28;
 /// How much beyond lift-off, as a share of w², a stage is computed by the polynomials of contacts.
 const BEYOND: f64 = 1e-3;
 
-/// Most laws that are kept: a study has a few restitutions.
-const KEPT: usize = 64;
-/// Laws by the bits of their restitutions.
-static LAWS: Mutex<BTreeMap<u64, Arc<Restoring>>> = Mutex::new(BTreeMap::new());
+/// Laws by their restitutions.
+static LAWS: Kept<Restoring> = Kept::new();
 
 impl Restoring {
     /// The law of the restitution `e` in (0, 1), computed once for a restitution.
     pub(crate) fn of(e: f64) -> Arc<Self> {
-        // A law is whole before it is kept, so that a panic elsewhere has left nothing half done.
-        if let Some(law) = LAWS.lock().unwrap_or_else(PoisonError::into_inner).get(&e.to_bits()) {
-            return Arc::clone(law);
-        }
-        let law = Arc::new(Self::new(e));
-        let mut kept = LAWS.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= KEPT {
-            kept.clear();
-        }
-        kept.insert(e.to_bits(), Arc::clone(&law));
-        law
+        LAWS.of(e, || Self::new(e))
     }
 
     fn new(e: f64) -> Self {

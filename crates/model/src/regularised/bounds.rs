@@ -34,11 +34,11 @@ pub struct OverContact {
 /// Bounds between two states, each the most and how far it may be from what it is at the nearer of the two.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
-    /// Of the four numbers of [`Growth`].
+    /// Of the four numbers of [`Growth`], m and m/s.
     pub states: Growth<2>,
-    /// Of their rates in time.
+    /// Of their rates in time, m/s and m/s².
     pub rates: Growth<2>,
-    /// Of `q`, the rate of time, √m.
+    /// Of `q = dt/dθ`, √m.
     pub root: [f64; 2],
 }
 
@@ -85,7 +85,7 @@ impl RegularisedContact {
         [growth, [v1, a1, w, rate]]
     }
 
-    /// Bounds between two states `h` apart; `None` if the piece is too long for the proof. They need nothing of the factor of a loss but that
+    /// Bounds between two states `h` (s/√m) apart; `None` if the piece is too long for the proof. They need nothing of the factor of a loss but that
     /// it lies between 0 and its largest, so that they hold where that factor turns too fast for the series: where `v` vanishes.
     pub fn change(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Change> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));

@@ -153,6 +153,17 @@ impl<const N: usize> Flow<N> {
         bends
     }
 
+    /// Adds what a state becomes after the next whole steps without force.
+    #[inline(always)]
+    fn add_free(&self, next: &mut [f64x4; N], y: &[f64; N]) {
+        for (j, column) in self.phi.iter().enumerate() {
+            let deviation = y[j] - self.linear.origin[j];
+            for i in 0..N {
+                next[i] += column[i] * deviation;
+            }
+        }
+    }
+
     /// The moments after the next whole steps, each of them under a straight line from one of these forces to the next.
     #[inline(always)]
     pub fn bent_stride(&self, forces: &[f64; LANES + 1], y: &[f64; N]) -> BentStride<N> {
@@ -162,12 +173,7 @@ impl<const N: usize> Flow<N> {
                 next[i] += column[i] * force;
             }
         }
-        for (j, column) in self.phi.iter().enumerate() {
-            let deviation = y[j] - self.linear.origin[j];
-            for i in 0..N {
-                next[i] += column[i] * deviation;
-            }
-        }
+        self.add_free(&mut next, y);
         let [a, b, c, d, e] = *forces;
         let (begin, end) = (f64x4::from([a, b, c, d]), f64x4::from([b, c, d, e]));
         let partner = (begin - end) * (1.0 / (self.linear.frequency * self.step));
@@ -227,12 +233,7 @@ impl<const N: usize> Flow<N> {
                 next[i] += column[i] * force;
             }
         }
-        for (j, column) in self.phi.iter().enumerate() {
-            let deviation = y[j] - self.linear.origin[j];
-            for i in 0..N {
-                next[i] += column[i] * deviation;
-            }
-        }
+        self.add_free(&mut next, y);
         let ([c, s], [cos, sin, returning]) = (excitation, self.turn);
         Stride { excitation: [cos * c - sin * s, cos * s + returning * c], y: next }
     }

@@ -303,7 +303,7 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
         contact_scenes += u64::from(seen > 0);
         let beyond =
             |part: usize| missed.iter().any(|missed| missed[part].is_nan() || missed[part] > ALLOWED);
-        // A factor that depends on the speed may turn too fast for the bounds where that vanishes: a run then says how much is open.
+        // A factor that depends on the speed may turn too fast for the bounds where that vanishes: the value is then right but not proven.
         if scenes == Scenes::Lossy && beyond(1) && !beyond(0) {
             undecided += 1;
         } else if beyond(0) || beyond(1) {

@@ -100,7 +100,7 @@ impl Run {
 }
 
 impl Motion {
-    /// A free decay, which has no periods to classify it by.
+    /// A motion that has no periods to classify it by: a free decay, or what a pulse or a record leaves, as `regime` says.
     pub fn decay(regime: &str) -> Self {
         Self {
             regime: regime.to_owned(),

@@ -5,15 +5,12 @@ use super::rule::{Integrals, Rule};
 use super::undisturbed::{Lossy, leaning};
 use super::unit_law::UnitLaw;
 use nalgebra::DMatrix;
-use retune_model::{RegularisedContact, Restoring};
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use retune_model::{Kept, RegularisedContact, Restoring};
+use std::sync::{Arc, OnceLock};
 use wide::f64x4;
 
-/// Most restitutions whose rules are kept: a study has a few.
-const KEPT: usize = 64;
-/// Rules by the bits of the restitutions.
-static RESTORING: Mutex<BTreeMap<u64, Arc<LossyRules>>> = Mutex::new(BTreeMap::new());
+/// Rules by the restitutions.
+static RESTORING: Kept<LossyRules> = Kept::new();
 
 /// The χ whose undisturbed collisions are kept of the law of Hunt and Crossley: multiples of this, up to a restitution of 0.37.
 const STEP: f64 = 0.1;
@@ -39,18 +36,7 @@ impl LossyRules {
 
     /// Those of a restitution.
     fn restoring(law: &Arc<Restoring>) -> Arc<Self> {
-        let key = law.restitution().to_bits();
-        // Rules are whole before they are kept, so that a panic elsewhere has left nothing half done.
-        if let Some(rules) = RESTORING.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
-            return Arc::clone(rules);
-        }
-        let rules = Arc::new(Self::new(&UnitLaw::Restoring(Arc::clone(law))));
-        let mut kept = RESTORING.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= KEPT {
-            kept.clear();
-        }
-        kept.insert(key, Arc::clone(&rules));
-        rules
+        RESTORING.of(law.restitution(), || Self::new(&UnitLaw::Restoring(Arc::clone(law))))
     }
 
     /// Those of the kept χ next to one; none if that is beyond them.

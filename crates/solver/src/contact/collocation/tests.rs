@@ -69,18 +69,24 @@ fn at_once(system: &Coupled, side: Side, touch: Knot<4>, rtol: f64) -> Option<f6
     Some(velocity.max(duration))
 }
 
+/// How many of 100 contacts drawn at random are computed at once, with these changes to their numbers, and how far one is from steps at most.
+fn drawn(rtol: f64, change: impl Fn(Numbers) -> Numbers) -> (usize, f64) {
+    let mut draw = Draw(1);
+    let (mut taken, mut worst) = (0, 0.0_f64);
+    for _ in 0..100 {
+        let system = change(numbers(&mut draw)).coupled();
+        let (side, touch) = touch_down(&mut draw, &system);
+        let apart = at_once(&system, side, touch, rtol);
+        taken += usize::from(apart.is_some());
+        worst = worst.max(apart.unwrap_or(0.0));
+    }
+    (taken, worst)
+}
+
 #[test]
 fn reference_contacts_at_once_agree_with_contacts_step_by_step() {
     for (rtol, taken_at_least) in [(1e-6, 80), (1e-7, 80), (1e-8, 80), (1e-10, 60), (1e-12, 20)] {
-        let mut draw = Draw(1);
-        let (mut taken, mut worst) = (0, 0.0_f64);
-        for _ in 0..100 {
-            let system = numbers(&mut draw).coupled();
-            let (side, touch) = touch_down(&mut draw, &system);
-            let apart = at_once(&system, side, touch, rtol);
-            taken += usize::from(apart.is_some());
-            worst = worst.max(apart.unwrap_or(0.0));
-        }
+        let (taken, worst) = drawn(rtol, |numbers| numbers);
         assert!(taken >= taken_at_least, "only {taken} of 100 contacts were taken at rtol {rtol:e}");
         // Below 3e-11 rounding and the steps that they are compared with count.
         assert!(worst <= (10.0 * rtol).max(3e-11), "{worst:e} at rtol {rtol:e}");
@@ -101,15 +107,7 @@ fn reference_lossy_contacts_at_once_agree_with_contacts_step_by_step() {
         (0.999, 1e-8, 75),
         (0.999, 1e-10, 75),
     ] {
-        let mut draw = Draw(1);
-        let (mut taken, mut worst) = (0, 0.0_f64);
-        for _ in 0..100 {
-            let system = Numbers { e, ..numbers(&mut draw) }.coupled();
-            let (side, touch) = touch_down(&mut draw, &system);
-            let apart = at_once(&system, side, touch, rtol);
-            taken += usize::from(apart.is_some());
-            worst = worst.max(apart.unwrap_or(0.0));
-        }
+        let (taken, worst) = drawn(rtol, |numbers| Numbers { e, ..numbers });
         assert!(taken >= taken_at_least, "e = {e}: {taken} of 100 contacts at rtol {rtol:e}");
         // Below rounding the steps that they are compared with count.
         assert!(worst <= (10.0 * rtol).max(3e-11), "e = {e}: {worst:e} at rtol {rtol:e}");
@@ -122,15 +120,7 @@ fn reference_damped_contacts_at_once_agree_with_contacts_step_by_step() {
     for (lambda, rtol, taken_at_least) in
         [(0.02, 1e-8, 75), (0.02, 1e-10, 65), (0.45, 1e-8, 70), (0.45, 1e-10, 60), (2.0, 1e-8, 40)]
     {
-        let mut draw = Draw(1);
-        let (mut taken, mut worst) = (0, 0.0_f64);
-        for _ in 0..100 {
-            let system = Numbers { lambda, ..numbers(&mut draw) }.coupled();
-            let (side, touch) = touch_down(&mut draw, &system);
-            let apart = at_once(&system, side, touch, rtol);
-            taken += usize::from(apart.is_some());
-            worst = worst.max(apart.unwrap_or(0.0));
-        }
+        let (taken, worst) = drawn(rtol, |numbers| Numbers { lambda, ..numbers });
         assert!(taken >= taken_at_least, "λ = {lambda}: {taken} of 100 contacts at rtol {rtol:e}");
         assert!(worst <= (10.0 * rtol).max(3e-11), "λ = {lambda}: {worst:e} at rtol {rtol:e}");
     }
