@@ -208,9 +208,8 @@ impl RegularisedContact {
     /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and Hertz's impulse below `w0 + ŵ + G t`. The change of `v1` follows from that. The speeds are
     /// guessed first, and the proof holds if the bounds confirm the guess.
     ///
-    /// With the same restitution at every speed `w = v h` with `|h| <= 1` and `dv/dt = A h / D`, where `|h|/D <= 1/e` (for `|h| > e` as
-    /// `D >= h²`, else as `D >= e²`), so that `|w|` and v stay within `G t / e` of w0; `S = v² G(h)` is at most `v²/2`, as without loss, and
-    /// the impulse as the force only pushes. By the law of Hunt and Crossley the force takes energy away, so that all is as without loss.
+    /// A loss only takes energy away, so that all this is as without it. With the same restitution at every speed `w = v h` with `|h| <= 1` and
+    /// `dv/dt = A h / D`, where `|h|/D <= 1/e` (for `|h| > e` as `D >= h²`, else as `D >= e²`): v stays within `G t / e` of w0.
     pub fn over_contact(
         &self,
         touch: &RegularisedState,
@@ -222,7 +221,6 @@ impl RegularisedContact {
         let share = self.hertz[0] / self.hertz[1];
         let depth = |w: f64| q0 * (1.0 + 0.4 * (w / w0 - 1.0)); // a tangent of the power, which is concave
         let excitation = self.primary[0] * amplitude;
-        let gain = self.restoring.as_ref().map_or(2.0, |law| 2.0_f64.max(1.0 / law.restitution()));
         let within = |[w, v]: [f64; 2]| {
             let most = [x1 + duration * v, v, depth(w).powi(2) + self.stretch.abs(), w];
             let outside = |excitation: f64| excitation + self.primary[1] * v + self.primary[2] * most[0];
@@ -234,7 +232,7 @@ impl RegularisedContact {
         let impulse = |w: f64, apart: f64| w0 + w + apart * duration;
         let follows = |guess: [f64; 2]| {
             let (_, [_, on_primary, _, apart]) = within(guess);
-            let reached = w0 + gain * apart * duration;
+            let reached = w0 + 2.0 * apart * duration;
             [reached, v1 + share * impulse(reached, apart) + on_primary * duration]
         };
         let mut guess = [1.5 * w0, v1 + 3.0 * w0];
@@ -253,10 +251,7 @@ impl RegularisedContact {
         }
         let (most, beside) = within(speeds);
         let impulse = impulse(w, beside[3]);
-        let slowest = w0 - gain * beside[3] * duration;
-        if self.restoring.is_some() && slowest <= 0.0 {
-            return None;
-        }
+        let slowest = self.restoring.as_ref().map_or(w0, |law| w0 - beside[3] * duration / law.restitution());
         Some(OverContact { most, beside, impulse, depth: depth(w), slowest, duration, excitation })
     }
 
@@ -268,7 +263,11 @@ impl RegularisedContact {
         let (mut cube, mut cube_rate) = (q * q * q, 1.5 * 0.658 * q * w);
         if self.is_lossy() {
             let most = self.most(w);
-            let turns = self.restoring.as_ref().map_or(self.lambda, |law| law.chi / over.slowest);
+            let turns = match &self.restoring {
+                None => self.lambda,
+                Some(law) if over.slowest > 0.0 => law.chi / over.slowest,
+                Some(_) => f64::INFINITY,
+            };
             let turn = turns * (most * self.hertz[1] * cube + apart);
             (cube, cube_rate) = (most * cube, most * cube_rate + cube * turn);
         }

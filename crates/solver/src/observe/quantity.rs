@@ -23,6 +23,15 @@ pub trait Quantity<const N: usize> {
         }
         rates
     }
+    /// The value that the state alone gives it.
+    #[inline(always)]
+    fn value(&self, y: &[f64; N]) -> f64 {
+        if self.is_forced() {
+            return self.rates([0.0; 2], y)[0];
+        }
+        // Contact forces enter the derivatives alone.
+        self.rates_in_flight(&[f64x4::ZERO; 2], &y.map(f64x4::splat))[0].to_array()[0]
+    }
     /// The quantity as a polynomial in the state, from which its bounds follow.
     fn form(&self) -> &Form<N>;
     /// Whether the value depends on the force and on contact forces, beside the state: that of a form with the rate of the state.

@@ -95,16 +95,18 @@ where
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
         let quantity = &self.search.quantity;
+        let mut rise = f64::INFINITY;
         if !quantity.is_forced() {
-            let [begin, end] = path.ends().map(|y| quantity.rates([0.0; 2], y)[0]);
-            if begin.max(end) + path.rise(quantity.form()) <= self.search.record.value {
+            let [begin, end] = path.ends().map(|y| quantity.value(y));
+            rise = path.rise(quantity.form());
+            if begin.max(end) + rise <= self.search.record.value {
                 return;
             }
         }
         let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
         let mut count = 0;
         path.states(|t, y| {
-            [values[count], ..] = self.search.quantity.rates([0.0; 2], y);
+            values[count] = self.search.quantity.value(y);
             times[count] = t;
             count += 1;
         });
@@ -112,9 +114,15 @@ where
             return self.forced_path(path, &times[..count], &values[..count]);
         }
         let second = path.second_derivative(self.search.quantity.form());
+        // In a piece of the path the first bound is smaller by its share of the time, or more. The largest of the values is that of a piece that
+        // is shown.
+        let slope = rise / times[count - 1];
+        let largest = values[..count].iter().fold(f64::NEG_INFINITY, |largest, value| largest.max(*value));
         for piece in 0..count - 1 {
-            let rise = 0.125 * second * (times[piece + 1] - times[piece]).powi(2);
-            let dropped = values[piece].max(values[piece + 1]) + rise <= self.search.record.value;
+            let h = times[piece + 1] - times[piece];
+            let rise = (0.125 * second * h * h).min(slope * h);
+            let most = values[piece].max(values[piece + 1]) + rise;
+            let dropped = most <= self.search.record.value || most < largest;
             if !dropped {
                 path.show(piece, self);
             }

@@ -7,11 +7,10 @@
 //! ζ = ζ_free - Σ_k g_k T^(k+1) √Z m_k        ż/w = ż_free/w - (Z^(3/2)/w) Σ_k g_k T^k m_(k-1)
 //! ```
 //!
-//! and the residuals are `f - ζ^(3/2) φ(ζ^(5/2)/2, ż/w)` and the depth at the end. Newton's iteration with the inverse Jacobian of the
-//! undisturbed collision is hastened by Broyden's updates (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995,
-//! section 7.3).
+//! and the residuals are `f - ζ^(3/2) φ(ζ^(5/2)/2, ż/w)` and the depth at the end. The iteration is that of contacts without loss.
 
-use super::lossy_rule::{LossyRule, Unknowns, inner};
+use super::lossy_rule::LossyRule;
+use super::newton::Extended;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
@@ -46,9 +45,9 @@ struct Motion<const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Contact<'_, N, M> {
-    /// Adds the moments of a change of the forces (of this size, in units of the greatest force), as far as the change counts.
+    /// Takes the moments of a change of the forces (of this size, in units of the greatest force) away, as far as the change counts.
     #[inline(always)]
-    fn add(
+    fn take(
         &self,
         change: &Nodes<M>,
         size: f64,
@@ -58,11 +57,11 @@ impl<const N: usize, const M: usize> Contact<'_, N, M> {
         let counts = |k: &usize| self.weights[*k] * size > 0.02 * self.of.rtol;
         let needed = (2..=self.terms).rev().find(counts).unwrap_or(1);
         for k in 0..=needed {
-            let more = product(&self.rule.moments[k], change);
+            let less = product(&self.rule.moments[k], change);
             for i in 0..M {
-                moments[k][i] += more[i];
+                moments[k][i] -= less[i];
             }
-            last[k] += dot(&self.rule.last[k], change);
+            last[k] -= dot(&self.rule.last[k], change);
         }
     }
 
@@ -89,36 +88,6 @@ impl<const N: usize, const M: usize> Contact<'_, N, M> {
             speeds: std::array::from_fn(|i| rate[i] - slowed[i] * slowing),
             end: self.approach.at(duration) * duration - scale * pushed_last,
         }
-    }
-}
-
-/// Broyden's steps, each with the square of its length; on the stack, as a contact is done in a microsecond.
-struct Broyden<const M: usize> {
-    steps: [(Unknowns<M>, f64); MAX_ITERATIONS as usize],
-    taken: usize,
-}
-
-impl<const M: usize> Broyden<M> {
-    fn new() -> Self {
-        Self { steps: [(([f64x4::ZERO; M], 0.0), 0.0); MAX_ITERATIONS as usize], taken: 0 }
-    }
-
-    /// The next step, from that by the inverse Jacobian at the beginning.
-    fn step(&mut self, plain: Unknowns<M>) -> Unknowns<M> {
-        let mut step = plain;
-        let before = &self.steps[..self.taken];
-        for pair in before.windows(2) {
-            let share = inner(&pair[0].0, &step) / pair[0].1;
-            let (forces, stretch) = pair[1].0;
-            step = (std::array::from_fn(|i| step.0[i] + forces[i] * share), step.1 + stretch * share);
-        }
-        if let Some((last, square)) = before.last() {
-            let share = 1.0 / (1.0 - inner(last, &step) / square);
-            step = (step.0.map(|step| step * share), step.1 * share);
-        }
-        self.steps[self.taken] = (step, inner(&step, &step));
-        self.taken += 1;
-        step
     }
 }
 
@@ -152,33 +121,41 @@ impl Collisions {
             weights[k] = part * self.gains[k].abs();
         }
         let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace };
-        let mut unknowns: Unknowns<M> = (of.forces, 1.0);
-        let mut broyden = Broyden::new();
+        let mut unknowns: Extended<M> = (of.forces, 1.0);
+        let mut amounts = [0.0; 3];
         let mut before = 1.0_f64;
         for iterations in 1..=MAX_ITERATIONS {
             let Motion { depths, speeds, end } = contact.motion(unknowns.1, moments, last);
             // At first the force is taken as linear: before the duration fits, depths near the end may be below zero.
             let residual: Nodes<M> = match iterations {
                 1 => {
-                    let undisturbed = forces(law, &rule.depths, &of.speeds);
+                    let apart = of.apart(law);
                     std::array::from_fn(|i| {
-                        (unknowns.0[i] - undisturbed[i])
+                        apart[i]
                             + of.slopes[0][i] * (rule.depths[i] - depths[i])
                             + of.slopes[1][i] * (of.speeds[i] - speeds[i])
                     })
                 }
                 _ => {
-                    let force = forces(law, &depths, &speeds);
+                    let force = of.at_nodes(law, &depths, &speeds);
                     std::array::from_fn(|i| unknowns.0[i] - force[i])
                 }
             };
-            let (change, lengthening) = broyden.step(of.change(&(residual, end)));
+            let (mut change, mut lengthening) = of.newton.change(amounts, &residual, end);
             let size = size(&change, lengthening);
             if size.is_nan() || size >= 0.5 * before {
                 return None;
             }
-            unknowns = (std::array::from_fn(|i| unknowns.0[i] + change[i]), unknowns.1 + lengthening);
-            contact.add(&change, size, moments, last);
+            if iterations == 1 {
+                amounts = of.newton.amounts(&change, lengthening);
+                let (bend, longer) = of.newton.second_order(amounts);
+                for i in 0..M {
+                    change[i] -= bend[i];
+                }
+                lengthening -= longer;
+            }
+            unknowns = (std::array::from_fn(|i| unknowns.0[i] - change[i]), unknowns.1 - lengthening);
+            contact.take(&change, size, moments, last);
             // Each step gains at least as much as the last.
             if size * size <= 0.3 * self.rtol * before {
                 let Motion { depths, .. } = contact.motion(unknowns.1, moments, last);
@@ -202,13 +179,4 @@ impl Collisions {
         let least = self.side.sign() * (end[3] - end[1]);
         over.is_some_and(|over| self.equations.push(least - over.beside[3] * duration) > 0.0)
     }
-}
-
-/// `ζ^(3/2) φ` at the nodes.
-#[inline(always)]
-fn forces<const M: usize>(law: &UnitLaw, depths: &Nodes<M>, speeds: &Nodes<M>) -> Nodes<M> {
-    std::array::from_fn(|i| {
-        let (z, root) = (depths[i], depths[i].sqrt());
-        z * root * law.push_of_four(z * z * root * 0.5, speeds[i])
-    })
 }

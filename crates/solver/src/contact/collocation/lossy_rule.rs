@@ -1,10 +1,12 @@
-//! The undisturbed collision of a loss at the nodes of its rule, and the inverse Jacobian there: computed once for a loss.
+//! The undisturbed collision of a loss at the nodes of its rule, and the iteration from there: computed once for a loss.
 
-use super::nodes::{Nodes, dot, node, packed};
+use super::newton::{Amounts, Disturbed, DisturbedMotion, Linear, Newton};
+use super::node_law::NodeLaw;
+use super::nodes::{Nodes, packed};
 use super::rule::{Integrals, Rule};
 use super::undisturbed::{Lossy, leaning};
 use super::unit_law::UnitLaw;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use retune_model::{Kept, RegularisedContact, Restoring};
 use std::sync::{Arc, OnceLock};
 use wide::f64x4;
@@ -89,18 +91,10 @@ pub struct LossyRule<const N: usize, const M: usize> {
     pub speeds: Nodes<M>,
     /// The slopes of its force by depth and by speed.
     pub slopes: [Nodes<M>; 2],
-    /// The inverse Jacobian there: a column for each node; that of the end and the last row apart.
-    inverse: [Nodes<M>; N],
-    last_column: Nodes<M>,
-    last_row: (Nodes<M>, f64),
-}
-
-/// A vector of forces and the duration.
-pub type Unknowns<const M: usize> = (Nodes<M>, f64);
-
-/// Their inner product.
-pub fn inner<const M: usize>(a: &Unknowns<M>, b: &Unknowns<M>) -> f64 {
-    dot(&a.0, &b.0) + a.1 * b.1
+    /// The law at the nodes, if it is one of the same restitution at every speed.
+    pub law: Option<NodeLaw<M>>,
+    /// The iteration from there.
+    pub newton: Newton<N, M>,
 }
 
 impl<const N: usize, const M: usize> LossyRule<N, M> {
@@ -109,60 +103,113 @@ impl<const N: usize, const M: usize> LossyRule<N, M> {
         let (rule, integrals) = Rule::new(leaning, undisturbed.force(law), undisturbed.depth());
         let Integrals { depths, forces, .. } = &integrals;
         let speeds: [f64; N] = std::array::from_fn(|i| 1.0 - 1.25 * duration * integrals.whole(0, i));
-        let slopes: [[f64; 2]; N] = std::array::from_fn(|i| {
-            let (z, [factor, by_z, by_w]) = (depths[i], law.slopes(0.5 * depths[i].powf(2.5), speeds[i]));
-            [z.sqrt() * (1.5 * factor + by_z), z * z.sqrt() * by_w]
-        });
-        let inverse = inverse(duration, &integrals, &slopes);
-        let column = |j: usize| packed::<N, M>(&std::array::from_fn(|i| inverse[(i, j)]));
+        let slopes: [[f64; 2]; N] = std::array::from_fn(|i| force(law, depths[i], speeds[i]).1);
+        let start = DVector::from_fn(N + 1, |i, _| if i < N { forces[i] } else { 1.0 });
+        let equations = Equations { law, motion: DisturbedMotion { duration, integrals: &integrals } };
         Self {
             duration,
-            rule,
             forces: packed(forces),
             speeds: packed(&speeds),
             slopes: [0, 1].map(|by| packed::<N, M>(&slopes.map(|slopes| slopes[by]))),
-            inverse: std::array::from_fn(column),
-            last_column: column(N),
-            last_row: (packed::<N, M>(&std::array::from_fn(|j| inverse[(N, j)])), inverse[(N, N)]),
+            law: matches!(law, UnitLaw::Restoring(_)).then(|| NodeLaw::new(law, depths, &speeds)),
+            // Of one restitution every contact has the same χ.
+            newton: Newton::new(&start, if matches!(law, UnitLaw::Damping(_)) { 3 } else { 2 }, |amounts| {
+                equations.solve(amounts, &start, &speeds, &slopes)
+            }),
+            rule,
         }
     }
 
-    /// The change by the inverse Jacobian of the undisturbed collision.
+    /// By how much the forces of the undisturbed collision differ from those of another law.
     #[inline(always)]
-    pub fn change(&self, (residual, end): &Unknowns<M>) -> Unknowns<M> {
-        let mut change = [f64x4::ZERO; M];
-        for (column, i) in self.inverse.iter().zip(0..) {
-            let by = node(residual, i);
-            for (change, column) in change.iter_mut().zip(column) {
-                *change += *column * by;
+    pub fn apart(&self, law: &UnitLaw) -> Nodes<M> {
+        match law {
+            UnitLaw::Restoring(_) => [f64x4::ZERO; M],
+            UnitLaw::Damping(_) => {
+                let forces = self.at_nodes(law, &self.rule.depths, &self.speeds);
+                std::array::from_fn(|i| self.forces[i] - forces[i])
             }
         }
-        for (change, column) in change.iter_mut().zip(&self.last_column) {
-            *change = -(*change + *column * *end);
-        }
-        (change, -(dot(&self.last_row.0, residual) + self.last_row.1 * end))
+    }
+
+    /// The force `ζ^(3/2) φ` of a law at these depths and speeds of the nodes.
+    #[inline(always)]
+    pub fn at_nodes(&self, law: &UnitLaw, depths: &Nodes<M>, speeds: &Nodes<M>) -> Nodes<M> {
+        let hertz: Nodes<M> = depths.map(|z| z * z.sqrt());
+        let shares: Nodes<M> = std::array::from_fn(|i| hertz[i] * depths[i] * 0.5);
+        let factors = self.law.as_ref().and_then(|law| law.push(&shares, speeds));
+        let factors =
+            factors.unwrap_or_else(|| std::array::from_fn(|i| law.push_of_four(shares[i], speeds[i])));
+        std::array::from_fn(|i| hertz[i] * factors[i])
     }
 }
 
-/// The inverse Jacobian of the residuals at the undisturbed collision, by forces and duration: with `Λ = (5/4) D²`,
-/// `ζ = D σ τ - Λ σ² m_1` and `ż/w = 1 - (Λ/D) σ m_0`.
-fn inverse<const N: usize>(duration: f64, integrals: &Integrals<N>, slopes: &[[f64; 2]; N]) -> DMatrix<f64> {
-    let stiffness = 1.25 * duration * duration;
-    let jacobian = DMatrix::from_fn(N + 1, N + 1, |i, j| {
-        let [depth, speed] = if j < N {
-            [-stiffness * integrals.moment(1, i, j), -stiffness / duration * integrals.moment(0, i, j)]
-        } else {
-            let time = if i < N { integrals.times[i] } else { 1.0 };
-            [
-                duration * time - 2.0 * stiffness * integrals.whole(1, i),
-                -stiffness / duration * integrals.whole(0, i),
-            ]
+/// The equations of a collision with loss: the unknowns are forces.
+struct Equations<'a, const N: usize> {
+    law: &'a UnitLaw,
+    motion: DisturbedMotion<'a, N>,
+}
+
+impl<const N: usize> Equations<'_, N> {
+    /// The collision under a amounts. The residuals with which it begins are those of a force that is linear about the undisturbed
+    /// collision: before the duration fits, depths near the end may be below zero.
+    fn solve(
+        &self,
+        amounts: Amounts,
+        start: &DVector<f64>,
+        speeds: &[f64; N],
+        slopes: &[[f64; 2]; N],
+    ) -> Disturbed {
+        let (law, depths) = (self.law.beside(amounts[2]), &self.motion.integrals.depths);
+        let linear = |i: usize, [z, w]: [f64; 2]| {
+            let [by_z, by_w] = slopes[i];
+            let (undisturbed, _) = force(&law, depths[i], speeds[i]);
+            (undisturbed + by_z * (z - depths[i]) + by_w * (w - speeds[i]), slopes[i])
         };
-        if i == N {
-            return depth;
+        let (first, jacobian) = self.at(amounts, start, linear);
+        let inverse = jacobian.try_inverse().expect("a collision is an isolated solution");
+        let unknowns = start - inverse * &first;
+        Disturbed::solved(first, unknowns, |unknowns| {
+            self.at(amounts, unknowns, |_, [z, w]| force(&law, z, w))
+        })
+    }
+
+    /// Residuals and Jacobian under a law: forces and their slopes by depth and by speed.
+    fn at(
+        &self,
+        amounts: Amounts,
+        unknowns: &DVector<f64>,
+        law: impl Fn(usize, [f64; 2]) -> (f64, [f64; 2]),
+    ) -> (DVector<f64>, DMatrix<f64>) {
+        let forces = unknowns.rows(0, N);
+        let motions = [self.motion.depths(amounts, unknowns[N]), self.motion.speeds(amounts, unknowns[N])];
+        let [depths, speeds] = motions.each_ref().map(|of| &of.free - &of.kernel * forces);
+        let by = |of: &Linear, i: usize, j: usize| match j {
+            j if j < N => -of.kernel[(i, j)],
+            _ => of.free_slope[i] - (of.kernel_slope.row(i) * forces)[0],
+        };
+        let mut residual = DVector::zeros(N + 1);
+        let mut jacobian = DMatrix::zeros(N + 1, N + 1);
+        for i in 0..N {
+            let (force, slopes) = law(i, [depths[i], speeds[i]]);
+            residual[i] = unknowns[i] - force;
+            for j in 0..=N {
+                let changes =
+                    slopes.iter().zip(&motions).map(|(slope, of)| slope * by(of, i, j)).sum::<f64>();
+                jacobian[(i, j)] = f64::from(i == j) - changes;
+            }
         }
-        let [by_depth, by_speed] = slopes[i];
-        f64::from(i == j) - by_depth * depth - by_speed * speed
-    });
-    jacobian.try_inverse().expect("a collision is an isolated solution")
+        residual[N] = depths[N];
+        for j in 0..=N {
+            jacobian[(N, j)] = by(&motions[0], N, j);
+        }
+        (residual, jacobian)
+    }
+}
+
+/// `ζ^(3/2) φ` and its slopes by depth and by speed.
+fn force(law: &UnitLaw, z: f64, w: f64) -> (f64, [f64; 2]) {
+    let [factor, by_z, by_w] = law.slopes(0.5 * z.powf(2.5), w);
+    let root = z.sqrt();
+    (z * root * factor, [root * (1.5 * factor + by_z), z * root * by_w])
 }

@@ -21,6 +21,7 @@ pub mod lossy;
 pub mod lossy_rule;
 pub mod motion;
 pub mod newton;
+mod node_law;
 pub mod nodes;
 pub mod quadrature;
 pub mod response;

@@ -8,16 +8,17 @@
 //! ```
 //!
 //! and the first change of the iteration gives the amount of each. Their second-order correction is then added to that change, and
-//! the inverse Jacobian corrected for them to first order: instead of one and a half digits an iteration gains three.
+//! the inverse Jacobian corrected for them to first order: instead of one and a half digits an iteration gains three. Where contacts lose
+//! energy by the law of Hunt and Crossley, the difference of their χ from that of the undisturbed collision is a third.
 
 use super::nodes::{Nodes, dot, packed, product};
-use super::undisturbed::{DURATION, STIFFNESS};
-use crate::motion::linearised::MOMENTS;
+use super::rule::Integrals;
+use super::undisturbed::DURATION;
 use nalgebra::{DMatrix, DVector};
 use wide::f64x4;
 
 /// A vector of a number for each node and one more, for the duration or the end.
-type Extended<const M: usize> = (Nodes<M>, f64);
+pub type Extended<const M: usize> = (Nodes<M>, f64);
 
 fn extended<const N: usize, const M: usize>(number: impl Fn(usize) -> f64) -> Extended<M> {
     (packed::<N, M>(&std::array::from_fn(&number)), number(N))
@@ -50,12 +51,16 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
     }
 }
 
+/// Most perturbations, and the amount of each.
+const MOST: usize = 3;
+pub type Amounts = [f64; MOST];
+
 /// Inverse Jacobian at the undisturbed collision, and how disturbances move it.
 pub struct Newton<const N: usize, const M: usize> {
     undisturbed: Bordered<N, M>,
-    perturbations: [Perturbation<N, M>; 2],
-    /// Second-order corrections of depths and duration: for the square of the first perturbation, of the second, and their product.
-    second_order: [Extended<M>; 3],
+    perturbations: Vec<Perturbation<N, M>>,
+    /// Second-order corrections of the unknowns: for each pair of perturbations, the squares first.
+    second_order: Vec<([usize; 2], Extended<M>)>,
 }
 
 struct Perturbation<const N: usize, const M: usize> {
@@ -65,80 +70,157 @@ struct Perturbation<const N: usize, const M: usize> {
     correction: Bordered<N, M>,
 }
 
-/// Disturbances small enough to be linear.
-const ACCELERATION: f64 = 0.05;
-const DRAG: f64 = 0.02;
+/// Disturbances small enough to be linear: an acceleration, a drag, a difference of χ.
+const UNITS: Amounts = [0.05, 0.02, 0.02];
+
+/// A collision under perturbations.
+pub struct Disturbed {
+    /// Residuals at the undisturbed collision, as the first iteration takes them.
+    pub first: DVector<f64>,
+    /// The solution, and the inverse Jacobian there.
+    pub unknowns: DVector<f64>,
+    pub inverse: DMatrix<f64>,
+}
+
+/// The motion under `ζ'' = α - β ζ'` and forces at the nodes, at the nodes and at the end, over the duration of the undisturbed collision.
+pub struct DisturbedMotion<'a, const N: usize> {
+    /// D, in units of the greatest depth over the touch-down speed: `Λ = κ T² √Z = (5/4) D²`.
+    pub duration: f64,
+    pub integrals: &'a Integrals<N>,
+}
+
+/// Its depths or its speeds: without forces, what a unit of force at each node takes away, and the derivatives of both by the duration.
+pub struct Linear {
+    pub free: DVector<f64>,
+    pub free_slope: DVector<f64>,
+    pub kernel: DMatrix<f64>,
+    pub kernel_slope: DMatrix<f64>,
+}
+
+impl<const N: usize> DisturbedMotion<'_, N> {
+    fn moment(&self, k: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(N + 1, N, |i, j| self.integrals.moment(k, i, j))
+    }
+
+    fn time(&self) -> DVector<f64> {
+        DVector::from_fn(N + 1, |i, _| if i < N { self.integrals.times[i] } else { 1.0 })
+    }
+
+    /// The response to a unit of force over its moments from this one on, `(1 - e^(-βt)) / β = t - β t²/2 + β² t³/6` of a depth, and its
+    /// derivative by the duration.
+    fn response(&self, from: usize, beta: f64, sigma: f64) -> [DMatrix<f64>; 2] {
+        let first = from as i32 + 1;
+        let [once, twice, thrice] = [0, 1, 2].map(|k| self.moment(from + k));
+        let of = |weight: &dyn Fn(i32) -> f64| {
+            (&once * weight(0) - &twice * weight(1) + &thrice * weight(2))
+                * (1.25 * self.duration * self.duration)
+        };
+        let value = of(&|k| beta.powi(k) * sigma.powi(first + k));
+        [value, of(&|k| f64::from(first + k) * beta.powi(k) * sigma.powi(first + k - 1))]
+    }
+
+    /// Depths, in units of the greatest.
+    pub fn depths(&self, [alpha, beta, _]: Amounts, sigma: f64) -> Linear {
+        let (time, speed) = (self.time(), self.duration);
+        let t = &time * sigma;
+        let free = t.map(|t| {
+            speed * t * (1.0 - beta * t / 2.0 + (beta * t).powi(2) / 6.0)
+                + alpha * t * t * (0.5 - beta * t / 6.0)
+        });
+        let free_slope = self.rates([alpha, beta, 0.0], &t).component_mul(&time);
+        let [kernel, kernel_slope] = self.response(1, beta, sigma);
+        Linear { free, free_slope, kernel, kernel_slope }
+    }
+
+    /// Their rates over the undisturbed duration.
+    fn rates(&self, [alpha, beta, _]: Amounts, t: &DVector<f64>) -> DVector<f64> {
+        t.map(|t| {
+            self.duration * (1.0 - beta * t + (beta * t).powi(2) / 2.0) + alpha * t * (1.0 - beta * t / 2.0)
+        })
+    }
+
+    /// Speeds, in units of that at touch-down.
+    pub fn speeds(&self, [alpha, beta, _]: Amounts, sigma: f64) -> Linear {
+        let time = self.time();
+        let t = &time * sigma;
+        let free = self.rates([alpha, beta, 0.0], &t) / self.duration;
+        let slope = t.map(|t| self.duration * (-beta + beta * beta * t) + alpha * (1.0 - beta * t));
+        let free_slope = slope.component_mul(&time) / self.duration;
+        let [kernel, kernel_slope] = self.response(0, beta, sigma).map(|matrix| matrix / self.duration);
+        Linear { free, free_slope, kernel, kernel_slope }
+    }
+}
+
+/// The equations of a collision without loss: the unknowns are depths.
+pub fn lossless<const N: usize>(integrals: &Integrals<N>) -> (DVector<f64>, impl Fn(Amounts) -> Disturbed) {
+    let motion = DisturbedMotion { duration: DURATION, integrals };
+    let start = DVector::from_fn(N + 1, |i, _| if i < N { integrals.depths[i] } else { 1.0 });
+    let begin = start.clone();
+    let equations = move |amounts: Amounts, unknowns: &DVector<f64>| {
+        let Linear { free, free_slope, kernel, kernel_slope } = motion.depths(amounts, unknowns[N]);
+        let force = unknowns.rows(0, N).map(|z| z.powf(1.5));
+        let by_duration = kernel_slope * &force - free_slope;
+        let jacobian = DMatrix::from_fn(N + 1, N + 1, |i, j| {
+            if j == N {
+                by_duration[i]
+            } else {
+                f64::from(i == j) + 1.5 * kernel[(i, j)] * unknowns[j].sqrt()
+            }
+        });
+        let mut residual = kernel * force - free;
+        for i in 0..N {
+            residual[i] += unknowns[i];
+        }
+        (residual, jacobian)
+    };
+    let solve = move |amounts: Amounts| {
+        let (first, _) = equations(amounts, &begin);
+        Disturbed::solved(first, begin.clone(), |unknowns| equations(amounts, unknowns))
+    };
+    (start, solve)
+}
+
+impl Disturbed {
+    /// By Newton's iteration from some unknowns.
+    pub fn solved(
+        first: DVector<f64>,
+        mut unknowns: DVector<f64>,
+        equations: impl Fn(&DVector<f64>) -> (DVector<f64>, DMatrix<f64>),
+    ) -> Self {
+        let mut inverse = DMatrix::zeros(0, 0);
+        for _ in 0..12 {
+            let (residual, jacobian) = equations(&unknowns);
+            inverse = jacobian.try_inverse().expect("a collision is an isolated solution");
+            unknowns -= &inverse * residual;
+        }
+        Self { first, unknowns, inverse }
+    }
+}
 
 impl<const N: usize, const M: usize> Newton<N, M> {
-    /// Prepares the iteration from times and depths of the nodes and the moments of forces there and at the end.
-    pub fn new(
-        times: &[f64; N],
-        depths: &[f64; N],
-        moments: &[[[f64; N]; N]; MOMENTS],
-        last: &[[f64; N]; MOMENTS],
-    ) -> Self {
-        let time = DVector::from_fn(N + 1, |i, _| if i < N { times[i] } else { 1.0 });
-        let moment =
-            |k: usize| DMatrix::from_fn(N + 1, N, |i, j| if i < N { moments[k][j][i] } else { last[k][j] });
-        let (once, twice, thrice) = (moment(1), moment(2), moment(3));
-        let start = DVector::from_fn(N + 1, |i, _| if i < N { depths[i] } else { 1.0 });
-        // Residuals and Jacobian of a disturbed collision.
-        let equations = |alpha: f64, beta: f64, unknowns: &DVector<f64>| {
-            let sigma = unknowns[N];
-            let force = unknowns.rows(0, N).map(|z| z.powf(1.5));
-            let t = &time * sigma;
-            // The response to a unit of force, (1 - e^(-βt)) / β = t - β t²/2 + β² t³/6, and to a touch-down at unit speed.
-            let kernel = (&once * sigma.powi(2) - &twice * (beta * sigma.powi(3))
-                + &thrice * (beta.powi(2) * sigma.powi(4)))
-                * STIFFNESS;
-            let slope = (&once * (2.0 * sigma) - &twice * (3.0 * beta * sigma.powi(2))
-                + &thrice * (4.0 * beta.powi(2) * sigma.powi(3)))
-                * STIFFNESS;
-            let free = t.map(|t| {
-                DURATION * t * (1.0 - beta * t / 2.0 + (beta * t).powi(2) / 6.0)
-                    + alpha * t * t * (0.5 - beta * t / 6.0)
-            });
-            let free_slope = t.map(|t| {
-                DURATION * (1.0 - beta * t + (beta * t).powi(2) / 2.0) + alpha * t * (1.0 - beta * t / 2.0)
-            });
-            let by_duration = &slope * &force - free_slope.component_mul(&time);
-            let jacobian = DMatrix::from_fn(N + 1, N + 1, |i, j| {
-                if j == N {
-                    by_duration[i]
-                } else {
-                    f64::from(i == j) + 1.5 * kernel[(i, j)] * unknowns[j].sqrt()
-                }
-            });
-            let mut residual = kernel * force - free;
-            for i in 0..N {
-                residual[i] += unknowns[i];
-            }
-            (residual, jacobian.try_inverse().expect("a collision is an isolated solution"))
-        };
-        let solution = |alpha: f64, beta: f64| {
-            let (mut unknowns, mut inverse) = (start.clone(), DMatrix::zeros(0, 0));
-            for _ in 0..12 {
-                let (residual, here) = equations(alpha, beta, &unknowns);
-                unknowns -= &here * residual;
-                inverse = here;
-            }
-            (unknowns, inverse)
-        };
-        let (start, undisturbed) = solution(0.0, 0.0);
+    /// Prepares the iteration from the unknowns of the undisturbed collision and the solutions under so many of the perturbations.
+    pub fn new(start: &DVector<f64>, count: usize, solve: impl Fn(Amounts) -> Disturbed) -> Self {
+        let undisturbed = solve([0.0; MOST]).inverse;
         // The change left after the first iteration, the change in it, and the converged inverse Jacobian.
-        let with = |a: f64, b: f64| {
-            let (alpha, beta) = (a * ACCELERATION, b * DRAG);
-            let change = -&undisturbed * equations(alpha, beta, &start).0;
-            let (unknowns, inverse) = solution(alpha, beta);
-            (unknowns - &start - &change, change, inverse)
+        let with = |units: &[(usize, f64)]| {
+            let mut amounts = [0.0; MOST];
+            units.iter().for_each(|&(of, unit)| amounts[of] = unit * UNITS[of]);
+            let Disturbed { first, unknowns, inverse } = solve(amounts);
+            let change = -&undisturbed * first;
+            (unknowns - start - &change, change, inverse)
         };
-        // Each perturbation and its opposite, and both perturbations together: first and second differences.
-        let pairs = [[with(1.0, 0.0), with(-1.0, 0.0)], [with(0.0, 1.0), with(0.0, -1.0)]];
-        let changes = DMatrix::from_columns(&pairs.each_ref().map(|[more, less]| (&more.1 - &less.1) / 2.0));
-        let [first, second] = pairs.each_ref().map(|[more, less]| (&more.0 + &less.0) / 2.0);
-        let both = with(1.0, 1.0).0 - &first - &second;
+        // Each perturbation and its opposite, and two perturbations together: first and second differences.
+        let pairs: Vec<_> = (0..count).map(|of| [with(&[(of, 1.0)]), with(&[(of, -1.0)])]).collect();
+        let changes: Vec<_> = pairs.iter().map(|[more, less]| (&more.1 - &less.1) / 2.0).collect();
+        let changes = DMatrix::from_columns(&changes);
+        let bends: Vec<_> = pairs.iter().map(|[more, less]| (&more.0 + &less.0) / 2.0).collect();
+        let mixed = (0..count).flat_map(|b| (0..b).map(move |a| [a, b])).map(|[a, b]| {
+            let both = with(&[(a, 1.0), (b, 1.0)]).0;
+            ([a, b], both - &bends[a] - &bends[b])
+        });
+        let second_order = bends.iter().cloned().enumerate().map(|(of, bend)| ([of, of], bend)).chain(mixed);
         // Least squares: (CᵀC)⁻¹ Cᵀ; a change is what is subtracted.
-        let normal = (changes.transpose() * &changes).try_inverse().expect("the two perturbations differ");
+        let normal = (changes.transpose() * &changes).try_inverse().expect("the perturbations differ");
         let rows = -(normal * changes.transpose());
         let perturbation = |c: usize| Perturbation {
             row: extended::<N, M>(|i| rows[(c, i)]),
@@ -146,44 +228,46 @@ impl<const N: usize, const M: usize> Newton<N, M> {
         };
         Self {
             undisturbed: Bordered::new(&undisturbed),
-            perturbations: [perturbation(0), perturbation(1)],
-            second_order: [first, second, both].map(|bend| extended::<N, M>(|i| bend[i])),
+            perturbations: (0..count).map(perturbation).collect(),
+            second_order: second_order.map(|(of, bend)| (of, extended::<N, M>(|i| bend[i]))).collect(),
         }
     }
 
-    /// The second-order correction of depths and duration for these amounts of the perturbations.
+    /// The second-order correction of the unknowns for these amounts of the perturbations.
     #[inline(always)]
-    pub fn second_order(&self, [a, b]: [f64; 2]) -> Extended<M> {
-        let (mut depths, mut duration) = ([f64x4::ZERO; M], 0.0);
-        for ((bend, last), weight) in self.second_order.iter().zip([a * a, b * b, a * b]) {
+    pub fn second_order(&self, amounts: Amounts) -> Extended<M> {
+        let (mut change, mut duration) = ([f64x4::ZERO; M], 0.0);
+        for ([a, b], (bend, last)) in &self.second_order {
+            let weight = amounts[*a] * amounts[*b];
             for i in 0..M {
-                depths[i] += bend[i] * weight;
+                change[i] += bend[i] * weight;
             }
             duration += weight * last;
         }
-        (depths, duration)
+        (change, duration)
     }
 
-    /// The amount of each perturbation, from the first change at the nodes and of the duration.
+    /// The amount of each perturbation, from the first change.
     #[inline(always)]
-    pub fn shares(&self, change: &Nodes<M>, lengthening: f64) -> [f64; 2] {
-        let share = |Perturbation { row: (row, last), .. }: &Perturbation<N, M>| {
-            dot(row, change) + last * lengthening
-        };
-        self.perturbations.each_ref().map(share)
+    pub fn amounts(&self, change: &Nodes<M>, lengthening: f64) -> Amounts {
+        let mut amounts = [0.0; MOST];
+        for (amount, Perturbation { row: (row, last), .. }) in amounts.iter_mut().zip(&self.perturbations) {
+            *amount = dot(row, change) + last * lengthening;
+        }
+        amounts
     }
 
     /// The change in one Newton iteration: the inverse Jacobian for these amounts of the perturbations times the residuals.
     #[inline(always)]
-    pub fn change(&self, shares: [f64; 2], residual: &Nodes<M>, last: f64) -> Extended<M> {
+    pub fn change(&self, amounts: Amounts, residual: &Nodes<M>, last: f64) -> Extended<M> {
         let (mut change, mut lengthening) = self.undisturbed.times((residual, last));
-        if shares != [0.0; 2] {
-            for (perturbation, share) in self.perturbations.iter().zip(shares) {
+        if amounts != [0.0; MOST] {
+            for (perturbation, amount) in self.perturbations.iter().zip(amounts) {
                 let (correction, end) = perturbation.correction.times((residual, last));
                 for i in 0..M {
-                    change[i] += correction[i] * share;
+                    change[i] += correction[i] * amount;
                 }
-                lengthening += share * end;
+                lengthening += amount * end;
             }
         }
         (change, lengthening)

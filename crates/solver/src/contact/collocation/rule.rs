@@ -121,8 +121,11 @@ impl<const N: usize> Integrals<N> {
 #[cfg(test)]
 mod tests {
     use super::super::nodes::node;
-    use super::super::undisturbed::{DURATION, STIFFNESS, clock, undisturbed_force};
+    use super::super::undisturbed::{DURATION, clock, undisturbed_force};
     use super::*;
+
+    /// `Λ = κ T² √Z` of the undisturbed collision with the greatest depth Z.
+    const STIFFNESS: f64 = 1.25 * DURATION * DURATION;
 
     fn rule<const N: usize, const M: usize>() -> Rule<N, M> {
         let force = undisturbed_force();

@@ -2,7 +2,7 @@
 
 use super::lossy_rule::{Loss, LossyRule, LossyRules};
 use super::motion::Collision;
-use super::newton::Newton;
+use super::newton::{self, Newton};
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
@@ -26,7 +26,8 @@ type Lossless<const N: usize, const M: usize> = (Rule<N, M>, Newton<N, M>);
 fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
     let force = undisturbed_force();
     let (rule, integrals) = Rule::new(clock, &force, |u| force(u).powf(2.0 / 3.0));
-    (rule, Newton::new(&integrals.times, &integrals.depths, &integrals.moments, &integrals.last))
+    let (start, solve) = newton::lossless(&integrals);
+    (rule, Newton::new(&start, 2, solve))
 }
 
 /// The error of the end of a contact over `tail^1.25`, for each rule, where the tail of its force's expansion is the root of the
@@ -177,7 +178,7 @@ impl Collisions {
         let to_depth = self.side.sign() / depth;
         let approach = Polynomial::<FREE>(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * to_depth)).over_s();
         let (mut depths, mut stretch) = (rule.depths, 1.0);
-        let mut shares = [0.0; 2];
+        let mut amounts = [0.0; 3];
         let (mut before, mut iterations): (f64, u32) = (1.0, 0);
         let force = loop {
             let duration = stretch * undisturbed;
@@ -194,7 +195,7 @@ impl Collisions {
             let free_last = approach.at(duration) * duration;
             let residual: Nodes<M> =
                 std::array::from_fn(|i| depths[i] - mean_rate[i] * times[i] + pushed[i] * scale);
-            let (change, lengthening) = newton.change(shares, &residual, scale * pushed_last - free_last);
+            let (change, lengthening) = newton.change(amounts, &residual, scale * pushed_last - free_last);
             for i in 0..M {
                 depths[i] -= change[i];
             }
@@ -207,8 +208,8 @@ impl Collisions {
                 return None;
             }
             if iterations == 1 {
-                shares = newton.shares(&change, lengthening);
-                let (bend, longer) = newton.second_order(shares);
+                amounts = newton.amounts(&change, lengthening);
+                let (bend, longer) = newton.second_order(amounts);
                 for i in 0..M {
                     depths[i] += bend[i];
                 }

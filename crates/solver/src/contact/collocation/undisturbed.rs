@@ -11,9 +11,6 @@ use crate::methods::dop853;
 /// Duration of the undisturbed collision, in units of greatest depth over touch-down speed: `(4/5) B(2/5, 1/2)`.
 pub const DURATION: f64 = 2.943_275_184_324_705;
 
-/// `Λ = κ T² √Z` of the undisturbed collision: with `Z` its greatest depth, `(5/4) DURATION²`.
-pub const STIFFNESS: f64 = 1.25 * DURATION * DURATION;
-
 /// `τ` and `dτ/du` of the clock.
 pub fn clock(u: f64) -> [f64; 2] {
     [u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)]

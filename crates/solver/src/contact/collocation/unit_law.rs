@@ -14,6 +14,14 @@ pub enum UnitLaw {
 }
 
 impl UnitLaw {
+    /// The law of another χ, if it has one of its own.
+    pub fn beside(&self, more: f64) -> Self {
+        match self {
+            Self::Restoring(law) => Self::Restoring(Arc::clone(law)),
+            Self::Damping(chi) => Self::Damping(chi + more),
+        }
+    }
+
     /// The factor at `S = z^(5/2)/2` and `ż`.
     pub fn push(&self, s: f64, w: f64) -> f64 {
         match self {
