@@ -154,8 +154,7 @@ impl<const N: usize> DisturbedMotion<'_, N> {
 /// The equations of a collision without loss: the unknowns are depths.
 pub fn lossless<const N: usize>(integrals: &Integrals<N>) -> (DVector<f64>, impl Fn(Amounts) -> Disturbed) {
     let motion = DisturbedMotion { duration: DURATION, integrals };
-    let start = DVector::from_fn(N + 1, |i, _| if i < N { integrals.depths[i] } else { 1.0 });
-    let begin = start.clone();
+    let depths = DVector::from_fn(N + 1, |i, _| if i < N { integrals.depths[i] } else { 1.0 });
     let equations = move |amounts: Amounts, unknowns: &DVector<f64>| {
         let Linear { free, free_slope, kernel, kernel_slope } = motion.depths(amounts, unknowns[N]);
         let force = unknowns.rows(0, N).map(|z| z.powf(1.5));
@@ -173,9 +172,12 @@ pub fn lossless<const N: usize>(integrals: &Integrals<N>) -> (DVector<f64>, impl
         }
         (residual, jacobian)
     };
+    let undisturbed = |unknowns: &DVector<f64>| equations([0.0; MOST], unknowns);
+    let start = Disturbed::solved(DVector::zeros(0), depths.clone(), undisturbed).unknowns;
+    let begin = start.clone();
     let solve = move |amounts: Amounts| {
         let (first, _) = equations(amounts, &begin);
-        Disturbed::solved(first, begin.clone(), |unknowns| equations(amounts, unknowns))
+        Disturbed::solved(first, depths.clone(), |unknowns| equations(amounts, unknowns))
     };
     (start, solve)
 }
