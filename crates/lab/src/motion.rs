@@ -1,6 +1,6 @@
 //! The interface of a scene to other people's integrators, and the evaluation of their output.
 
-use retune_model::{Bare, Coupled, Scene, Side, hertz_force};
+use retune_model::{Bare, Coupled, Scene, Side};
 use std::cell::Cell;
 
 /// Evaluations after which a run is aborted: a hundred times those of the longest completed run.
@@ -57,8 +57,8 @@ impl Equations {
             Acting::Any => coupled.derivative(excitation, y),
             Acting::None => coupled.derivative_under(excitation, y, 0.0),
             Acting::Only(side) => {
-                let z = coupled.indentation(y)[side as usize];
-                coupled.derivative_under(excitation, y, -side.sign() * hertz_force(coupled.hertz(side), z))
+                let force = coupled.contact_forces(y)[side as usize];
+                coupled.derivative_under(excitation, y, -side.sign() * force)
             }
         }
     }
@@ -87,10 +87,16 @@ impl Equations {
         }
     }
 
-    /// Changes the phase at an event, slightly (1e-15 m) beyond the wall; true if it was a touch-down.
+    /// Changes the phase at an event, slightly (1e-15 m) beyond the wall; true if it was a touch-down. A rigid wall throws the damper back
+    /// at once.
     pub fn change(&mut self, y: &mut [f64; 4]) -> bool {
         let open = self.open(y);
         let nearest = if open[0] <= open[1] { Side::Primary } else { Side::Obstacle };
+        if let Some((coupled, e)) = self.coupled.as_ref().and_then(|c| Some((c, c.restitution()?))) {
+            *y = coupled.struck(e, y);
+            y[2] = y[0] + coupled.wall(nearest) - nearest.sign() * 1e-15;
+            return true;
+        }
         let (next, direction) = match self.acting {
             Acting::Only(side) => (Acting::None, -side.sign()),
             _ => (Acting::Only(nearest), nearest.sign()),

@@ -147,6 +147,11 @@ fn scenes_json(cases: &[Case]) -> Result<String, serde_json::Error> {
                     "m2": d.mass.get(), "k2": d.stiffness.get(), "c2": d.damping.get(),
                     "D": d.rest_distance.get(), "C": d.clearance.get(),
                     "K1": system.hertz(Side::Primary), "K3": system.hertz(Side::Obstacle),
+                    "lambda": system.regularised_contact(Side::Primary).lambda(),
+                    "restitution": system.restitution().or_else(|| {
+                        system.regularised_contact(Side::Primary).restoring().map(|law| law.restitution())
+                    }),
+                    "rigid": system.is_rigid(),
                 }),
             };
             if let (Some(all), serde_json::Value::Object(more)) = (object.as_object_mut(), numbers) {
