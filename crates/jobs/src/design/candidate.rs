@@ -3,7 +3,7 @@
 use crate::tune::band::at;
 use rayon::prelude::*;
 use retune_model::{Bare, Coupled, Damper, Measure, PerMeasure, Scene, Source};
-use retune_optim::{Limit, Need, Unusable};
+use retune_optim::{Limit, Limits, Need, Unusable};
 use retune_study::Study;
 use serde::Serialize;
 
@@ -61,7 +61,8 @@ impl Candidate {
     /// It cannot be run.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
         let settings = study.solver.settings();
-        let needs = study.goal().needs(&study.scene, &settings, &|| true)?;
+        let needs =
+            study.goal().needs_above(&study.scene, &settings, told(&study.goal().limits), &|| true)?;
         let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
         let limits = study.goal().limits;
         let is_damper = study.scene.damper.is_some();
@@ -119,6 +120,14 @@ impl Candidate {
     pub fn strikes(&self) -> bool {
         self.from_rest.get(Measure::ContactForce).value > 0.0
     }
+}
+
+/// From where on a value from rest is told, and its peaks between samples matter: above its limit; of the stroke, which is drawn, everywhere.
+fn told(limits: &Limits) -> PerMeasure<f64> {
+    PerMeasure(Measure::ALL.map(|measure| match measure {
+        Measure::Stroke => f64::NEG_INFINITY,
+        _ => limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY),
+    }))
 }
 
 /// The largest steady amplitude of a quantity on samples of the band.

@@ -21,6 +21,7 @@ fn contract_the_answer_of_the_readme_is_that_of_the_program() {
     let arguments: Vec<&str> = command.split(' ').collect();
     let answer = desk.run(&arguments);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    assert!(answer.stdout.contains("\nSSVI NES so far: E1max "), "what Ctrl-C leaves: {}", answer.stdout);
     let lines = section.split("```text\n").nth(1).and_then(|rest| rest.split("\n```").next()).expect("lines");
     let mut rest = answer.stdout.as_str();
     for line in lines.lines() {
