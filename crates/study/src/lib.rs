@@ -62,6 +62,7 @@ pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
 pub use set::{Settable, Setting, SettingError};
 pub use start::start;
 pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};
+pub use units::typed;
 pub use visible::visible;
 pub use words::{
     are, counted, design_cells, design_words, fields, frequency, hertz_and_rpm, joined, over, rounded, short,

@@ -36,10 +36,7 @@ pub(super) fn in_si(text: &str) -> Result<Cow<'_, str>, Refused> {
         if typed.trim().parse::<f64>().is_ok() {
             continue; // a number in quotes is a slip, and no unit
         }
-        let number = unit::read(&typed, units).and_then(|value| match value.is_finite() {
-            true => Ok(value),
-            false => Err(format!("\"{typed}\" is not allowed here: give a finite number")),
-        });
+        let number = read(&typed, units);
         let number = number.map_err(|problem| refused(text, span.start, path, &problem))?;
         out.push_str(&text[copied..span.start]);
         out.push_str(&Value::from(number).to_string());
@@ -69,29 +66,52 @@ fn refused(text: &str, at: usize, path: &[Step], problem: &str) -> Refused {
     }
 }
 
-/// The units of the field at a path; none where a text is no number.
-fn units(path: &[Step], whole: Option<&Value>) -> Option<&'static [Unit]> {
-    let names: Vec<&str> = path.iter().filter_map(Step::field).collect();
-    let mut inwards = names.iter().rev().copied().peekable();
-    let own = inwards.peek().copied()?;
-    match (own, names.iter().rev().nth(1).copied()) {
-        ("from", Some("limits")) | ("t0" | "T" | "duration", _) => return Some(unit::TIME),
-        ("at", Some("loss" | "loss_obstacle")) => return Some(Measure::Velocity.units()),
-        ("force" | "errors", Some("certificate")) => return Some(unit::SHARE),
-        _ => {}
+/// A number of a name of the catalogue as it was typed, in the SI unit: without a unit, or with one of its own.
+///
+/// # Errors
+/// It is none, or the name has no units; the message says what to give.
+pub fn typed(name: &str, text: &str) -> Result<f64, String> {
+    read(text, of_name(name).unwrap_or_default())
+}
+
+fn read(text: &str, units: &[Unit]) -> Result<f64, String> {
+    let value = unit::read(text, units)?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("\"{text}\" is not allowed here: give a finite number"))
     }
-    let name = inwards.find(|name| !["from", "to", "set", "range"].contains(name))?;
+}
+
+/// The units of a name; none of what is no number, or has no unit.
+fn of_name(name: &str) -> Option<&'static [Unit]> {
     match name {
+        "t0" | "T" | "duration" => return Some(unit::TIME),
         "x1" | "x2" | "cavity" => return Some(unit::LENGTH),
         "v1" | "v2" => return Some(Measure::Velocity.units()),
-        // A band that moves with the structure has shares of its natural frequency.
-        "omega" if own != "omega" && is_relative(path, whole) => return Some(unit::SHARE),
         _ => {}
     }
     let parameter = Parameter::ALL.into_iter().find(|parameter| parameter.symbol() == name);
     let measure = Measure::ALL.into_iter().find(|measure| measure.name() == name);
     let units = parameter.map(Parameter::units).or(measure.map(Measure::units))?;
     (!units[0].0.is_empty()).then_some(units)
+}
+
+/// The units of the field at a path; none where a text is no number.
+fn units(path: &[Step], whole: Option<&Value>) -> Option<&'static [Unit]> {
+    let names: Vec<&str> = path.iter().filter_map(Step::field).collect();
+    let mut inwards = names.iter().rev().copied().peekable();
+    let own = inwards.peek().copied()?;
+    match (own, names.iter().rev().nth(1).copied()) {
+        ("from", Some("limits")) => return Some(unit::TIME),
+        ("at", Some("loss" | "loss_obstacle")) => return Some(Measure::Velocity.units()),
+        ("force" | "errors", Some("certificate")) => return Some(unit::SHARE),
+        _ => {}
+    }
+    let name = inwards.find(|name| !["from", "to", "set", "range"].contains(name))?;
+    // A band that moves with the structure has shares of its natural frequency.
+    let shares = name == "omega" && own != "omega" && is_relative(path, whole);
+    if shares { Some(unit::SHARE) } else { of_name(name) }
 }
 
 /// Whether the object around a field says that it is relative.
