@@ -158,7 +158,7 @@ function paint(motion) {
 function rest() {
     resting = false;
     figures.motion(latest, omega());
-    const P = controls().find(({ name }) => ["P", "imbalance", "base"].includes(name));
+    const P = controls().find(({ name }) => ["P", "imbalance", "base", "base_acceleration"].includes(name));
     drawing.show(latest, { damper: place.damper, P: P ? value(P) : 0 });
     $("phase-2-figure").hidden = place.damper === "none";
     points(latest.columns, latest);

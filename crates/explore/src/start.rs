@@ -43,7 +43,7 @@ pub struct Control {
 }
 
 /// The numbers that a page can turn, in its order.
-const TURNED: [Parameter; 11] = [
+const TURNED: [Parameter; 12] = [
     Parameter::Omega,
     Parameter::K2,
     Parameter::C2,
@@ -55,6 +55,7 @@ const TURNED: [Parameter; 11] = [
     Parameter::P,
     Parameter::Imbalance,
     Parameter::Base,
+    Parameter::BaseAcceleration,
 ];
 
 /// The dampers that have a parameter.

@@ -8,7 +8,7 @@ use super::runs::{FREE, Hooks, Observed, Proceed, Runs};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
-use retune_model::{Damper, Measure, NonNegative, Parameter, PerMeasure, Scene, Source, den_hartog};
+use retune_model::{Damper, NonNegative, Parameter, PerMeasure, Scene, den_hartog};
 use retune_solver::{Also, Settings};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -126,10 +126,7 @@ impl Goal {
         let damper = scene.damper?;
         let quantity = self.objective.quantity();
         let of_the_structure = !quantity.is_of_damper();
-        let (Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) = scene.forcing.source else {
-            return None;
-        };
-        if !of_the_structure || scene.primary.stiffness.get() == 0.0 {
+        if !scene.forcing.source.is_harmonic() || !of_the_structure || scene.primary.stiffness.get() == 0.0 {
             return None;
         }
         let plain = Damper {
@@ -155,9 +152,7 @@ impl Goal {
             let found = minimize(value, &start, options, |_| ControlFlow::Continue(())).ok()?;
             <[f64; 2]>::try_from(found.x).ok()
         };
-        let banded = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
-        let closed =
-            banded && !(quantity == Measure::GroundForce && matches!(scene.forcing.source, Source::Base(_)));
+        let closed = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
         let mut best = den_hartog(&scene.primary, damper.mass.get());
         if closed {
             let steady = |term: &mut Objective| (term.response, term.ensemble) = (Response::Steady, None);

@@ -78,7 +78,7 @@ class Problem(_core.Core):
 
     All arguments but structure and damper are keywords:
 
-    - ``P`` (N), ``imbalance`` (kg m) or ``base`` (m) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
+    - ``P`` (N), ``imbalance`` (kg m), ``base`` (m) or ``base_acceleration`` (m/s²) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
       the natural frequency of the structure, or the end of the band that is nearest to it. ``start`` is a state (``x1``, ``v1``, ``x2``,
       ``v2``) for a free decay instead.
     - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0. "settled": from when the slowest transient
@@ -103,6 +103,7 @@ class Problem(_core.Core):
         P: float | str | None = None,
         imbalance: float | str | None = None,
         base: float | str | None = None,
+        base_acceleration: float | str | None = None,
         start: Mapping[str, float | str] | None = None,
         omega: float | str | None = None,
         window: tuple[float | str, float | str] | Literal["settled"] = "settled",
@@ -145,7 +146,7 @@ class Problem(_core.Core):
             "name": name,
             "scene": {
                 "primary": asdict(structure),
-                "forcing": given({"P": P, "imbalance": imbalance, "base": base, "start": start, "omega": omega}),
+                "forcing": given({"P": P, "imbalance": imbalance, "base": base, "base_acceleration": base_acceleration, "start": start, "omega": omega}),
                 "damper": None if damper is None else damper._study(),
             },
             "window": span,
