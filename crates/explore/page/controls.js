@@ -73,7 +73,7 @@ export function refresh() {
         const now = value(control);
         const at = Math.round(STEPS * Math.min(1, Math.max(0, share(control, now))));
         if (Number(slider.value) !== at) slider.value = at;
-        if (control.name === "omega") row.querySelector("label span").textContent = `${control.words}: ${shown(now / (2 * Math.PI))} Hz`;
+        if (control.name === "omega") row.querySelector("label span").textContent = `${control.words}: ${Number((now / (2 * Math.PI)).toPrecision(4))} Hz`;
         slider.setAttribute("aria-valuetext", `${shown(now)} ${control.unit}`);
         if (document.activeElement !== text || Number(text.value) !== now) text.value = shown(now);
         row.classList.toggle("changed", control.name in place.set);
