@@ -345,6 +345,7 @@ def try_it(program, shots):
             if shots:
                 look.shot(shots / f"explore-{width}-{scheme}.png")
             look.close()
+    own_structure(program, browser, checks, shots)
     tune(program, browser, checks)
     follow_motions(program, browser, checks, shots)
     sleep(browser, explorer, checks)
@@ -353,6 +354,56 @@ def try_it(program, shots):
     checks.that("Ctrl-C ends it", explorer.process.returncode in (-signal.SIGINT, 130), explorer.process.returncode)
     print(f"{checks.count} checks, {checks.bad} faults")
     return 1 if checks.bad else 0
+
+
+def own_structure(program, browser, checks, shots):
+    """A structure of one's own, typed with units; without a study its form stands first."""
+    explorer = Explorer(program, None)
+    page = Page(browser, explorer.address)
+    form = "document.getElementById('own')"
+    checks.that("without a study the form is open", page.js(f"{form}.open"))
+    fields = {"m1": "40 t", "f1": "2 Hz", "zeta": "0.5 %", "size": "280 kg", "band": "1.8 Hz .. 2.2 Hz", "mass": "2 %"}
+    put = lambda name, text: page.js(f"{form}.querySelector('[name={name}]').value = {json.dumps(text)}")
+    send = lambda: page.click("#own button")
+    for name, text in fields.items():
+        put(name, text)
+    send()
+    page.until("!document.getElementById('own-problem').hidden")
+    words = page.text("#own-problem")
+    checks.that("a wrong unit is refused with its field", words.startswith('force: "280 kg" is not a number in N'), words)
+    checks.that("and marked", page.js(f"{form}.querySelector('[name=size]').getAttribute('aria-invalid')") == "true")
+    put("size", "280 N")
+    send()
+    page.until("document.getElementById('study').textContent === 'own'")
+    page.known()
+    hero = lambda: page.text(".hero .number")
+    checks.that("Den Hartog's TMD has the energy that `retune design` tells of it", hero().startswith("0.5676 J"), hero())
+    checks.that("and the form makes room", not page.js(f"{form}.open") and page.js("document.getElementById('own-problem').hidden"))
+    page.type("#number-k2", "130 kN/m")
+    page.known()
+    checks.that("a number typed with its unit is taken", page.value("k2") == 130_000, page.value("k2"))
+    page.type("#number-k2", "130 kN")
+    page.until("!document.getElementById('problem').hidden")
+    words = page.text("#problem")
+    checks.that("another unit is refused with those that are there", words.startswith('k2: "130 kN" is not a number, alone or in N/m, kN/m'), words)
+    before = page.text("#text")
+    page.type("#number-k2", "130000")
+    page.until("location.hash.includes('own=')")
+    page.open(page.js("location.href"))
+    checks.that("a reload from the address has the structure", page.text("#text") == before and page.text("#study") == "own", page.text("#study"))
+    page.js("document.querySelector('[name=damper][value=ssvi]').click()")
+    page.known()
+    checks.that("its SSVI NES has walls", page.value("D") > 0 and "contacts" in page.text("#text"), page.text("#text"))
+    checks.that("no message on the console, with a structure of one's own", not page.messages(), page.messages())
+    page.close()
+    for width in WIDTHS:
+        page = Page(browser, explorer.address, width=width)
+        seen = page.js(OVERFLOW)
+        checks.that(f"{width} px: the form is within the window", not seen["beyond"] and seen["over"] <= 0, seen)
+        if shots:
+            page.shot(shots / f"own-{width}.png")
+        page.close()
+    explorer.close()
 
 
 def follow_motions(program, browser, checks, shots):

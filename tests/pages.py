@@ -1,15 +1,18 @@
-"""Opens pages in a browser without a window and looks at them as readers do.
+"""Opens pages and figures in a browser without a window and looks at them as readers do.
 
-    python3 tests/pages.py [--shots DIR] PAGE...       needs chromium (or the browser named in $CHROMIUM)
+    python3 tests/pages.py [--shots DIR] PLACE...       needs chromium (or the browser named in $CHROMIUM)
 
-Each page is opened at 390 and 1280 px, light and dark. A message on the console, a file that cannot be loaded, a request that leaves the
-directory, or a page that is wider than its window is a fault. Pictures of whole pages go to DIR.
+A place is a page, a figure, or a directory with all of both below it. Each is opened at 390 and 1200 px, light and dark. A message on the
+console, a file that cannot be loaded, a request that leaves the directory, or a page that is wider than its window is a fault; of a figure
+texts that lie on one another, that are cut off, that are smaller than 11 px where the figure is 1000 px wide, or that can hardly be told from
+what is behind them; of the paper's page a height of more than 12,000 px. Pictures of whole pages go to DIR.
 """
 
 import argparse
 import base64
 import fcntl
 import json
+import math
 import os
 import select
 import shutil
@@ -19,8 +22,12 @@ import tempfile
 import time
 from pathlib import Path
 
-WIDTHS = [390, 1280]
+WIDTHS = [390, 1200]
+# The greatest height of a page in a wide window, px, by the name of its directory.
+HEIGHTS = {"paper": 12_000}
 SCHEMES = ["light", "dark"]
+# Faults of texts that are told of a page.
+MOST = 6
 # Seconds that the browser may take for an answer.
 PATIENCE = 60.0
 
@@ -32,6 +39,51 @@ OVERFLOW = """(() => {
         && e.getBoundingClientRect().right > root.clientWidth + 1 && !scrolls(e.parentElement));
     const name = (e) => e.tagName.toLowerCase() + (e.id ? '#' + e.id : '') + ' "' + e.textContent.trim().slice(0, 40) + '"';
     return { over: root.scrollWidth - root.clientWidth, beyond: beyond.slice(0, 5).map(name), height: root.scrollHeight };
+})()"""
+
+
+# What is wrong with the texts of figures. A line between two texts that only touch is no overlap: boxes hold room for letters that are not there.
+# Letters in their colour are compared with the paper behind the figure (W3C's contrast, of which 3 is enough for large letters).
+TEXTS = """(() => {
+    const faults = [], round = (x) => Number(x.toFixed(1));
+    const rgb = (colour) => (colour.match(/[\\d.]+/g) ?? [0, 0, 0]).slice(0, 3).map(Number);
+    const light = (colour) => {
+        const [r, g, b] = rgb(colour).map((c) => (c / 255 <= .04045 ? c / 3294.6 : ((c / 255 + .055) / 1.055) ** 2.4));
+        return .2126 * r + .7152 * g + .0722 * b;
+    };
+    for (const svg of document.querySelectorAll('svg')) {
+        const box = svg.getBoundingClientRect();
+        if (!box.width || !box.height) continue;
+        const wide = svg.viewBox.baseVal?.width || box.width;
+        const seen = (t) => t.textContent.trim() && getComputedStyle(t).visibility !== 'hidden';
+        const texts = [...svg.querySelectorAll('text')].filter(seen);
+        const rects = texts.map((t) => t.getBoundingClientRect());
+        const word = (t) => JSON.stringify(t.textContent.trim().slice(0, 30));
+        const paper = svg.querySelector('path[fill="#FFFFFF"]');
+        const behind = paper && texts.length ? light(getComputedStyle(paper).fill) : null;
+        texts.forEach((t, i) => {
+            const own = rects[i], style = getComputedStyle(t);
+            const size = parseFloat(style.fontSize) * 1000 / wide;
+            if (size < 10.9) faults.push(`${word(t)} has ${round(size)} px`);
+            if (own.left < box.left - 1 || own.right > box.right + 1 || own.top < box.top - 1 || own.bottom > box.bottom + 1)
+                faults.push(`${word(t)} is cut off`);
+            if (behind !== null) {
+                const [low, high] = [light(style.fill), behind].sort((a, b) => a - b);
+                if ((high + .05) / (low + .05) < 2) faults.push(`${word(t)} can hardly be seen`);
+            }
+            for (const [j, other] of rects.slice(0, i).entries()) {
+                const x = Math.min(own.right, other.right) - Math.max(own.left, other.left);
+                const y = Math.min(own.bottom, other.bottom) - Math.max(own.top, other.top);
+                const least = Math.min(own.height, other.height);
+                if (x > .02 * least + .5 && y > .3 * least) faults.push(`${word(texts[j])} and ${word(t)} lie on one another`);
+            }
+        });
+    }
+    for (const caption of document.querySelectorAll('figcaption, table caption')) {
+        const { left, right } = caption.getBoundingClientRect();
+        if (right - left > document.documentElement.clientWidth || left < 0) faults.push(`the caption "${caption.textContent.trim().slice(0, 30)}" is not in view`);
+    }
+    return faults;
 })()"""
 
 
@@ -132,7 +184,10 @@ def look(browser, page, width, scheme, shots):
     browser.events.clear()
     ask("Page.navigate", url=page.resolve().as_uri())
     browser.wait("Page.loadEventFired", session)
-    seen = ask("Runtime.evaluate", expression=OVERFLOW, returnByValue=True)["result"]["value"]
+    js = lambda expression: ask("Runtime.evaluate", expression=expression, returnByValue=True)["result"]["value"]
+    figure = page.suffix == ".svg"
+    # A figure alone may be wider than a window: it is scrolled.
+    seen = {"over": 0, "beyond": [], "height": js("document.documentElement.getBoundingClientRect().height")} if figure else js(OVERFLOW)
     if shots:
         clip = {"x": 0, "y": 0, "width": width, "height": seen["height"], "scale": 1}
         data = ask("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)["data"]
@@ -141,31 +196,57 @@ def look(browser, page, width, scheme, shots):
     faults = [words for event in browser.events if event.get("sessionId") == session and (words := said(event))]
     if seen["over"] > 0 or seen["beyond"]:
         faults.append(f"{seen['over']} px wider than its window: {'; '.join(seen['beyond'])}")
+    texts = js(TEXTS)
+    faults += [*texts[:MOST], *([f"and {len(texts) - MOST} more"] if len(texts) > MOST else [])]
+    if width > 500 and seen["height"] > (most := HEIGHTS.get(page.resolve().parent.name, math.inf)):
+        faults.append(f"{seen['height']} px high: at most {most}")
     browser.ask("Target.closeTarget", targetId=target)
     return faults
 
 
+# A figure with one fault of each kind, and what is to be said of it.
+BAD = """<!doctype html><meta charset="utf-8"><title>bad</title><svg viewBox="0 0 1000 200" width="380" height="76"><path d="M0 0h1000v200h-1000z" fill="#FFFFFF"/>
+<text x="10" y="50" font-size="30">one word</text><text x="60" y="55" font-size="30">another</text><text x="900" y="120" font-size="40">beyond</text>
+<text x="10" y="120" font-size="8">small</text><text x="10" y="180" font-size="30" fill="#EEEEEE">pale</text></svg>"""
+KINDS = ["lie on one another", "is cut off", "has 8 px", "can hardly be seen"]
+
+
+def blind(browser):
+    """The kinds of faults that are not seen in a figure that has them."""
+    with tempfile.TemporaryDirectory() as place:
+        page = Path(place) / "bad.html"
+        page.write_text(BAD)
+        faults = look(browser, page, 1200, "light", None)
+    return [kind for kind in KINDS if sum(kind in fault for fault in faults) != 1]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("pages", nargs="+", type=Path, metavar="PAGE")
+    parser.add_argument("places", nargs="+", type=Path, metavar="PLACE")
     parser.add_argument("--shots", type=Path, metavar="DIR", help="where pictures of the pages go")
+    parser.add_argument("--faults", action="store_true", help="tell nothing of what is fine")
     args = parser.parse_args()
-    missing = [str(page) for page in args.pages if not page.is_file()]
+    missing = [str(place) for place in args.places if not place.exists()]
     if missing:
         sys.exit(f"not there: {', '.join(missing)}")
+    below = lambda place: sorted(page for page in place.rglob("*") if page.suffix in (".html", ".svg")) if place.is_dir() else [place]
+    pages = [page for place in args.places for page in below(place)]
     if args.shots:
         args.shots.mkdir(parents=True, exist_ok=True)
     browser, bad = Browser(), 0
-    for page in args.pages:
+    if missed := blind(browser):
+        sys.exit(f"a figure with faults is called fine: {', '.join(missed)}")
+    for page in pages:
         for width in WIDTHS:
             for scheme in SCHEMES:
                 faults = look(browser, page, width, scheme, args.shots)
                 bad += len(faults)
-                print(f"{page} at {width} px, {scheme}: {'fine' if not faults else ''}")
+                if faults or not args.faults:
+                    print(f"{page} at {width} px, {scheme}: {'fine' if not faults else ''}")
                 for fault in faults:
                     print(f"  fault: {fault}")
     browser.close()
-    print(f"{len(args.pages)} pages, {bad} faults")
+    print(f"{len(pages)} pages and figures, {bad} faults")
     return 1 if bad else 0
 
 

@@ -17,10 +17,18 @@ function number({ range: [from, to], log }, share) {
 
 export const shown = (number) => String(Number(number.toPrecision(6)));
 
+// A number as it was typed, in the SI unit: alone, or with one of the control's units; NaN where it is none.
+export function read({ units }, text) {
+    const [, number, unit] = text.trim().replace(",", ".").match(/^([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*)$/i) ?? [];
+    const size = unit ? units.find(([name]) => name === unit)?.[1] : 1;
+    return number === undefined || size === undefined ? NaN : Number(number) * size;
+}
+
 let rows = [];
 
-// Makes the controls of the present damper. `changed` is called with the name of what was turned.
-export function build(into, changed) {
+// Makes the controls of the present damper. `changed` is called with the name of what was turned, `refused` with what is wrong with what was
+// typed, and its name.
+export function build(into, changed, refused) {
     into.replaceChildren();
     rows = controls().map((control) => {
         const row = document.createElement("div");
@@ -36,6 +44,7 @@ export function build(into, changed) {
         text.id = `number-${control.name}`;
         row.querySelector("label").htmlFor = slider.id;
         slider.setAttribute("aria-label", `${symbol}, ${control.words}`);
+        text.title = `${symbol}, ${control.words}: a number in ${control.unit || "no unit"}${control.units.length > 1 ? `, or with a unit: ${control.units.map(([name]) => name).join(", ")}` : ""}`;
         text.setAttribute("aria-label", `${symbol}, ${control.words}, in ${control.unit}`);
         const put = (to) => {
             if (to === control.value) delete place.set[control.name];
@@ -46,9 +55,11 @@ export function build(into, changed) {
         slider.addEventListener("input", () => put(number(control, slider.value / STEPS)));
         slider.addEventListener("dblclick", () => put(control.value));
         text.addEventListener("change", () => {
-            const typed = Number(text.value.replace(",", "."));
-            if (text.value.trim() && Number.isFinite(typed)) put(typed);
-            else refresh();
+            const typed = read(control, text.value);
+            const names = control.units.map(([name]) => name).filter(Boolean);
+            if (!text.value.trim()) refresh();
+            else if (Number.isFinite(typed)) put(typed);
+            else refused(`${control.name}: "${text.value}" is not a number${names.length ? `, alone or in ${names.join(", ")}` : ""}`, control.name);
         });
         into.append(row);
         return { control, slider, text, row };
@@ -62,6 +73,7 @@ export function refresh() {
         const now = value(control);
         const at = Math.round(STEPS * Math.min(1, Math.max(0, share(control, now))));
         if (Number(slider.value) !== at) slider.value = at;
+        if (control.name === "omega") row.querySelector("label span").textContent = `${control.words}: ${Number((now / (2 * Math.PI)).toPrecision(4))} Hz`;
         slider.setAttribute("aria-valuetext", `${shown(now)} ${control.unit}`);
         if (document.activeElement !== text || Number(text.value) !== now) text.value = shown(now);
         row.classList.toggle("changed", control.name in place.set);

@@ -6,6 +6,7 @@ import { build, mark, refresh } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { Figures } from "./figures.js";
 import { Link } from "./link.js";
+import { Own } from "./own.js";
 import { Phase } from "./phase.js";
 import { asked, begin, controls, copy, place, remember, value } from "./place.js";
 import { Response } from "./response.js";
@@ -20,6 +21,8 @@ let id = 0;
 let resting = false; // whether what does not move with the hand waits to be drawn
 let latest = null;
 let tuningHere = false;
+let begun = false;
+let fresh = false; // whether a structure of one's own has been sent, whose damper and numbers are to be shown
 
 const series = new Series($("series"), (span) => show(span, null));
 const response = new Response($("response"), $("response-key"), (omega) => {
@@ -55,9 +58,21 @@ function turned() {
 
 const answers = {
     hello(answer) {
-        const first = !hello;
         hello = answer;
-        if (first) begin(answer);
+        if (!begun) begin(answer);
+        if (place.own && !answer.own) {
+            link.send({ own: { structure: place.own } });
+            return;
+        }
+        if (fresh) {
+            Object.assign(place, { damper: answer.damper, set: {}, span: null, pins: [null, null] });
+            response.curves = {};
+            SLOTS.forEach(unpin);
+        }
+        if (!begun) $("own").open = !answer.named && !answer.own;
+        else if (fresh) $("own").open = false;
+        if (place.own) own.show(place.own);
+        [begun, fresh] = [true, false];
         $("study").textContent = answer.study;
         document.title = `${answer.study}: Retune explore`;
         figures.begin(answer);
@@ -65,7 +80,7 @@ const answers = {
         $("from-rest").hidden = !answer.motions;
         followed();
         dampers();
-        build($("controls"), turned);
+        build($("controls"), turned, problem);
         SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
         pressed(place.span ? null : "window");
         $("tune").hidden = !answer.tunes;
@@ -112,6 +127,12 @@ const answers = {
         if (answer.problem) problem(`${answer.whose}: ${answer.problem}`);
     },
     refused(answer) {
+        if (answer.own) {
+            own.refuse(answer.problem, answer.field);
+            place.own = hello.own ? place.own : null;
+            if (!begun) answers.hello(hello);
+            return;
+        }
         if (answer.tuning) running(false);
         problem(answer.problem, answer.field);
     },
@@ -127,7 +148,7 @@ const answers = {
         place.damper = tuningHere.damper;
         place.set = { ...tuningHere.set, ...answer.design };
         dampers();
-        build($("controls"), turned);
+        build($("controls"), turned, problem);
         turned();
     },
     written(answer) {
@@ -135,6 +156,11 @@ const answers = {
         else copyText($("copied"), answer.text);
     },
 };
+
+const own = new Own($("own"), $("own-problem"), (structure) => {
+    [place.own, fresh] = [structure, true];
+    link.send({ own: { structure } });
+});
 
 const link = new Link(
     (answer) => answers[answer.kind]?.(answer),
@@ -158,7 +184,7 @@ function paint(motion) {
 function rest() {
     resting = false;
     figures.motion(latest, omega());
-    const P = controls().find(({ name }) => ["P", "imbalance", "base"].includes(name));
+    const P = controls().find(({ name }) => ["P", "imbalance", "base", "base_acceleration"].includes(name));
     drawing.show(latest, { damper: place.damper, P: P ? value(P) : 0 });
     $("phase-2-figure").hidden = place.damper === "none";
     points(latest.columns, latest);
@@ -197,7 +223,7 @@ function dampers() {
 $("dampers").addEventListener("change", ({ target }) => {
     place.damper = target.value;
     dampers();
-    build($("controls"), turned);
+    build($("controls"), turned, problem);
     turned();
 });
 
@@ -228,14 +254,18 @@ function pin(slot) {
     link.send({ pin: { slot, place: asked(place.pins[slot]) } });
 }
 
+function unpin(whose) {
+    $(`pin-${whose}`).setAttribute("aria-pressed", "false");
+    $(`pin-${whose}`).textContent = `Pin ${whose}`;
+    response.set(whose, null);
+    figures.unpin(whose);
+}
+
 SLOTS.forEach((whose, slot) =>
     $(`pin-${whose}`).addEventListener("click", () => {
         if (place.pins[slot]) {
             place.pins[slot] = null;
-            $(`pin-${whose}`).setAttribute("aria-pressed", "false");
-            $(`pin-${whose}`).textContent = `Pin ${whose}`;
-            response.set(whose, null);
-            figures.unpin(whose);
+            unpin(whose);
         } else {
             place.pins[slot] = copy();
             pin(slot);

@@ -1,7 +1,7 @@
-// What the page shows: the damper, the numbers that differ from the study's, the span of time, whether branches are drawn, and the pinned designs. The address
+// What the page shows: the structure where it is one's own, the damper, the numbers that differ from the study's, the span of time, whether branches are drawn, and the pinned designs. The address
 // holds all of it, so that a reload or a copy of the address shows the same.
 
-export const place = { damper: "ssvi", set: {}, span: null, branches: false, pins: [null, null] };
+export const place = { damper: "ssvi", set: {}, span: null, branches: false, pins: [null, null], own: null };
 
 let hello = null;
 let writing = 0;
@@ -30,10 +30,21 @@ export function begin(said) {
     const span = (words.get("span") ?? "").split(",").map(Number);
     place.span = span.length === 2 && span[0] >= 0 && span[1] > span[0] ? span : null;
     place.branches = words.get("branches") === "1";
+    place.own = structure(words.get("own"));
     place.pins = ["A", "B"].map((slot) => {
         const text = words.get(slot);
         return text ? design(new URLSearchParams(text.replaceAll(";", "&"))) : null;
     });
+}
+
+// A structure of one's own, as its form has it.
+function structure(text) {
+    try {
+        const found = JSON.parse(text);
+        return found && Object.values(found).every((value) => typeof value === "string") ? found : null;
+    } catch {
+        return null;
+    }
 }
 
 function design(words) {
@@ -56,6 +67,7 @@ export function remember() {
         const words = [written(place, "&")];
         if (place.span) words.push(`span=${place.span.map((t) => Number(t.toPrecision(7)))}`);
         if (place.branches) words.push("branches=1");
+        if (place.own) words.push(`own=${encodeURIComponent(JSON.stringify(place.own))}`);
         place.pins.forEach((pin, slot) => pin && words.push(`${"AB"[slot]}=${written(pin, ";")}`));
         history.replaceState(null, "", `#${words.join("&")}`);
     }, 150);

@@ -58,6 +58,11 @@ pub enum Message {
         /// The start.
         place: Place,
     },
+    /// Begin with another structure, in the words of a file of `retune design`.
+    Own {
+        /// Its fields: m1, f1, zeta, force, band, mass and so on.
+        structure: BTreeMap<String, Value>,
+    },
     /// End the tuning and keep its best design.
     Stop {},
     /// Write this place down.

@@ -10,8 +10,10 @@ use crate::start::Start;
 use crate::{branches, texts, tuning};
 use retune_model::NonNegative;
 use retune_study::Study;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// How long the page is given to draw a motion before its response is computed, and how long a slider rests before what takes longer.
@@ -37,7 +39,8 @@ struct Mail {
 
 /// A page.
 pub struct Session<'a> {
-    start: &'a Start,
+    /// What it starts from, until the page begins with another structure.
+    start: Mutex<Arc<Start>>,
     send: &'a (dyn Fn(Answer) -> bool + Sync),
     mail: Mutex<Mail>,
     bell: Condvar,
@@ -63,7 +66,7 @@ pub fn serve(
     mut next: impl FnMut() -> Option<String>,
 ) {
     let (mail, bell, shown, tuned) = Default::default();
-    let session = Session { start, send, mail, bell, shown, tuned };
+    let session = Session { start: Mutex::new(Arc::new(start.clone())), send, mail, bell, shown, tuned };
     session.send(start.hello());
     std::thread::scope(|scope| {
         scope.spawn(|| session.shows());
@@ -84,6 +87,27 @@ pub fn serve(
 impl Session<'_> {
     fn mail(&self) -> MutexGuard<'_, Mail> {
         self.mail.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn start(&self) -> Arc<Start> {
+        Arc::clone(&self.start.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Begins anew with another structure: what was asked of the one before is dropped.
+    fn begin(&self, structure: &BTreeMap<String, Value>) {
+        match Start::own(structure) {
+            Err(refused) => self.send(Answer::from(refused).with("own", true)),
+            Ok(start) => {
+                let hello = start.hello();
+                *self.start.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(start);
+                let mut mail = self.mail();
+                *mail = Mail { ended: mail.ended, ..Mail::default() };
+                drop(mail);
+                self.shown.fetch_add(1, SeqCst);
+                self.tuned.fetch_add(1, SeqCst);
+                self.send(hello);
+            }
+        }
     }
 
     fn send(&self, answer: Answer) {
@@ -117,6 +141,7 @@ impl Session<'_> {
                 mail.tune = Some(place);
                 self.tuned.fetch_add(1, SeqCst);
             }
+            Message::Own { structure } => self.begin(&structure),
             Message::Stop {} => {
                 self.tuned.fetch_add(1, SeqCst);
             }
@@ -165,7 +190,7 @@ impl Session<'_> {
             match work {
                 // Only with its page: a slider that moves on does not end what is to be saved.
                 Work::Write(place, what, pins) => {
-                    let written = texts::written(self.start, &place, what, &pins, &|| self.mail().ended);
+                    let written = texts::written(&self.start(), &place, what, &pins, &|| self.mail().ended);
                     self.send(written.unwrap_or_else(Answer::from));
                 }
                 Work::Look(look) => {
@@ -197,7 +222,7 @@ impl Session<'_> {
                 Ok(())
             }
         };
-        let found = self.start.at(place).and_then(|study| {
+        let found = self.start().at(place).and_then(|study| {
             let span = shown(&study, *span)?;
             Ok((look(&study, span, *columns)?, span, study))
         });
@@ -263,7 +288,7 @@ impl Session<'_> {
         let whose = ["A", "B"][slot];
         let answer = Answer::new("pinned").with("whose", whose);
         let found =
-            self.start.at(place).and_then(|study| Ok((look(&study, shown(&study, None)?, 1)?, study)));
+            self.start().at(place).and_then(|study| Ok((look(&study, shown(&study, None)?, 1)?, study)));
         let study = match found {
             Ok((run, study)) => {
                 self.send(answer.with("figures", run.get("figures")).with("text", run.get("text")));
@@ -285,7 +310,8 @@ impl Session<'_> {
             let tune = |mail: &mut Mail| Some((mail.tune.take()?, self.tuned.load(SeqCst)));
             let Some((place, count)) = self.wait(tune) else { return };
             let is_stale = || self.tuned.load(SeqCst) != count;
-            if let Err(refused) = tuning::tune(self.start, &place, &|answer| self.send(answer), &is_stale) {
+            if let Err(refused) = tuning::tune(&self.start(), &place, &|answer| self.send(answer), &is_stale)
+            {
                 self.send(Answer::from(refused).with("tuning", true));
             }
         }

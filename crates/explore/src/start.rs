@@ -5,10 +5,13 @@ use crate::motion::IMPACTS;
 use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
-use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces};
+use retune_jobs::Error;
+use retune_jobs::design::Wishes;
+use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces, Unit};
 use retune_study::{Rule, Setting, Study, StudyError};
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The study that is explored if none is named: a copy of `studies/ssvi.json`, which a test compares.
@@ -21,6 +24,8 @@ pub struct Start {
     /// What was named on the command line.
     pub file: Option<String>,
     damper: Damper,
+    /// Whether it is a structure that was given in words.
+    is_own: bool,
 }
 
 /// A number that a page can turn.
@@ -32,6 +37,8 @@ pub struct Control {
     pub words: &'static str,
     /// Its unit.
     pub unit: &'static str,
+    /// Every unit in which it may be typed, with its size in that one.
+    pub units: &'static [Unit],
     /// The study's value.
     pub value: f64,
     /// The range of the slider.
@@ -43,7 +50,7 @@ pub struct Control {
 }
 
 /// The numbers that a page can turn, in its order.
-const TURNED: [Parameter; 11] = [
+const TURNED: [Parameter; 12] = [
     Parameter::Omega,
     Parameter::K2,
     Parameter::C2,
@@ -55,6 +62,7 @@ const TURNED: [Parameter; 11] = [
     Parameter::P,
     Parameter::Imbalance,
     Parameter::Base,
+    Parameter::BaseAcceleration,
 ];
 
 /// The dampers that have a parameter.
@@ -89,7 +97,34 @@ impl Start {
             let contact = Surfaces::for_mass(own.mass).ok().map(Contact::Hertz);
             Damper { rest_distance, clearance, contact, ..own }
         };
-        Ok(Self { study, file, damper })
+        Ok(Self { study, file, damper, is_own: false })
+    }
+
+    /// From a structure in words, with Den Hartog's TMD on it; the gaps and the walls of its SSVI NES are scaled as `retune design` does.
+    ///
+    /// # Errors
+    /// A field is missing or wrong: its name, and what to give.
+    pub fn own(structure: &BTreeMap<String, Value>) -> Result<Self, Refused> {
+        let wishes: Wishes = serde_json::from_value(json!(structure)).map_err(Refused::whole)?;
+        let refused = |error: Error| match error {
+            Error::Requirement { place, problem } => {
+                Refused::of(&place.trim_start_matches('-').replace('-', "_"), problem)
+            }
+            other => Refused::whole(other),
+        };
+        let requirements = wishes.requirements().map_err(refused)?;
+        let (open, walled) = (requirements.tmd().map_err(refused)?, requirements.ssvi().map_err(refused)?);
+        let nothing = || Refused::whole("a damper is missing");
+        let tmd = open.scene.damper.ok_or_else(nothing)?;
+        let ssvi = walled.scene.damper.ok_or_else(nothing)?;
+        let damper = Damper { stiffness: tmd.stiffness, damping: tmd.damping, ..ssvi };
+        let scene = open.scene;
+        Ok(Self {
+            study: Study { scene, name: Some("own".to_owned()), ..walled },
+            file: None,
+            damper,
+            is_own: true,
+        })
     }
 
     /// The study as it was read.
@@ -107,6 +142,8 @@ impl Start {
             .with("study", study.name())
             .with("damper", self.damper_kind())
             .with("controls", self.controls())
+            .with("own", self.is_own)
+            .with("named", self.file.is_some())
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
             .with("quantity", of)
@@ -183,6 +220,7 @@ impl Start {
                 name: parameter.symbol(),
                 words: parameter.words(),
                 unit: parameter.unit(),
+                units: parameter.units(),
                 value,
                 range,
                 log,

@@ -109,6 +109,9 @@ pub(crate) fn forced(forcing: &Forcing) -> String {
         Source::Force(amplitude) => format!("forced by P = {} N {at}", amplitude.get()),
         Source::Imbalance(imbalance) => format!("forced by an imbalance of {} kg·m {at}", imbalance.get()),
         Source::Base(base) => format!("on a base that moves by {} m {at}", base.get()),
+        Source::BaseAcceleration(base) => {
+            format!("on a base that is accelerated by {} m/s² {at}", base.get())
+        }
         Source::Decay(_) => "decaying freely".to_owned(),
         Source::History(history) => given(&history),
     }

@@ -44,6 +44,8 @@ pub trait Progress: Sync {
     fn known(&self);
     /// Another `more` evaluations are done.
     fn inc(&self, more: u64);
+    /// The best so far, in words.
+    fn best(&self, _words: &str) {}
     /// The stage is finished.
     fn finish(&self);
 }

@@ -44,7 +44,7 @@ impl Bare {
     }
 
     /// Largest steady value of a quantity over a band; as [`Self::steady_e1_max`]. Stroke and contact force are zero without a
-    /// damper; the force on the ground under a moving base is not known in closed form, and infinite.
+    /// damper.
     pub fn steady_max(&self, measure: Measure, [from, to]: [f64; 2]) -> Worst {
         if measure.is_of_damper() {
             return Worst { value: 0.0, frequency: from };
@@ -122,6 +122,8 @@ struct Search<'a> {
     damper: bool,
     /// The quantity to be maximised, a multiple of `V / M` or of its square root.
     measure: Measure,
+    /// Whether it is the force on a moving ground: what the masses are accelerated by, `ω² |m1 X1 + m2 X2|`.
+    inertia: bool,
     /// Amplitude of the force, N, over `u^power` and the root of `weight`.
     force: f64,
     power: i32,
@@ -143,17 +145,18 @@ impl<'a> Search<'a> {
             Source::Force(amplitude) => (amplitude.get(), 0, None),
             Source::Imbalance(imbalance) => (imbalance.get() * factors.unit, 2, None),
             Source::Base(base) => (base.get(), 0, Some(ground(bare, factors.unit))),
+            Source::BaseAcceleration(acceleration) => {
+                (acceleration.get() / factors.unit, -2, Some(ground(bare, factors.unit)))
+            }
             Source::Decay(_) | Source::History(_) => (0.0, 0, None),
         };
-        Self { bare, factors, damper, measure, force, power, weight, band, seen }
+        let inertia = weight.is_some() && measure == Measure::GroundForce;
+        let factors = if inertia && damper { factors.of_both_masses() } else { factors };
+        Self { bare, factors, damper, measure, inertia, force, power, weight, band, seen }
     }
 
     /// Looks at every cut of the band, then at every maximum between two cuts that can be higher.
     fn run(&mut self) {
-        if self.weight.is_some() && self.measure == Measure::GroundForce {
-            self.seen.worst.note(self.band[0], f64::INFINITY);
-            return;
-        }
         let [from, to] = self.band.map(|end| self.factors.end(end));
         let inside =
             self.factors.cuts().into_iter().filter(|cut| cut.past(&from) > 0.0 && to.past(cut) > 0.0);
@@ -199,11 +202,12 @@ impl<'a> Search<'a> {
         let by_square = self.measure == Measure::Velocity
             || self.measure == Measure::Energy && from.past(&self.factors.primary) >= 0.0;
         let own = match self.measure {
-            Measure::GroundForce => Some(ground(self.bare, self.factors.unit)),
+            Measure::GroundForce if !self.inertia => Some(ground(self.bare, self.factors.unit)),
             _ if by_square => Some([0.0, 1.0]),
             _ => None,
         };
-        let fourth = if matches!(self.measure, Measure::Acceleration | Measure::Stroke) { 2 } else { 0 };
+        let by_fourth = matches!(self.measure, Measure::Acceleration | Measure::Stroke) || self.inertia;
+        let fourth = if by_fourth { 2 } else { 0 };
         let (power, weight) = match (self.weight, own) {
             // Of two weights the one that is a power of u counts as such.
             (Some(weight), Some(_)) => (1, Some(weight)),
@@ -228,6 +232,7 @@ impl<'a> Search<'a> {
             Measure::Energy => 0.5 * m1 * unit * amplitude * amplitude * ratio,
             Measure::Velocity => size * unit.sqrt(),
             Measure::Acceleration => size * unit,
+            Measure::GroundForce if self.inertia => size * unit * m1,
             _ => size,
         }
     }

@@ -62,11 +62,17 @@ impl Bare {
         match self.source {
             Source::Force(amplitude) => [amplitude.get(), 0.0],
             Source::Imbalance(imbalance) => [imbalance.get() * omega * omega, 0.0],
-            Source::Base(base) => {
-                [base.get() * self.k1.hypot(omega * self.c1), (omega * self.c1).atan2(self.k1)]
+            Source::Base(base) => self.pushed(base.get(), omega),
+            Source::BaseAcceleration(acceleration) => {
+                self.pushed(acceleration.get() / (omega * omega), omega)
             }
             Source::Decay(_) | Source::History(_) => [0.0; 2],
         }
+    }
+
+    /// The amplitude (N) and the lead (rad) of the force of a base that moves by `size` (m).
+    fn pushed(&self, size: f64, omega: f64) -> [f64; 2] {
+        [size * self.k1.hypot(omega * self.c1), (omega * self.c1).atan2(self.k1)]
     }
 
     /// The force per unit of what is given in time: an acceleration a of the base is the force -m1 a in coordinates that move with it.
@@ -144,7 +150,7 @@ impl Bare {
 
     /// Whether the base moves, so that its force goes through the ground.
     pub fn is_on_moving_base(&self) -> bool {
-        matches!(self.source, Source::Base(_))
+        self.source.is_moving_base()
     }
 
     /// The same under the force `P cos(ωt + φ)`, or on a base that moves by `Y cos(ωt + φ)`, φ in rad. Time still begins at 0.

@@ -32,6 +32,8 @@ pub enum Source {
     Imbalance(NonNegative),
     /// A base that moves by Y cos ωt: Y, m. On the structure it acts as the force k1 y + c1 dy/dt.
     Base(NonNegative),
+    /// A base that moves by Y cos ωt with Y = a / ω², so that its acceleration has the amplitude a at every frequency: a, m/s².
+    BaseAcceleration(NonNegative),
     /// Nothing but a start away from rest.
     Decay(Start),
     /// A force, or an acceleration of the base, that is given in time.
@@ -54,6 +56,16 @@ pub struct Start {
 }
 
 impl Source {
+    /// Whether it has a frequency.
+    pub const fn is_harmonic(&self) -> bool {
+        !matches!(self, Self::Decay(_) | Self::History(_))
+    }
+
+    /// Whether it is a base that moves in space, with a frequency.
+    pub const fn is_moving_base(&self) -> bool {
+        matches!(self, Self::Base(_) | Self::BaseAcceleration(_))
+    }
+
     /// What is given in time, if anything is.
     pub fn history(&self) -> Option<&History> {
         if let Self::History(history) = self { Some(history) } else { None }
@@ -76,7 +88,7 @@ impl Forcing {
 
     /// Whether it has no frequency: of a free decay, a pulse and a record. All there is of such a motion is in its run.
     pub fn is_transient(&self) -> bool {
-        matches!(self.source, Source::Decay(_) | Source::History(_))
+        !self.source.is_harmonic()
     }
 
     /// What is given in time, if anything is.
@@ -116,17 +128,19 @@ impl Forcing {
             Source::Force(force) => ground_force / force.get(),
             Source::Imbalance(imbalance) => ground_force / (imbalance.get() * omega * omega),
             Source::Base(base) => displacement / base.get(),
+            Source::BaseAcceleration(base) => displacement * omega * omega / base.get(),
             Source::Decay(_) | Source::History(_) => f64::NAN,
         }
     }
 }
 
-/// What makes the primary structure move: one of `P`, `imbalance` and `base` with its `omega`, from rest or from `start`; a `pulse` or a
+/// What makes the primary structure move: one of `P`, `imbalance`, `base` and `base_acceleration` with its `omega`, from rest or from `start`; a `pulse` or a
 /// `record`, each with `of`; or `start` alone.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Forcing", extend("oneOf" = [
     { "required": ["P", "omega"] }, { "required": ["imbalance", "omega"] }, { "required": ["base", "omega"] },
+    { "required": ["base_acceleration", "omega"] },
     { "required": ["pulse", "of", "peak", "duration"], "properties": { "omega": false } },
     { "required": ["record", "of"], "properties": { "omega": false } },
     { "required": ["start"], "properties": { "omega": false } }
@@ -141,6 +155,9 @@ struct InFile {
     /// base, amplitude of the moving base, m: base cos(omega t).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     base: Option<NonNegative>,
+    /// base_acceleration, amplitude of the acceleration of the moving base, m/s²: the base moves by base_acceleration / omega² cos(omega t).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    base_acceleration: Option<NonNegative>,
     /// The state at t = 0, rest if left out; alone it is a free decay, without any force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<Start>,
@@ -206,6 +223,7 @@ impl From<Forcing> for InFile {
             Source::Force(amplitude) => Self { force: Some(amplitude), ..none },
             Source::Imbalance(amplitude) => Self { imbalance: Some(amplitude), ..none },
             Source::Base(amplitude) => Self { base: Some(amplitude), ..none },
+            Source::BaseAcceleration(amplitude) => Self { base_acceleration: Some(amplitude), ..none },
             Source::Decay(start) => Self { start: Some(start), omega: None, ..none },
             Source::History(history) => Self { start, ..history.into() },
         }
@@ -215,7 +233,9 @@ impl From<Forcing> for InFile {
 /// Why what a file says is no forcing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Refused {
-    #[error("give one of `P`, `imbalance`, `base`, `pulse` and `record`, or `start` alone, not {0} of them")]
+    #[error(
+        "give one of `P`, `imbalance`, `base`, `base_acceleration`, `pulse` and `record`, or `start` alone, not {0} of them"
+    )]
     Count(usize),
     #[error("missing field `omega`: the angular frequency, rad/s")]
     NoFrequency,
@@ -302,11 +322,12 @@ impl TryFrom<InFile> for Forcing {
     fn try_from(file: InFile) -> Result<Self, Refused> {
         let history = file.history()?;
         let stray = file.stray(&["omega"]).filter(|_| history.is_none());
-        let InFile { force, imbalance, base, start, omega, pulse, record, .. } = file;
+        let InFile { force, imbalance, base, base_acceleration, start, omega, pulse, record, .. } = file;
         let sources = [
             force.map(Source::Force),
             imbalance.map(Source::Imbalance),
             base.map(Source::Base),
+            base_acceleration.map(Source::BaseAcceleration),
             history.map(Source::History),
             // A pulse and a record are two.
             history.filter(|_| pulse.is_some() && record.is_some()).map(Source::History),
@@ -316,6 +337,7 @@ impl TryFrom<InFile> for Forcing {
             let beside = match source {
                 Source::Force(_) => "P",
                 Source::Imbalance(_) => "imbalance",
+                Source::BaseAcceleration(_) => "base_acceleration",
                 _ => "base",
             };
             return Err(Refused::Beside { field, beside });

@@ -4,7 +4,7 @@
 pub mod place;
 
 use crate::unit::{
-    DAMPING, DENSITY, FORCE, FREQUENCY, IMBALANCE, LENGTH, LOSS, MASS, MODULUS, NONE, STIFFNESS,
+    ACCELERATION, DAMPING, DENSITY, FORCE, FREQUENCY, IMBALANCE, LENGTH, LOSS, MASS, MODULUS, NONE, STIFFNESS,
 };
 use crate::{Unit, unit};
 use serde::{Deserialize, Serialize};
@@ -26,6 +26,7 @@ pub enum Parameter {
     P,
     Imbalance,
     Base,
+    BaseAcceleration,
     Omega,
     Q,
     E1,
@@ -44,7 +45,7 @@ pub enum Parameter {
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::K2,
         Self::C2,
         Self::D,
@@ -57,6 +58,7 @@ impl Parameter {
         Self::P,
         Self::Imbalance,
         Self::Base,
+        Self::BaseAcceleration,
         Self::Omega,
         Self::Q,
         Self::E1,
@@ -87,7 +89,7 @@ impl Parameter {
     /// Those that the paper varies, in the order of its tables.
     pub const PAPER: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
     /// Those that set the size of the forcing, of which a scene has one.
-    pub const AMPLITUDES: [Self; 3] = [Self::P, Self::Imbalance, Self::Base];
+    pub const AMPLITUDES: [Self; 4] = [Self::P, Self::Imbalance, Self::Base, Self::BaseAcceleration];
 
     /// Symbol, words, units: its own entry of the catalogue.
     const fn entry(self) -> (&'static str, &'static str, &'static [Unit]) {
@@ -106,6 +108,9 @@ impl Parameter {
                 ("imbalance", "rotating imbalance, mass times its distance from the axis", IMBALANCE)
             }
             Self::Base => ("base", "amplitude of the moving base", LENGTH),
+            Self::BaseAcceleration => {
+                ("base_acceleration", "amplitude of the acceleration of the moving base", ACCELERATION)
+            }
             Self::Omega => ("omega", "angular frequency of the forcing", FREQUENCY),
             Self::Q => ("q", "geometrical coefficient of Hertz's theory", NONE),
             Self::E1 => ("E1", "Young's modulus of the primary structure's surface", MODULUS),

@@ -21,19 +21,32 @@ impl Bare {
             Source::Force(force) => size(Parameter::P, force.get()),
             Source::Imbalance(_) if parameter == Parameter::Omega => [2.0 / self.omega, 0.0],
             Source::Imbalance(imbalance) => size(Parameter::Imbalance, imbalance.get()),
-            // It pushes by k1 y + c1 dy/dt: a complex stiffness k1 + iωc1.
-            Source::Base(base) => {
-                let (k1, loss) = (self.k1, self.omega * self.c1);
-                let square = k1 * k1 + loss * loss;
-                let by_loss = [loss / square, k1 / square];
+            Source::BaseAcceleration(acceleration) => {
+                let [growth, turn] = self.pushing_by(parameter);
                 match parameter {
-                    Parameter::K1 => [k1 / square, -loss / square],
-                    Parameter::C1 => by_loss.map(|by| by * self.omega),
-                    Parameter::Omega => by_loss.map(|by| by * self.c1),
-                    _ => size(Parameter::Base, base.get()),
+                    Parameter::Omega => [growth - 2.0 / self.omega, turn],
+                    Parameter::K1 | Parameter::C1 => [growth, turn],
+                    _ => size(Parameter::BaseAcceleration, acceleration.get()),
                 }
             }
+            Source::Base(base) => match parameter {
+                Parameter::K1 | Parameter::C1 | Parameter::Omega => self.pushing_by(parameter),
+                _ => size(Parameter::Base, base.get()),
+            },
             Source::Decay(_) | Source::History(_) => [0.0; 2],
+        }
+    }
+
+    /// The same of the complex stiffness k1 + iωc1 by which a base pushes: k1 y + c1 dy/dt.
+    fn pushing_by(&self, parameter: Parameter) -> [f64; 2] {
+        let (k1, loss) = (self.k1, self.omega * self.c1);
+        let square = k1 * k1 + loss * loss;
+        let by_loss = [loss / square, k1 / square];
+        match parameter {
+            Parameter::K1 => [k1 / square, -loss / square],
+            Parameter::C1 => by_loss.map(|by| by * self.omega),
+            Parameter::Omega => by_loss.map(|by| by * self.c1),
+            _ => [0.0; 2],
         }
     }
 }

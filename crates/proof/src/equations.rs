@@ -66,6 +66,11 @@ impl Equations {
             Source::Imbalance(me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
             // k1 y + c1 dy/dt with y = Y cos φ.
             Source::Base(y) => [number(y.get()) * k1, Interval::ZERO, -(number(y.get()) * c1)],
+            // The same with Y = a / ω².
+            Source::BaseAcceleration(a) => {
+                let y = number(a.get()) / (omega * omega);
+                [y * k1, Interval::ZERO, -(y * c1)]
+            }
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
             Source::History(_) => {
                 return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));

@@ -188,6 +188,15 @@ pub fn prove(
     monitored(py, tell.as_ref(), |_| json(&retune_jobs::prove::prove(&study, &guess)?))
 }
 
+/// A number of a name of the catalogue as it was typed, with its unit or without, in the SI unit.
+///
+/// # Errors
+/// `ValueError`: what to give.
+#[pyfunction]
+pub fn typed(name: &str, text: &str) -> PyResult<f64> {
+    retune_study::typed(name, text).map_err(pyo3::exceptions::PyValueError::new_err)
+}
+
 /// The catalogue of parameters: the symbol, the SI unit and the words of each.
 #[pyfunction]
 pub fn parameters() -> Vec<(&'static str, &'static str, &'static str)> {

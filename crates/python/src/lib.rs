@@ -30,7 +30,7 @@ mod _core {
     use crate::files::job;
     #[pymodule_export]
     use crate::jobs::{
-        branches, certify, contact, design_study, optimize, parameters, prove, study_text, verify,
+        branches, certify, contact, design_study, optimize, parameters, prove, study_text, typed, verify,
     };
     #[pymodule_export]
     use crate::motion::{run, sweep};

@@ -54,6 +54,9 @@ def test_contract_a_search_has_the_bytes_of_the_command_line(program: Path, tmp_
     assert result.fun == rt.Problem.from_study(study)(result.x) and result.success
     assert rt.Problem.from_study(result.out).start == result.x.tolist()
     assert "E1max" in repr(result) and "<table>" in result._repr_html_()
+    assert result.report().encode() == files(result.out)["report.html"]
+    row = result.to_pandas().iloc[0]
+    assert [row[name] for name in result.problem.names] == result.x.tolist() and row["E1max"] == result.fun
     assert any("holds" in line for line in rt.verify(result.out))
     (result.out / "optimum.json").write_text((result.out / "optimum.json").read_text().replace("E1max", "E1min"))
     with pytest.raises(rt.Error, match="optimum.json"):
@@ -161,6 +164,8 @@ def test_contract_a_certificate_is_that_of_the_command_line(program: Path, tmp_p
     subprocess.run([program, "certify", study, "--out", out], check=True, capture_output=True)
     certificate = rt.certify(rt.Problem.from_study(study))
     assert certificate.data == json.loads((out / "certificate.json").read_text())
+    assert list(certificate.to_pandas().parameter) == [one["parameter"] for one in certificate["sensitivity"]]
+    assert certificate.words in certificate.report() or "&" in certificate.words
     assert certificate.words in repr(certificate) and certificate.verdict == certificate["verdict"]
 
 
@@ -180,6 +185,8 @@ def test_contract_dampers_are_compared(tmp_path: Path) -> None:
     assert compared.best is compared.results[0] and light is compared.results[-1], "a heavier damper does more"
     assert given.fun == pytest.approx(found.fun, rel=1e-3), "both find the same optimum"
     assert found["m2"] == 60 and "verdict" in repr(compared) and compared._repr_html_().count("<tr>") == 4
+    assert compared.to_pandas()["E1max"].tolist() == [result.fun for result in compared.results]
+    assert compared.report().count("<tr>") == 4 and "srcdoc=" in compared.report()
     with pytest.raises(rt.StudyError, match="k2: missing") as caught:
         rt.compare(rt.Problem.from_study({**problem.study, "scene": {**problem.study["scene"], "forcing": {"base": 0.01, "omega": 6}}}), [rt.TMD(60)])
     assert caught.value.field == "damper.k2"
@@ -216,6 +223,10 @@ def test_contract_a_design_is_that_of_the_command_line(program: Path, tmp_path: 
     words = rt.design(structure, tmp_path / "words", P="0.8 kN", band="5..8", mass="5 %", damper="tmd", progress=False)
     assert words.rows == design.rows[:2]
     assert design._repr_html_().startswith("<table>")
+    assert design.report() == (tmp_path / "package" / "report.html").read_text(encoding="utf-8")
+    assert design.report()._repr_html_().startswith("<iframe srcdoc=") and len(design.to_pandas()) == len(design.rows)
+    based = rt.design(structure, tmp_path / "based", base="1 mm", band="0.8Hz..1.3Hz", mass="5 %", damper="tmd", progress=False)
+    assert "base that moves by 1 mm" in " ".join(based.answer.split()) and based.rows[1]["damper"] == "TMD"
     with pytest.raises(rt.StudyError, match="mass: 900 is more than the structure") as caught:
         rt.design(structure, tmp_path / "heavy", P=800, band=(5, 8), mass=900)
     assert caught.value.field == "mass"

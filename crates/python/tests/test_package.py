@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import copy
 import inspect
 import json
+import pickle
 import re
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -110,6 +113,26 @@ def test_contract_results_are_shown_as_tables(ssvi: rt.Problem) -> None:
     assert "N/m" in repr(rt.SSVI(60, k2=215))
 
 
+def test_exact_a_text_with_a_unit_is_the_number_in_si_units(tmd: rt.Problem) -> None:
+    structure = rt.Structure(m1="1 t", c1="0.452 kN·s/m", k1="39.5 kN/m")
+    assert structure == rt.Structure(m1=1000, c1=452, k1=39500)
+    assert rt.SSVI("60 kg", k2="215 N/m", c2=232, D="60 mm", C="36 cm") == rt.SSVI(60, k2=215, c2=232, D=0.06, C=0.36)
+
+    def problem(P: Any, band: Any, high: Any, stroke: Any) -> rt.Problem:
+        damper = rt.TMD(60, k2=1900, c2=150)
+        search = {"vary": ["k2"], "bounds": {"k2": (0, high)}, "limits": {"stroke": stroke}}
+        return rt.Problem(structure, damper, P=P, band=band, response="steady", **search)
+
+    words = problem("0.8 kN", ("0.8 Hz", "75 rpm"), "4 kN/m", "400 mm")
+    assert words == problem(800, (0.8 * 2 * np.pi, 75 * (2 * np.pi / 60)), 4000, 0.4)
+    assert words.at(k1="40 kN/m") == words.at(k1=40000)
+    found = tmd.evaluate(tmd.start)
+    assert found.E1max == found.largest and f"{found.E1max:.5g}" in repr(found)
+    assert repr(pickle.loads(pickle.dumps(found))) == repr(copy.copy(found)) == repr(found)
+    with pytest.raises(AttributeError, match="there is no E9: there are value, quantity"):
+        found.E9
+
+
 def test_contract_tables_are_data_frames_and_plots(ssvi: rt.Problem) -> None:
     pd = pytest.importorskip("pandas")
     import matplotlib
@@ -118,6 +141,15 @@ def test_contract_tables_are_data_frames_and_plots(ssvi: rt.Problem) -> None:
     sweep = ssvi.sweep(omega=[5, 6, 7])
     assert sweep.to_pandas().equals(pd.DataFrame(sweep)) and list(sweep.to_pandas().columns) == list(sweep)
     assert sweep.plot("E1max").get_ylabel() == "E1max, J"
+    theirs = matplotlib.pyplot.figure().gca()
+    drawn = sweep.plot()
+    numbers = [name for name, column in sweep.items() if name != "omega" and column.dtype.kind in "fiu"]
+    assert [axes.get_ylabel().split(",")[0] for axes in drawn] == numbers, "one axis each"
+    assert not theirs.get_lines() and len({axes.figure for axes in drawn}) == 1
+    assert sweep.plot("E1max", ax=theirs) is theirs and len(theirs.get_lines()) == 1
+    assert ssvi.simulate().plot() is not theirs
+    with pytest.raises(rt.Error, match="there is no column E9: the columns are omega"):
+        sweep.plot("E9")
     assert ssvi.simulate().to_pandas().t.iloc[0] == 50
     assert len(ssvi.simulate().plot("x1", "E1").get_lines()) >= 2
     with pytest.raises(AttributeError, match="the columns are omega"):

@@ -108,6 +108,8 @@ pub enum Block {
     Files(Vec<String>),
     /// Elements of a page as HTML alone, which Markdown leaves out.
     Elements(Markup),
+    /// Pieces below their subject that a page shows when they are asked for; none is a [`Self::Figure`].
+    Folded(String, Vec<Block>),
 }
 
 /// A page.
@@ -257,6 +259,9 @@ impl Block {
                 format!("{}\n\n", links.join(", "))
             }
             Self::Elements(_) => String::new(),
+            Self::Folded(subject, inner) => {
+                format!("**{subject}**\n\n{}", inner.iter().map(Self::markdown).collect::<String>())
+            }
         }
     }
 
@@ -281,6 +286,9 @@ impl Block {
                 html! { p.files { b { "Files: " } @for file in files { (link(file)) " " } } }
             }
             Self::Elements(markup) => markup.clone(),
+            Self::Folded(subject, inner) => {
+                html! { details { summary { (subject) } @for block in inner { (block.html()) } } }
+            }
         }
     }
 }
@@ -303,13 +311,14 @@ mod tests {
                     Block::List(vec!["a".to_owned()]),
                     Block::table("Designs", ["damper", "E1max, J"], rows),
                     Block::figure("a.svg", "<svg/>".to_owned(), "Fig"),
-                    Block::files(&["a.csv"]),
+                    Block::Folded("More".to_owned(), vec![Block::files(&["a.csv"])]),
                 ],
             )],
         };
         let table = "Designs\n\n| damper | E1max, J |\n| --- | --- |\n| TMD | 660.4 |\n\n";
-        let markdown =
-            format!("# T < U\n\nFirst.\n\n## One\n\n- a\n\n{table}![Fig](a.svg)\n\n[a.csv](a.csv)\n");
+        let markdown = format!(
+            "# T < U\n\nFirst.\n\n## One\n\n- a\n\n{table}![Fig](a.svg)\n\n**More**\n\n[a.csv](a.csv)\n"
+        );
         assert_eq!(document.markdown(), markdown);
         let names: Vec<&str> = document.files().iter().map(|(name, _)| *name).collect();
         assert_eq!(names, ["a.svg", "README.md", "report.html"]);
@@ -320,6 +329,7 @@ mod tests {
             "<li>a</li>",
             "<caption>Designs</caption>",
             "660.4",
+            "<details><summary>More</summary>",
             "href=\"a.csv\"",
         ] {
             assert!(page.contains(part), "{part}: {page}");

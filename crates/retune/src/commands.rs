@@ -73,10 +73,10 @@ pub fn run(command: Command) -> Result<(), Error> {
         Command::Table { number, paper } => reproduce(&paper, Some(&format!("table{number}"))),
         Command::Check { study, common } => check(&study, common),
         Command::Schema { kind } => Screen::new(false, false).line(answer::text(&match kind {
-            Kind::Study => schemars::schema_for!(study::Study),
-            Kind::Table2 => schemars::schema_for!(study::Table2),
-            Kind::Fronts => schemars::schema_for!(study::Fronts),
-            Kind::Paper => schemars::schema_for!(retune_jobs::paper::PaperPlan),
+            Kind::Study => study::schema::<study::Study>(),
+            Kind::Table2 => study::schema::<study::Table2>(),
+            Kind::Fronts => study::schema::<study::Fronts>(),
+            Kind::Paper => study::schema::<retune_jobs::paper::PaperPlan>(),
         })?),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -1,11 +1,12 @@
 //! Progress of a stage: a bar if standard error is a terminal, else a line every half minute.
 //!
-//! Rate and remaining time count new work only: values from the journal of an interrupted run take no time.
+//! Rate and remaining time count new work only: values from the journal of an interrupted run take no time. A stage that tells the best so far
+//! says that instead: `2 of 4: SSVI NES, 27 s, best 21.3 kJ`.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time between two lines if there is no terminal.
@@ -29,13 +30,16 @@ struct Count {
     known: AtomicU64,
     /// Time of the last line, ms after the beginning.
     told: AtomicU64,
+    /// The best so far, in words, where the stage tells it.
+    best: Mutex<Option<String>>,
 }
 
 impl Stage {
     /// A stage of `all` evaluations; nothing is shown if `quiet`.
     pub fn new(what: &'static str, all: u64, quiet: bool) -> Self {
         let [done, known, told] = [0; 3].map(AtomicU64::new);
-        let count = Arc::new(Count { what, all, begun: Instant::now(), done, known, told });
+        let count =
+            Arc::new(Count { what, all, begun: Instant::now(), done, known, told, best: Mutex::default() });
         let bar = if quiet { ProgressBar::hidden() } else { bar(&count) };
         Self { bar, count, lines: !quiet && !std::io::stderr().is_terminal() }
     }
@@ -54,21 +58,23 @@ impl retune_jobs::Progress for Stage {
         }
     }
 
+    fn best(&self, words: &str) {
+        *self.count.best.lock().unwrap_or_else(PoisonError::into_inner) = Some(words.to_owned());
+        self.bar.tick();
+    }
+
     fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
 fn bar(count: &Arc<Count>) -> ProgressBar {
-    let template = "{prefix} [{bar:30}] {human_pos}/{human_len}  {rate}  {left}";
-    let [rate, left] = [count, count].map(Arc::clone);
+    let template = "{prefix} [{bar:30}] {human_pos}/{human_len}  {state}";
+    let shown = Arc::clone(count);
     let style = ProgressStyle::with_template(template)
         .unwrap_or_else(|_| ProgressStyle::default_bar())
-        .with_key("rate", move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
-            let _ = out.write_str(&words(rate.rate(rate.begun.elapsed())));
-        })
-        .with_key("left", move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
-            let _ = out.write_str(&left.left(left.begun.elapsed()));
+        .with_key("state", move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let _ = out.write_str(&shown.state(shown.begun.elapsed()));
         });
     ProgressBar::new(count.all).with_style(style.progress_chars("=> ")).with_prefix(count.what)
 }
@@ -81,9 +87,22 @@ impl Count {
         let mine = due && self.told.compare_exchange(last, now, Relaxed, Relaxed).is_ok();
         let Self { what, all, .. } = self;
         let done = self.done.load(Relaxed);
-        mine.then(|| {
-            format!("{what}: {done} of {all}, {}, {}", words(self.rate(elapsed)), self.left(elapsed))
+        mine.then(|| match self.best() {
+            Some(_) => format!("{done} of {all}: {what}, {}", self.state(elapsed)),
+            None => format!("{what}: {done} of {all}, {}", self.state(elapsed)),
         })
+    }
+
+    /// Time and the best so far; of a stage that tells none, rate and remaining time.
+    fn state(&self, elapsed: Duration) -> String {
+        match self.best() {
+            Some(best) => format!("{} s, best {best}", elapsed.as_secs()),
+            None => format!("{}, {}", words(self.rate(elapsed)), self.left(elapsed)),
+        }
+    }
+
+    fn best(&self) -> Option<String> {
+        self.best.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// New evaluations a second.
@@ -130,6 +149,8 @@ mod tests {
         assert_eq!(count.tell(at(30)).as_deref(), Some("surf: 950 of 1000, 1.7/s, 30 seconds left"));
         assert_eq!(count.tell(at(59)), None);
         assert!(count.tell(at(60)).is_some());
+        progress.best("21.3 kJ");
+        assert_eq!(count.tell(at(91)).as_deref(), Some("950 of 1000: surf, 91 s, best 21.3 kJ"));
         let fresh = Stage::new("surf", 10, true);
         assert_eq!(fresh.count.left(at(1)), "time left not known yet");
     }

@@ -3,9 +3,11 @@
 use super::explain::explain;
 use super::kind::Kind;
 use super::rule::Rule;
+use super::units;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::borrow::Cow;
 use std::path::Path;
 use thiserror::Error;
 
@@ -106,6 +108,19 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
+/// The text with every number in its SI unit, see [`units`].
+///
+/// # Errors
+/// [`StudyError::Field`]: the first that has no unit of its field.
+pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, StudyError> {
+    units::in_si(text).map_err(|units::Refused { line, column, problem }| StudyError::Field {
+        file: file.to_owned(),
+        line,
+        column,
+        problem,
+    })
+}
+
 /// Parses the text of `file`; an error names the field.
 ///
 /// # Errors
@@ -117,6 +132,7 @@ pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> 
         column: error.column(),
         problem: explain(path.as_deref(), error),
     };
+    let text = &*in_si(text, file)?;
     let mut json = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| refuse(Some(error.path().to_string()), error.inner()))?;

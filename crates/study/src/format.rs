@@ -9,7 +9,8 @@ use retune_solver::{Contacts, Method, Settings, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A study: a structure with its damper, the time window of the evaluation, and the parameters to tune. SI units throughout.
+/// A study: a structure with its damper, the time window of the evaluation, and the parameters to tune. A number is in its SI unit, or a text
+/// with a unit: "20 kN/m".
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Study {

@@ -1,4 +1,4 @@
-//! Study files: the input of Retune, in JSON with the paper's symbols and SI units.
+//! Study files: the input of Retune, in JSON with the paper's symbols, in SI units or with a unit beside a number (`"20 kN/m"`).
 //!
 //! [`read`] turns a file into a checked [`Study`], or an error that names the field, its value and the allowed values.
 //! [`Study::search`] returns the search and [`Study::goal`] the objective with its limits.
@@ -38,10 +38,12 @@ pub mod read;
 mod records;
 mod rigid;
 mod rule;
+mod schema;
 mod search;
 mod set;
 mod start;
 mod table2;
+mod units;
 mod vary;
 mod visible;
 mod window;
@@ -55,10 +57,12 @@ pub use global::GlobalSearch;
 pub use kind::Kind;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
+pub use schema::schema;
 pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
 pub use set::{Settable, Setting, SettingError};
 pub use start::start;
 pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};
+pub use units::typed;
 pub use visible::visible;
 pub use words::{
     are, counted, design_cells, design_words, fields, frequency, hertz_and_rpm, joined, over, rounded, short,

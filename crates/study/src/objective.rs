@@ -2,10 +2,9 @@
 
 use super::format::{Coarse, Study};
 use super::rule::Rule;
-use retune_model::{Forcing, Measure, Parameter, Scene, Source};
+use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, Limit, Limits, Objective, Part, Response, Statistic, StiffnessRange,
-    Stiffnesses,
+    Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
 };
 use retune_solver::Settle;
 
@@ -50,11 +49,6 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
     if let Some(starts) = objective.starts.filter(|starts| !(1..=MOST_STARTS).contains(starts)) {
         let allowed = "a whole number from 1 to 1000";
         return bad(field("starts"), starts.to_string(), allowed);
-    }
-    let based = matches!(forcing.source, Source::Base(_));
-    if objective.response == Response::Steady && objective.quantity == Measure::GroundForce && based {
-        let allowed = "another response: on a moving base this quantity has no closed form here";
-        return bad(field("quantity"), objective.quantity.name().to_owned(), allowed);
     }
     if passes && (objective.omega.is_some() || objective.response != Response::Window) {
         let name = if objective.omega.is_some() { "omega" } else { "response" };
@@ -140,25 +134,11 @@ pub(super) fn check_quantity(study: &Study) -> Result<(), Rule> {
     }
 }
 
-/// Checks the rules that serde cannot, for an objective and a forcing; `end` is the end of the run, s.
+/// Checks the rules that serde cannot; `end` is the end of the run, s.
 ///
 /// # Errors
 /// The [`Rule`] that is broken.
-pub(super) fn check_limits(
-    limits: &Limits,
-    objective: &Objective,
-    forcing: &Forcing,
-    end: f64,
-) -> Result<(), Rule> {
-    let steady = objective.terms().iter().any(|(_, term)| term.response == Response::Steady);
-    let ground_force = Limit::Of(Measure::GroundForce);
-    if let (Some(most), Source::Base(_), true) = (limits.get(ground_force), forcing.source, steady) {
-        return Err(Rule::NotAllowed {
-            field: format!("optimize.limits.{ground_force}"),
-            value: most.to_string(),
-            allowed: "another response: on a moving base this quantity has no closed form here",
-        });
-    }
+pub(super) fn check_limits(limits: &Limits, end: f64) -> Result<(), Rule> {
     match limits.from {
         Some(from) if from.get() >= end => Err(Rule::NotAllowed {
             field: "optimize.limits.from".to_owned(),

@@ -1,7 +1,7 @@
 //! From a file, or the results of a search, to a checked study.
 
 use super::built_in::{is_built_in, read_plan_text};
-use super::file::{StudyError, expect, parse, read_text};
+use super::file::{StudyError, expect, in_si, parse, read_text};
 use super::format::Study;
 use super::instead::{OPTIMUM, STUDY, instead};
 use super::kind::Kind;
@@ -104,6 +104,7 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
     let base = Path::new(file).parent().unwrap_or(Path::new(""));
+    let text = &*in_si(text, file)?;
     let settled =
         window::resolved(text, base).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     let mut study: Study = parse(settled.as_deref().unwrap_or(text), file)?;

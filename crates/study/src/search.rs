@@ -106,7 +106,7 @@ impl Study {
         }
         let variables = varied(&optimize.vary)?;
         check(&optimize.objective, "optimize.objective", &self.scene)?;
-        check_limits(&optimize.limits, &optimize.objective, &self.scene.forcing, self.window.end.get())?;
+        check_limits(&optimize.limits, self.window.end.get())?;
         let tuned = |field, variable: &Parameter| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),

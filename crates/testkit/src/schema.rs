@@ -45,6 +45,11 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<
                 Value::Array(all) => all.iter().any(|one| is_of_type(value, one)),
                 one => is_of_type(value, one),
             },
+            // The one that the schemas have: more than a number.
+            "pattern" => {
+                assert_eq!(said, "[^-+.0-9eE ]", "a pattern that is not known here");
+                value.as_str().is_none_or(|text| text.contains(|c: char| !"-+.0123456789eE ".contains(c)))
+            }
             "const" => value == said,
             "anyOf" => list(said).iter().any(holds),
             "oneOf" => list(said).iter().filter(|one| holds(one)).count() == 1,

@@ -349,3 +349,34 @@ fn contract_an_irregular_motion_comes_with_its_neighbours() {
         of("motion").and_then(|answer| answer.get("run")).map(|run| run["E1max"].clone()).expect("a run");
     assert!(range[0].as_f64() < range[1].as_f64() && own.is_number(), "{range} {own}");
 }
+
+/// A structure in words is that of `retune design`, with its formula's TMD; a slip names its field, and the session goes on as it was.
+#[test]
+fn contract_a_structure_of_ones_own_takes_the_place_of_the_study() {
+    let structure = json!({ "m1": "40 t", "f1": "2 Hz", "zeta": "0.5 %", "force": "280 N", "band": "1.8..2.2 Hz", "mass": "2 %" });
+    let with = |field: &str, value: &str| {
+        let mut other = structure.clone();
+        other[field] = json!(value);
+        json!({ "own": { "structure": other } }).to_string()
+    };
+    let place = json!({ "damper": "tmd", "set": {} });
+    let look = json!({ "look": { "id": 3, "place": place, "columns": 100 } }).to_string();
+    let found = answers(vec![with("m1", "40 kN"), with("m1", "40 t"), look], |answer| {
+        kind(answer) == "done" && answer.get("id") == Some(&json!(3))
+    });
+    let refused = found.iter().find(|answer| kind(answer) == "refused").expect("a slip");
+    assert_eq!([refused.get("field"), refused.get("own")], [Some(&json!("m1")), Some(&json!(true))]);
+    let own = found.iter().filter(|answer| kind(answer) == "hello").nth(1).expect("another study");
+    assert_eq!([own.get("own"), own.get("damper")], [Some(&json!(true)), Some(&json!("tmd"))]);
+    let controls = own.get("controls").and_then(Value::as_array).expect("controls");
+    let control = |name: &str| controls.iter().find(|control| control["name"] == name).expect("a control");
+    let value = |name: &str| control(name)["value"].as_f64().expect("a number");
+    let (natural, mu) = (2.0 * std::f64::consts::TAU, 0.02);
+    // Den Hartog: ω2 = ω1 / (1 + μ).
+    let k2 = 800.0 * (natural / (1.0 + mu)).powi(2);
+    assert!((value("k2") / k2 - 1.0).abs() < 1e-12 && value("m2") == 800.0, "{} {k2}", value("k2"));
+    assert!(control("k2")["units"].as_array().is_some_and(|units| units.contains(&json!(["kN/m", 1e3]))));
+    let worst = found.iter().rev().find(|answer| kind(answer) == "worst").expect("a worst");
+    assert!(worst.get("value").and_then(Value::as_f64).is_some_and(|worst| worst > 0.5 && worst < 0.7));
+    assert!(["D", "C"].iter().all(|gap| value(gap) > 1e-4), "the gaps of an SSVI NES are scaled");
+}

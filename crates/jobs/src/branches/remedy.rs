@@ -5,7 +5,7 @@ use retune_dynamics::periodic::{Branch, End, EventKind, Orbit};
 use retune_model::Parameter;
 
 /// The parameters that are tried: the gaps, the dashpot, the spring, whatever forces the structure.
-const TRIED: [Parameter; 7] = [
+const TRIED: [Parameter; 8] = [
     Parameter::D,
     Parameter::C,
     Parameter::C2,
@@ -13,6 +13,7 @@ const TRIED: [Parameter; 7] = [
     Parameter::P,
     Parameter::Imbalance,
     Parameter::Base,
+    Parameter::BaseAcceleration,
 ];
 /// How far a parameter is changed, as a share of its value.
 const REACH: [f64; 2] = [0.3, 3.0];

@@ -44,7 +44,7 @@ pub(super) enum OtherStarts {
 }
 
 /// The parameters that a built scene has with an error; a loss or a restitution where it has one.
-const INEXACT: [Parameter; 15] = [
+const INEXACT: [Parameter; 16] = [
     Parameter::M1,
     Parameter::C1,
     Parameter::K1,
@@ -57,6 +57,7 @@ const INEXACT: [Parameter; 15] = [
     Parameter::P,
     Parameter::Imbalance,
     Parameter::Base,
+    Parameter::BaseAcceleration,
     Parameter::Omega,
     Parameter::Lambda,
     Parameter::Restitution,

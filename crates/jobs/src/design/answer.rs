@@ -103,11 +103,16 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
             "; no SSVI NES was found that keeps the limits".to_owned()
         }
         (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
-            let why = compared
-                .ssvi_certificate
-                .as_ref()
-                .map_or(String::new(), |certificate| legible(certificate.reason()));
-            format!("; an SSVI NES has {}, but cannot be trusted: {why}", sized(ssvi.goal, goal.unit()))
+            let has = format!("; an SSVI NES has {}", sized(ssvi.goal, goal.unit()));
+            match &compared.ssvi_certificate {
+                Some(certificate) => {
+                    format!("{has}, but cannot be trusted: {}", legible(certificate.reason()))
+                }
+                None => {
+                    let less = percent(1.0 - ssvi.goal / chosen.goal);
+                    format!("{has}, {less} less, for which alone walls are not worth it")
+                }
+            }
         }
         (What::Tmd, Some(ssvi), _) => format!(
             "; the best SSVI NES that was found has {}, {} times as much, and strikes its walls with {}",

@@ -1,9 +1,7 @@
 //! A damper that may be built, or none: what it has of each quantity over the whole band.
 
-use crate::tune::band::at;
-use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Measure, PerMeasure, Scene, Source};
-use retune_optim::{Limit, Need, Unusable};
+use retune_model::{Damper, Measure, PerMeasure};
+use retune_optim::{Limit, Limits, Need, Unusable};
 use retune_study::Study;
 use serde::Serialize;
 
@@ -51,9 +49,6 @@ pub struct Candidate {
     pub from_rest: PerMeasure<Need>,
 }
 
-/// Frequencies at which what has no closed form over a band is looked at.
-const SAMPLES: usize = 2001;
-
 impl Candidate {
     /// Measures the scene of a study, with its damper or without.
     ///
@@ -61,24 +56,17 @@ impl Candidate {
     /// It cannot be run.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
         let settings = study.solver.settings();
-        let needs = study.goal().needs(&study.scene, &settings, &|| true)?;
+        let needs =
+            study.goal().needs_above(&study.scene, &settings, told(&study.goal().limits), &|| true)?;
         let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
         let limits = study.goal().limits;
         let is_damper = study.scene.damper.is_some();
         let binding =
             limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
-        let (mut steady, mut from_rest) = (needs.own, needs.whole);
+        let (mut steady, from_rest) = (needs.own, needs.whole);
         for measure in Measure::ALL {
             let own = steady.get(measure);
-            let based = matches!(study.scene.forcing.source, Source::Base(_));
-            if based && measure == Measure::GroundForce && study.goal().objective.is_steady() {
-                let sampled = sampled(study, measure);
-                steady.set(measure, sampled);
-                let whole = from_rest.get(measure);
-                if sampled.value > whole.value || !whole.value.is_finite() {
-                    from_rest.set(measure, sampled);
-                }
-            } else if own.value == f64::NEG_INFINITY {
+            if own.value == f64::NEG_INFINITY {
                 steady.set(measure, Need { value: 0.0, ..own });
             }
         }
@@ -121,27 +109,10 @@ impl Candidate {
     }
 }
 
-/// The largest steady amplitude of a quantity on samples of the band.
-fn sampled(study: &Study, measure: Measure) -> Need {
-    let Scene { primary, damper, .. } = study.scene;
-    let band = study.objective().omega.map(|band| band.of(&primary));
-    let none = Need { value: f64::NAN, ..Need::default() };
-    let Some(band) = band else { return none };
-    let value = |i: usize| {
-        let omega = band.from + (band.to - band.from) * i as f64 / (SAMPLES - 1) as f64;
-        let value = at(omega, study.scene).map_or(f64::NAN, |scene| {
-            let bare = Bare::new(&primary, &scene.forcing);
-            let steady = damper.map_or_else(
-                || bare.steady(omega),
-                |damper| Coupled::new(&primary, &scene.forcing, &damper).steady(omega),
-            );
-            steady.largest(&bare, omega, measure)
-        });
-        Need { value, omega, k1: primary.stiffness.get(), restitution: 1.0 }
-    };
-    let all: Vec<Need> = (0..SAMPLES).into_par_iter().map(value).collect();
-    all.into_iter()
-        .filter(|need| need.value.is_finite())
-        .max_by(|a, b| a.value.total_cmp(&b.value))
-        .unwrap_or(none)
+/// From where on a value from rest is told, and its peaks between samples matter: above its limit; of the stroke, which is drawn, everywhere.
+fn told(limits: &Limits) -> PerMeasure<f64> {
+    PerMeasure(Measure::ALL.map(|measure| match measure {
+        Measure::Stroke => f64::NEG_INFINITY,
+        _ => limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY),
+    }))
 }

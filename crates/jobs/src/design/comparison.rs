@@ -120,16 +120,19 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
     Ok((formula, tmd))
 }
 
-/// The SSVI NES that the ends of a search are, the best first: those that can be run and strike. One that strikes nothing is a TMD.
-fn striking(study: &Study, found: &ssvi::Found) -> Result<Vec<Candidate>, Error> {
-    let mut all: Vec<Candidate> = Vec::new();
-    for end in &found.ends {
+/// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike. One that
+/// strikes nothing is a TMD. Each is measured when it is asked for, which takes most of the time where its motions are irregular.
+fn striking<'a>(
+    study: &'a Study,
+    found: &'a ssvi::Found,
+) -> impl Iterator<Item = Result<(f64, Candidate), Error>> + 'a {
+    let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
         let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
-        all.extend(Candidate::new(What::Ssvi, &study).ok().filter(Candidate::strikes));
-    }
-    all.sort_by(|a, b| b.feasible.cmp(&a.feasible).then(a.goal.total_cmp(&b.goal)));
-    Ok(all)
+        let candidate = Candidate::new(What::Ssvi, &study).ok().filter(Candidate::strikes);
+        Ok(candidate.map(|candidate| (*value, candidate)))
+    };
+    found.ends.iter().filter_map(move |end| measured(end).transpose())
 }
 
 /// How much a damper may be trusted: 0 of the best verdict.
@@ -143,18 +146,23 @@ fn doubt(certificate: &Certificate) -> u8 {
     }
 }
 
-/// Of designs that are nearly as good the one with the best certificate.
-fn trusted(all: Vec<Candidate>) -> Result<Option<(Candidate, Certificate)>, Error> {
-    let least = all.first().map_or(f64::NAN, |best| best.goal);
-    let mut best: Option<(Candidate, Certificate)> = None;
-    let nearly = |candidate: &Candidate| candidate.feasible && candidate.goal <= (1.0 + NEARLY) * least;
-    for candidate in all.into_iter().filter(nearly).take(JUDGED) {
+/// Of designs that are nearly as good as the first the one with the best certificate; one that is certain ends the search.
+fn trusted(
+    first: (f64, Candidate),
+    others: impl Iterator<Item = Result<(f64, Candidate), Error>>,
+) -> Result<(Candidate, Certificate), Error> {
+    let (least, first) = first;
+    let certificate = judge(&first.study)?;
+    let mut best = (first, certificate);
+    let mut others = others.take(JUDGED - 1);
+    while doubt(&best.1) > 0
+        && let Some((value, candidate)) = others.next().transpose()?
+        && candidate.feasible
+        && value <= (1.0 + NEARLY) * least
+    {
         let certificate = judge(&candidate.study)?;
-        if best.as_ref().is_none_or(|(_, other)| doubt(&certificate) < doubt(other)) {
-            best = Some((candidate, certificate));
-        }
-        if best.as_ref().is_some_and(|(_, certificate)| doubt(certificate) == 0) {
-            break;
+        if doubt(&certificate) < doubt(&best.1) {
+            best = (candidate, certificate);
         }
     }
     Ok(best)
@@ -189,16 +197,18 @@ pub(super) fn compare(
     ))?;
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
-        watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves the TMD above)")?;
+        watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves what stands above)")?;
         let found = ssvi::best(ssvi_study, &tmd, &[], (journal, "ssvi"), watch)?;
         tried = Some(found.tried);
-        let all = striking(ssvi_study, &found)?;
+        let mut all = striking(ssvi_study, &found);
         let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
-        if all.first().is_some_and(|best| best.feasible && (rival || tmd.goal > (1.0 + SAME) * best.goal)) {
-            (ssvi, judged) = trusted(all)?.unzip();
-        } else {
-            ssvi = all.into_iter().next();
-        }
+        (ssvi, judged) = match all.next().transpose()? {
+            Some(best) if best.1.feasible && (rival || tmd.goal > (1.0 + SAME) * best.1.goal) => {
+                let (candidate, certificate) = trusted(best, all)?;
+                (Some(candidate), Some(certificate))
+            }
+            best => (best.map(|(_, candidate)| candidate), None),
+        };
     }
     let choice = choice(requirements, &tmd, ssvi.as_ref(), judged.as_ref());
     let costs = costs(requirements, [&tmd, ssvi.as_ref().unwrap_or(&tmd)], journal, watch)?;
@@ -271,7 +281,7 @@ fn costs(
                 .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
             let stage = format!("ssvi without {}", wish.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
-            striking(&study, &found)?.into_iter().next()
+            striking(&study, &found).next().transpose()?.map(|(_, candidate)| candidate)
         } else {
             None
         };

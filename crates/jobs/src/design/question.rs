@@ -17,14 +17,10 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let driving = match requirements.source {
         Driving::Force(force) => format!("a force of {}", sized(force, "N")),
         Driving::Imbalance(imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
-        Driving::Base(base) => match requirements.accelerated {
-            Some(acceleration) => format!(
-                "a base that moves by {} ({} at {own}; over the band the motion, not the acceleration, is held)",
-                sized(base, "m"),
-                sized(acceleration, "m/s²")
-            ),
-            None => format!("a base that moves by {}", sized(base, "m")),
-        },
+        Driving::Base(base) => format!("a base that moves by {}", sized(base, "m")),
+        Driving::BaseAcceleration(acceleration) => {
+            format!("a base that is accelerated by {}", sized(acceleration, "m/s²"))
+        }
     };
     let unit = requirements.frequencies;
     let [from, to] = requirements.band.map(|end| frequency(end, unit));

@@ -27,11 +27,11 @@ fn checked(wishes: &Wishes) -> Result<Requirements, Error> {
     let [m1, k1] = structure(wishes)?;
     let natural = (k1 / m1).sqrt();
     let c1 = damping(wishes, 2.0 * m1 * natural)?;
-    let (source, accelerated) = driving(wishes, natural)?;
+    let source = driving(wishes)?;
     let (band, hertz) = band(wishes, natural)?;
     let mass = mass(wishes, m1)?;
-    let goal = goal(wishes, source)?;
-    let (limits, k2_max) = limits(wishes, source)?;
+    let goal = goal(wishes)?;
+    let (limits, k2_max) = limits(wishes)?;
     let k1_error = wishes.k1_error.as_ref().map(|typed| share(typed, "k1_error", 1.0)).transpose()?;
     let dampers = wishes.damper.as_ref().map_or(Ok(Dampers::Both), |typed| {
         let known = Dampers::ALL.into_iter().find(|dampers| dampers.name() == typed.text);
@@ -45,7 +45,6 @@ fn checked(wishes: &Wishes) -> Result<Requirements, Error> {
         k1,
         c1,
         source,
-        accelerated,
         band,
         frequencies: hertz,
         mass,
@@ -164,13 +163,13 @@ fn damping(wishes: &Wishes, critical: f64) -> Result<f64, Error> {
     Ok(c1)
 }
 
-/// What moves the structure; and the acceleration of a base that is given by it, m/s².
-fn driving(wishes: &Wishes, natural: f64) -> Result<(Driving, Option<f64>), Error> {
+/// What moves the structure.
+fn driving(wishes: &Wishes) -> Result<Driving, Error> {
     let all = [
         ("force", &wishes.force, Parameter::P.units()),
         ("imbalance", &wishes.imbalance, Parameter::Imbalance.units()),
         ("base", &wishes.base, Parameter::Base.units()),
-        ("base_acceleration", &wishes.base_acceleration, unit::ACCELERATION),
+        ("base_acceleration", &wishes.base_acceleration, Parameter::BaseAcceleration.units()),
     ];
     let given: Vec<_> =
         all.iter().filter_map(|(name, typed, units)| Some((*name, typed.as_ref()?, *units))).collect();
@@ -182,11 +181,10 @@ fn driving(wishes: &Wishes, natural: f64) -> Result<(Driving, Option<f64>), Erro
         [(name, typed, units)] => {
             let value = positive(typed, name, units)?;
             Ok(match *name {
-                "force" => (Driving::Force(value), None),
-                "imbalance" => (Driving::Imbalance(value), None),
-                "base" => (Driving::Base(value), None),
-                // A base of constant acceleration is not modelled: one of the amplitude that this is at the natural frequency is.
-                _ => (Driving::Base(value / (natural * natural)), Some(value)),
+                "force" => Driving::Force(value),
+                "imbalance" => Driving::Imbalance(value),
+                "base" => Driving::Base(value),
+                _ => Driving::BaseAcceleration(value),
             })
         }
         [(first, ..), (name, typed, _), ..] => {
@@ -277,24 +275,17 @@ fn measure(name: &str) -> Option<Measure> {
     Measure::ALL.into_iter().find(|measure| measure.name() == name)
 }
 
-/// On a moving base the force on the ground has no closed form over a band.
-const ON_BASE: &str = "on a moving base there is no closed form of it; a1max bounds it: the force on the ground is that of the accelerated masses";
-
-fn goal(wishes: &Wishes, source: Driving) -> Result<Measure, Error> {
+fn goal(wishes: &Wishes) -> Result<Measure, Error> {
     let Some(typed) = &wishes.goal else { return Ok(Measure::Energy) };
     let known = measure(&typed.text).filter(|measure| !measure.is_of_damper());
-    let goal = known.ok_or_else(|| {
+    known.ok_or_else(|| {
         let all = Measure::OF_STRUCTURE.map(Measure::name).join(", ");
         typed.refused("goal", format!("\"{}\" is none: give one of {all}", typed.text))
-    })?;
-    if goal == Measure::GroundForce && matches!(source, Driving::Base(_)) {
-        return Err(typed.refused("goal", ON_BASE));
-    }
-    Ok(goal)
+    })
 }
 
 /// The limits, and the largest k2.
-fn limits(wishes: &Wishes, source: Driving) -> Result<(Limits, Option<f64>), Error> {
+fn limits(wishes: &Wishes) -> Result<(Limits, Option<f64>), Error> {
     let (mut limits, mut k2) = (Limits::default(), None);
     for (name, typed) in wishes.all_limits()? {
         let field = format!("limit {name}");
@@ -312,9 +303,6 @@ fn limits(wishes: &Wishes, source: Driving) -> Result<(Limits, Option<f64>), Err
             let problem = format!("there is no quantity \"{name}\": give one of {all}, k2");
             return Err(typed.refused("limit", problem));
         };
-        if limit == Limit::Of(Measure::GroundForce) && matches!(source, Driving::Base(_)) {
-            return Err(typed.refused(&field, ON_BASE));
-        }
         let value = positive(&typed, &field, own(limit))?;
         limits = limits.with(limit, Positive::new(value)?);
     }

@@ -24,9 +24,6 @@ pub struct Requirements {
     /// What moves it.
     #[serde(flatten)]
     pub source: Driving,
-    /// The acceleration at the natural frequency by which a moving base is given, m/s².
-    #[serde(rename = "base_acceleration", skip_serializing_if = "Option::is_none")]
-    pub accelerated: Option<f64>,
     /// The angular frequencies of the forcing, rad/s.
     pub band: [f64; 2],
     /// The unit in which frequencies are told: Hz, rpm or rad/s.
@@ -59,6 +56,9 @@ pub enum Driving {
     /// A base that moves by this amplitude, m.
     #[serde(rename = "base")]
     Base(f64),
+    /// A base whose acceleration has this amplitude at every frequency, m/s².
+    #[serde(rename = "base_acceleration")]
+    BaseAcceleration(f64),
 }
 
 /// The dampers that are compared.
@@ -185,6 +185,7 @@ impl Requirements {
             Driving::Force(amplitude) => Source::Force(NonNegative::new(amplitude)?),
             Driving::Imbalance(amplitude) => Source::Imbalance(NonNegative::new(amplitude)?),
             Driving::Base(amplitude) => Source::Base(NonNegative::new(amplitude)?),
+            Driving::BaseAcceleration(amplitude) => Source::BaseAcceleration(NonNegative::new(amplitude)?),
         };
         let frequency = self.natural_frequency().clamp(self.band[0], self.band[1]);
         Ok(Forcing { source, frequency: NonNegative::new(frequency)?, start: None })

@@ -4,14 +4,16 @@
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
 use super::candidate::Candidate;
+use super::words::sized;
 use crate::tune::descent::descend;
 use crate::tune::objective::{coarse, kept, searched};
-use crate::{Error, Observer};
+use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
 use retune_model::{Measure, Scene};
-use retune_optim::{Bounds, Parameter};
+use retune_optim::{Bounds, INFEASIBLE, Parameter};
 use retune_store::Journal;
 use retune_study::{Search, Study};
+use std::sync::{Mutex, PoisonError};
 
 /// Good designs, dimensionless: k2/(m2 ω1²); c2/(2 m2 ω1) times √(0.06/μ) of a mass ratio μ; D and C as shares of the stroke of the best TMD.
 /// From `results`: `ssvi`, `ssvi-global`, `ssvi-robust`, `ssvi-loss`, `table2` and the softest of `fronts`, each for μ = 0.06.
@@ -36,8 +38,8 @@ const DESCENTS: usize = 4;
 
 /// What a search for an SSVI NES comes to.
 pub(super) struct Found {
-    /// Its ends, `[k2, c2, D, C]` each, the best first; none where nothing that was tried comes near the TMD.
-    pub ends: Vec<Vec<f64>>,
+    /// Its ends, `[k2, c2, D, C]` each with its value, the best first; none where nothing that was tried comes near the TMD.
+    pub ends: Vec<(f64, Vec<f64>)>,
     /// Designs that were evaluated.
     pub tried: usize,
 }
@@ -70,6 +72,47 @@ fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
     all.into_iter().map(within).collect()
 }
 
+/// A progress that tells the best value so far.
+struct Told {
+    bar: Box<dyn Progress>,
+    best: Mutex<f64>,
+    quantity: Measure,
+}
+
+impl Told {
+    fn new(bar: Box<dyn Progress>, study: &Study) -> Self {
+        Self { bar, best: Mutex::new(INFEASIBLE), quantity: study.quantity() }
+    }
+
+    /// One more has been evaluated, or has come to this value.
+    fn done(&self, value: f64) {
+        let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
+        if value < *best {
+            *best = value;
+            self.bar.best(&sized(value, self.quantity.unit()));
+        }
+        drop(best);
+        self.bar.inc(1);
+    }
+
+    fn finish(&self) {
+        self.bar.finish();
+    }
+}
+
+/// The best of a stage, for who stops there.
+fn so_far(study: &Study, value: f64, x: &[f64]) -> String {
+    let quantity = study.quantity();
+    let value = if value < INFEASIBLE {
+        format!("{} {}", quantity.name(), sized(value, quantity.unit()))
+    } else {
+        "breaks a limit".to_owned()
+    };
+    let one = |(parameter, x): (&Parameter, &f64)| format!("{parameter} = {}", sized(*x, parameter.unit()));
+    let design: Vec<String> = Parameter::PAPER.iter().zip(x).map(one).collect();
+    format!("SSVI NES so far: {value}, {}", design.join(", "))
+}
+
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
 ///
 /// # Errors
@@ -85,15 +128,17 @@ pub(super) fn best(
     debug_assert_eq!(search.variables, Parameter::PAPER);
     let objective = searched(study, &search, &search.variables);
     let loose = coarse(study, &search, &search.variables);
+    // Under other limits it is no answer to what was asked.
+    let asked = beside.is_empty();
     let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
     let starts = if beside.is_empty() { starts(study, &search, tmd) } else { beside };
     let most = if tmd.feasible { WORTH * tmd.goal } else { f64::INFINITY };
     let name = format!("{stage} known");
     let value = kept(&loose, journal, &name, || ());
-    let bar = watch.progress("SSVI NES, known designs", starts.len() as u64);
+    let bar = Told::new(watch.progress("SSVI NES, known designs", starts.len() as u64), study);
     let tried = |start: &Start| {
         let value = value(&start.1, most);
-        bar.inc(1);
+        bar.done(value);
         value
     };
     let values: Vec<f64> = starts.par_iter().map(tried).collect();
@@ -101,6 +146,9 @@ pub(super) fn best(
     bar.finish();
     journal.check()?;
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((value, (_, x))) = all.first().filter(|(value, _)| asked && *value < most) {
+        watch.result(&so_far(study, *value, x))?;
+    }
     // Descents from outside limits are long.
     let descents = if tmd.feasible { DESCENTS } else { DESCENTS / 2 };
     let mut worth: Vec<&Start> = Vec::new();
@@ -109,16 +157,19 @@ pub(super) fn best(
             worth.push(start);
         }
     }
-    let bar = watch.progress("SSVI NES, descents", worth.len() as u64);
+    let bar = Told::new(watch.progress("SSVI NES", worth.len() as u64), study);
     let descent = |(_, x): &&Start| {
         let foot = descend(&objective, &search, x, journal, &format!("{stage} descent"));
-        bar.inc(1);
+        bar.done(foot.end.value);
         (foot.end.value, foot.end.x)
     };
     let mut ends: Vec<(f64, Vec<f64>)> = worth.par_iter().map(descent).collect();
     bar.finish();
     journal.check()?;
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((value, x)) = ends.first().filter(|_| asked) {
+        watch.result(&so_far(study, *value, x))?;
+    }
     let tried = objective.counts().evaluations + loose.counts().evaluations;
-    Ok(Found { ends: ends.into_iter().map(|(_, x)| x).collect(), tried: tried as usize })
+    Ok(Found { ends, tried: tried as usize })
 }

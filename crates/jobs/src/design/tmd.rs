@@ -26,13 +26,20 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// The formulas that fit what is asked, the best first. Where it is the displacement, or the force on the ground, under a constant force
-    /// or on a moving base: Nishihara and Asami's, which is exact without damping of the structure, and Den Hartog's. Warburton's
-    /// where it is the displacement under an imbalance, or the acceleration under a constant force. Else Den Hartog's.
+    /// The formulas that fit what is asked, the best first. Where it is the displacement under a constant force or on a moving base, the force
+    /// on the ground under a constant force, or the acceleration on a base of constant acceleration: Nishihara and Asami's, which is exact
+    /// without damping of the structure, and Den Hartog's. Warburton's where it is the displacement under an imbalance, or the
+    /// acceleration under a constant force. Else Den Hartog's.
     pub fn all(requirements: &Requirements, primary: &Primary) -> Vec<Self> {
         let imbalance = matches!(requirements.source, Driving::Imbalance(_));
-        let squared = imbalance != (requirements.goal == Measure::Acceleration);
-        let exact = !imbalance && matches!(requirements.goal, Measure::Displacement | Measure::GroundForce);
+        let accelerated = matches!(requirements.source, Driving::BaseAcceleration(_));
+        let of_acceleration = requirements.goal == Measure::Acceleration;
+        let squared = !accelerated && imbalance != of_acceleration;
+        let exact = match requirements.goal {
+            Measure::Displacement => !imbalance && !accelerated,
+            Measure::GroundForce => matches!(requirements.source, Driving::Force(_)),
+            _ => accelerated && of_acceleration,
+        };
         let of = |name, formula: fn(&Primary, f64) -> [f64; 2]| {
             let [k2, c2] = formula(primary, requirements.mass);
             Self { name, k2, c2 }

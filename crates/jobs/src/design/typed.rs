@@ -59,7 +59,7 @@ pub struct Wishes {
     pub imbalance: Option<Typed>,
     /// Amplitude of a moving base.
     pub base: Option<Typed>,
-    /// Acceleration of a moving base at the natural frequency.
+    /// Amplitude of the acceleration of a moving base.
     pub base_acceleration: Option<Typed>,
     /// The frequencies of the forcing; by default those within 10 % of the natural frequency.
     pub band: Option<Typed>,

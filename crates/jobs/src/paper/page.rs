@@ -4,7 +4,9 @@ use super::item::Item;
 use super::plan::{Plan, Tuner};
 use super::{cases, curves, energies, regimes, surfaces, table1, table2, variants};
 use crate::Error;
-use retune_report::document::{Block, Document, Verdict};
+use retune_report::document::{Block, Document, Statement, Verdict};
+use retune_report::table::Table;
+use retune_study::counted;
 
 /// A table or figure of the paper, or another item of the page.
 pub struct Entry {
@@ -91,6 +93,7 @@ pub fn page(items: &[(&'static Entry, Item)]) -> String {
             "Each table and figure of the paper beside what Retune computes, and a verdict on each statement. Of {} statements {holds} hold, {partly} hold in part, {fails} do not hold under our settings, and {undecided} cannot be decided: practically equal designs decide them differently. What is marked as our conjecture is not counted.",
             of_paper().count()
         )),
+        verdicts(items),
         Block::Words(
             "Only the text of the paper was available, not the data of its figures: what a figure shows is taken from the words about it. The paper leaves out the radius R and the coefficient q of the contact, the length of a run, the window of its maxima and the tolerances. Ours stand under each item; which verdicts hang on R and on the window stands at the end."
                 .to_owned(),
@@ -122,15 +125,34 @@ pub fn page(items: &[(&'static Entry, Item)]) -> String {
     document.html()
 }
 
-/// An item as a section.
+/// Every statement with its verdict, in one table.
+fn verdicts(items: &[(&'static Entry, Item)]) -> Block {
+    let row = |entry: &Entry, one: &Statement| {
+        let item = entry.title.split('.').next().unwrap_or_default().to_owned();
+        let ours = if one.conjecture { "Our conjecture: " } else { "" };
+        vec![item, format!("{ours}{}", one.paper), one.verdict.words().to_owned()]
+    };
+    let rows = items.iter().flat_map(|(entry, item)| item.statements.iter().map(|one| row(entry, one)));
+    Block::table("Every statement, and its verdict", ["item", "statement", "verdict"], rows.collect())
+}
+
+/// An item as a section: the first figure stands open, what lies behind it and its verdicts is unfolded by who wants it.
 fn blocks(entry: &Entry, item: &Item) -> Vec<Block> {
     let mut blocks = vec![Block::About("In the paper", entry.paper.to_owned())];
-    if !item.statements.is_empty() {
-        blocks.push(Block::Statements(item.statements.clone()));
-    }
-    blocks.extend(item.pictures.iter().cloned().map(Block::Picture));
-    blocks.extend(item.tables.iter().map(|(caption, table)| Block::of_table(caption, table)));
-    blocks.extend(item.notes.iter().cloned().map(Block::Words));
+    let folded = |subject: String, inner: Vec<Block>| {
+        if inner.is_empty() { None } else { Some(Block::Folded(subject, inner)) }
+    };
+    let mut pictures = item.pictures.iter().cloned().map(Block::Picture);
+    let count = item.statements.len();
+    let statements = if count == 0 { Vec::new() } else { vec![Block::Statements(item.statements.clone())] };
+    let reasons =
+        folded(format!("{}: verdicts, rules and numbers", counted(count as u64, "statement")), statements);
+    blocks.extend(pictures.next());
+    blocks.extend(reasons);
+    blocks.extend(folded("More figures".to_owned(), pictures.collect()));
+    let table = |(caption, table): &(String, Table)| Block::of_table(caption, table);
+    let inner = item.tables.iter().map(table).chain(item.notes.iter().cloned().map(Block::Words));
+    blocks.extend(folded("Tables and remarks".to_owned(), inner.collect()));
     blocks.push(Block::MadeBy(item.made_by.clone()));
     if !item.data.is_empty() {
         blocks.push(Block::Files(item.data.iter().map(|(name, _)| name.clone()).collect()));

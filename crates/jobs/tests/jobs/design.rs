@@ -81,34 +81,60 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
 }
 
 /// On an undamped structure no damper is below the fixed points, and the exact optimum is above them by less than one per cent: √(1 + 2/μ) static
-/// deflections under a force (Den Hartog), √(2 / (μ (1 + μ))) times m e / m1 under an imbalance (Warburton). The formula's own damper is no
+/// deflections under a force (Den Hartog), and as many accelerations of the base in that of the structure, √(2 / (μ (1 + μ))) times m e / m1 under an imbalance (Warburton). The formula's own damper is no
 /// better; under a force and on a moving base Nishihara and Asami's is as good.
 #[test]
 fn reference_the_formulas_of_textbooks_are_met_on_undamped_structures() {
     let mu: f64 = 0.05;
     let static_height = (1.0 + 2.0 / mu).sqrt();
-    for (source, size, height, exact) in [
-        ("force", 10.0 / (1000.0 * (TAU * 2.0).powi(2)), static_height, true),
-        ("base", 10.0, static_height, true),
-        ("imbalance", 10.0 / 1000.0, (2.0 / (mu * (1.0 + mu))).sqrt(), false),
+    for (source, goal, size, height, exact) in [
+        ("force", "x1max", 10.0 / (1000.0 * (TAU * 2.0).powi(2)), static_height, true),
+        ("base", "x1max", 10.0, static_height, true),
+        ("base_acceleration", "a1max", 10.0, static_height, true),
+        ("imbalance", "x1max", 10.0 / 1000.0, (2.0 / (mu * (1.0 + mu))).sqrt(), false),
     ] {
         let found = with_tmd(json!({
-            "m1": 1000, "f1": "2 Hz", "zeta": 0, source: 10, "band": "1 .. 3 Hz", "mass": "5 %", "goal": "x1max"
+            "m1": 1000, "f1": "2 Hz", "zeta": 0, source: 10, "band": "1 .. 3 Hz", "mass": "5 %", "goal": goal
         }));
-        let own = largest(&found, 1, "x1max") / size / height;
+        let own = largest(&found, 1, goal) / size / height;
         assert!((1.0 - 1e-9..1.01).contains(&own), "{source}: {own}");
         let formulas = found["formulas"].as_array().expect("formulas");
         let names: Vec<_> = formulas.iter().map(|formula| &formula["name"]).collect();
         let all = ["Nishihara and Asami's formula", "Den Hartog's formula", "Warburton's formula"];
         assert_eq!(names, if exact { &all[..2] } else { &all[2..] }, "{source}");
         let above = formulas.iter().map(|formula| {
-            formula["damper"]["steady"]["x1max"]["value"].as_f64().expect("a number") / size / height / own
+            formula["damper"]["steady"][goal]["value"].as_f64().expect("a number") / size / height / own
         });
         let above: Vec<f64> = above.collect();
         assert!(above.iter().all(|above| (1.0 - 1e-9..1.01).contains(above)), "{source}: {above:?}");
         assert!(!exact || (above[0] < 1.0 + 1e-9 && above[1] > 1.0 + 1e-5), "{source}: {above:?}");
-        assert!(found["candidates"][0]["steady"]["x1max"]["value"].is_null(), "no bound without a damper");
+        assert!(found["candidates"][0]["steady"][goal]["value"].is_null(), "no bound without a damper");
     }
+}
+
+/// On a base of constant acceleration the force on the ground is made least, and a limit on it is kept.
+#[test]
+fn exact_the_force_on_an_accelerated_ground_is_made_small_or_limited() {
+    let base = json!({
+        "m1": "120 t", "f1": "0.3 Hz", "zeta": "1 %", "base_acceleration": "0.02 g", "band": "0.25..0.35Hz", "mass": "2%"
+    });
+    let with = |more: Value| {
+        let mut wishes = base.clone();
+        wishes.as_object_mut().expect("an object").extend(more.as_object().cloned().expect("an object"));
+        with_tmd(wishes)
+    };
+    let least = with(json!({ "goal": "ground-force" }));
+    let force = largest(&least, 1, "ground_force");
+    let other = with(json!({ "goal": "a1max" }));
+    let limit = 0.5 * (force + largest(&other, 1, "ground_force"));
+    assert!(force < 0.9999 * limit, "the goals differ: {force} {limit}");
+    let limited = with(json!({ "goal": "a1max", "limits": { "ground_force": limit } }));
+    assert_eq!(limited["candidates"][1]["binding"], json!(["ground_force"]));
+    assert!((largest(&limited, 1, "ground_force") / limit - 1.0).abs() < 1e-3);
+    assert!(largest(&limited, 1, "a1max") > largest(&other, 1, "a1max"));
+    // Without a damper it is m1 times the acceleration in space.
+    let bare = largest(&least, 0, "ground_force") / largest(&least, 0, "a1max");
+    assert!((bare / 120e3 - 1.0).abs() < 1e-12, "{bare}");
 }
 
 /// Every quantity of a TMD is the amplitude of the closed form at the frequency that is told, and none is larger nearby.

@@ -50,6 +50,8 @@ pub struct Factors {
     loss: f64,
     /// `ℓ²` over the unit.
     drag: f64,
+    /// `1 + m2/m1`, and `(c1/m1)(c2/m2)`, 1/s².
+    both: [f64; 2],
     /// The slope of the factors `u - u_2` and `u - u_z`: 1, or 0 where they are the constant 1.
     slope: f64,
 }
@@ -60,7 +62,7 @@ impl Factors {
         let natural = Point { u: k1 / m1 / unit, past_lower: 0.0, past_upper: 0.0 };
         let (primary, lower, upper, damper, in_phase) = (natural, natural, natural, natural, natural);
         let drag = (c1 / m1).powi(2) / unit;
-        Self { unit, primary, lower, upper, damper, in_phase, loss: 0.0, drag, slope: 0.0 }
+        Self { unit, primary, lower, upper, damper, in_phase, loss: 0.0, drag, both: [1.0, 0.0], slope: 0.0 }
     }
 
     /// Those of a structure with a damper.
@@ -93,8 +95,26 @@ impl Factors {
             in_phase: between(-to_lower, to_upper, lower + to_lower),
             loss: rate_2 * rate_2 / unit,
             drag: slope * slope / unit,
+            both: [1.0 + m2 / m1, rate_1 * rate_2],
             slope: 1.0,
         }
+    }
+
+    /// The same with `N = |(m1 + m2) Q - m1 m2 ω²|² / (m1 m2)²` in the place of that of X1: of what accelerates both masses, `m1 X1 + m2 X2`. It is
+    /// the same polynomial with k2 and c2 larger by `1 + m2/m1`. Its zero is `u_d + s - s_0` with `s_0` the product of the rates, and by Vieta
+    /// `u_d + s - u_2 = u_1 - u_p`.
+    #[must_use]
+    pub fn of_both_masses(self) -> Self {
+        let Self { unit, primary, upper, both: [share, product], .. } = self;
+        // u_1 - u_p and u_2 - u_p.
+        let [lower_p, upper_p] = [-primary.past_lower, -primary.past_upper];
+        let damper = Point {
+            u: self.damper.u * share,
+            past_lower: upper_p - product / unit,
+            past_upper: lower_p - product / unit,
+        };
+        debug_assert!(damper.u <= upper.u * (1.0 + 1e-9));
+        Self { damper, loss: self.loss * share * share, ..self }
     }
 
     /// The end of a band, rad/s.
@@ -114,8 +134,10 @@ impl Factors {
         let gap = self.upper.past_lower;
         let middle = Point { u: self.lower.u + 0.5 * gap, past_lower: 0.5 * gap, past_upper: -0.5 * gap };
         let mut cuts = [self.lower, self.damper, self.primary, self.in_phase, middle, self.upper];
-        for last in 2..5 {
-            for i in (2..=last).rev() {
+        // All lie between the natural frequencies but the damper's of both masses, which heavy damping brings below.
+        let first = if self.damper.past_lower < 0.0 { 0 } else { 1 };
+        for last in first + 1..5 {
+            for i in (first + 1..=last).rev() {
                 if cuts[i - 1].past(&cuts[i]) > 0.0 {
                     cuts.swap(i - 1, i);
                 }
@@ -232,13 +254,14 @@ impl Piece {
     pub fn bounds(&self, numerator: Numerator) -> [f64; 2] {
         let ([v0, v1, v2, v3], _) = self.numerator(numerator);
         let ([m0, m1, m2, m3, m4], _) = self.denominator();
-        let by = self.u[0].max(self.u[1]).powi(numerator.power);
+        let [a, b] = self.u;
+        let by = if numerator.power < 0 { a.min(b) } else { a.max(b) }.powi(numerator.power);
         [by * v0.max(v1 / 3.0).max(v2 / 3.0).max(v3), m0.min(m1 / 4.0).min(m2 / 6.0).min(m3 / 4.0).min(m4)]
     }
 
     /// Visits every place where the slope of `V / M` falls through zero.
     pub fn falls(&self, numerator: Numerator, visit: &mut impl FnMut(f64)) {
-        // With V = u^j W the slope has the sign of W' M - W M', for j > 0 of (j W + u W') M - u W M'.
+        // With V = u^j W the slope has the sign of W' M - W M', for j > 0 of (j W + u W') M - u W M', for j < 0 of u W' M - (|j| W M + u W M').
         let (v, v_slope) = self.numerator(numerator);
         let (m, m_slope) = self.denominator();
         if numerator.power == 0 {
@@ -246,9 +269,13 @@ impl Piece {
             falls(bernstein(&rising, &falling), visit);
         } else {
             let j = self.forward * f64::from(numerator.power);
-            let grown: [f64; 4] = sum(&times(&v, j), &product::<3, 2, 4>(&v_slope, &self.u));
-            let (rising, falling): ([f64; 8], [f64; 8]) =
-                (product(&grown, &m), product(&product::<4, 2, 5>(&v, &self.u), &m_slope));
+            let rising: [f64; 4] = product::<3, 2, 4>(&v_slope, &self.u);
+            let falling: [f64; 8] = product(&product::<4, 2, 5>(&v, &self.u), &m_slope);
+            let (rising, falling): ([f64; 8], [f64; 8]) = if numerator.power > 0 {
+                (product(&sum(&times(&v, j), &rising), &m), falling)
+            } else {
+                (product(&rising, &m), sum(&times(&product::<4, 5, 8>(&v, &m), -j), &falling))
+            };
             falls(bernstein(&rising, &falling), visit);
         }
     }

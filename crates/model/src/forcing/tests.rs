@@ -11,6 +11,7 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
     for text in [
         r#"{"P":800.0,"omega":6.28}"#,
         r#"{"imbalance":0.5,"omega":6.28}"#,
+        r#"{"base_acceleration":0.5,"omega":6.28}"#,
         r#"{"base":0.01,"omega":6.28}"#,
         r#"{"P":800.0,"start":{"x1":0.1,"v1":0.0,"x2":0.2,"v2":0.0},"omega":6.28}"#,
         r#"{"start":{"x1":0.1,"v1":0.0,"v2":0.0}}"#,
@@ -37,7 +38,7 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
     for (text, said) in [
         (
             r#"{"omega":6.28}"#,
-            "give one of `P`, `imbalance`, `base`, `pulse` and `record`, or `start` alone, not 0",
+            "give one of `P`, `imbalance`, `base`, `base_acceleration`, `pulse` and `record`, or `start` alone, not 0",
         ),
         (
             r#"{"pulse":"half sine","of":"force","peak":1,"duration":1,"omega":1}"#,

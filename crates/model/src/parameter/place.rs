@@ -88,11 +88,12 @@ impl Parameter {
             (Self::K1, _) => Place::NonNegative(&mut primary.stiffness),
             (Self::P, Source::Force(at))
             | (Self::Imbalance, Source::Imbalance(at))
-            | (Self::Base, Source::Base(at)) => Place::NonNegative(at),
-            (Self::Omega, Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) => {
-                Place::NonNegative(&mut forcing.frequency)
+            | (Self::Base, Source::Base(at))
+            | (Self::BaseAcceleration, Source::BaseAcceleration(at)) => Place::NonNegative(at),
+            (Self::Omega, source) if source.is_harmonic() => Place::NonNegative(&mut forcing.frequency),
+            (one, _) if one.is_frequency() || Self::AMPLITUDES.contains(&one) => {
+                return Err(Absent::Forcing(has));
             }
-            (Self::P | Self::Imbalance | Self::Base | Self::Omega, _) => return Err(Absent::Forcing(has)),
             _ => return self.place_in(damper.as_mut().ok_or(Absent::NoDamper)?),
         };
         Ok(place)
@@ -252,6 +253,7 @@ impl Forcing {
             Source::Force(amplitude) => Some((Parameter::P, amplitude)),
             Source::Imbalance(amplitude) => Some((Parameter::Imbalance, amplitude)),
             Source::Base(amplitude) => Some((Parameter::Base, amplitude)),
+            Source::BaseAcceleration(amplitude) => Some((Parameter::BaseAcceleration, amplitude)),
             Source::Decay(_) | Source::History(_) => None,
         }
     }

@@ -5,22 +5,22 @@ use retune_model::{
 };
 use retune_testkit::scenes::{Numbers, SSVI};
 
-/// The scenes of the three forcings with Hertz's surfaces, one of them with a restitution, and one with rigid walls.
-fn scenes() -> [Scene; 4] {
+/// The scenes of the four forcings with Hertz's surfaces, one of them with a restitution, and one with rigid walls.
+fn scenes() -> [Scene; 5] {
     let amplitude = NonNegative::new(0.5).expect("a number");
     let rigid = Numbers { rigid: Some(0.7), ..SSVI }.scene();
-    let [a, b, c] =
-        [Source::Force(amplitude), Source::Imbalance(amplitude), Source::Base(amplitude)].map(|source| {
-            let mut scene = SSVI.scene();
-            scene.forcing.source = source;
-            let loss =
-                if matches!(source, Source::Base(_)) { Parameter::Restitution } else { Parameter::Lambda };
-            loss.set(&mut scene, 0.3).expect("in range");
-            Parameter::Strength.set(&mut scene, 2e7).expect("in range");
-            Parameter::Density.set(&mut scene, 1200.0).expect("in range");
-            scene
-        });
-    [a, b, c, rigid]
+    let sources =
+        [Source::Force, Source::Imbalance, Source::Base, Source::BaseAcceleration].map(|of| of(amplitude));
+    let [a, b, c, d] = sources.map(|source| {
+        let mut scene = SSVI.scene();
+        scene.forcing.source = source;
+        let loss = if matches!(source, Source::Base(_)) { Parameter::Restitution } else { Parameter::Lambda };
+        loss.set(&mut scene, 0.3).expect("in range");
+        Parameter::Strength.set(&mut scene, 2e7).expect("in range");
+        Parameter::Density.set(&mut scene, 1200.0).expect("in range");
+        scene
+    });
+    [a, b, c, d, rigid]
 }
 
 #[test]
@@ -40,10 +40,11 @@ fn exact_a_parameter_is_read_where_it_was_set_and_nothing_else_changes() {
             assert_eq!(back, scene, "{parameter}");
         }
         let expected = match parameter {
-            Parameter::P | Parameter::Lambda | Parameter::Restitution => 2,
-            Parameter::Imbalance | Parameter::Base => 1,
-            _ if parameter.is_of_contact() => 3,
-            _ => 4,
+            Parameter::P | Parameter::Restitution => 2,
+            Parameter::Lambda => 3,
+            Parameter::Imbalance | Parameter::Base | Parameter::BaseAcceleration => 1,
+            _ if parameter.is_of_contact() => 4,
+            _ => 5,
         };
         assert_eq!(found, expected, "{parameter}");
     }
@@ -122,8 +123,7 @@ fn contract_a_scene_says_what_it_does_not_have() {
     for parameter in Parameter::ALL {
         let of_walls = (parameter.is_gap() || parameter.is_of_contact()).then_some(Absent::NoWalls);
         let of_damper = parameter.is_of_damper().then_some(Absent::NoDamper);
-        let other =
-            matches!(parameter, Parameter::Imbalance | Parameter::Base).then_some(Absent::Forcing("P"));
+        let other = Parameter::AMPLITUDES[1..].contains(&parameter).then_some(Absent::Forcing("P"));
         assert_eq!(absent(parameter, bare), of_damper.or(other), "{parameter}");
         assert_eq!(absent(parameter, open), of_walls.or(other), "{parameter}");
         let forced = parameter.is_frequency() || Parameter::AMPLITUDES.contains(&parameter);

@@ -171,7 +171,8 @@ fn exact_rates_of_the_bare_motion() {
 /// Every measure of the steady response by every parameter of the damper, below and above the structure's own frequency.
 #[test]
 fn exact_steady_derivatives() {
-    let sources: [fn(NonNegative) -> Source; 3] = [Source::Force, Source::Imbalance, Source::Base];
+    let sources: [fn(NonNegative) -> Source; 4] =
+        [Source::Force, Source::Imbalance, Source::Base, Source::BaseAcceleration];
     let mut spread = Spread::new(4);
     for source in sources {
         for _ in 0..20 {

@@ -8,7 +8,7 @@ use super::runs::{FREE, Hooks, Observed, Proceed, Runs};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
-use retune_model::{Damper, Measure, NonNegative, Parameter, PerMeasure, Scene, Source, den_hartog};
+use retune_model::{Damper, NonNegative, Parameter, PerMeasure, Scene, den_hartog};
 use retune_solver::{Also, Settings};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -48,8 +48,24 @@ impl Goal {
     /// # Errors
     /// As [`Goal::evaluate_while`].
     pub fn needs(&self, scene: &Scene, settings: &Settings, proceed: Proceed<'_>) -> Result<Needs, Unusable> {
+        self.needs_above(scene, settings, PerMeasure::all(f64::NEG_INFINITY), proceed)
+    }
+
+    /// The same, but from rest on (`whole`) peaks between samples are searched only where they may exceed what is given for their measure.
+    /// Irregular motions have a peak at every other sample, whose search is most of the work.
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate_while`].
+    pub fn needs_above(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        matters: PerMeasure<f64>,
+        proceed: Proceed<'_>,
+    ) -> Result<Needs, Unusable> {
+        const ALL: PerMeasure<f64> = PerMeasure::all(f64::NEG_INFINITY);
         let goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
-        let own = goal.largest(scene, settings, None, proceed)?;
+        let own = goal.largest(scene, settings, (None, ALL), proceed)?;
         let (mut whole, end) = (goal, self.window.to);
         whole.window.from = 0.0;
         whole.objective.for_each_term(&mut |term| {
@@ -61,7 +77,7 @@ impl Goal {
                 band.samples = samples.max(wanted as usize);
             }
         });
-        let mut all = whole.largest(scene, settings, Some(0.0), proceed)?;
+        let mut all = whole.largest(scene, settings, (Some(0.0), matters), proceed)?;
         all.0.iter_mut().zip(own.0).for_each(|(all, own)| {
             if own.value > all.value {
                 *all = own;
@@ -70,12 +86,13 @@ impl Goal {
         Ok(Needs { whole: all, own })
     }
 
-    /// The largest value of each measure from a time on, s; without one, of what the objective looks at.
+    /// The largest value of each measure from a time on, s; without one, of what the objective looks at. Peaks are searched where they may
+    /// exceed what `matters`.
     fn largest(
         &self,
         scene: &Scene,
         settings: &Settings,
-        from: Option<f64>,
+        (from, matters): (Option<f64>, PerMeasure<f64>),
         proceed: Proceed<'_>,
     ) -> Result<PerMeasure<Need>, Unusable> {
         let largest = Mutex::new(PerMeasure::all(Need { value: f64::NEG_INFINITY, ..Need::default() }));
@@ -94,7 +111,7 @@ impl Goal {
             }
         };
         let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
-        let observed = Observed { also, own: from.is_none(), matters: PerMeasure::all(f64::NEG_INFINITY) };
+        let observed = Observed { also, own: from.is_none(), matters };
         let runs = Runs::new(self, scene, settings, observed, Hooks { keep: &keep, proceed, ..FREE });
         self.sum(scene, f64::INFINITY, &runs)?;
         Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))
@@ -109,10 +126,7 @@ impl Goal {
         let damper = scene.damper?;
         let quantity = self.objective.quantity();
         let of_the_structure = !quantity.is_of_damper();
-        let (Source::Force(_) | Source::Imbalance(_) | Source::Base(_)) = scene.forcing.source else {
-            return None;
-        };
-        if !of_the_structure || scene.primary.stiffness.get() == 0.0 {
+        if !scene.forcing.source.is_harmonic() || !of_the_structure || scene.primary.stiffness.get() == 0.0 {
             return None;
         }
         let plain = Damper {
@@ -138,9 +152,7 @@ impl Goal {
             let found = minimize(value, &start, options, |_| ControlFlow::Continue(())).ok()?;
             <[f64; 2]>::try_from(found.x).ok()
         };
-        let banded = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
-        let closed =
-            banded && !(quantity == Measure::GroundForce && matches!(scene.forcing.source, Source::Base(_)));
+        let closed = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
         let mut best = den_hartog(&scene.primary, damper.mass.get());
         if closed {
             let steady = |term: &mut Objective| (term.response, term.ensemble) = (Response::Steady, None);

@@ -147,10 +147,7 @@ impl<'a> Runs<'a> {
             None => bare.steady_max(measure, band),
             Some((system, _)) => system.steady_max(measure, band),
         };
-        // The force on a moving ground has no closed form over a band.
-        let closed = |measure: &Measure| *measure != Measure::GroundForce || !bare.is_on_moving_base();
-        let chosen = self.measures().chosen().filter(closed);
-        let mut also: Vec<_> = chosen.map(|measure| (measure, max(measure))).collect();
+        let mut also: Vec<_> = self.measures().chosen().map(|measure| (measure, max(measure))).collect();
         if let Some((system, damper)) = &coupled {
             let worst = system.steady_stroke_max(band);
             let Worst { value: stroke, frequency: omega } = worst;

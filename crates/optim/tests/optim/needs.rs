@@ -1,6 +1,6 @@
 //! What a damper needs: beside a plain scan, and beside closed forms.
 
-use retune_model::{Measure, NonNegative};
+use retune_model::{Measure, NonNegative, PerMeasure};
 use retune_optim::{Goal, Objective, Response};
 use retune_solver::Settings;
 use retune_testkit::hunt::needs::{drawn, needs};
@@ -28,6 +28,29 @@ fn exact_needs_of_a_steady_response_are_its_closed_form_or_the_run_before_it() {
         }
         assert!(needs.whole.get(measure).value >= worst.value);
     }
+}
+
+/// Peaks from rest on that are told not to matter are not searched: those of the stroke, which do, are the same, and no value is larger.
+#[test]
+fn invariant_needs_whose_peaks_do_not_matter_are_samples_at_most_as_large() {
+    let (scene, omega, window) = drawn(2, true, 30.0);
+    let objective = Objective { omega: Some(omega), quantity: Measure::Stroke, ..Objective::default() };
+    let goal = Goal { objective, ..window.into() };
+    let (settings, mut matters) = (Settings::default(), PerMeasure::all(f64::INFINITY));
+    matters.set(Measure::Velocity, f64::NEG_INFINITY);
+    let all = goal.needs(&scene, &settings, &|| true).expect("a value");
+    let some = goal.needs_above(&scene, &settings, matters, &|| true).expect("a value");
+    assert_eq!(some.own, all.own);
+    for measure in Measure::ALL {
+        let [few, many] = [&some, &all].map(|needs| needs.whole.get(measure).value);
+        assert!(few <= many && few > 0.9 * many, "{} {few} {many}", measure.name());
+    }
+    for measure in [Measure::Stroke, Measure::Velocity] {
+        let [few, many] = [&some, &all].map(|needs| needs.whole.get(measure).value);
+        assert!((few / many - 1.0).abs() < 1e-9, "{} {few} {many}", measure.name());
+    }
+    let less = |measure: &Measure| some.whole.get(*measure).value < all.whole.get(*measure).value;
+    assert!(Measure::ALL.iter().any(less), "some peak was not searched");
 }
 
 /// No linear damper of the same mass near the best has a smaller value.

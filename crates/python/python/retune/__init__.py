@@ -2,7 +2,7 @@
 
 A ``Problem`` is a structure, what makes it move, a damper, and what is to be made small. It is a function of a design, which SciPy,
 Optuna and others can make small, and it can be simulated, swept, optimized, certified and compared by Retune's own library. All numbers
-are in SI units (kg, N/m, N s/m, N, m, s, rad/s), all parameters have the symbols of the paper.
+are in SI units (kg, N/m, N s/m, N, m, s, rad/s), or texts with a unit ("20 kN/m"), all parameters have the symbols of the paper.
 
 >>> import retune as rt
 >>> problem = rt.Problem(rt.Structure(m1=1000, c1=452, k1=3.95e4), rt.TMD(60, k2=1900, c2=150), P=800, band=(5, 8),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from retune import _core
 from retune._errors import Error, StudyError
 
 
@@ -17,9 +18,11 @@ def refused(error: Exception, name: str, wanted: str) -> StudyError:
     return StudyError(f"{name}: {type(error).__name__}: {error}: give {wanted}", name)
 
 
-def scalar(value: Any, name: str) -> float:
-    """A number."""
+def scalar(value: Any, name: str, of: str | None = None) -> float:
+    """A number, or a text with its unit ("20 kN/m"); ``of`` is what it is in the catalogue, if that is not its name."""
     try:
+        if isinstance(value, str):
+            return _typed(value, name, of or name.rpartition(".")[2])
         return float(value)
     except (Error, MemoryError):
         raise
@@ -27,8 +30,17 @@ def scalar(value: Any, name: str) -> float:
         raise refused(error, name, "a number") from error
 
 
+def _typed(text: str, name: str, of: str) -> float:
+    try:
+        return _core.typed(of, text)
+    except ValueError as error:
+        raise StudyError(f"{name}: {error}", name, text) from None
+
+
 def pair(values: Any, name: str) -> tuple[Any, Any]:
     """Two of anything: a window, a band, bounds."""
+    if isinstance(values, str):
+        raise StudyError(f'{name}: "{values}" is not allowed here: give two, for instance (5, 8) or ("0.8 Hz", "1.3 Hz")', name, values)
     try:
         first, second = values
     except (Error, MemoryError):

@@ -6,17 +6,18 @@ import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from retune import _core, _show
 from retune._arrays import plain
 from retune._errors import StudyError
-from retune._jobs import Directory, Result, optimize
+from retune._jobs import DESIGN, Directory, Result, optimize
 from retune._problem import Problem
 from retune._scene import MEANING, SSVI, TMD
+from retune._table import frame
 
-#: The parameters of a damper that a table shows.
-DESIGN = ("m2", "k2", "c2", "D", "C")
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class Comparison:
@@ -46,6 +47,14 @@ class Comparison:
             ratio = "" if none is None else none / result.fun
             rows.append([result.data["damper_type"], *design, result.fun, ratio, result.data["certificate"]["verdict"]])
         return rows
+
+    def report(self) -> _show.Report:
+        """A page of HTML, which a notebook shows: the comparison, and the figures of the best."""
+        return _show.report("Comparison", f"{self._repr_html_()}{self.best.report()._repr_html_()}")
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A pandas DataFrame with a row for each damper, the best first, as of ``Result.to_pandas``."""
+        return frame([result._row() for result in self.results])
 
     def __repr__(self) -> str:
         return _show.text(self._head(), self._rows())

@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
 
 from retune import _core, _show
 from retune._arrays import plain
@@ -16,6 +16,10 @@ from retune._jobs import Certificate, Directory, Result, asked
 from retune._problem import Problem
 from retune._progress import Progress
 from retune._scene import Structure
+from retune._table import frame
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class Options(TypedDict, total=False):
@@ -39,10 +43,18 @@ class Design:
     rows: list[dict[str, float | str]]
 
     def __init__(self, out: Path) -> None:
-        self.out = out
+        self.out, self._page = out, (out / "report.html").absolute()
         self.answer = (out / "answer.txt").read_text(encoding="utf-8").strip()
         with open(out / "comparison.csv", newline="", encoding="utf-8") as file:
             self.rows = [{name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+    def report(self) -> _show.Report:
+        """``report.html`` of the results, which a notebook shows."""
+        return _show.Report(self._page.read_text(encoding="utf-8"))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The rows of `comparison.csv` as a pandas DataFrame."""
+        return frame(self.rows)
 
     def __repr__(self) -> str:
         return self.answer
@@ -56,7 +68,10 @@ def design(
     structure: Structure,
     out: Directory = "results/design",
     *,
-    P: float | str,
+    P: float | str | None = None,
+    imbalance: float | str | None = None,
+    base: float | str | None = None,
+    base_acceleration: float | str | None = None,
     band: tuple[float, float] | str,
     mass: float | str,
     stroke: float | str | None = None,
@@ -64,19 +79,25 @@ def design(
     k1_error: float | str | None = None,
     goal: str = "E1max",
     limits: Mapping[str, float | str] | None = None,
-    damper: str = "both",
+    damper: Literal["tmd", "ssvi", "both"] = "both",
+    wall: str | None = None,
     **options: Unpack[Options],
 ) -> Design:
     """Designs a damper for a structure, as `retune design` does: the better of a TMD and an SSVI NES, what each limit costs, how sure that is.
 
-    ``P`` is the amplitude of the force (N), ``band`` its range of angular frequencies (rad/s), ``mass`` that of the damper (kg),
+    What moves it is one of ``P``, the amplitude of a force (N), ``imbalance`` (kg m), ``base``, the amplitude of a moving base (m), and
+    ``base_acceleration`` (m/s²). ``band`` is the range of angular frequencies (rad/s), ``mass`` that of the damper (kg),
     ``stroke`` the largest deflection of its spring (m), ``k2_max`` the largest stiffness of its spring (N/m), ``k1_error`` the share by
     which the stiffness of the structure may be off. ``goal`` is what is made small, ``limits`` has the largest value allowed of other
-    quantities, ``damper`` is "tmd", "ssvi" or "both". Each number may be a text with a unit: ``band="1.8Hz..2.2Hz", mass="2 %"``.
+    quantities, ``damper`` is "tmd", "ssvi" or "both", ``wall`` has the damper's surfaces ("R=20mm,E=5MPa").
+    Each number may be a text with a unit: ``band="1.8Hz..2.2Hz", mass="2 %"``.
     """
     wishes = {
         **asdict(structure),
         "P": P,
+        "imbalance": imbalance,
+        "base": base,
+        "base_acceleration": base_acceleration,
         "band": band,
         "mass": mass,
         "stroke": stroke,
@@ -85,6 +106,7 @@ def design(
         "goal": goal,
         "limits": dict(limits or {}),
         "damper": damper,
+        "wall": wall,
     }
     return Design(Path(_job(out, {"design": wishes}, out, options)))
 

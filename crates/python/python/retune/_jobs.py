@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 from retune import _core, _show
 from retune._problem import Problem
 from retune._progress import Progress
+from retune._table import frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: The parameters of a damper that a table shows.
+DESIGN = ("m2", "k2", "c2", "D", "C")
 
 Directory = str | os.PathLike[str]
 
@@ -31,6 +39,10 @@ class Found:
 
     def _rows(self) -> list[list[object]]:
         raise NotImplementedError
+
+    def report(self) -> _show.Report:
+        """A page of HTML, which a notebook shows."""
+        return _show.report(type(self).__name__, self._repr_html_())
 
     def __repr__(self) -> str:
         return _show.text(["", ""], self._rows())
@@ -57,11 +69,26 @@ class Result(Found):
 
     def __init__(self, problem: Problem, out: Path) -> None:
         super().__init__(json.loads((out / "optimum.json").read_text(encoding="utf-8")))
-        self.problem, self.out = problem, out
+        self.problem, self.out, self._page = problem, out, (out / "report.html").absolute()
         self.x = np.array([self.data[name] for name in problem.names])
         self.fun = float(self.data[problem.quantity[0]])
         self.success = self.data["certificate"]["verdict"] is not None
         self.needs = self.data.get("needs") or {}
+
+    def report(self) -> _show.Report:
+        """``report.html`` of the results, which a notebook shows."""
+        return _show.Report(self._page.read_text(encoding="utf-8"))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The design as a row of a pandas DataFrame, in SI units: the damper, its parameters, the quantity with it and without, the verdict."""
+        return frame([self._row()])
+
+    def _row(self) -> dict[str, Any]:
+        quantity = self.problem.quantity[0]
+        design = {name: self.data.get(name, math.nan) for name in DESIGN}
+        none = self.data.get(f"{quantity}_none", math.nan)
+        values = {quantity: self.fun, f"{quantity}_none": none}
+        return {"damper": self.data["damper_type"], **design, **values, "verdict": self.data["certificate"]["verdict"]}
 
     def _rows(self) -> list[list[object]]:
         quantity, unit = self.problem.quantity
@@ -86,7 +113,12 @@ class Certificate(Found):
     def __init__(self, data: dict[str, Any]) -> None:
         super().__init__(data)
         self.verdict, self.words = data["verdict"], data["words"]
-        self.error_bar = float("nan") if data["error_bar"] is None else float(data["error_bar"])
+        self.error_bar = math.nan if data["error_bar"] is None else float(data["error_bar"])
+
+    def to_pandas(self) -> pd.DataFrame:
+        """How sensitive the value is, as a pandas DataFrame with a row for each parameter: its value, the slope per percent, and the worst value
+        within one percent."""
+        return frame(self.data["sensitivity"])
 
     def _rows(self) -> list[list[object]]:
         return [["verdict", self.words], ["methods differ by", self.error_bar], ["motion", self.data["motion"].get("regime")]]

@@ -9,13 +9,14 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import Any, Literal, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from retune import _core, _show
 from retune._arrays import floats, pair, plain, scalar
+from retune._errors import StudyError
 from retune._run import Run, simulate
 from retune._scene import SSVI, TMD, Structure
 from retune._table import Table
@@ -54,6 +55,13 @@ class Evaluation:
             ["omega_worst", self.omega_worst, "rad/s"],
         ]
 
+    def __getattr__(self, name: str) -> float:
+        """The quantity by its name, as it is printed: ``evaluation.E1max``."""
+        known = vars(self)
+        if name == known.get("quantity"):
+            return float(known["largest"])
+        raise AttributeError(f"there is no {name}: there are {', '.join([*known, str(known.get('quantity'))])}")
+
     def __repr__(self) -> str:
         return _show.text(["", "value", "unit"], self._rows())
 
@@ -70,7 +78,7 @@ class Problem(_core.Core):
 
     All arguments but structure and damper are keywords:
 
-    - ``P`` (N), ``imbalance`` (kg m) or ``base`` (m) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
+    - ``P`` (N), ``imbalance`` (kg m), ``base`` (m) or ``base_acceleration`` (m/s²) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
       the natural frequency of the structure, or the end of the band that is nearest to it. ``start`` is a state (``x1``, ``v1``, ``x2``,
       ``v2``) for a free decay instead.
     - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0. "settled": from when the slowest transient
@@ -82,6 +90,9 @@ class Problem(_core.Core):
       ``contact_pressure`` and ``cavity`` (SI units), and ``from`` (s).
     - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are
       integrated, with the fields of study files.
+
+    A number with a dimension may be a text with its unit: ``P="0.8 kN"``, ``band=("0.8 Hz", "1.3 Hz")``, ``limits={"stroke": "400 mm"}``.
+    What only a search needs is refused without ``vary``.
     """
 
     def __new__(
@@ -89,24 +100,25 @@ class Problem(_core.Core):
         structure: Structure,
         damper: TMD | SSVI | None = None,
         *,
-        P: float | None = None,
-        imbalance: float | None = None,
-        base: float | None = None,
-        start: Mapping[str, float] | None = None,
-        omega: float | None = None,
-        window: tuple[float, float] | str = "settled",
-        vary: Sequence[str] | None = None,
-        bounds: Mapping[str, tuple[float, float | None]] | None = None,
-        band: tuple[float, float] | None = None,
+        P: float | str | None = None,
+        imbalance: float | str | None = None,
+        base: float | str | None = None,
+        base_acceleration: float | str | None = None,
+        start: Mapping[str, float | str] | None = None,
+        omega: float | str | None = None,
+        window: tuple[float | str, float | str] | Literal["settled"] = "settled",
+        vary: Sequence[Literal["k2", "c2", "D", "C", "m2", "R"]] | Sequence[str] | None = None,
+        bounds: Mapping[str, tuple[float | str, float | str | None]] | None = None,
+        band: tuple[float | str, float | str] | None = None,
         samples: int | None = None,
-        response: str | None = None,
+        response: Literal["window", "steady", "settled", "motions"] | None = None,
         quantity: str | None = None,
         objective: Mapping[str, Any] | None = None,
-        limits: Mapping[str, float] | None = None,
+        limits: Mapping[str, float | str] | None = None,
         surf: Mapping[str, Mapping[str, Any]] | None = None,
         coarse: Mapping[str, Any] | None = None,
         global_search: Mapping[str, Any] | None = None,
-        starts: Sequence[Mapping[str, float]] | None = None,
+        starts: Sequence[Mapping[str, float | str]] | None = None,
         refine: Mapping[str, Any] | None = None,
         solver: Mapping[str, Any] | None = None,
         name: str = "problem",
@@ -115,15 +127,18 @@ class Problem(_core.Core):
             raise TypeError(f"structure: {type(structure).__name__} is not allowed here: give a retune.Structure")
         if damper is not None and not isinstance(damper, (TMD, SSVI)):
             raise TypeError(f"damper: {type(damper).__name__} is not allowed here: give a retune.TMD, a retune.SSVI or None")
-        if band is not None:
-            band = pair(band, "band")
+        ends = None if band is None else _band(band)
         if omega is None and start is None:
             natural = math.sqrt(structure.k1 / structure.m1)
-            omega = min(max(natural, scalar(band[0], "band")), scalar(band[1], "band")) if band is not None else natural
-        frequencies = None if band is None else given({"from": band[0], "to": band[1], "samples": samples})
+            omega = min(max(natural, ends[0]), ends[1]) if ends is not None else natural
+        frequencies = given({"from": ends and ends[0], "to": ends and ends[1], "samples": samples}) or None
         span = window if isinstance(window, str) else dict(zip(("t0", "T"), pair(window, "window")))
         goal = {**(objective or {}), **given({"omega": frequencies, "response": response, "quantity": quantity})}
+        searched: dict[str, Any] = {"bounds": bounds, "band": band, "samples": samples, "response": response, "quantity": quantity, "objective": objective}
+        searched |= {"limits": limits, "surf": surf, "coarse": coarse, "global_search": global_search, "starts": starts, "refine": refine}
         limited = {key: pair(both, f"optimize.bounds.{key}") for key, both in (bounds or {}).items()}
+        if vary is None and (useless := list(given(searched))):
+            raise StudyError(f'{useless[0]}: of no use without vary: say what to tune, for instance vary=["k2", "c2"]', useless[0])
         open_ended = {key: [low, None if high is math.inf or high == math.inf else high] for key, (low, high) in limited.items()}
         search = given({"surf": surf, "coarse": coarse, "global": global_search, "starts": starts, "refine": refine, "limits": limits})
         optimize = {"vary": vary, "bounds": open_ended, "objective": goal, **search}
@@ -131,7 +146,7 @@ class Problem(_core.Core):
             "name": name,
             "scene": {
                 "primary": asdict(structure),
-                "forcing": given({"P": P, "imbalance": imbalance, "base": base, "start": start, "omega": omega}),
+                "forcing": given({"P": P, "imbalance": imbalance, "base": base, "base_acceleration": base_acceleration, "start": start, "omega": omega}),
                 "damper": None if damper is None else damper._study(),
             },
             "window": span,
@@ -193,7 +208,7 @@ class Problem(_core.Core):
         quantity, unit = self.quantity
         return Table(columns, {"value": unit, quantity: unit, "stroke": "m", "contact_force": "N", "omega_worst": "rad/s"}, dict(errors))
 
-    def simulate(self, x: ArrayLike | None = None, *, interval: float = 0.005, **changes: float) -> Run:
+    def simulate(self, x: ArrayLike | None = None, *, interval: float = 0.005, **changes: float | str) -> Run:
         """One run, of a design or of the study's own: its motion every ``interval`` seconds of the window, contacts, largest values.
 
         ``changes`` are numbers of the study: ``omega``, ``k1``, ``P``, ``T``, ``t0`` and others by their symbols.
@@ -211,7 +226,7 @@ class Problem(_core.Core):
         columns, units = _core.sweep(self, x, name, np.atleast_1d(floats(values, name)), objective, threads)
         return Table(columns, dict(units))
 
-    def at(self, x: ArrayLike | None = None, **changes: float) -> Problem:
+    def at(self, x: ArrayLike | None = None, **changes: float | str) -> Problem:
         """The same problem with another design as its own, or with other numbers (``k1=30000``)."""
         text = self._text() if x is None else self._tuned(x)
         problem = rebuilt(Problem, text, None)
@@ -251,6 +266,14 @@ class Problem(_core.Core):
 def rebuilt(cls: type[Sort], text: str, file: str | None) -> Sort:
     """A problem from the text of its study, as pickles hold it."""
     return _core.Core.__new__(cls, text, file)
+
+
+def _band(band: tuple[float | str, float | str]) -> tuple[float, float]:
+    """The ends of a band, rad/s, the lower one first."""
+    low, high = (scalar(end, "band", "omega") for end in pair(band, "band"))
+    if low >= high:
+        raise StudyError(f"band: ({low:g}, {high:g}) is not allowed here: give the lower frequency first, and another one second", "band", band)
+    return low, high
 
 
 def given(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from retune import _core, _show
 from retune._arrays import scalar
+from retune._errors import Error
 from retune._table import Table, axes
 
 if TYPE_CHECKING:
@@ -49,9 +50,11 @@ class Run:
         return self.motion.to_pandas()
 
     def plot(self, *names: str, ax: Any = None) -> Any:
-        """Draws columns over time with matplotlib, by default x1 and x2; returns the axes."""
-        ax = axes(ax)
+        """Draws columns over time with matplotlib, by default x1 and x2, in axes of a figure of its own unless ``ax`` is given; returns them."""
         names = names or ("x1", "x2")
+        if unknown := [name for name in names if name not in self.motion]:
+            raise Error(f"there is no column {unknown[0]}: the columns are {', '.join(self.motion)}")
+        ax = axes(ax)
         for name in names:
             ax.plot(self.t, self.motion[name], label=f"{name}, {UNITS[name]}")
         ax.set_xlabel("t, s")
@@ -74,7 +77,7 @@ class Run:
         return _show.page(["largest", "value", "unit"], self._rows(), self._title())
 
 
-def simulate(problem: _core.Core, x: ArrayLike | None, interval: float, changes: Mapping[str, float]) -> Run:
+def simulate(problem: _core.Core, x: ArrayLike | None, interval: float, changes: Mapping[str, float | str]) -> Run:
     motion, events, moments, maxima = _core.run(problem, x, scalar(interval, "interval"), [(key, scalar(value, key)) for key, value in changes.items()])
     events["moment"] = np.array(moments, dtype=object)
     return Run(Table(motion, UNITS), Table(events, UNITS), json.loads(maxima))

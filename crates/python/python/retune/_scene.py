@@ -1,4 +1,4 @@
-"""What a scene is made of. Each part is checked as it is made, by the rules of study files."""
+"""What a scene is made of. Each part is checked as it is made, by the rules of study files. Each number may be a text with a unit."""
 
 from __future__ import annotations
 
@@ -19,6 +19,12 @@ class Part:
     """A part of a scene, shown as a table of its numbers."""
 
     title: ClassVar[str]
+
+    def _in_si(self) -> None:
+        """Texts with a unit become numbers in SI units."""
+        for name, value in list(vars(self).items()):
+            if isinstance(value, str):
+                object.__setattr__(self, name, scalar(value, name))
 
     def _rows(self) -> list[list[object]]:
         # `rigid` of a contact is a restitution.
@@ -42,6 +48,7 @@ class Structure(Part):
     k1: float
 
     def __post_init__(self) -> None:
+        self._in_si()
         _check(asdict(self), None)
 
 
@@ -76,6 +83,7 @@ class Contact(Part):
     rigid: float | None = None
 
     def __post_init__(self) -> None:
+        self._in_si()
         _check(None, {"m2": 1, "k2": 0, "c2": 0, "D": 0, "C": 0, "contact": self._study()})
 
     def _study(self) -> dict[str, Any]:
@@ -99,6 +107,7 @@ class TMD(Part):
     c2: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        self._in_si()
         _check(None, {"k2": 0, "c2": 0, **self._study()})
 
     def _study(self) -> dict[str, Any]:
@@ -122,6 +131,7 @@ class SSVI(Part):
     contact: Contact | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        self._in_si()
         if self.contact is None:
             mass = scalar(self.m2, "m2")
             chosen = Contact(**json.loads(_core.contact(mass))) if 0 < mass < math.inf else Contact()

@@ -32,3 +32,16 @@ def page(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "
     body = "".join(line(row, "td") for row in rows)
     named = f"<thead>{line(head, 'th')}</thead>" if any(head) else ""
     return f"<table>{top}{named}<tbody>{body}</tbody></table>"
+
+
+class Report(str):
+    """A page of HTML as text; in a notebook it is shown in a frame."""
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{html.escape(self)}" style="width: 100%; height: 40em; border: 0" title="report"></iframe>'
+
+
+def report(title: str, body: str) -> Report:
+    """A page with a body of its own."""
+    head = f'<head><meta charset="utf-8"><title>{html.escape(title)}</title></head>'
+    return Report(f'<!doctype html><html lang="en">{head}<body style="font-family: sans-serif">{body}</body></html>')

@@ -61,16 +61,21 @@ class Table(dict[str, NDArray[Any]]):
 
     def to_pandas(self) -> pd.DataFrame:
         """The same as a pandas DataFrame."""
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise Error("to_pandas needs pandas: pip install pandas") from error
-        return pd.DataFrame(dict(self))
+        return frame(dict(self))
 
     def plot(self, y: str | None = None, x: str | None = None, ax: Any = None, **line: Any) -> Any:
-        """Draws a column over another with matplotlib, by default the second over the first; returns the axes."""
-        names = list(self)
-        x, y = x or names[0], y or names[1]
+        """Draws a column over another, by default the first, with matplotlib; returns the axes, which are of a figure of their own unless
+        ``ax`` is given. Without ``y`` every column of numbers has axes of its own, one below the other: returns all of them."""
+        x = x or next(iter(self), "")
+        if unknown := [name for name in (x, y) if name is not None and name not in self]:
+            raise Error(f"there is no column {unknown[0]}: the columns are {', '.join(self)}")
+        if y is None:
+            names = [name for name, column in self.items() if name != x and column.dtype.kind in "fiu"]
+            if ax is not None and len(names) != 1:
+                raise Error(f"ax: axes for one column, and there are {', '.join(names)}: name one of them")
+            each = [ax] if ax is not None else column_of_axes(max(1, len(names)))
+            drawn = [self.plot(name, x, own, **line) for name, own in zip(names, each)]
+            return drawn[0] if len(drawn) == 1 else drawn
         ax = axes(ax)
         ax.plot(self[x], self[y], **{"label": y, **line})
         ax.set_xlabel(self._label(x))
@@ -96,12 +101,25 @@ class Table(dict[str, NDArray[Any]]):
         return _show.page([self._label(name) for name in self], self._shown(), f"{self.rows} rows")
 
 
+def frame(rows: Any) -> pd.DataFrame:
+    """Columns, or a list of rows with the names of their columns, as a pandas DataFrame."""
+    try:
+        import pandas as pd
+    except ImportError as error:
+        raise Error("to_pandas needs pandas: pip install pandas") from error
+    return pd.DataFrame(rows)
+
+
 def axes(ax: Any) -> Any:
-    """The given axes, or matplotlib's current ones."""
-    if ax is not None:
-        return ax
+    """The given axes, or those of a figure of their own: never into someone's."""
+    return column_of_axes(1)[0] if ax is None else ax
+
+
+def column_of_axes(count: int) -> list[Any]:
+    """Axes of a new figure, one below the other, with one x."""
     try:
         import matplotlib.pyplot as plt
     except ImportError as error:
         raise Error("plot needs matplotlib: pip install matplotlib") from error
-    return plt.gca()
+    size = (6.4, max(4.8, 2.0 * count))
+    return list(plt.subplots(count, 1, sharex=True, squeeze=False, figsize=size, layout="constrained")[1][:, 0])

@@ -35,7 +35,7 @@ pub struct Design {
     /// Amplitude of a moving base, e.g. 1mm
     #[arg(long, value_name = "LENGTH")]
     pub base: Option<Typed>,
-    /// The same by its acceleration at the natural frequency, e.g. 0.1g
+    /// Amplitude of the acceleration of a moving base, the same at every frequency, e.g. 0.1g
     #[arg(long, value_name = "ACCELERATION")]
     pub base_acceleration: Option<Typed>,
     /// The frequencies of the forcing, e.g. 1.8Hz..2.2Hz, 1500rpm±5%, ±10% [default: within 10 % of the natural frequency]

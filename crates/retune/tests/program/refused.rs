@@ -51,7 +51,7 @@ fn contract_wrong_arguments_are_told_with_what_is_allowed() {
     flat["optimize"]["surf"] = json!(null);
     let desk = Desk::with(&flat);
     let share = "for '--shard <i/N>': give i/N with 1 <= i <= N, for instance 3/64";
-    let unknown = "unknown parameter `k3`; did you mean `k2`? allowed: k2, c2, D, C, m2, R, m1, c1, k1, P, imbalance, base, omega, q, ";
+    let unknown = "unknown parameter `k3`; did you mean `k2`? allowed: k2, c2, D, C, m2, R, m1, c1, k1, P, imbalance, base, base_acceleration, omega, q, ";
     for (line, words) in [
         ("figure 8", "invalid value '8' for '<NUMBER>': 8 is not in 2..=7"),
         ("figure 1", "invalid value '1' for '<NUMBER>': 1 is not in 2..=7"),

@@ -42,11 +42,28 @@ fn exact_an_imbalance_is_a_force() {
     assert_eq!(turned, forced);
 }
 
+/// A base of constant acceleration moves by a / ω².
+#[test]
+fn exact_an_accelerated_base_is_a_moving_base() {
+    let accelerated =
+        Numbers { p: 0.02 * SSVI.omega * SSVI.omega, ..SSVI }.forced_by(Source::BaseAcceleration);
+    let moving = Numbers { p: 0.02, ..SSVI }.forced_by(Source::Base);
+    let window = Window { from: 5.0, to: 30.0 };
+    let [a, b] =
+        [accelerated, moving].map(|scene| simulate(&scene, window, &Settings::default()).expect("a run"));
+    let [a, b] = [a, b].map(|run| run.e1_max.value);
+    assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    let mut still = accelerated;
+    still.forcing.frequency = NonNegative::default();
+    assert!(simulate(&still, window, &Settings::default()).is_err(), "it moves without a bound at ω = 0");
+}
+
 /// Late in a run without contacts every quantity is that of the closed form, with a damper and without.
 #[test]
 fn exact_late_motions_are_steady() {
     let late = Window { from: 900.0, to: 1000.0 };
-    for (source, p) in [(Source::Imbalance as fn(NonNegative) -> Source, 5.0), (Source::Base, 0.01)] {
+    let imbalance = Source::Imbalance as fn(NonNegative) -> Source;
+    for (source, p) in [(imbalance, 5.0), (Source::Base, 0.01), (Source::BaseAcceleration, 0.4)] {
         let numbers = Numbers { p, ..TMD };
         let with = numbers.forced_by(source);
         for scene in [with, Scene { damper: None, ..with }] {

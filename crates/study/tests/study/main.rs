@@ -3,3 +3,4 @@
 mod refused;
 mod refused_search;
 mod schema;
+mod units;

@@ -8,7 +8,7 @@ use serde_json::json;
 
 #[test]
 fn contract_schema_refuses_what_reading_refuses() {
-    let schema = json!(schemars::schema_for!(Study));
+    let schema = json!(retune_study::schema::<Study>());
     assert!(is_valid(&schema, &tiny()));
     for (pointer, bad) in [
         ("/scene/primary/m1", json!(0)),

@@ -20,16 +20,16 @@ enum By {
     Force,
     Imbalance,
     Base,
+    BaseAcceleration,
 }
 
-/// The compared quantities: all but the contact force, without a damper all but the stroke, and under a base all but the force on the
-/// ground.
+/// The compared quantities: all but the contact force, and without a damper all but the stroke.
 fn quantities() -> Vec<Quantity> {
     let forced = QUANTITIES.into_iter();
     let turned = QUANTITIES.map(|quantity| Quantity { forcing: By::Imbalance, ..quantity });
     let shaken = QUANTITIES.map(|quantity| Quantity { forcing: By::Base, ..quantity });
-    let shaken = shaken.into_iter().filter(|quantity| quantity.of != Measure::GroundForce);
-    forced.chain(turned).chain(shaken).collect()
+    let accelerated = QUANTITIES.map(|quantity| Quantity { forcing: By::BaseAcceleration, ..quantity });
+    forced.chain(turned).chain(shaken).chain(accelerated).collect()
 }
 
 /// Those under a force.
@@ -69,11 +69,16 @@ fn response(n: &Numbers, quantity: Quantity, centre: Twofold, offset: f64) -> f6
             By::Force => 1.0,
             By::Imbalance => u.value(),
             By::Base => square(k1, c1).sqrt(),
+            By::BaseAcceleration => square(k1, c1).sqrt() / u.value(),
         };
+    // On a moving ground the force is that by which the masses are accelerated.
+    let is_inertia =
+        quantity.of == Measure::GroundForce && matches!(quantity.forcing, By::Base | By::BaseAcceleration);
     let of_displacement = |amplitude2: f64| match quantity.of {
         Measure::Energy => 0.5 * p * p * n.k1.max((m1 * u).value()) * amplitude2,
         Measure::Velocity => p * (u.value() * amplitude2).sqrt(),
         Measure::Acceleration => p * u.value() * amplitude2.sqrt(),
+        Measure::GroundForce if is_inertia => p * (m1 * u).value() * amplitude2.sqrt(),
         Measure::GroundForce => p * (square(k1, c1) * amplitude2).sqrt(),
         _ => p * amplitude2.sqrt(),
     };
@@ -85,6 +90,11 @@ fn response(n: &Numbers, quantity: Quantity, centre: Twofold, offset: f64) -> f6
     let below = square(primary * damper - c1 * c2 - inertia * k2, primary * c2 + damper * c1 - inertia * c2);
     match quantity.of {
         Measure::Stroke => p * inertia.value() / below.sqrt(),
+        // ω² |m1 X1 + m2 X2| = ω² |(m1 + m2) (k2 + iω c2) - m1 m2 ω²| P / |...|.
+        Measure::GroundForce if is_inertia => {
+            let both = m1 + m2;
+            p * u.value() * (square(both * k2 - m1 * inertia, both * c2) / below).sqrt()
+        }
         _ => of_displacement(square(damper, c2) / below),
     }
 }
@@ -174,6 +184,7 @@ fn found(n: &Numbers, quantity: Quantity, band: [f64; 2]) -> Worst {
         By::Force => Source::Force,
         By::Imbalance => Source::Imbalance,
         By::Base => Source::Base,
+        By::BaseAcceleration => Source::BaseAcceleration,
     };
     let Scene { primary, forcing, damper } = n.forced_by(source);
     match damper.filter(|_| !quantity.bare) {
@@ -215,6 +226,7 @@ fn least_of_a_resonance(n: &Numbers, quantity: Quantity) -> f64 {
         By::Force => n.p / n.k1,
         By::Imbalance => n.p / n.m1,
         By::Base => n.p,
+        By::BaseAcceleration => n.p * n.m1 / n.k1,
     };
     match quantity.of {
         Measure::Energy => 1e20 * 0.5 * n.k1 * still * still,
