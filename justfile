@@ -53,6 +53,15 @@ simulate STUDY="studies/ssvi.json" *OPTIONS:
 prove STUDY *OPTIONS:
     {{retune}} prove "$@"
 
+# Prove the tuned dampers over their whole band, into results/proof
+[group('examine')]
+proof:
+    mkdir -p results/proof
+    {{retune}} prove results/tmd --omega 5 --to 8 --json > results/proof/tmd.json
+    {{retune}} prove results/ssvi --omega 5 --to 8 --most 225.82 --json > results/proof/ssvi.json
+    {{retune}} prove results/ssvi-hedged --set restitution=0.6 --omega 5 --to 8 --most 255.75 --json > results/proof/ssvi-hedged-0.6.json
+    python3 tests/proof.py --write
+
 # Turn the parameters of a damper in the browser and see its motion and response, e.g. `just explore results/ssvi`
 [group('examine')]
 explore *OPTIONS:
@@ -153,6 +162,7 @@ test-tutorial:
 lint:
     cargo fmt --all --check
     python3 tests/imports.py
+    python3 tests/proof.py
     python3 docs/site.py
     cargo clippy --all-targets -- -D warnings
 
