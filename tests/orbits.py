@@ -11,10 +11,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).parent.parent
 STUDIES = {"tuned": "results/ssvi", "isola": "studies/ssvi-isola.json", "global": "results/ssvi-global"}
+LONGEST = 4
 METHODS = ["hybrid", "dop853"]
 HEAD = """# Proven motions beside computed ones
 
-`python3 tests/orbits.py target/release/retune {number} results/proof/orbits.md` made this page: {number} stable motions of [branches](../branches), evenly among all of the
+`python3 tests/orbits.py target/release/retune {number} results/proof/orbits.md` made this page: {number} stable motions of at most 4 periods of [branches](../branches), evenly among all such of the
 designs `tuned`, `isola` and `global`, each [proven](../../docs/proof.md), and what other numbers of E1max are off the proven interval: that of the branch,
 and the largest over the window of a run from there with the default tolerances, by the default method (hybrid) and by DOP853. A value in the interval is off by 0.
 
@@ -27,7 +28,7 @@ and the largest over the window of a run from there with the default tolerances,
 
 def rows(name):
     with open(ROOT / "results" / "branches" / name / "branches.csv") as file:
-        stable = [row for row in csv.DictReader(file) if row["stable"] == "1"]
+        stable = [row for row in csv.DictReader(file) if row["stable"] == "1" and int(row["periods"]) <= LONGEST]
     with open(ROOT / "results" / "branches" / name / "states.csv") as file:
         states = {(row["branch"], row["place"]): row for row in csv.DictReader(file) if row["segment"] == "0"}
     return [(name, row, states[row["branch"], row["place"]]) for row in stable]
