@@ -75,7 +75,7 @@ def main():
         lines.append(f"{place} {known[1]:.9f} | {numbers} |")
         print(lines[-1], flush=True)
     middle = sorted(widths)[len(widths) // 2]
-    says = [f"- Proven to exist: {len(offs)} of {number}; of {unstable} of these stability is open. The median of the widths of the interval is {middle:.1e} J."]
+    says = [f"- Proven to exist: {len(offs)} of {number}; {unstable} of these are not proven to be stable. The median of the widths of the interval is {middle:.1e} J."]
     for k, what in enumerate(["The value of the branch", "The hybrid's", "DOP853's"]):
         inside = sum(own[k] == 0 for own in offs)
         says.append(f"- {what} is in the interval of {inside}, elsewhere off by at most {max(own[k] for own in offs):.1e} J.")

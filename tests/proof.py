@@ -13,7 +13,7 @@ HEAD = """# Proven bands
 
 `just proof` made these files: [a proof by interval arithmetic](../../docs/proof.md) that at every frequency of a band, but for what is named, there is a stable
 periodic motion with at most so much energy. The JSON files have the pieces with bounds on E1max, stroke and contact force over each, and why the rest is left out.
-`python3 tests/proof.py` checks that pieces and gaps cover the band without a hole, and that this page says what they say.
+[orbits.md](orbits.md) has single motions. `python3 tests/proof.py` checks that pieces and gaps cover the band without a hole, and that this page says what they say.
 
 | file | omega, rad/s | pieces | E1max is at most, J | impacts | not proven, rad/s |
 | --- | --- | --- | --- | --- | --- |
