@@ -254,12 +254,12 @@ mod tests {
         let mut seed = 7;
         for _ in 0..100_000 {
             let (x, y) = (draw(&mut seed), 1e3 * draw(&mut seed));
-            let product = (Taylor::point(x) * Taylor::point(y)).hull();
-            assert!(x.mul_add(y, -product.lo()) >= 0.0 && x.mul_add(y, -product.hi()) <= 0.0, "{x} {y}");
-            let (sum, s) = ((Taylor::point(x) + Taylor::point(y)).hull(), x + y);
+            let product = Taylor::point(x) * Taylor::point(y);
+            assert!(x.mul_add(y, -product.c[0]).abs() <= product.rest, "{x} {y}");
+            let (sum, s) = (Taylor::point(x) + Taylor::point(y), x + y);
             let rest = s - x;
             let error = (x - (s - rest)) + (y - rest);
-            assert!(sum.lo() - s <= error && error <= sum.hi() - s, "{x} {y}");
+            assert!(sum.c[0] == s && error.abs() <= sum.rest && sum.rest < 1e-12, "{x} {y}");
         }
     }
 
