@@ -53,6 +53,14 @@ simulate STUDY="studies/ssvi.json" *OPTIONS:
 prove STUDY *OPTIONS:
     {{retune}} prove "$@"
 
+# Prove the tuned dampers over bands: the TMD over 5 to 8 rad/s, the SSVI NES up to 7.5 rad/s, into results/proof
+[group('examine')]
+proof:
+    mkdir -p results/proof
+    {{retune}} prove results/tmd --omega 5 --to 8 --json > results/proof/tmd.json
+    {{retune}} prove results/ssvi --omega 5 --to 7.5 --most 225.82 --json > results/proof/ssvi.json
+    python3 tests/proof.py --write
+
 # Turn the parameters of a damper in the browser and see its motion and response, e.g. `just explore results/ssvi`
 [group('examine')]
 explore *OPTIONS:
@@ -153,6 +161,7 @@ test-tutorial:
 lint:
     cargo fmt --all --check
     python3 tests/imports.py
+    python3 tests/proof.py
     python3 docs/site.py
     cargo clippy --all-targets -- -D warnings
 

@@ -13,8 +13,10 @@ use std::fmt;
 use std::path::Path;
 
 /// Where the motion is looked for.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Guess {
+    /// Other values of parameters of the scene.
+    pub settings: Vec<Setting>,
     /// The frequency of the force, rad/s; that of the worst run of a search's results, or of the scene, if left out.
     pub omega: Option<Setting>,
     /// A state at a crest of the force, and after how many periods of the force the motion repeats; what the run of the scene settles on if left out.
@@ -41,7 +43,7 @@ pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
         Some(omega) => Some(omega),
         None => worst(path)?,
     };
-    let study = given.with(&omega.into_iter().collect::<Vec<_>>())?;
+    let study = given.with(&guess.settings)?.with(&omega.into_iter().collect::<Vec<_>>())?;
     let (periods, start) = match guess.from {
         Some((start, periods)) => {
             let rest = study.scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
@@ -121,14 +123,19 @@ pub struct BandProof {
 }
 
 /// Frequencies that are proven one after another, rad/s; the shares of a band are proven side by side.
-const SHARE: f64 = 0.02;
+const SHARE: f64 = 0.1;
 
 /// Proves stable motions with an E1max of at most `most` (J) over a band, at each frequency one near that on which the run of the scene settles.
 ///
 /// # Errors
 /// The input is wrong, or nothing of the band can be proven.
-pub fn prove_band(path: &Path, [from, to]: [Setting; 2], most: f64) -> Result<BandProof, Error> {
-    let study = study::read(path)?.with(&[to])?.with(&[from])?;
+pub fn prove_band(
+    path: &Path,
+    settings: &[Setting],
+    [from, to]: [Setting; 2],
+    most: f64,
+) -> Result<BandProof, Error> {
+    let study = study::read(path)?.with(settings)?.with(&[to])?.with(&[from])?;
     let [from, to] = [from.value(), to.value()];
     if to <= from {
         let problem = format!("{to} rad/s is not allowed here: give a number above that of --omega, {from}");

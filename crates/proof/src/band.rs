@@ -1,21 +1,21 @@
 //! A whole band of frequencies: pieces of it, over each of which one family of motions is proven at once.
 
 use crate::equations::Equations;
+use crate::inverse::Inverse;
 use crate::largest::{Largest, largest};
-use crate::number::{OMEGA, STATE, State};
+use crate::number::{STATE, State};
 use crate::orbit::Orbit;
 use crate::stability::{Stability, stability};
+use crate::taylor::Taylor;
 use crate::theorem::{about, impacts, is_inside, krawczyk, width};
 use crate::{Failure, Interval};
-use nalgebra::DMatrix;
 use retune_model::Scene;
 use serde::Serialize;
-use std::array;
 
 /// Half-widths that are tried, in what Krawczyk's operator leaves of the family's curvature.
 const TRIED: [f64; 3] = [1.5, 3.0, 10.0];
 /// The longest piece and the shortest, rad/s.
-const LONGEST: f64 = 0.02;
+const LONGEST: f64 = 0.05;
 const SHORTEST: f64 = 1e-6;
 /// By how much a piece is longer than the last one, or shorter where the last one failed.
 const LONGER: f64 = 1.4;
@@ -65,14 +65,19 @@ pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<([f64; 4], usize)>;
 pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>) -> Result<Band, Failure> {
     let equations = Equations::new(scene)?;
     let (mut band, mut at, mut length, mut gap) = (Band::default(), from, LONGEST, LEFT_OUT[0]);
-    let mut last: Option<Orbit> = None;
+    let mut last: Option<Last> = None;
     while at < to {
         let end = if at + 1.01 * length >= to { to } else { at + length };
         match piece(&equations, [at, end], most, last.as_ref(), guesses) {
-            Ok((piece, orbit)) => {
+            Ok((piece, own)) => {
                 band.pieces.push(piece);
                 (length, gap) = ((LONGER * (end - at)).min(LONGEST), LEFT_OUT[0]);
-                (at, last) = (end, Some(orbit));
+                (at, last) = (end, Some(own));
+            }
+            // All motions of the piece have more.
+            Err(why @ Failure::Above { least, .. }) if least > most => {
+                band.leave_out(LeftOut { omega: [at, end], why });
+                (at, last) = (end, None);
             }
             Err(_) if end - at > SHORTEST => length = SHORTER * (end - at),
             Err(why) => {
@@ -109,57 +114,57 @@ impl Band {
     }
 }
 
-/// A piece, and the motion in its middle.
+/// The family of a piece, with the frequency in its middle and half its width.
+struct Last {
+    orbit: Orbit,
+    omega: [f64; 2],
+}
+
+/// A piece, and its family.
 fn piece(
     equations: &Equations,
     omega: [f64; 2],
     most: f64,
-    last: Option<&Orbit>,
+    last: Option<&Last>,
     guesses: Guesses<'_>,
-) -> Result<(Piece, Orbit), Failure> {
+) -> Result<(Piece, Last), Failure> {
     let middle = 0.5 * (omega[0] + omega[1]);
-    let equations = equations.at(middle);
     let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
+    let alone = equations.at(Taylor::point(middle));
     let start = match last {
-        Some(last) => last.leant(&equations, middle)?,
+        Some(last) => last.orbit.member(&alone, (middle - last.omega[0]) / last.omega[1])?,
         None => {
             let (state, periods) = guesses(middle).ok_or(Failure::NoGuess)?;
-            Orbit::guess(&equations, state, periods, false)?
+            Orbit::guess(&alone, state, periods, false)?
         }
     };
-    let (orbit, inverse) = start.improved(&equations)?;
-    let orbit = orbit.leaning(&equations, &inverse)?;
-    let boxes = family(&equations, &orbit, &inverse, Interval::around_zero(half))?;
+    let (orbit, _) = start.improved(&alone)?;
+    let equations = equations.at(Taylor::line(middle, half));
+    let (orbit, inverse) = orbit.widened(&equations)?;
+    let boxes = family(&equations, &orbit, &inverse)?;
     let known = orbit.residual(&equations, &boxes)?;
-    let largest = largest(&equations, &known.passages);
     let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
         return Err(Failure::NotStable);
     };
+    let largest = largest(&equations, &known.passages);
     if largest.energy.hi() > most {
-        return Err(Failure::Above { bound: largest.energy.hi(), most });
+        return Err(Failure::Above { least: largest.energy.lo(), bound: largest.energy.hi(), most });
     }
-    Ok((Piece { omega, impacts: impacts(&orbit), largest, multipliers }, orbit))
+    let piece = Piece { omega, impacts: impacts(&orbit), largest, multipliers };
+    Ok((piece, Last { orbit, omega: [middle, half] }))
 }
 
-/// The boxes about a family that hold, at each frequency that is `away` from the middle, exactly one motion.
-fn family(
-    equations: &Equations,
-    orbit: &Orbit,
-    inverse: &DMatrix<f64>,
-    away: Interval,
-) -> Result<Vec<State>, Failure> {
-    let with = |boxes: Vec<State>| -> Vec<State> {
-        boxes.into_iter().map(|x| array::from_fn(|i| if i == OMEGA { away } else { x[i] })).collect()
-    };
-    let none = with(vec![[Interval::ZERO; STATE]; orbit.nodes.len()]);
+/// The boxes about a family that hold exactly one motion for each value of its parameter.
+fn family(equations: &Equations, orbit: &Orbit, inverse: &Inverse) -> Result<Vec<State>, Failure> {
+    let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
     let least = krawczyk(orbit, inverse, &orbit.residual(equations, &none)?, &none);
     let mut failure = Failure::Sequence;
     for times in TRIED {
-        let boxes = with(about(orbit, &least, times, f64::INFINITY));
+        let boxes = about(orbit, &least, times, f64::INFINITY);
         let known = orbit.residual(equations, &boxes)?;
         let image = krawczyk(orbit, inverse, &known, &boxes);
         if is_inside(orbit, &image, &boxes) {
-            return Ok(with(image));
+            return Ok(image);
         }
         failure = Failure::Krawczyk { width: width(&boxes), image: width(&image) };
     }
@@ -179,23 +184,24 @@ mod tests {
                 "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 } }
         }"#;
         let scene: Scene = serde_json::from_str(text).expect("a scene");
-        let (omega, half) = (6.62, 1e-4);
-        let equations = Equations::new(&scene).expect("equations").at(omega);
-        let guess = Orbit::guess(&equations, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
-        let (orbit, inverse) = guess.improved(&equations).expect("a motion");
-        let orbit = orbit.leaning(&equations, &inverse).expect("slopes");
-        let boxes = family(&equations, &orbit, &inverse, Interval::around_zero(half)).expect("a family");
-        for end in [-half, half] {
-            let there = equations.at(omega + end);
-            let (own, _) =
-                orbit.leant(&there, omega + end).and_then(|own| own.improved(&there)).expect("a motion");
+        let (omega, half) = (6.62, 5e-3);
+        let equations = Equations::new(&scene).expect("equations");
+        let alone = equations.at(Taylor::point(omega));
+        let guess = Orbit::guess(&alone, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
+        let (orbit, _) = guess.improved(&alone).expect("a motion");
+        let wide = equations.at(Taylor::line(omega, half));
+        let (orbit, inverse) = orbit.widened(&wide).expect("a family");
+        let boxes = family(&wide, &orbit, &inverse).expect("a proof");
+        for end in [-1.0, 1.0] {
+            let there = equations.at(Taylor::point(omega + half * end));
+            let (own, _) = orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");
             for (k, node) in orbit.nodes.iter().enumerate() {
                 for i in node.event.free() {
-                    let way = own.nodes[k].state[i] - node.state[i];
-                    let off = way - node.slope[i] * end;
+                    let off = own.nodes[k].state[i].mid() - node.state[i].near(end);
                     assert!(boxes[k][i].wider(1e-12).contains(off), "{k} {i}: {off:e} {}", boxes[k][i]);
+                    let way = own.nodes[k].state[i].mid() - node.state[i].mid();
                     assert!(
-                        boxes[k][i].magnitude() < 0.5 * way.abs() + 1e-6,
+                        boxes[k][i].magnitude() < 1e-6 * way.abs() + 1e-10,
                         "{k} {i}: {way:e} {}",
                         boxes[k][i]
                     );

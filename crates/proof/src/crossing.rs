@@ -2,9 +2,10 @@
 
 use crate::Interval;
 use crate::equations::{Equations, Mode};
-use crate::number::State;
-use crate::small::{Matrix, times};
+use crate::number::Family;
+use crate::small::{Matrix, hull, times};
 use crate::step::{States, derivatives_within, enclosure};
+use crate::taylor::Taylor;
 
 /// Attempts to enclose the time of a crossing.
 const ATTEMPTS: usize = 12;
@@ -13,11 +14,11 @@ const ATTEMPTS: usize = 12;
 #[derive(Clone, Debug)]
 pub struct Crossing {
     /// The motion from the centre.
-    pub centre: State,
+    pub centre: Family,
     /// The derivatives of the state on the section by the first state.
-    pub by: Matrix,
+    pub by: Matrix<Taylor>,
     /// All motions, from where they were to where they cross.
-    pub near: State,
+    pub near: Family,
     /// The independent variable until they cross.
     pub delay: Interval,
 }
@@ -37,18 +38,20 @@ pub struct Section {
 pub fn cross(equations: &Equations, mode: Mode, states: &States, section: &Section) -> Option<Crossing> {
     let start = states.centre();
     let (delay, _, slopes) = reach(equations, mode, &start, section)?;
-    let mut centre: State = std::array::from_fn(|i| start[i] + delay * slopes[i]);
-    centre[section.index] = section.value;
+    let mut centre: Family = std::array::from_fn(|i| start[i] + delay * slopes[i]);
+    centre[section.index] = Taylor::from(section.value);
 
     let (delay, near, slopes) = reach(equations, mode, &states.all(), section)?;
-    let within = derivatives_within(equations, mode, &near, delay.hull(Interval::ZERO))?;
-    let by = times(&within, &states.by);
+    let delay = delay.hull();
+    let within = derivatives_within(equations, mode, &hull(&near), delay.hull(Interval::ZERO))?;
+    let by = times(&within.map(|row| row.map(Taylor::from)), &states.by);
     // The time of crossing changes by minus the change of the coordinate over its slope.
+    let per_slope = slopes[section.index].reciprocal();
     let on = |i: usize, j: usize| {
         if i == section.index {
-            Interval::ZERO
+            Taylor::ZERO
         } else {
-            by[i][j] - slopes[i] / slopes[section.index] * by[section.index][j]
+            by[i][j] - slopes[i] * per_slope * by[section.index][j]
         }
     };
     let by = std::array::from_fn(|i| std::array::from_fn(|j| on(i, j)));
@@ -62,26 +65,29 @@ pub fn cross(equations: &Equations, mode: Mode, states: &States, section: &Secti
 fn reach(
     equations: &Equations,
     mode: Mode,
-    start: &State,
+    start: &Family,
     section: &Section,
-) -> Option<(Interval, State, State)> {
-    let off = start[section.index] - section.value;
-    let is_right =
-        |slope: Interval| if section.is_rising { slope.is_positive() } else { slope.is_negative() };
-    let newton = |slopes: &State| {
+) -> Option<(Taylor, Family, Family)> {
+    let off = start[section.index] - Taylor::from(section.value);
+    let newton = |slopes: &Family| {
         let slope = slopes[section.index];
-        is_right(slope).then(|| -(off / slope))
+        let is_right =
+            if section.is_rising { slope.hull().is_positive() } else { slope.hull().is_negative() };
+        is_right.then(|| -(off * slope.reciprocal()))
     };
-    let mut delay = newton(&equations.derivative(mode, start))?;
+    let mut delay = newton(&equations.derivative(mode, start))?.hull();
     for _ in 0..ATTEMPTS {
         let tried = delay.wider(0.1 * delay.width() + f64::MIN_POSITIVE);
-        let near = enclosure(equations, mode, start, tried.hull(Interval::ZERO))?;
+        let way = tried.hull(Interval::ZERO);
+        // All of the family, then each of its motions.
+        let rough = equations.derivative(mode, &enclosure(equations, mode, &hull(start), way)?);
+        let near: Family = std::array::from_fn(|i| start[i] + Taylor::from(way * rough[i]));
         let slopes = equations.derivative(mode, &near);
         let next = newton(&slopes)?;
-        if next.is_in(tried) {
+        if next.hull().is_in(tried) {
             return Some((next, near, slopes));
         }
-        delay = next.hull(tried);
+        delay = next.hull().hull(tried);
     }
     None
 }

@@ -1,19 +1,22 @@
 //! Equation (1) in intervals, and the Taylor series of its solutions.
 //!
-//! A state of a flight is `[r, w, x1, v1, φ, ω]` with `r = x2 - x1`, `w = dr/dt`, the phase `φ` of the force and its rate `ω`, which is a constant. A state of a contact with a
-//! wall is `[q, w, x1, v1, φ, ω]` with the indentation `z = q²` and `w = dz/dt`; its independent variable is `θ`, `dt = q dθ` (equation (5) of
-//! `docs/theory.md`), in which Hertz's force `K q³` is polynomial.
+//! A state of a flight is `[r, w, x1, v1, φ, 0]` with `r = x2 - x1`, `w = dr/dt`, and the phase `φ` of the force. A state of a contact with a
+//! wall is `[q, w, x1, v1, φ, v]` with the indentation `z = q²` and `w = dz/dt`; its independent variable is `θ`, `dt = q dθ` (equation (5) of
+//! `docs/theory.md`), in which Hertz's force `K q³` is polynomial. With the same restitution at every speed `v` is the touch-down speed of the undisturbed
+//! collision through the state; other contacts leave it alone.
 
 use crate::elementary::pi;
-use crate::number::{Number, OMEGA, STATE, State};
+use crate::loss::Factor;
+use crate::number::{Number, SPEED, STATE};
+use crate::taylor::Taylor;
 use crate::{Failure, Interval};
-use retune_model::{Contact, Loss, Scene, Side, Source, Surfaces};
+use retune_model::{Contact, Scene, Side, Source, Surfaces};
 
 /// The numbers of a scene.
 #[derive(Clone, Debug)]
 pub struct Equations {
-    /// ω.
-    pub omega: Interval,
+    /// ω, of a family a function of its parameter.
+    pub omega: Taylor,
     /// m1.
     pub m1: Interval,
     /// k1.
@@ -24,6 +27,8 @@ pub struct Equations {
     pub walls: Option<[Interval; 2]>,
     /// K1, K3.
     pub hertz: [Interval; 2],
+    /// What the contacts lose.
+    pub factors: [Factor; 2],
     /// Powers of two that make the coordinates alike: roots of energies, which damping lets fall.
     pub scales: [f64; STATE],
     /// 1/m1, c1/m1, k1/m1.
@@ -77,22 +82,23 @@ impl Equations {
             }
         };
         let rest = number(damper.rest_distance.get());
-        let hertz = match &damper.contact {
-            None => None,
+        let (hertz, factors) = match &damper.contact {
+            None => (None, [Factor::None; 2]),
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),
-            Some(Contact::Hertz(surfaces)) if !surfaces.losses().iter().all(Loss::is_none) => {
-                return Err(Failure::Scene("contacts that lose energy"));
+            Some(Contact::Hertz(surfaces)) => {
+                let [a, b] = surfaces.losses();
+                (Some(hertz_stiffness(surfaces)), [Factor::new(&a)?, Factor::new(&b)?])
             }
-            Some(Contact::Hertz(surfaces)) => Some(hertz_stiffness(surfaces)),
         };
         let inverse_m1 = Interval::ONE / m1;
         Ok(Self {
-            omega,
+            omega: Taylor::from(omega),
             m1,
             k1,
             rest,
             walls: hertz.map(|_| [Interval::ZERO, rest + number(damper.clearance.get())]),
             hertz: hertz.unwrap_or([Interval::ZERO; 2]),
+            factors,
             scales: scales(m1 / number(damper.mass.get()), omega.square() + k1 * inverse_m1),
             inverse_m1,
             damping: c1 * inverse_m1,
@@ -104,9 +110,9 @@ impl Equations {
         })
     }
 
-    /// The same at a frequency, exactly.
-    pub fn at(&self, omega: f64) -> Self {
-        Self { omega: Interval::point(omega), ..self.clone() }
+    /// The same at the frequencies of a function, exactly.
+    pub fn at(&self, omega: Taylor) -> Self {
+        Self { omega, ..self.clone() }
     }
 
     /// The position of a wall; none of a damper without.
@@ -117,32 +123,34 @@ impl Equations {
     /// The Taylor coefficients of the solution from a state, up to `order`: `[k][i]` is that of the power `k` of the coordinate `i`.
     pub fn series<T: Number>(&self, mode: Mode, start: &[T; STATE], order: usize) -> Vec<[T; STATE]> {
         let zero = T::constant(Interval::ZERO);
-        let (sign, hertz, stretch) = match mode {
-            Mode::Flight => (1.0, Interval::ZERO, -self.rest),
+        let (sign, stretch) = match mode {
+            Mode::Flight => (1.0, -self.rest),
             Mode::Contact(side) => {
-                let sign = Interval::point(side.sign());
                 let wall = self.wall(side).unwrap_or(Interval::ENTIRE);
-                (side.sign(), self.hertz[side as usize], sign * (wall - self.rest))
+                (side.sign(), Interval::point(side.sign()) * (wall - self.rest))
             }
         };
         let (sign, half) = (Interval::point(sign), Interval::point(0.5));
         let mut y = vec![*start];
-        let omega = start[OMEGA];
+        let omega = T::of(self.omega);
         let force =
             [T::constant(self.force[0]) + (omega * omega).times(self.force[1]), omega.times(self.force[2])];
         let mut circle = vec![start[4].cos_sin()];
-        // Of a contact: z = q², q³, and the two accelerations, which are multiplied by dt/dθ = q.
-        let (mut squares, mut cubes, mut accelerations): (Vec<T>, Vec<T>, Vec<[T; 2]>) = Default::default();
+        let mut contact = match mode {
+            Mode::Flight => None,
+            Mode::Contact(side) => Some(Push::new(self, side)),
+        };
+        // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
+        let mut accelerations: Vec<[T; 3]> = Vec::new();
         for k in 0..order {
             let [u, w, x1, v1, ..] = y[k];
             let [cos, sin] = circle[k];
             let mut depth = u;
             let mut push = w.times(self.c2);
-            if mode != Mode::Flight {
-                depth = product(k, zero, |i| y[i][0], |i| y[i][0]);
-                squares.push(depth);
-                cubes.push(product(k, zero, |i| squares[i], |i| y[i][0]));
-                push = push + cubes[k].times(hertz);
+            if let Some(contact) = &mut contact {
+                contact.extend(&y);
+                depth = contact.squares[k];
+                push = push + contact.push[k];
             }
             push = push + depth.times(self.k2);
             if k == 0 {
@@ -151,28 +159,36 @@ impl Equations {
             // m1 a1 = F - c1 v1 - k1 x1 + s push, and m2 a2 = -s push.
             let a1 = cos * force[0] + sin * force[1] - v1.times(self.damping) - x1.times(self.stiffness)
                 + push.times(sign * self.inverse_m1);
-            let rate = T::constant(Interval::ZERO) - push.times(self.inverse_m2) - a1.times(sign);
-            accelerations.push([rate, a1]);
-            let slopes = if mode == Mode::Flight {
-                [w, rate, v1, a1, y[k][OMEGA], zero]
-            } else {
+            let rate = zero - push.times(self.inverse_m2) - a1.times(sign);
+            let slopes = if let Some(contact) = &mut contact {
+                let others = rate + contact.push[k].times(self.inverse_m1 + self.inverse_m2);
+                accelerations.push([rate, a1, contact.speeding(others)]);
                 let by_clock = |other: &dyn Fn(usize) -> T| product(k, zero, |i| y[i][0], other);
+                let speeding = match self.factors[contact.side as usize] {
+                    Factor::Restoring(_) => by_clock(&|i| accelerations[i][2]),
+                    _ => zero,
+                };
                 [
                     w.times(half),
                     by_clock(&|i| accelerations[i][0]),
                     by_clock(&|i| y[i][3]),
                     by_clock(&|i| accelerations[i][1]),
                     u * omega,
-                    zero,
+                    speeding,
                 ]
+            } else {
+                [w, rate, v1, a1, if k == 0 { omega } else { zero }, zero]
             };
             let share = Interval::ONE / Interval::point((k + 1) as f64);
             y.push(slopes.map(|slope| slope.times(share)));
             // d cos φ = -sin φ dφ, with (i + 1) y[i + 1] the coefficient of dφ.
             let turning = |i: usize| y[i + 1][4].times(Interval::point((i + 1) as f64));
-            let cosine = product(k, zero, |i| circle[i][1], turning).times(-share);
-            let sine = product(k, zero, |i| circle[i][0], turning).times(share);
-            circle.push([cosine, sine]);
+            let next = |of: usize| match &contact {
+                // In flight φ is linear.
+                None => circle[k][of] * turning(0),
+                Some(_) => product(k, zero, |i| circle[i][of], turning),
+            };
+            circle.push([next(1).times(-share), next(0).times(share)]);
         }
         y
     }
@@ -181,13 +197,109 @@ impl Equations {
     pub fn derivative<T: Number>(&self, mode: Mode, state: &[T; STATE]) -> [T; STATE] {
         self.series(mode, state, 1)[1]
     }
+
+    /// `1/m1 + 1/m2`.
+    pub fn inverse_masses(&self) -> Interval {
+        self.inverse_m1 + self.inverse_m2
+    }
 }
 
-/// The powers of two next to `[√(m2/m1), √(m2/m1)/σ, 1, 1/σ, 1/σ, 1]`, by `m1/m2` and `σ²`.
+/// The series of the force of a contact.
+pub struct Push<T> {
+    /// Which wall.
+    pub side: Side,
+    hertz: Interval,
+    factor: Factor,
+    /// `(4/5) K (1/m1 + 1/m2)`: `2 S = storing q⁵`.
+    storing: Interval,
+    /// `q²` and `q³`.
+    squares: Vec<T>,
+    cubes: Vec<T>,
+    /// `1/v`, `h = w/v`, and the factor `f`.
+    inverse_speed: Vec<T>,
+    stage: Vec<T>,
+    factors: Vec<T>,
+    /// `q⁵`, `1/v²`, `q⁵/v²`, `D`, `1/D`, `h/D`, and the acceleration by others.
+    denominator: [Vec<T>; 7],
+    /// The force.
+    pub push: Vec<T>,
+}
+
+impl<T: Number> Push<T> {
+    /// Before its first term.
+    pub fn new(equations: &Equations, side: Side) -> Self {
+        let hertz = equations.hertz[side as usize];
+        Self {
+            side,
+            hertz,
+            factor: equations.factors[side as usize],
+            storing: Interval::point(4.0) / Interval::point(5.0) * hertz * equations.inverse_masses(),
+            squares: Vec::new(),
+            cubes: Vec::new(),
+            inverse_speed: Vec::new(),
+            stage: Vec::new(),
+            factors: Vec::new(),
+            denominator: std::array::from_fn(|_| Vec::new()),
+            push: Vec::new(),
+        }
+    }
+
+    /// Adds the next term of all, where the motion has it.
+    pub fn extend(&mut self, y: &[[T; STATE]]) {
+        let (k, zero) = (self.push.len(), T::constant(Interval::ZERO));
+        self.squares.push(product(k, zero, |i| y[i][0], |i| y[i][0]));
+        self.cubes.push(product(k, zero, |i| self.squares[i], |i| y[i][0]));
+        let one = if k == 0 { T::constant(Interval::ONE) } else { zero };
+        let push = match self.factor {
+            Factor::None => self.cubes[k],
+            Factor::Damping(lambda) => {
+                self.factors.push(one + y[k][1].times(lambda));
+                product(k, zero, |i| self.cubes[i], |i| self.factors[i])
+            }
+            Factor::Restoring(chi) => {
+                quotient(&mut self.inverse_speed, |i| y[i][SPEED]);
+                self.stage.push(product(k, zero, |i| y[i][1], |i| self.inverse_speed[i]));
+                self.factors.push(one + self.stage[k].times(chi));
+                product(k, zero, |i| self.cubes[i], |i| self.factors[i])
+            }
+        };
+        self.push.push(push.times(self.hertz));
+    }
+
+    /// The next term of `dv/dt = a h/D`, with the acceleration `a` into the wall that others than the contact cause, and `D = 2 f G + h²`, `G = S/v²`,
+    /// `S = (2/5) κ q⁵` (`docs/theory.md`, "One restitution at every speed"); zero of other contacts.
+    fn speeding(&mut self, acceleration: T) -> T {
+        if !matches!(self.factor, Factor::Restoring(_)) {
+            return T::constant(Interval::ZERO);
+        }
+        let (k, zero) = (self.denominator[0].len(), T::constant(Interval::ZERO));
+        let of = |a: &[T], b: &[T]| product(k, zero, |i| a[i], |i| b[i]);
+        let [fifth, inverse_square, stored, d, inverse_d, shares, others] = &mut self.denominator;
+        fifth.push(of(&self.squares, &self.cubes));
+        inverse_square.push(of(&self.inverse_speed, &self.inverse_speed));
+        stored.push(of(fifth, inverse_square));
+        d.push(of(&self.factors, stored).times(self.storing) + of(&self.stage, &self.stage));
+        quotient(inverse_d, |i| d[i]);
+        shares.push(of(&self.stage, inverse_d));
+        others.push(acceleration);
+        of(others, shares)
+    }
+}
+
+/// Adds the next term of the series of `1/x`.
+fn quotient<T: Number>(inverse: &mut Vec<T>, of: impl Fn(usize) -> T) {
+    let (k, zero) = (inverse.len(), T::constant(Interval::ZERO));
+    let first = inverse.first().copied().unwrap_or_else(|| of(0).reciprocal());
+    let next =
+        if k == 0 { first } else { zero - first * product(k - 1, zero, |i| inverse[i], |i| of(i + 1)) };
+    inverse.push(next);
+}
+
+/// The powers of two next to `[√(m2/m1), √(m2/m1)/σ, 1, 1/σ, 1/σ, √(m2/m1)/σ]`, by `m1/m2` and `σ²`.
 fn scales(ratio: Interval, square: Interval) -> [f64; STATE] {
     let power = |square: f64| (0.5 * square.log2()).round().exp2();
     let (mass, speed) = (power(1.0 / ratio.mid()), power(1.0 / square.mid()));
-    [mass, mass * speed, 1.0, speed, speed, 1.0]
+    [mass, mass * speed, 1.0, speed, speed, mass * speed]
 }
 
 /// The coefficient of the power `k` of a product of two series.
@@ -212,7 +324,7 @@ fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
     })
 }
 
-/// The series at an independent variable, the last coefficient first (Horner).
-pub fn at(series: &[State], h: Interval) -> State {
-    std::array::from_fn(|i| series.iter().rev().fold(Interval::ZERO, |sum, c| sum * h + c[i]))
+/// A series at an independent variable, the last coefficient first (Horner).
+pub fn at<T: Number>(series: impl DoubleEndedIterator<Item = T>, h: T) -> T {
+    series.rev().fold(T::constant(Interval::ZERO), |sum, c| sum * h + c)
 }

@@ -1,6 +1,6 @@
 //! What happens to a motion: impacts, ends of contacts, crests of the force.
 
-use crate::number::OMEGA;
+use crate::number::SPEED;
 use retune_model::Side;
 use std::fmt;
 
@@ -23,7 +23,7 @@ impl Event {
 
     /// The coordinates that have not.
     pub fn free(self) -> impl Iterator<Item = usize> + Clone {
-        (0..OMEGA).filter(move |&i| i != self.fixed())
+        (0..SPEED).filter(move |&i| i != self.fixed())
     }
 }
 

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 pub enum Failure {
     /// The proof does not cover such scenes.
     #[error(
-        "{0}: nothing is proven of such scenes; give a damper, a periodic forcing, and Hertz's surfaces without loss or no walls"
+        "{0}: nothing is proven of such scenes; give a damper, a periodic forcing, and Hertz's surfaces or no walls"
     )]
     Scene(&'static str),
     /// A motion comes to a wall, or to the end of a contact, so slowly that it may as well not come there.
@@ -17,6 +17,11 @@ pub enum Failure {
         /// What may happen or not.
         event: Event,
     },
+    /// A contact may lose so much that its force ends before it.
+    #[error(
+        "cannot be proven here: the force of a contact may end, at 1 + lambda dz/dt = 0, before the contact does"
+    )]
+    Pulls,
     /// No box was found that the motions stay in during a step.
     #[error(
         "cannot be proven here: no step of {least:e} s (in a contact s/√m) from a box of the width {width:e} could be enclosed"
@@ -64,6 +69,8 @@ pub enum Failure {
     /// A motion may have more energy than it is to have.
     #[error("the motion may have an E1max of {bound} J, and at most {most} J are to be proven")]
     Above {
+        /// What it has at least.
+        least: f64,
         /// What it has at most.
         bound: f64,
         /// What it is to have at most.

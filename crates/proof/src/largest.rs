@@ -1,16 +1,13 @@
 //! The largest values of a motion over its whole period.
 
 use crate::Interval;
-use crate::equations::{Equations, Mode, product};
-use crate::number::State;
+use crate::equations::{Equations, Mode, Push, product};
+use crate::number::{Number, STATE};
 use crate::range::Range;
 use crate::segment::Passage;
-use crate::step::Piece;
+use crate::step::Quantity;
 use retune_model::Measure;
 use serde::{Serialize, Serializer};
-
-/// The series of a quantity from that of a motion; none where the mode has no such quantity.
-type Quantity<'a> = &'a dyn Fn(Mode, &[State]) -> Option<Vec<Interval>>;
 
 /// Largest values.
 #[derive(Clone, Copy, Debug)]
@@ -42,76 +39,95 @@ impl Serialize for Largest {
 
 /// The largest values over all segments of a motion.
 pub fn largest(equations: &Equations, passages: &[Passage]) -> Largest {
-    let over = |of: Quantity<'_>| {
+    let over = |of: Of| {
         let mut most = Interval::ZERO;
         for passage in passages {
-            over_passage(passage, of, &mut most);
+            over_passage(passage, &Value { equations, of }, &mut most);
         }
         most
     };
-    let [stretch, compression] = [1.0, -1.0].map(|sign| {
-        over(&|mode, motion| {
-            let sign = Interval::point(sign);
-            Some(stretch(equations, mode, motion).into_iter().map(|c| sign * c).collect())
-        })
-    });
     Largest {
-        energy: over(&|_, motion| Some(energy(equations, motion))),
-        stroke: stretch.max(compression),
-        contact_force: over(&|mode, motion| force(equations, mode, motion)),
+        energy: over(Of::Energy),
+        stroke: over(Of::Stretch(1.0)).max(over(Of::Stretch(-1.0))),
+        contact_force: over(Of::Force),
     }
 }
 
 /// Raises the largest value so far to that over a segment. Quantities that a mode does not have are zero in it.
-fn over_passage(passage: &Passage, of: Quantity<'_>, most: &mut Interval) {
+fn over_passage(passage: &Passage, value: &Value<'_>, most: &mut Interval) {
     for (k, piece) in passage.pieces.iter().enumerate() {
-        let Piece { mode, h, .. } = *piece;
-        let is_last = k + 1 == passage.pieces.len();
-        if of(mode, &piece.at_start).is_none() {
+        if value.of == Of::Force && piece.mode == Mode::Flight {
             return;
         }
-        let series = piece.series_of(|motion| of(mode, motion).unwrap_or_default());
+        let is_last = k + 1 == passage.pieces.len();
         // The segment may end before the last piece does; it may also end after it.
-        let sure = if is_last { h + passage.delay.lo().min(0.0) } else { h };
-        Range::new(series, h).raise(most, sure.next_down());
-        if is_last && let Some(&[value]) = of(mode, &[passage.near]).as_deref() {
-            *most = most.max(Interval::new(most.lo(), value.hi().max(most.lo())));
+        let sure = if is_last { (Interval::ONE + passage.delay).lo().min(1.0) } else { 1.0 };
+        Range::new(piece.series_of(value)).raise(most, sure);
+        if is_last && let Some(&value) = value.series(piece.mode, &[passage.near]).first() {
+            *most = most.max(Interval::new(most.lo(), value.hull().hi().max(most.lo())));
         }
     }
 }
 
-fn square(motion: &[State], k: usize, i: usize) -> Interval {
-    product(k, Interval::ZERO, |n| motion[n][i], |n| motion[n][i])
+/// What is largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Of {
+    Energy,
+    /// Times a sign.
+    Stretch(f64),
+    Force,
+}
+
+/// A quantity of a scene.
+struct Value<'a> {
+    equations: &'a Equations,
+    of: Of,
+}
+
+impl Quantity for Value<'_> {
+    fn series<T: Number>(&self, mode: Mode, motion: &[[T; STATE]]) -> Vec<T> {
+        match self.of {
+            Of::Energy => energy(self.equations, motion),
+            Of::Stretch(sign) => {
+                let stretch = stretch(self.equations, mode, motion);
+                stretch.into_iter().map(|c| c.times(Interval::point(sign))).collect()
+            }
+            Of::Force => force(self.equations, mode, motion),
+        }
+    }
+}
+
+fn square<T: Number>(motion: &[[T; STATE]], k: usize, i: usize) -> T {
+    product(k, T::constant(Interval::ZERO), |n| motion[n][i], |n| motion[n][i])
 }
 
 /// `E1 = (m1 v1² + k1 x1²)/2`.
-fn energy(equations: &Equations, motion: &[State]) -> Vec<Interval> {
+fn energy<T: Number>(equations: &Equations, motion: &[[T; STATE]]) -> Vec<T> {
     let half = Interval::point(0.5);
-    let at = |k: usize| half * (equations.m1 * square(motion, k, 3) + equations.k1 * square(motion, k, 2));
+    let at = |k: usize| {
+        square(motion, k, 3).times(half * equations.m1) + square(motion, k, 2).times(half * equations.k1)
+    };
     (0..motion.len()).map(at).collect()
 }
 
 /// `r - D`; in a contact `r` is the wall's position and `z = q²` beyond it.
-fn stretch(equations: &Equations, mode: Mode, motion: &[State]) -> Vec<Interval> {
-    let mut series: Vec<Interval> = match mode {
-        Mode::Flight => motion.iter().map(|c| c[0]).collect(),
+fn stretch<T: Number>(equations: &Equations, mode: Mode, motion: &[[T; STATE]]) -> Vec<T> {
+    let (mut series, from): (Vec<T>, _) = match mode {
+        Mode::Flight => (motion.iter().map(|c| c[0]).collect(), Interval::ZERO),
         Mode::Contact(side) => {
             let sign = Interval::point(side.sign());
-            (0..motion.len()).map(|k| sign * square(motion, k, 0)).collect()
+            let depth = (0..motion.len()).map(|k| square(motion, k, 0).times(sign)).collect();
+            (depth, equations.wall(side).unwrap_or(Interval::ENTIRE))
         }
     };
-    let from = match mode {
-        Mode::Flight => Interval::ZERO,
-        Mode::Contact(side) => equations.wall(side).unwrap_or(Interval::ENTIRE),
-    };
-    series[0] = series[0] + from - equations.rest;
+    series[0] = series[0] + T::constant(from - equations.rest);
     series
 }
 
-/// `K q³`; none in flight.
-fn force(equations: &Equations, mode: Mode, motion: &[State]) -> Option<Vec<Interval>> {
-    let Mode::Contact(side) = mode else { return None };
-    let squares: Vec<Interval> = (0..motion.len()).map(|k| square(motion, k, 0)).collect();
-    let cube = |k: usize| product(k, Interval::ZERO, |n| squares[n], |n| motion[n][0]);
-    Some((0..motion.len()).map(|k| equations.hertz[side as usize] * cube(k)).collect())
+/// `K q³` times the factor of a loss; zero in flight.
+fn force<T: Number>(equations: &Equations, mode: Mode, motion: &[[T; STATE]]) -> Vec<T> {
+    let Mode::Contact(side) = mode else { return vec![T::constant(Interval::ZERO); motion.len()] };
+    let mut force = Push::new(equations, side);
+    (0..motion.len()).for_each(|_| force.extend(motion));
+    force.push
 }

@@ -29,7 +29,9 @@ mod equations;
 mod event;
 mod failure;
 mod interval;
+mod inverse;
 mod largest;
+mod loss;
 mod number;
 mod orbit;
 mod range;
@@ -37,6 +39,7 @@ mod segment;
 mod small;
 mod stability;
 mod step;
+mod taylor;
 mod theorem;
 
 pub use band::{Band, Guesses, LeftOut, Piece, band};

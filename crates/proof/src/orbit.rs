@@ -3,10 +3,11 @@
 use crate::elementary::pi;
 use crate::equations::Equations;
 use crate::event::Event;
-use crate::number::{FREE, OMEGA, STATE, State};
-use crate::segment::{ALONE, Node, Passage, Plan, follow, plan, rest_of_contact};
+use crate::inverse::Inverse;
+use crate::number::{FREE, STATE, State};
+use crate::segment::{Node, Passage, Plan, aimed, follow, plan, rest_of_contact};
+use crate::taylor::Taylor;
 use crate::{Failure, Interval};
-use nalgebra::{DMatrix, DVector};
 use retune_model::Side;
 use std::f64::consts::TAU;
 
@@ -14,6 +15,8 @@ use std::f64::consts::TAU;
 const EVENTS: usize = 400;
 /// Most of Newton's iterations.
 const ITERATIONS: usize = 12;
+/// Those for the polynomials of a family, of 8 terms, with one more for the ways.
+const WIDENED: usize = 4;
 /// Of a guess, the largest gap that is taken for its rounding, relative to the states.
 const CLOSED: f64 = 1e-13;
 
@@ -36,7 +39,7 @@ pub struct Orbit {
 /// The event after a crest; the crest itself if none comes before it has come round.
 fn next_event(equations: &Equations, crest: Node, full: Interval) -> Result<Node, Failure> {
     let Plan { end, reached, .. } = plan(equations, &crest, Some(full))?;
-    Ok(if end == Event::Crest { crest } else { Node { event: end, state: reached, slope: ALONE } })
+    Ok(if end == Event::Crest { crest } else { Node { event: end, state: reached } })
 }
 
 /// The equations of a repeating motion at a box: unknowns are the free coordinates of all nodes.
@@ -45,7 +48,7 @@ pub struct Residual {
     /// What is known of each segment.
     pub passages: Vec<Passage>,
     /// By how much the motions from the centres miss the next nodes.
-    pub gaps: Vec<Interval>,
+    pub gaps: Vec<Taylor>,
 }
 
 /// `2πn`.
@@ -65,29 +68,29 @@ impl Orbit {
         periods: usize,
         at_crest: bool,
     ) -> Result<Self, Failure> {
-        let (r, w, omega) = (x2 - x1, v2 - v1, equations.omega.mid());
+        let (r, w) = (x2 - x1, v2 - v1);
         let indented = Side::BOTH.into_iter().find_map(|side| {
             let depth = side.sign() * (r - equations.wall(side)?.mid());
             (depth >= 0.0).then_some((side, depth))
         });
         let first = match indented {
             None => {
-                let crest = Node { event: Event::Crest, state: [r, w, x1, v1, 0.0, omega], slope: ALONE };
+                let crest = Node { event: Event::Crest, state: [r, w, x1, v1, 0.0, 0.0].map(Taylor::point) };
                 if at_crest { crest } else { next_event(equations, crest, turn(periods))? }
             }
             Some((side, depth)) => {
                 // The rest of a contact that began before.
-                rest_of_contact(equations, side, [depth.sqrt(), side.sign() * w, x1, v1, 0.0, omega])?
+                rest_of_contact(equations, side, [depth.sqrt(), side.sign() * w, x1, v1, 0.0, 0.0])?
             }
         };
         let mut orbit = Self { periods, nodes: vec![first], plans: Vec::new(), turns: Vec::new() };
         while orbit.nodes.len() < EVENTS {
             let k = orbit.plans.len();
             let next = plan(equations, &orbit.nodes[k], orbit.crest(k))?;
-            let mut reached = Node { event: next.end, state: next.reached, slope: ALONE };
+            let mut reached = Node { event: next.end, state: next.reached };
             orbit.plans.push(next);
             let left = periods - orbit.turns.iter().sum::<usize>();
-            let past = reached.state[4] - first.state[4] - turn(left).mid();
+            let past = reached.state[4].mid() - first.state[4].mid() - turn(left).mid();
             if reached.event == first.event && past > -BACK {
                 orbit.turns.push(left);
                 return Ok(orbit);
@@ -95,8 +98,8 @@ impl Orbit {
             if past > BACK {
                 return Err(Failure::Sequence);
             }
-            let turns = ((reached.state[4] / TAU).floor().max(0.0) as usize).min(left);
-            reached.state[4] -= turn(turns).mid();
+            let turns = ((reached.state[4].mid() / TAU).floor().max(0.0) as usize).min(left);
+            reached.state[4] = (reached.state[4] - Taylor::from(turn(turns))).polynomial();
             orbit.turns.push(turns);
             orbit.nodes.push(reached);
         }
@@ -130,9 +133,7 @@ impl Orbit {
             let (next, shift) = self.next(k);
             for i in next.event.free() {
                 let shift = if i == 4 { shift } else { Interval::ZERO };
-                // The family is followed along its slopes; what these leave of a change of ω counts as a gap.
-                let drift = (passage.by[i][OMEGA] - Interval::point(next.slope[i])) * away[k][OMEGA];
-                gaps.push(passage.centre[i] - (Interval::point(next.state[i]) + shift) + drift);
+                gaps.push(passage.centre[i] - next.state[i] - Taylor::from(shift));
             }
             passages.push(passage);
         }
@@ -140,9 +141,9 @@ impl Orbit {
     }
 
     /// The derivatives of the equations by the unknowns: rows of blocks, that of each segment and minus one at the next node.
-    pub fn jacobian(&self, passages: &[Passage]) -> Vec<Vec<Interval>> {
+    pub fn jacobian(&self, passages: &[Passage]) -> Vec<Vec<Taylor>> {
         let (n, size) = (self.unknowns(), FREE);
-        let mut all = vec![vec![Interval::ZERO; n]; n];
+        let mut all = vec![vec![Taylor::ZERO; n]; n];
         for (k, node) in self.nodes.iter().enumerate() {
             let next = (k + 1) % self.nodes.len();
             for (row, i) in self.nodes[next].event.free().enumerate() {
@@ -151,87 +152,83 @@ impl Orbit {
                     whole[size * k + column] = whole[size * k + column] + passages[k].by[i][j];
                 }
                 let own = size * next + row;
-                whole[own] = whole[own] - Interval::ONE;
+                whole[own] = whole[own] - Taylor::point(1.0);
             }
         }
         all
     }
 
-    /// Moved by changes of the unknowns, with the ways planned anew.
+    /// What the equations leave at the nodes themselves, and the inverse of their derivatives there.
+    fn at_nodes(&self, equations: &Equations) -> Result<(Residual, Option<Inverse>), Failure> {
+        let known = self.residual(equations, &vec![[Interval::ZERO; STATE]; self.nodes.len()])?;
+        let inverse = Inverse::of(&self.jacobian(&known.passages));
+        Ok((known, inverse))
+    }
+
+    /// With nodes of other states.
+    fn with(&self, state: impl Fn(usize, Taylor) -> Taylor) -> Self {
+        let mut next = self.clone();
+        for (k, node) in next.nodes.iter_mut().enumerate() {
+            for (place, i) in node.event.free().enumerate() {
+                node.state[i] = state(FREE * k + place, node.state[i]).polynomial();
+            }
+        }
+        next
+    }
+
+    /// With the ways planned anew.
     ///
     /// # Errors
     /// See [`plan`]; or its sequence of events becomes another one.
-    fn moved(&self, equations: &Equations, change: &DVector<f64>) -> Result<Self, Failure> {
-        let mut nodes = self.nodes.clone();
-        for (k, node) in nodes.iter_mut().enumerate() {
-            for (place, i) in node.event.free().enumerate() {
-                node.state[i] += change[FREE * k + place];
-            }
-        }
-        let plans = nodes.iter().enumerate().map(|(k, node)| plan(equations, node, self.crest(k)));
+    fn planned(self, equations: &Equations) -> Result<Self, Failure> {
+        let plans = self.nodes.iter().enumerate().map(|(k, node)| plan(equations, node, self.crest(k)));
         let plans = plans.collect::<Result<Vec<_>, _>>()?;
         let same = plans.iter().zip(&self.plans).all(|(new, old)| new.end == old.end);
-        if same { Ok(Self { nodes, plans, ..self.clone() }) } else { Err(Failure::Sequence) }
+        if same { Ok(Self { plans, ..self }) } else { Err(Failure::Sequence) }
     }
 
-    /// The motion of a family at another frequency, to first order.
+    /// The motion of a family at a value of its parameter, to rounding.
     ///
     /// # Errors
     /// Its events are others there.
-    pub fn leant(&self, equations: &Equations, omega: f64) -> Result<Self, Failure> {
-        let mut change = DVector::zeros(self.unknowns());
-        for (k, node) in self.nodes.iter().enumerate() {
-            for (place, i) in node.event.free().enumerate() {
-                change[FREE * k + place] = node.slope[i] * (omega - node.state[OMEGA]);
-            }
-        }
-        let mut next = self.clone();
-        for node in &mut next.nodes {
-            (node.state[OMEGA], node.slope) = (omega, ALONE);
-        }
-        next.moved(equations, &change)
+    pub fn member(&self, equations: &Equations, s: f64) -> Result<Self, Failure> {
+        self.with(|_, state| Taylor::point(state.near(s))).planned(equations)
     }
 
-    /// The same with the slopes of its family: the equations hold along it to first order.
+    /// The family of motions through this one for the frequencies of the equations, by Newton's iteration on polynomials, each of which
+    /// doubles the order; with the inverse of the derivatives.
     ///
     /// # Errors
     /// A segment cannot be followed.
-    pub fn leaning(mut self, equations: &Equations, inverse: &DMatrix<f64>) -> Result<Self, Failure> {
-        let none = vec![[Interval::ZERO; STATE]; self.nodes.len()];
-        let known = self.residual(equations, &none)?;
-        let by_omega = |k: usize| {
-            let next = self.nodes[(k + 1) % self.nodes.len()].event;
-            next.free().map(|i| known.passages[k].by[i][OMEGA].mid()).collect::<Vec<_>>()
-        };
-        let by_omega: Vec<f64> = (0..self.nodes.len()).flat_map(by_omega).collect();
-        let slopes = -(inverse * DVector::from_vec(by_omega));
-        for (k, node) in self.nodes.iter_mut().enumerate() {
-            for (place, i) in node.event.free().enumerate() {
-                node.slope[i] = slopes[FREE * k + place];
+    pub fn widened(mut self, equations: &Equations) -> Result<(Self, Inverse), Failure> {
+        for n in 0.. {
+            let aim = |(k, node): (usize, &Node)| aimed(equations, node, &self.plans[k], self.crest(k));
+            self.plans = self.nodes.iter().enumerate().map(aim).collect::<Result<_, _>>()?;
+            let (known, inverse) = self.at_nodes(equations)?;
+            let inverse = inverse.ok_or(Failure::Sequence)?;
+            if n == WIDENED {
+                return Ok((self, inverse));
             }
+            let change = inverse.times(&known.gaps);
+            self = self.with(|place, state| state - change[place]);
         }
-        Ok(self)
+        Err(Failure::Sequence)
     }
 
     /// The same, improved by Newton's iteration on the middles of all intervals; with the inverse of the derivatives there.
     ///
     /// # Errors
     /// The iteration does not end on a motion that repeats.
-    pub fn improved(self, equations: &Equations) -> Result<(Self, DMatrix<f64>), Failure> {
+    pub fn improved(self, equations: &Equations) -> Result<(Self, Inverse), Failure> {
         let mut orbit = self;
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
-            let Residual { passages, gaps } = orbit.residual(equations, &none)?;
-            let jacobian = orbit.jacobian(&passages);
-            let n = orbit.unknowns();
-            let gap = gaps.iter().map(|gap| gap.mid().abs()).fold(0.0, f64::max);
+            let (known, inverse) = orbit.at_nodes(equations)?;
+            let gap = known.gaps.iter().map(|gap| gap.mid().abs()).fold(0.0, f64::max);
             let refused = Failure::Guess { periods: orbit.periods, gap };
-            let Some(inverse) = DMatrix::from_fn(n, n, |i, j| jacobian[i][j].mid()).try_inverse() else {
-                return Err(refused);
-            };
-            let change = -(&inverse * DVector::from_fn(n, |i, _| gaps[i].mid()));
-            let size = change.amax();
+            let inverse = inverse.ok_or(refused.clone())?;
+            let change = inverse.times(&known.gaps);
+            let size = change.iter().map(|x| x.mid().abs()).fold(0.0, f64::max);
             if size <= CLOSED || (size < 1e-9 && size >= 0.5 * last) {
                 return Ok((orbit, inverse));
             }
@@ -239,7 +236,7 @@ impl Orbit {
                 return Err(refused);
             }
             last = size;
-            orbit = orbit.moved(equations, &change)?;
+            orbit = orbit.with(|place, state| state - change[place]).planned(equations)?;
         }
         Err(Failure::Guess { periods: orbit.periods, gap: last })
     }

@@ -1,64 +1,78 @@
 //! What values a quantity has during a step, from its Taylor series with the last coefficient anywhere in the step.
 
 use crate::Interval;
+use crate::equations::at;
+use crate::taylor::Taylor;
 
 /// Halvings of a step before nothing more is tried.
 const DEPTH: u32 = 24;
-/// A bound is sharp enough if it exceeds a value by no more than this share.
-const SHARP: f64 = 1e-12;
+/// A bound is sharp enough if it exceeds a value by no more than this share, or by this one of what a family changes it.
+const SHARP: [f64; 2] = [1e-12, 1e-3];
 
-/// A quantity over a step from 0 to `h`.
+/// A quantity over a step from 0 to 1.
 ///
 /// For each motion it is `Σ cₖ tᵏ` with the coefficients in their intervals, the last one depending on `t`; its derivative is
 /// `Σ k cₖ tᵏ⁻¹` in the same sense, since the remainder of the derivative has `N c_N` somewhere in the step.
 #[derive(Clone, Debug)]
 pub struct Range {
-    series: Vec<Interval>,
+    series: Vec<Taylor>,
+    hulls: Vec<Interval>,
     slope: Vec<Interval>,
-    h: f64,
-}
-
-/// Horner's scheme.
-fn horner(series: &[Interval], t: Interval) -> Interval {
-    series.iter().rev().fold(Interval::ZERO, |sum, c| sum * t + *c)
 }
 
 impl Range {
     /// From its series.
-    pub fn new(series: Vec<Interval>, h: f64) -> Self {
-        let slope = series.iter().enumerate().skip(1).map(|(k, c)| Interval::point(k as f64) * *c).collect();
-        Self { series, slope, h }
+    pub fn new(series: Vec<Taylor>) -> Self {
+        let hulls: Vec<Interval> = series.iter().map(|c| c.hull()).collect();
+        let slope = hulls.iter().enumerate().skip(1).map(|(k, c)| Interval::point(k as f64) * *c).collect();
+        Self { series, hulls, slope }
     }
 
-    /// Its values at one time or during a stretch.
-    pub fn at(&self, t: Interval) -> Interval {
-        horner(&self.series, t)
+    /// Its value at a time, which may depend on the parameter of a family.
+    pub fn at(&self, t: Taylor) -> Taylor {
+        at(self.series.iter().copied(), t)
     }
 
-    /// Its derivatives.
-    pub fn slope(&self, t: Interval) -> Interval {
-        horner(&self.slope, t)
+    /// Its derivative.
+    pub fn slope_at(&self, t: Taylor) -> Taylor {
+        let slope = self
+            .series
+            .iter()
+            .enumerate()
+            .skip(1)
+            .map(|(k, c)| *c * Taylor::point(k as f64))
+            .collect::<Vec<_>>();
+        at(slope.into_iter(), t)
+    }
+
+    fn value(&self, t: f64) -> Interval {
+        self.at(Taylor::point(t)).hull()
+    }
+
+    /// Its derivatives during a stretch.
+    fn slope(&self, t: Interval) -> Interval {
+        at(self.slope.iter().copied(), t)
     }
 
     /// Its values during a stretch by the mean value theorem, which is sharper on a short one.
     fn over(&self, [a, b]: [f64; 2]) -> Interval {
-        let (t, middle) = (Interval::new(a, b), Interval::point(0.5 * (a + b)));
-        let from_middle = self.at(middle) + self.slope(t) * (t - middle);
-        let direct = self.at(t);
+        let (t, middle) = (Interval::new(a, b), 0.5 * (a + b));
+        let from_middle = self.value(middle) + self.slope(t) * (t - Interval::point(middle));
+        let direct = at(self.hulls.iter().copied(), t);
         from_middle.meet(direct).unwrap_or(direct)
     }
 
     /// Whether it is above zero during the step, but for the beginning if it is zero there (`starts`), and up to an only crossing near the end, if it ends
     /// there (`ends`).
     pub fn is_positive(&self, starts: bool, ends: bool) -> bool {
-        self.is_positive_in([0.0, self.h], [starts, ends], DEPTH)
+        self.is_positive_in([0.0, 1.0], [starts, ends], DEPTH)
     }
 
     fn is_positive_in(&self, [a, b]: [f64; 2], [starts, ends]: [bool; 2], depth: u32) -> bool {
         let t = Interval::new(a, b);
         if self.over([a, b]).is_positive()
             || (starts && a == 0.0 && self.slope(t).is_positive())
-            || (ends && b == self.h && self.slope(t).is_negative())
+            || (ends && b == 1.0 && self.slope(t).is_negative())
         {
             return true;
         }
@@ -70,14 +84,16 @@ impl Range {
 
     /// Raises `most`, which encloses the largest value so far, to enclose that of this step too. Motions are known to be in the step up to `sure`.
     pub fn raise(&self, most: &mut Interval, sure: f64) {
-        self.raise_in([0.0, self.h], most, sure, DEPTH);
+        self.raise_in([0.0, 1.0], most, sure, DEPTH);
     }
 
     fn raise_in(&self, [a, b]: [f64; 2], most: &mut Interval, sure: f64, depth: u32) {
         let (t, middle) = (Interval::new(a, b), 0.5 * (a + b));
         let slope = self.slope(t);
+        let mut width = f64::INFINITY;
         let mut lower = |t: f64| {
-            let value = self.at(Interval::point(t));
+            let value = self.value(t);
+            width = value.width();
             if t <= sure {
                 *most = most.max(Interval::new(value.lo(), most.hi().max(value.lo())));
             }
@@ -86,7 +102,8 @@ impl Range {
         let ends = lower(a).max(lower(b));
         let inner = lower(middle).max(ends);
         let bound = if slope.is_positive() || slope.is_negative() { ends } else { self.over([a, b]).hi() };
-        let done = bound <= most.hi() || bound - inner <= SHARP * bound.abs() || depth == 0;
+        let sharp = SHARP[0] * bound.abs() + SHARP[1] * width;
+        let done = bound <= most.hi() || bound - inner <= sharp || depth == 0;
         if done || slope.is_positive() || slope.is_negative() {
             *most = most.max(Interval::new(most.lo(), bound.max(most.lo())));
         } else {
@@ -100,8 +117,9 @@ impl Range {
 mod tests {
     use super::*;
 
+    /// Of a step of the length `h`.
     fn range(series: &[f64], h: f64) -> Range {
-        Range::new(series.iter().map(|c| Interval::point(*c)).collect(), h)
+        Range::new(series.iter().enumerate().map(|(k, c)| Taylor::point(c * h.powi(k as i32))).collect())
     }
 
     /// `t (1 - t) (2 - t)` on [0, 1] is largest at `1 - 1/√3`, with `2/(3√3)`; on [0, 3] at the end.
@@ -109,7 +127,7 @@ mod tests {
     fn exact_the_largest_value_of_a_cubic() {
         for (h, largest) in [(1.0, 2.0 / 27.0_f64.sqrt()), (3.0, 6.0)] {
             let mut most = Interval::ZERO;
-            range(&[0.0, 2.0, -3.0, 1.0], h).raise(&mut most, h);
+            range(&[0.0, 2.0, -3.0, 1.0], h).raise(&mut most, 1.0);
             assert!(most.wider(1e-15).contains(largest) && most.width() < 3e-12 * largest, "{most}");
         }
     }
@@ -118,7 +136,7 @@ mod tests {
     #[test]
     fn exact_what_is_not_surely_reached_is_no_lower_bound() {
         let mut most = Interval::ZERO;
-        range(&[0.0, 1.0], 2.0).raise(&mut most, 1.0);
+        range(&[0.0, 1.0], 2.0).raise(&mut most, 0.5);
         assert!(most.lo() <= 1.0 && most.hi() >= 2.0, "{most}");
     }
 

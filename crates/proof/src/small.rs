@@ -1,15 +1,17 @@
 //! Matrices of as many rows as a state has, in intervals, and a frame of nearly orthogonal directions with its inverse.
 
 use crate::Interval;
-use crate::number::{STATE, State};
+use crate::number::{Family, Number, STATE, State};
+use crate::taylor::Taylor;
 use nalgebra::SMatrix;
 
-/// A matrix in intervals, `[row][column]`.
-pub type Matrix = [State; STATE];
+/// A matrix in intervals, `[row][column]`, or in functions of a family's parameter.
+pub type Matrix<T = Interval> = [[T; STATE]; STATE];
 
 /// The identity.
-pub fn identity() -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Interval::ONE } else { Interval::ZERO }))
+pub fn identity<T: Number>() -> Matrix<T> {
+    let entry = |is_own: bool| T::constant(if is_own { Interval::ONE } else { Interval::ZERO });
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i == j)))
 }
 
 /// A matrix times a vector.
@@ -18,15 +20,20 @@ pub fn times_vector(a: &Matrix, x: &State) -> State {
 }
 
 /// A matrix times a matrix.
-pub fn times(a: &Matrix, b: &Matrix) -> Matrix {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| (0..STATE).fold(Interval::ZERO, |sum, k| sum + a[i][k] * b[k][j]))
-    })
+pub fn times<T: Number>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+    let entry =
+        |i: usize, j: usize| (0..STATE).fold(T::constant(Interval::ZERO), |sum, k| sum + a[i][k] * b[k][j]);
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
 /// Sums of the coordinates.
-pub fn plus(a: &State, b: &State) -> State {
+pub fn plus<T: Number>(a: &[T; STATE], b: &[T; STATE]) -> [T; STATE] {
     std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// All values of all coordinates.
+pub fn hull(a: &Family) -> State {
+    a.map(Taylor::hull)
 }
 
 /// Coordinates of a box in directions that turn with the flow, so that boxes do not grow by being wrapped in boxes (R. Lohner, 1987).

@@ -4,15 +4,19 @@ use crate::Interval;
 use crate::number::FREE;
 use crate::orbit::Orbit;
 use crate::segment::Passage;
+use crate::taylor::Taylor;
 use nalgebra::{Matrix4, SMatrix};
 use serde::Serialize;
 use std::array;
 
 /// Where between the largest multiplier in doubles and 1 a bound on it is tried.
-const SHARP: [f64; 5] = [1e-6, 1e-4, 1e-2, 0.1, 0.5];
+const SHARP: [f64; 7] = [1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.8, 0.95];
 
-/// A matrix of the free coordinates in intervals.
-type Section = [[Interval; FREE]; FREE];
+/// How often the range of a family's parameter is halved.
+const DEPTH: u32 = 6;
+
+/// A matrix of the free coordinates.
+type Section = [[Taylor; FREE]; FREE];
 
 /// What is proven of the multipliers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -26,11 +30,32 @@ pub enum Stability {
     Open,
 }
 
-/// Whether a motion is stable, from what is known of its segments.
+/// Whether a motion, or each of a family, is stable, from what is known of its segments.
 pub fn stability(orbit: &Orbit, passages: &[Passage]) -> Stability {
     let segments: Vec<Section> =
         passages.iter().enumerate().map(|(k, passage)| section(orbit, k, passage)).collect();
-    stability_of(&segments)
+    if segments.iter().flatten().flatten().all(|x| x.is_constant()) {
+        stability_of(&segments)
+    } else {
+        stability_over(&segments, [0.0, 1.0], DEPTH)
+    }
+}
+
+/// That of the part of a family from `middle - half` to `middle + half`.
+fn stability_over(segments: &[Section], [middle, half]: [f64; 2], depth: u32) -> Stability {
+    let part = |m: &Section| m.map(|row| row.map(|x| x.part([middle, half])));
+    let own = stability_of(&segments.iter().map(part).collect::<Vec<_>>());
+    if own != Stability::Open || depth == 0 {
+        return own;
+    }
+    let quarter = 0.5 * half;
+    let parts =
+        [middle - quarter, middle + quarter].map(|m| stability_over(segments, [m, quarter], depth - 1));
+    match parts {
+        [Stability::Stable(a), Stability::Stable(b)] => Stability::Stable(a.max(b)),
+        [Stability::Unstable, Stability::Unstable] => Stability::Unstable,
+        _ => Stability::Open,
+    }
 }
 
 /// The derivatives of the free coordinates at the end of a segment by those at its beginning.
@@ -41,11 +66,11 @@ fn section(orbit: &Orbit, k: usize, passage: &Passage) -> Section {
 }
 
 fn times(a: &Section, b: &Section) -> Section {
-    let entry = |i: usize, j: usize| (0..FREE).fold(Interval::ZERO, |sum, k| sum + a[i][k] * b[k][j]);
+    let entry = |i: usize, j: usize| (0..FREE).fold(Taylor::ZERO, |sum, k| sum + a[i][k] * b[k][j]);
     array::from_fn(|i| array::from_fn(|j| entry(i, j)))
 }
 
-/// Whether all multipliers of all matrices in intervals are below 1, or one of each is above.
+/// Whether all multipliers of all matrices are below 1, or one of each is above.
 fn stability_of(segments: &[Section]) -> Stability {
     match are_below(segments, 1.0) {
         None => Stability::Open,
@@ -70,7 +95,7 @@ fn middle(matrix: &Section) -> Matrix4<f64> {
 }
 
 fn points(matrix: &Matrix4<f64>) -> Section {
-    array::from_fn(|i| array::from_fn(|j| Interval::point(matrix[(i, j)])))
+    array::from_fn(|i| array::from_fn(|j| Taylor::point(matrix[(i, j)])))
 }
 
 /// Whether all multipliers of the product of so many matrices, each over `bound`, are below 1 (true), or one is above (false); none if neither is proven.
@@ -80,8 +105,8 @@ fn points(matrix: &Matrix4<f64>) -> Section {
 /// itself, all are below 1 (P. Stein, 1952). If `xᵀ V₀ x` is negative for some `x`, it stays so and falls for ever: `Nᵏ x` does not tend to
 /// zero, and one is above 1.
 fn are_below(segments: &[Section], bound: f64) -> Option<bool> {
-    let scaled: Vec<Section> =
-        segments.iter().map(|m| m.map(|row| row.map(|x| x / Interval::point(bound)))).collect();
+    let over = Taylor::from(Interval::ONE / Interval::point(bound));
+    let scaled: Vec<Section> = segments.iter().map(|m| m.map(|row| row.map(|x| x * over))).collect();
     // Any symmetric matrices will do that pass.
     let forms = forms(&scaled.iter().map(middle).collect::<Vec<_>>())?;
     if are_falling(&scaled, &forms) { is_positive(&forms[0]) } else { None }
@@ -127,13 +152,13 @@ fn is_positive(form: &Matrix4<f64>) -> Option<bool> {
     let axes = form.symmetric_eigen();
     let lowest = axes.eigenvectors.column(axes.eigenvalues.imin());
     let x: [Interval; FREE] = array::from_fn(|i| Interval::point(lowest[i]));
-    let terms = (0..FREE).flat_map(|i| (0..FREE).map(move |j| x[i] * v[i][j] * x[j]));
+    let terms = (0..FREE).flat_map(|i| (0..FREE).map(move |j| x[i] * v[i][j].hull() * x[j]));
     terms.fold(Interval::ZERO, |sum, term| sum + term).is_negative().then_some(false)
 }
 
-/// Whether all symmetric matrices in intervals are positive definite: all pivots of Gauss's elimination are positive.
+/// Whether all symmetric matrices are positive definite: all pivots of Gauss's elimination are positive.
 fn is_positive_definite(matrix: &Section) -> bool {
-    let mut a = *matrix;
+    let mut a = matrix.map(|row| row.map(Taylor::hull));
     for k in 0..FREE {
         if !a[k][k].is_positive() {
             return false;
@@ -155,12 +180,12 @@ mod tests {
     fn with(a: f64, b: f64, r: f64, angle: f64) -> Section {
         let (c, s) = (r * angle.cos(), r * angle.sin());
         let m = [[a, 3.0, 0.0, 7.0], [0.0, b, 5.0, 0.0], [0.0, 0.0, c, -s], [0.0, 0.0, s, c]];
-        let m: Section = m.map(|row| row.map(Interval::point));
+        let m: Section = m.map(|row| row.map(Taylor::point));
         let mut shear: Section =
-            array::from_fn(|i| array::from_fn(|j| Interval::point(if i == j { 1.0 } else { 0.0 })));
-        (shear[3][0], shear[2][1]) = (Interval::point(2.0), Interval::point(-1.0));
+            array::from_fn(|i| array::from_fn(|j| Taylor::point(if i == j { 1.0 } else { 0.0 })));
+        (shear[3][0], shear[2][1]) = (Taylor::point(2.0), Taylor::point(-1.0));
         let mut back = shear;
-        (back[3][0], back[2][1]) = (Interval::point(-2.0), Interval::point(1.0));
+        (back[3][0], back[2][1]) = (Taylor::point(-2.0), Taylor::point(1.0));
         times(&times(&shear, &m), &back)
     }
 
@@ -178,7 +203,7 @@ mod tests {
             assert_eq!(stability_of(&[matrix]), Stability::Unstable);
         }
         for matrix in [with(1.0, 0.5, 0.5, 1.0), with(0.2, -1.0, 0.5, 1.0), with(0.3, 0.1, 1.0, 1.0)] {
-            let wide = matrix.map(|row| row.map(|x| x.wider(1e-9)));
+            let wide = matrix.map(|row| row.map(|x| Taylor::from(x.hull().wider(1e-9))));
             assert_eq!(stability_of(&[wide]), Stability::Open);
         }
     }
@@ -187,12 +212,26 @@ mod tests {
     #[test]
     fn exact_of_several_segments_the_product_counts() {
         let diagonal = |d: [f64; 4]| -> Section {
-            array::from_fn(|i| array::from_fn(|j| Interval::point(if i == j { d[i] } else { 0.0 })))
+            array::from_fn(|i| array::from_fn(|j| Taylor::point(if i == j { d[i] } else { 0.0 })))
         };
         let pair = [diagonal([4.0, 0.1, 0.2, 0.3]), diagonal([0.125, 5.0, 0.2, 0.3])];
         let Stability::Stable(bound) = stability_of(&pair) else { panic!("not stable") };
         assert!((0.5..0.51).contains(&bound), "{bound}");
         let pair = [diagonal([4.0, 0.1, 0.2, 0.3]), diagonal([0.26, 5.0, 0.2, 0.3])];
         assert_eq!(stability_of(&pair), Stability::Unstable);
+    }
+
+    /// A multiplier that changes along a family, from 0.5 to 0.9 and to 1.1.
+    #[test]
+    fn exact_all_of_a_family_are_stable_or_not() {
+        for (middle, half, stable) in [(0.7, 0.2, true), (0.7, 0.4, false)] {
+            let mut family = with(0.1, 0.2, 0.3, 1.0).map(|row| row.map(|_| Taylor::ZERO));
+            (0..FREE).for_each(|i| family[i][i] = Taylor::point(0.1));
+            (family[0][0], family[0][1]) = (Taylor::line(middle, half), Taylor::point(3.0));
+            match stability_over(&[family], [0.0, 1.0], DEPTH) {
+                Stability::Stable(bound) => assert!(stable && (0.9..1.0).contains(&bound), "{bound}"),
+                other => assert!(!stable && other == Stability::Open, "{other:?}"),
+            }
+        }
     }
 }

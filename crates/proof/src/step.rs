@@ -2,8 +2,9 @@
 
 use crate::Interval;
 use crate::equations::{Equations, Mode, at};
-use crate::number::{Gradient, OMEGA, STATE, State};
-use crate::small::{Frame, Matrix, identity, plus, times, times_vector};
+use crate::number::{Family, Gradient, Number, STATE, State};
+use crate::small::{Frame, Matrix, hull, identity, plus, times, times_vector};
+use crate::taylor::Taylor;
 
 /// Terms of a Taylor polynomial: the first power that is left out.
 pub const ORDER: usize = 20;
@@ -14,53 +15,51 @@ const ATTEMPTS: usize = 24;
 /// How much a box that is too small is widened, as a share of its width.
 const WIDER: f64 = 0.1;
 
-/// The states that motions have come to, from all first states `x` of a box around `x̂`.
+/// The states that motions have come to, from all first states `x` of a box around the centre `x̂`, of a family for each value of its parameter.
 ///
 /// The motion from `x̂` is in `middle + frame · spread`, and another one is away from it by `by · (x - x̂)`: the mean value theorem, with
 /// the derivatives at all states of the box.
 #[derive(Clone, Debug)]
 pub struct States {
-    middle: [f64; STATE],
+    /// Polynomials without rest.
+    middle: Family,
     frame: Frame,
     spread: State,
     /// Derivatives by the first state.
-    pub by: Matrix,
+    pub by: Matrix<Taylor>,
     /// `x - x̂`.
     away: State,
 }
 
 impl States {
-    /// The first states: `x̂` in `centre`, and what they are away from it in `away`, which contains zero: in the directions of the coordinates, but
-    /// for the last one, along which the whole state changes by `slope`.
-    pub fn first(centre: &State, away: State, slope: &[f64; STATE]) -> Self {
-        let middle = centre.map(Interval::mid);
-        let spread = std::array::from_fn(|i| centre[i] - Interval::point(middle[i]));
-        let mut by = identity();
-        (0..STATE).for_each(|i| by[i][OMEGA] = Interval::point(slope[i]));
-        Self { middle, frame: Frame::identity(), spread, by, away }
+    /// The first states: `x̂` in `centre`, and what they are away from it in `away`, which contains zero, by their derivatives `by` it.
+    pub fn first(centre: &Family, away: State, by: Matrix<Taylor>) -> Self {
+        let middle = centre.map(Taylor::polynomial);
+        Self { middle, frame: Frame::identity(), spread: centre.map(Taylor::rest), by, away }
     }
 
     /// What the motion from `x̂` has come to.
-    pub fn centre(&self) -> State {
-        plus(&self.middle.map(Interval::point), &times_vector(&self.frame.matrix(), &self.spread))
+    pub fn centre(&self) -> Family {
+        plus(&self.middle, &times_vector(&self.frame.matrix(), &self.spread).map(Taylor::from))
     }
 
     /// What all of them have come to.
-    pub fn all(&self) -> State {
-        plus(&self.centre(), &times_vector(&self.by, &self.away))
+    pub fn all(&self) -> Family {
+        let moved = |i: usize| {
+            (0..STATE).fold(Taylor::ZERO, |sum, j| sum + self.by[i][j] * Taylor::from(self.away[j]))
+        };
+        plus(&self.centre(), &std::array::from_fn(moved))
     }
 }
 
-/// What is known of all motions during a step.
+/// What is known of all motions during a step, by the share of it that is over, from 0 to 1.
 #[derive(Clone, Debug)]
 pub struct Piece {
     /// What the damper does.
     pub mode: Mode,
-    /// The length of the step.
-    pub h: f64,
-    /// Taylor coefficients at the beginning.
-    pub at_start: Vec<State>,
-    /// Taylor coefficients anywhere in the step; the last one, of the power that `at_start` has no more, bounds what a polynomial leaves out.
+    /// Taylor coefficients at the beginning, times the power of the length of the step.
+    pub at_start: Vec<Family>,
+    /// The same anywhere in the step; the last one, of the power that `at_start` has no more, bounds what a polynomial leaves out.
     pub anywhere: Vec<State>,
 }
 
@@ -107,7 +106,7 @@ pub fn derivatives_within(equations: &Equations, mode: Mode, e: &State, h: Inter
 }
 
 /// A step of the length `h`: what the states have become, and what is known in between. None if no box was found that the motions stay in.
-pub fn step(equations: &Equations, mode: Mode, states: &States, h: f64) -> Option<(States, Piece)> {
+pub fn step(equations: &Equations, mode: Mode, states: &States, h: Taylor) -> Option<(States, Piece)> {
     step_of(ORDER, equations, mode, states, h)
 }
 
@@ -116,67 +115,77 @@ fn step_of(
     equations: &Equations,
     mode: Mode,
     states: &States,
-    h: f64,
+    h: Taylor,
 ) -> Option<(States, Piece)> {
-    let (length, during) = (Interval::point(h), Interval::new(0.0, h));
+    let length = h.hull();
+    if !length.is_positive() {
+        return None;
+    }
+    let during = Interval::new(0.0, length.hi());
     let all = states.all();
-    let e = enclosure(equations, mode, &all, during)?;
+    let e = enclosure(equations, mode, &hull(&all), during)?;
     let within = derivatives_within(equations, mode, &e, during)?;
     let rough = equations.series(mode, &Gradient::coordinates(&e), order);
-    let last = (0..order).fold(Interval::ONE, |power, _| power * length);
-    let left_out: State = rough[order].map(|c| c.value * last);
-    let by_left_out = times(&rough[order].map(|c| c.by.map(|by| by * last)), &within);
+    let power = |k: usize| (0..k).fold(Interval::ONE, |power, _| power * length);
+    let left_out: State = rough[order].map(|c| c.value * power(order));
+    let by_left_out = times(&rough[order].map(|c| c.by.map(|by| by * power(order))), &within);
 
-    let over = |start: &State| {
-        let series = equations.series(mode, &Gradient::coordinates(start), order - 1);
-        let by = |j: usize| at(&series.iter().map(|c| c.map(|c| c.by[j])).collect::<Vec<_>>(), length);
-        let columns: [State; STATE] = std::array::from_fn(by);
-        let by: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i] + by_left_out[i][j]));
-        (by, series.iter().map(|c| c.map(|c| c.value)).collect::<Vec<_>>())
-    };
-    let (by_all, at_start) = over(&all);
-    let by = times(&by_all, &states.by);
+    let series = equations.series(mode, &Gradient::coordinates(&all), order - 1);
+    let over =
+        |i: usize, j: usize| at(series.iter().map(|c| c[i].by[j]), h) + Taylor::from(by_left_out[i][j]);
+    let step: Matrix<Taylor> = std::array::from_fn(|i| std::array::from_fn(|j| over(i, j)));
 
     // The motion from the centre: that from the middle of its box, and what its box becomes.
-    let (by_centre, _) = over(&states.centre());
-    let from_middle = equations.series(mode, &states.middle.map(Interval::point), order - 1);
-    let reached = plus(&at(&from_middle, length), &left_out);
-    let middle = reached.map(Interval::mid);
-    let turned = times(&by_centre, &states.frame.matrix());
+    let from_middle = equations.series(mode, &states.middle, order - 1);
+    let reached = |i: usize| at(from_middle.iter().map(|c| c[i]), h) + Taylor::from(left_out[i]);
+    let reached: Family = std::array::from_fn(reached);
+    let turned = times(&step.map(|row| row.map(Taylor::hull)), &states.frame.matrix());
     let frame = Frame::along(&turned, &states.spread.map(Interval::magnitude), equations.scales);
-    let rest: State = std::array::from_fn(|i| reached[i] - Interval::point(middle[i]));
-    let mut spread = frame.coordinates(&rest)?;
+    let mut spread = frame.coordinates(&reached.map(Taylor::rest))?;
     for j in 0..STATE {
         let column = frame.coordinates(&turned.map(|row| row[j]))?;
         (0..STATE).for_each(|i| spread[i] = spread[i] + column[i] * states.spread[j]);
     }
-    let next = States { middle, frame, spread, by, away: states.away };
-    let anywhere = rough.iter().map(|c| c.map(|c| c.value)).collect();
-    Some((next, Piece { mode, h, at_start, anywhere }))
+    let by = times(&step, &states.by);
+    let next = States { middle: reached.map(Taylor::polynomial), frame, spread, by, away: states.away };
+    let (mut power, mut at_start) = (Taylor::point(1.0), Vec::with_capacity(order));
+    for c in &series {
+        at_start.push(c.map(|c| c.value * power));
+        power = power * h;
+    }
+    let (mut power, mut anywhere) = (Interval::ONE, Vec::with_capacity(order + 1));
+    for c in &rough {
+        anywhere.push(c.map(|c| c.value * power));
+        power = power * length;
+    }
+    Some((next, Piece { mode, at_start, anywhere }))
 }
 
 impl Piece {
     /// The largest share of a coordinate that the polynomials leave out; of one that hardly moves, of [`SMALL`].
     pub fn left_out(&self) -> f64 {
-        let power = |k: usize| self.h.powi(k as i32);
         let share = |i: usize| {
-            let size: f64 = self.at_start.iter().enumerate().map(|(k, c)| c[i].magnitude() * power(k)).sum();
-            let order = self.at_start.len();
-            self.anywhere[order][i].magnitude() * power(order) / size.max(SMALL)
+            let size: f64 = self.at_start.iter().map(|c| c[i].mid().abs()).sum();
+            self.anywhere[self.at_start.len()][i].magnitude() / size.max(SMALL)
         };
         (0..STATE).map(share).fold(0.0, f64::max)
     }
 
     /// The Taylor series of one quantity over the step: the coefficients at its beginning, and the last one anywhere in it.
-    ///
-    /// `of` makes the series of the quantity from that of the motion.
-    pub fn series_of(&self, of: impl Fn(&[State]) -> Vec<Interval>) -> Vec<Interval> {
+    pub fn series_of(&self, quantity: &impl Quantity) -> Vec<Taylor> {
         let order = self.at_start.len();
-        let mut series = of(&self.at_start);
+        let mut series = quantity.series(self.mode, &self.at_start);
         series.truncate(order);
-        series.extend(of(&self.anywhere).get(order));
+        let last = quantity.series(self.mode, &self.anywhere);
+        series.extend(last.get(order).map(|last| Taylor::from(*last)));
         series
     }
+}
+
+/// A quantity of a motion.
+pub trait Quantity {
+    /// Its series from that of the motion.
+    fn series<T: Number>(&self, mode: Mode, motion: &[[T; STATE]]) -> Vec<T>;
 }
 
 #[cfg(test)]
@@ -203,10 +212,10 @@ mod tests {
         h: f64,
         n: usize,
     ) -> (States, f64) {
-        let mut states = States::first(&start.map(Interval::point), [Interval::ZERO; STATE], &ALONE);
+        let mut states = States::first(&start.map(Taylor::point), [Interval::ZERO; STATE], identity());
         let mut left_out = 0.0;
         for _ in 0..n {
-            let (next, piece) = step_of(order, equations, mode, &states, h / n as f64)
+            let (next, piece) = step_of(order, equations, mode, &states, Taylor::point(h / n as f64))
                 .unwrap_or_else(|| panic!("no step: {mode:?} {n}"));
             left_out = f64::max(left_out, piece.left_out());
             states = next;
@@ -214,13 +223,10 @@ mod tests {
         (states, left_out)
     }
 
-    /// The frequency changes nothing at the beginning.
-    const ALONE: [f64; STATE] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
-
     const STARTS: [(Mode, [f64; STATE], f64); 3] = [
-        (Mode::Flight, [0.2, -1.0, 0.05, 0.3, 1.0, 6.3], 0.07),
-        (Mode::Contact(Side::Primary), [0.05, 0.8, 0.05, 0.3, 1.0, 6.3], 0.02),
-        (Mode::Contact(Side::Obstacle), [0.06, -0.3, 0.05, 0.3, 2.0, 6.3], 0.02),
+        (Mode::Flight, [0.2, -1.0, 0.05, 0.3, 1.0, 0.0], 0.07),
+        (Mode::Contact(Side::Primary), [0.05, 0.8, 0.05, 0.3, 1.0, 0.0], 0.02),
+        (Mode::Contact(Side::Obstacle), [0.06, -0.3, 0.05, 0.3, 2.0, 0.0], 0.02),
     ];
 
     /// In one step a polynomial of the fifth degree leaves out much more than rounding; in sixteen of the twentieth order, nothing. Both enclose the same motion and the same derivatives.
@@ -232,11 +238,11 @@ mod tests {
             let (many, sharp) = after(ORDER, &equations, mode, start, h, 16);
             assert!(rough > 1e-10 && sharp < 1e-18, "{mode:?}: {rough:e} {sharp:e}");
             for i in 0..STATE {
-                let (wide, narrow) = (one.centre()[i], many.centre()[i]);
+                let (wide, narrow) = (one.centre()[i].hull(), many.centre()[i].hull());
                 assert!(narrow.is_in(wide.wider(narrow.width())), "{mode:?} {i}: {narrow} {wide}");
                 assert!(narrow.width() < 1e-13, "{mode:?} {i}: {narrow}");
                 for j in 0..STATE {
-                    let (wide, narrow) = (one.by[i][j], many.by[i][j]);
+                    let (wide, narrow) = (one.by[i][j].hull(), many.by[i][j].hull());
                     assert!(wide.meet(narrow).is_some(), "{mode:?} {i} {j}: {narrow} {wide}");
                 }
             }
@@ -250,15 +256,15 @@ mod tests {
             let equations = scene();
             let r = 1e-5;
             let mut states =
-                States::first(&start.map(Interval::point), [Interval::around_zero(r); STATE], &ALONE);
+                States::first(&start.map(Taylor::point), [Interval::around_zero(r); STATE], identity());
             for _ in 0..8 {
-                states = step(&equations, mode, &states, h / 8.0).expect("a step").0;
+                states = step(&equations, mode, &states, Taylor::point(h / 8.0)).expect("a step").0;
             }
             for corner in 0..1 << STATE {
                 let from = std::array::from_fn(|i| start[i] + if corner >> i & 1 == 0 { -r } else { r });
                 let (own, _) = after(ORDER, &equations, mode, from, h, 8);
                 for i in 0..STATE {
-                    let (own, all) = (own.centre()[i], states.all()[i]);
+                    let (own, all) = (own.centre()[i].hull(), states.all()[i].hull());
                     assert!(own.is_in(all.wider(own.width())), "{mode:?} {corner} {i}: {own} {all}");
                     assert!(all.width() < 100.0 * r, "{mode:?} {i}: {all}");
                 }

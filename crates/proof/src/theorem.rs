@@ -2,13 +2,14 @@
 
 use crate::equations::Equations;
 use crate::event::Event;
+use crate::inverse::Inverse;
 use crate::largest::{Largest, largest};
-use crate::number::{OMEGA, STATE, State};
+use crate::number::{SPEED, STATE, State};
 use crate::orbit::{Orbit, Residual};
 use crate::segment::Node;
 use crate::stability::{Stability, stability};
+use crate::taylor::Taylor;
 use crate::{Failure, Interval};
-use nalgebra::DMatrix;
 use retune_model::{Scene, Side};
 use serde::Serialize;
 use std::array;
@@ -83,7 +84,7 @@ pub fn prove(scene: &Scene, start: [f64; 4], periods: usize) -> Result<Theorem, 
 fn alone(
     equations: &Equations,
     orbit: &Orbit,
-    inverse: &DMatrix<f64>,
+    inverse: &Inverse,
 ) -> Result<(Vec<State>, Vec<State>), Failure> {
     let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
     let least = krawczyk(orbit, inverse, &orbit.residual(equations, &none)?, &none);
@@ -108,7 +109,7 @@ fn alone(
 pub fn about(orbit: &Orbit, least: &[State], times: f64, widest: f64) -> Vec<State> {
     let of_node = |(node, least): (&Node, &State)| {
         let half_width = |i: usize| {
-            let size = node.state[i].abs().max(1e-3);
+            let size = node.state[i].mid().abs().max(1e-3);
             let least = least[i].magnitude();
             (times * least).max(NARROWEST * size).min((widest * size).max(2.0 * least))
         };
@@ -125,33 +126,26 @@ pub fn is_inside(orbit: &Orbit, image: &[State], away: &[State]) -> bool {
     (0..away.len()).all(inside)
 }
 
-/// Krawczyk's operator on the box `x̂ + away`, from `x̂`: `-A F(x̂) + (I - A F'(box)) away`, with `A` near the inverse of the derivatives.
+/// Krawczyk's operator on the box `x̂ + away`, from `x̂`: `-A F(x̂) + (I - A F'(box)) away`, with `A` near the inverse of the derivatives;
+/// of a family for each value of its parameter.
 ///
 /// If it is in the interior of `away`, the box holds exactly one solution, and the solution is in it (R. Krawczyk, 1969; R. E. Moore, 1977).
-pub fn krawczyk(orbit: &Orbit, inverse: &DMatrix<f64>, known: &Residual, away: &[State]) -> Vec<State> {
-    let n = orbit.unknowns();
-    let jacobian = orbit.jacobian(&known.passages);
-    let a = |i: usize, k: usize| Interval::point(inverse[(i, k)]);
-    let mut image = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
+pub fn krawczyk(orbit: &Orbit, inverse: &Inverse, known: &Residual, away: &[State]) -> Vec<State> {
+    let moved = inverse.times(&known.gaps);
+    let off = inverse.off(&orbit.jacobian(&known.passages));
     let places: Vec<(usize, usize)> =
         orbit.nodes.iter().enumerate().flat_map(|(k, node)| node.event.free().map(move |i| (k, i))).collect();
-    for row in 0..n {
-        let mut sum = -(0..n).fold(Interval::ZERO, |sum, k| sum + a(row, k) * known.gaps[k]);
-        for column in 0..n {
-            let product = (0..n).fold(Interval::ZERO, |sum, k| sum + a(row, k) * jacobian[k][column]);
-            let one = if row == column { Interval::ONE } else { Interval::ZERO };
-            let (k, i) = places[column];
-            sum = sum + (one - product) * away[k][i];
-        }
-        let (k, i) = places[row];
-        image[k][i] = sum;
+    let mut image = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
+    for (row, &(k, i)) in places.iter().enumerate() {
+        let terms = places.iter().zip(&off[row]).map(|(&(k, i), off)| off.hull() * away[k][i]);
+        image[k][i] = terms.fold(-moved[row].hull(), |sum, term| sum + term);
     }
     image
 }
 
 /// The largest width.
 pub fn width(boxes: &[State]) -> f64 {
-    boxes.iter().flat_map(|x| &x[..OMEGA]).map(|x| x.width()).fold(0.0, f64::max)
+    boxes.iter().flat_map(|x| &x[..SPEED]).map(|x| x.width()).fold(0.0, f64::max)
 }
 
 /// The walls in turn.
@@ -167,9 +161,7 @@ pub fn impacts(orbit: &Orbit) -> String {
 /// The states at the events.
 fn events(equations: &Equations, orbit: &Orbit, away: &[State]) -> Vec<Proven> {
     let at = |(node, away): (&Node, &State)| {
-        let mut state: State = array::from_fn(|i| {
-            Interval::point(node.state[i]) + Interval::point(node.slope[i]) * away[OMEGA] + away[i]
-        });
+        let mut state: State = array::from_fn(|i| (node.state[i] + Taylor::from(away[i])).hull());
         let (event, wall) = match node.event {
             Event::Crest => ("crest of the force", None),
             Event::Touch(Side::Primary) => ("touches the structure", equations.wall(Side::Primary)),

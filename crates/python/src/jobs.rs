@@ -184,7 +184,7 @@ pub fn prove(
     tell: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let omega = omega.map(|omega| Setting::new(Parameter::Omega, omega));
-    let guess = retune_jobs::prove::Guess { omega, from: None };
+    let guess = retune_jobs::prove::Guess { omega, ..Default::default() };
     monitored(py, tell.as_ref(), |_| json(&retune_jobs::prove::prove(&study, &guess)?))
 }
 

@@ -206,6 +206,8 @@ pub struct Prove {
     /// A study (its scene is looked at), the optimum.json of a search, or the directory of its results
     #[arg(value_name = "STUDY|OPTIMUM|RESULTS")]
     pub study: PathBuf,
+    #[arg(long = "set", value_name = "NAME=VALUE", help = settings(), value_parser = Named::<Setting>::new(assignments), hide_possible_values = true)]
+    pub settings: Vec<Setting>,
     /// Frequency of the force, rad/s or with its unit [default: that of the worst run of a search, or of the scene]
     #[arg(long, value_name = "W", value_parser = omega)]
     pub omega: Option<Setting>,

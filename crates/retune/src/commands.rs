@@ -144,11 +144,13 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
 fn prove(arguments: &cli::Prove) -> Result<(), Error> {
     let request = arguments.common.request(&arguments.study);
     if let (Some(from), Some(to)) = (arguments.omega, arguments.to) {
-        let band = || retune_jobs::prove::prove_band(&arguments.study, [from, to], arguments.most);
+        let band = || {
+            retune_jobs::prove::prove_band(&arguments.study, &arguments.settings, [from, to], arguments.most)
+        };
         return shown(&request.on_threads(band)?, &arguments.common);
     }
     let from = arguments.from.map(|start| (start, usize::from(arguments.periods)));
-    let guess = Guess { omega: arguments.omega, from };
+    let guess = Guess { settings: arguments.settings.clone(), omega: arguments.omega, from };
     shown(&request.on_threads(|| retune_jobs::prove::prove(&arguments.study, &guess))?, &arguments.common)
 }
 
