@@ -44,7 +44,7 @@ pub fn cases() -> Vec<Case> {
         ("restitution", "restitution 0.7 at every speed", 20.0, Numbers { e: 0.7, ..SSVI }.scene()),
         ("rigid", "rigid walls, restitution 0.7", 20.0, Numbers { rigid: Some(0.7), ..SSVI }.scene()),
         ("held", "held by a stiff spring", 20.0, Numbers { k2: 1e6, d: 0.0, ..SSVI }.scene()),
-        ("stiff-dashpot", "stiff dashpot", 10.0, Numbers { c2: 1e7, ..SSVI }.scene()),
+        ("stiff-dashpot", "stiff dashpot", 5.0, Numbers { c2: 1e7, ..SSVI }.scene()),
     ]
     .map(|(name, label, to, scene)| Case { name, label, scene, to })
     .into()
