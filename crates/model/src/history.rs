@@ -5,7 +5,8 @@
 //! jumps.
 
 use crate::excitation::Stretch;
-use crate::record::Record;
+use crate::made::{Form, Made};
+use crate::record::{Record, Samples};
 use crate::unit::{ACCELERATION, FORCE};
 use crate::{Finite, Positive, Unit};
 use schemars::JsonSchema;
@@ -41,6 +42,8 @@ pub enum Course {
     Pulse(Pulse),
     /// Samples with straight lines between them, and nothing before the first and after the last.
     Record(Record),
+    /// Samples of a formula or of a spectrum, as a record's.
+    Made(Made),
 }
 
 /// A pulse that begins at t = 0.
@@ -65,7 +68,12 @@ pub enum Shape {
     /// The peak all the time.
     #[serde(rename = "rectangle")]
     Rectangle,
+    /// peak (1 - cos(2π t / duration)) / 2. It becomes samples: see [`Made`].
+    #[serde(rename = "versed sine")]
+    VersedSine,
 }
+
+const NO_STRETCH: Stretch = Stretch { from: 0.0, to: f64::INFINITY, begin: [f64::NAN; 2] };
 
 impl Of {
     /// The units in which it may be given, the SI unit first.
@@ -94,7 +102,30 @@ impl Course {
                 let peak = pulse.peak().abs();
                 [peak, if pulse.shape == Shape::HalfSine { peak * PI / pulse.duration.get() } else { 0.0 }]
             }
-            Self::Record(record) => record.samples().map_or([f64::NAN; 2], |samples| samples.bounds()),
+            Self::Record(_) | Self::Made(_) => self.samples().map_or([f64::NAN; 2], Samples::bounds),
+        }
+    }
+
+    /// The field that gives it in a study.
+    pub(crate) fn given_by(&self) -> &'static str {
+        match self {
+            Self::Pulse(_) => "pulse",
+            Self::Record(_) => "record",
+            Self::Made(made) => match made.recipe().form {
+                Form::VersedSine(_) => "pulse",
+                Form::Harmonics(_) => "harmonics",
+                Form::Sweep(_) => "sweep",
+                Form::Spectrum(_) => "spectrum",
+            },
+        }
+    }
+
+    /// The samples of a course that has some.
+    pub fn samples(&self) -> Option<&'static Samples> {
+        match self {
+            Self::Pulse(_) => None,
+            Self::Record(record) => record.samples(),
+            Self::Made(made) => Some(made.samples()),
         }
     }
 
@@ -102,11 +133,10 @@ impl Course {
     pub(crate) fn stretch(&self, t: f64) -> Stretch {
         match self {
             Self::Pulse(pulse) => pulse.stretch(t),
-            Self::Record(record) => record.samples().map_or(
-                // A record that was not read has no value.
-                Stretch { from: 0.0, to: f64::INFINITY, begin: [f64::NAN; 2] },
-                |samples| samples.stretch(t),
-            ),
+            // A record that was not read has no value.
+            Self::Record(_) | Self::Made(_) => {
+                self.samples().map_or(NO_STRETCH, |samples| samples.stretch(t))
+            }
         }
     }
 
@@ -114,7 +144,7 @@ impl Course {
     pub fn end(&self) -> f64 {
         match self {
             Self::Pulse(pulse) => pulse.duration.get(),
-            Self::Record(record) => record.samples().map_or(f64::NAN, |samples| samples.end()),
+            Self::Record(_) | Self::Made(_) => self.samples().map_or(f64::NAN, Samples::end),
         }
     }
 }
@@ -133,6 +163,8 @@ impl Pulse {
         let begin = match self.shape {
             Shape::HalfSine => [0.0, -self.peak()],
             Shape::Rectangle => [self.peak(), 0.0],
+            // It has samples, and no pair of its own.
+            Shape::VersedSine => return NO_STRETCH,
         };
         Stretch { from: 0.0, to: end, begin }
     }

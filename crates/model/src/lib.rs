@@ -50,6 +50,7 @@ mod hertz;
 mod history;
 mod kept;
 mod loss;
+mod made;
 mod measure;
 mod parameter;
 mod per_variable;
@@ -79,6 +80,7 @@ pub use hertz::{
 pub use history::{Course, History, Of, Pulse, Shape};
 pub use kept::Kept;
 pub use loss::{Loss, Restoring};
+pub use made::{Form, Harmonic, Made, Recipe, Spectrum, Sweep, Unmade};
 pub use measure::{Measure, PerMeasure};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
