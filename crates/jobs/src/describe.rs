@@ -224,7 +224,8 @@ fn goal(study: &Study) -> Vec<String> {
             format!("  {} times {name}, {}", short(part.weight.get()), over(&part.objective, omega))
         };
         lines.extend(objective.sum.iter().map(part));
-    } else if objective.ensemble.is_none()
+    } else if objective.records.is_empty()
+        && objective.ensemble.is_none()
         && objective.k1.is_none()
         && objective.restitution.is_none()
         && objective.omega.is_none()

@@ -5,8 +5,8 @@
 //! jumps.
 
 use crate::excitation::Stretch;
-use crate::made::{Form, Made};
-use crate::record::{Record, Samples};
+use crate::made::{Form, Made, Recipe, Spectrum};
+use crate::record::{Record, RecordFile, Samples};
 use crate::unit::{ACCELERATION, FORCE};
 use crate::{Finite, Positive, Unit};
 use schemars::JsonSchema;
@@ -85,6 +85,45 @@ impl Of {
     }
 }
 
+impl History {
+    /// The same with the other sign.
+    pub fn reversed(self) -> Option<Self> {
+        let course = match self.course {
+            Course::Pulse(pulse) => {
+                let peak = Finite::new(-pulse.peak.get()).ok()?;
+                Course::Pulse(Pulse { peak, ..pulse })
+            }
+            Course::Record(_) | Course::Made(_) => of_samples(self.course.samples()?.times(-1.0).ok()?),
+        };
+        Some(Self { course, ..self })
+    }
+
+    /// The same with every second sample of a record, and samples twice as far apart of a formula; none of a pulse.
+    pub fn coarser(self) -> Option<Self> {
+        let course = match self.course {
+            Course::Pulse(_) => return None,
+            Course::Record(_) => of_samples(self.course.samples()?.every_second().ok()?),
+            Course::Made(made) => Course::Made(made.denser(0.5).ok()?),
+        };
+        Some(Self { course, ..self })
+    }
+
+    /// Another draw of a random force, so many seeds on; none of anything else.
+    pub fn drawn_again(self, seeds: u64) -> Option<Self> {
+        let Course::Made(made) = self.course else { return None };
+        let Form::Spectrum(spectrum) = made.recipe().form.clone() else { return None };
+        let form = Form::Spectrum(Spectrum { seed: spectrum.seed.wrapping_add(seeds), ..spectrum });
+        let again = Made::new(Recipe { form, ..made.recipe().clone() }).ok()?;
+        Some(Self { course: Course::Made(again), ..self })
+    }
+}
+
+/// A record without a file.
+fn of_samples(samples: Samples) -> Course {
+    let nowhere = RecordFile { file: String::new(), column: None, unit: None, scale: None };
+    Course::Record(Record::new(nowhere).with(samples))
+}
+
 impl Course {
     /// `[ω, ω again or 0]`, rad/s, of `df/dt = -ω s`, `ds/dt = ω f`: the pair of a half sine turns, and the second number of a straight
     /// line stays, which is its slope in the units of ω = 1.
@@ -96,7 +135,7 @@ impl Course {
     }
 
     /// Bounds on its value and on its slope wherever it has one.
-    pub(crate) fn bounds(&self) -> [f64; 2] {
+    pub fn bounds(&self) -> [f64; 2] {
         match self {
             Self::Pulse(pulse) => {
                 let peak = pulse.peak().abs();

@@ -191,6 +191,31 @@ impl Samples {
         Ok(samples)
     }
 
+    /// The same times a factor.
+    ///
+    /// # Errors
+    /// [`BadSamples::NotFinite`].
+    pub fn times(&self, factor: f64) -> Result<Self, BadSamples> {
+        let times = match &self.times {
+            Times::Every(first, step) => Times::Every(*first, *step),
+            Times::At(times) => Times::At(times.clone()),
+        };
+        Self::new(times, self.values.iter().map(|value| factor * value).collect())
+    }
+
+    /// Every second of them, from the first on.
+    ///
+    /// # Errors
+    /// [`BadSamples::Few`].
+    pub fn every_second(&self) -> Result<Self, BadSamples> {
+        let values = self.values.iter().copied().step_by(2).collect();
+        let times = match &self.times {
+            Times::Every(first, step) => Times::Every(*first, 2.0 * step),
+            Times::At(times) => Times::At(times.iter().copied().step_by(2).collect()),
+        };
+        Self::new(times, values)
+    }
+
     /// How many there are, at least two.
     pub fn len(&self) -> usize {
         self.values.len()
