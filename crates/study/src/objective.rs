@@ -2,7 +2,7 @@
 
 use super::format::{Coarse, Study};
 use super::rule::Rule;
-use retune_model::{Measure, Parameter, Scene};
+use retune_model::{Forcing, Measure, Parameter, Scene};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
 };
