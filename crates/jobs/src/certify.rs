@@ -4,6 +4,7 @@ mod certificate;
 mod margin;
 mod measure;
 mod motions;
+mod records;
 mod walls;
 
 pub use certificate::{Certificate, Short, Verdict, Walls, periodic};
@@ -81,7 +82,8 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
 /// A certificate of the damper of a study that has all but the value between other walls, with that too.
 pub(crate) fn complete(study: &Study, certificate: Certificate) -> Certificate {
     let walls = walls::other_walls(study, &certificate);
-    certificate.with_walls(walls)
+    let records = records::other_records(study, &certificate);
+    certificate.with_walls(walls).with_records(records)
 }
 
 /// The certificate of the damper of a study, made again.

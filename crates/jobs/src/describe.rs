@@ -1,6 +1,8 @@
 //! Descriptions of study files in words, for `check`.
 
-use retune_model::{Contact, Course, Forcing, History, Loss, Measure, Of, Shape, Source};
+use retune_model::{
+    Contact, Course, Forcing, Form, History, Loss, Measure, Of, Shape, Source, Spectrum, Sweep,
+};
 use retune_optim::{Part, Response};
 use retune_solver::{Method, least_steps};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
@@ -131,9 +133,33 @@ fn given(History { of, course }: &History) -> String {
             let shape = match pulse.shape {
                 Shape::HalfSine => "a half sine",
                 Shape::Rectangle => "a rectangle",
+                Shape::VersedSine => "a versed sine",
             };
             let (peak, duration) = (short(pulse.peak()), short(pulse.duration.get()));
             format!("under {shape} of {peak} {unit} for {duration} s, {of_what}")
+        }
+        Course::Made(made) => {
+            let (recipe, samples) = (made.recipe(), made.samples());
+            let what = match &recipe.form {
+                Form::VersedSine(peak) => {
+                    format!("a versed sine of {} {unit}", short(peak.get() * recipe.unit.1))
+                }
+                Form::Harmonics(harmonics) => counted(harmonics.len() as u64, "harmonic"),
+                Form::Sweep(Sweep { from, rate, .. }) => {
+                    let to = short(from.get() + rate.get() * recipe.duration.get());
+                    format!("a sweep from {} to {to} rad/s", short(from.get()))
+                }
+                Form::Spectrum(Spectrum { seed, .. }) => {
+                    format!("a random force of a spectrum (Shinozuka and Deodatis, seed {seed})")
+                }
+            };
+            let ([most, _], end) = (samples.bounds(), short(samples.end()));
+            let count = counted(samples.len() as u64, "sample");
+            let error = short(recipe.error());
+            format!(
+                "under {what} for {end} s, at most {} {unit}, {of_what}; {count} that are off by at most {error} {unit}",
+                short(most)
+            )
         }
         Course::Record(record) => {
             let file = &record.source().file;
@@ -198,7 +224,8 @@ fn goal(study: &Study) -> Vec<String> {
             format!("  {} times {name}, {}", short(part.weight.get()), over(&part.objective, omega))
         };
         lines.extend(objective.sum.iter().map(part));
-    } else if objective.ensemble.is_none()
+    } else if objective.records.is_empty()
+        && objective.ensemble.is_none()
         && objective.k1.is_none()
         && objective.restitution.is_none()
         && objective.omega.is_none()

@@ -6,6 +6,7 @@ mod candidate;
 mod comparison;
 mod curves;
 mod drawing;
+mod modes;
 mod page;
 mod question;
 mod reading;
@@ -18,6 +19,7 @@ mod words;
 
 pub use candidate::{Candidate, What};
 pub use comparison::{Comparison, Cost};
+pub use modes::structure;
 pub use requirements::{Dampers, Driving, Requirements, Wall, Wish};
 pub use tmd::Formula;
 pub use typed::{Typed, Wishes};

@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{Course, EvenForce, Excitation, Forcing, History, Of, Primary, Source, Start, Stretch};
+use crate::{EvenForce, Excitation, Forcing, History, Of, Primary, Source, Start, Stretch};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -120,8 +120,7 @@ impl Bare {
     /// The samples of an equidistant record.
     pub fn even_force(&self) -> Option<EvenForce> {
         let history = self.history()?;
-        let Course::Record(record) = &history.course else { return None };
-        EvenForce::new(record.samples()?, self.force_of(history))
+        EvenForce::new(history.course.samples()?, self.force_of(history))
     }
 
     /// The same as if a stretch of time, of its own, went on for ever.

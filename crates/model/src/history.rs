@@ -5,7 +5,8 @@
 //! jumps.
 
 use crate::excitation::Stretch;
-use crate::record::Record;
+use crate::made::{Form, Made, Recipe, Spectrum};
+use crate::record::{Record, RecordFile, Samples};
 use crate::unit::{ACCELERATION, FORCE};
 use crate::{Finite, Positive, Unit};
 use schemars::JsonSchema;
@@ -41,6 +42,8 @@ pub enum Course {
     Pulse(Pulse),
     /// Samples with straight lines between them, and nothing before the first and after the last.
     Record(Record),
+    /// Samples of a formula or of a spectrum, as a record's.
+    Made(Made),
 }
 
 /// A pulse that begins at t = 0.
@@ -65,7 +68,12 @@ pub enum Shape {
     /// The peak all the time.
     #[serde(rename = "rectangle")]
     Rectangle,
+    /// peak (1 - cos(2π t / duration)) / 2. It becomes samples: see [`Made`].
+    #[serde(rename = "versed sine")]
+    VersedSine,
 }
+
+const NO_STRETCH: Stretch = Stretch { from: 0.0, to: f64::INFINITY, begin: [f64::NAN; 2] };
 
 impl Of {
     /// The units in which it may be given, the SI unit first.
@@ -75,6 +83,45 @@ impl Of {
             Self::BaseAcceleration => ACCELERATION,
         }
     }
+}
+
+impl History {
+    /// The same with the other sign.
+    pub fn reversed(self) -> Option<Self> {
+        let course = match self.course {
+            Course::Pulse(pulse) => {
+                let peak = Finite::new(-pulse.peak.get()).ok()?;
+                Course::Pulse(Pulse { peak, ..pulse })
+            }
+            Course::Record(_) | Course::Made(_) => of_samples(self.course.samples()?.times(-1.0).ok()?),
+        };
+        Some(Self { course, ..self })
+    }
+
+    /// The same with every second sample of a record, and samples twice as far apart of a formula; none of a pulse.
+    pub fn coarser(self) -> Option<Self> {
+        let course = match self.course {
+            Course::Pulse(_) => return None,
+            Course::Record(_) => of_samples(self.course.samples()?.every_second().ok()?),
+            Course::Made(made) => Course::Made(made.denser(0.5).ok()?),
+        };
+        Some(Self { course, ..self })
+    }
+
+    /// Another draw of a random force, so many seeds on; none of anything else.
+    pub fn drawn_again(self, seeds: u64) -> Option<Self> {
+        let Course::Made(made) = self.course else { return None };
+        let Form::Spectrum(spectrum) = made.recipe().form.clone() else { return None };
+        let form = Form::Spectrum(Spectrum { seed: spectrum.seed.wrapping_add(seeds), ..spectrum });
+        let again = Made::new(Recipe { form, ..made.recipe().clone() }).ok()?;
+        Some(Self { course: Course::Made(again), ..self })
+    }
+}
+
+/// A record without a file.
+fn of_samples(samples: Samples) -> Course {
+    let nowhere = RecordFile { file: String::new(), column: None, unit: None, scale: None };
+    Course::Record(Record::new(nowhere).with(samples))
 }
 
 impl Course {
@@ -88,13 +135,36 @@ impl Course {
     }
 
     /// Bounds on its value and on its slope wherever it has one.
-    pub(crate) fn bounds(&self) -> [f64; 2] {
+    pub fn bounds(&self) -> [f64; 2] {
         match self {
             Self::Pulse(pulse) => {
                 let peak = pulse.peak().abs();
                 [peak, if pulse.shape == Shape::HalfSine { peak * PI / pulse.duration.get() } else { 0.0 }]
             }
-            Self::Record(record) => record.samples().map_or([f64::NAN; 2], |samples| samples.bounds()),
+            Self::Record(_) | Self::Made(_) => self.samples().map_or([f64::NAN; 2], Samples::bounds),
+        }
+    }
+
+    /// The field that gives it in a study.
+    pub(crate) fn given_by(&self) -> &'static str {
+        match self {
+            Self::Pulse(_) => "pulse",
+            Self::Record(_) => "record",
+            Self::Made(made) => match made.recipe().form {
+                Form::VersedSine(_) => "pulse",
+                Form::Harmonics(_) => "harmonics",
+                Form::Sweep(_) => "sweep",
+                Form::Spectrum(_) => "spectrum",
+            },
+        }
+    }
+
+    /// The samples of a course that has some.
+    pub fn samples(&self) -> Option<&'static Samples> {
+        match self {
+            Self::Pulse(_) => None,
+            Self::Record(record) => record.samples(),
+            Self::Made(made) => Some(made.samples()),
         }
     }
 
@@ -102,11 +172,10 @@ impl Course {
     pub(crate) fn stretch(&self, t: f64) -> Stretch {
         match self {
             Self::Pulse(pulse) => pulse.stretch(t),
-            Self::Record(record) => record.samples().map_or(
-                // A record that was not read has no value.
-                Stretch { from: 0.0, to: f64::INFINITY, begin: [f64::NAN; 2] },
-                |samples| samples.stretch(t),
-            ),
+            // A record that was not read has no value.
+            Self::Record(_) | Self::Made(_) => {
+                self.samples().map_or(NO_STRETCH, |samples| samples.stretch(t))
+            }
         }
     }
 
@@ -114,7 +183,7 @@ impl Course {
     pub fn end(&self) -> f64 {
         match self {
             Self::Pulse(pulse) => pulse.duration.get(),
-            Self::Record(record) => record.samples().map_or(f64::NAN, |samples| samples.end()),
+            Self::Record(_) | Self::Made(_) => self.samples().map_or(f64::NAN, Samples::end),
         }
     }
 }
@@ -133,6 +202,8 @@ impl Pulse {
         let begin = match self.shape {
             Shape::HalfSine => [0.0, -self.peak()],
             Shape::Rectangle => [self.peak(), 0.0],
+            // It has samples, and no pair of its own.
+            Shape::VersedSine => return NO_STRETCH,
         };
         Stretch { from: 0.0, to: end, begin }
     }

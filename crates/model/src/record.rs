@@ -79,7 +79,7 @@ static FILES: Mutex<Vec<&'static RecordFile>> = Mutex::new(Vec::new());
 static SAMPLES: Mutex<Vec<&'static Samples>> = Mutex::new(Vec::new());
 
 /// The one that is kept and equal to `new`.
-fn kept<T: PartialEq>(all: &Mutex<Vec<&'static T>>, new: T) -> &'static T {
+pub(crate) fn kept<T: PartialEq>(all: &Mutex<Vec<&'static T>>, new: T) -> &'static T {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(same) = all.iter().copied().find(|old| **old == new) {
         return same;
@@ -99,7 +99,7 @@ impl Record {
     /// The same with its samples, in SI units.
     #[must_use]
     pub fn with(self, samples: Samples) -> Self {
-        Self { samples: Some(kept(&SAMPLES, samples)), ..self }
+        Self { samples: Some(samples.keep()), ..self }
     }
 
     /// The same, to be written with its samples, so that a study needs no other file.
@@ -137,6 +137,11 @@ impl PartialEq for Record {
 }
 
 impl Samples {
+    /// The same for as long as the program runs.
+    pub(crate) fn keep(self) -> &'static Self {
+        kept(&SAMPLES, self)
+    }
+
     /// Samples at these times, s.
     ///
     /// # Errors
@@ -184,6 +189,31 @@ impl Samples {
         samples.bounds[0] = samples.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         samples.bounds[1] = (1..samples.len()).fold(0.0, |most: f64, i| most.max(samples.slope(i - 1).abs()));
         Ok(samples)
+    }
+
+    /// The same times a factor.
+    ///
+    /// # Errors
+    /// [`BadSamples::NotFinite`].
+    pub fn times(&self, factor: f64) -> Result<Self, BadSamples> {
+        let times = match &self.times {
+            Times::Every(first, step) => Times::Every(*first, *step),
+            Times::At(times) => Times::At(times.clone()),
+        };
+        Self::new(times, self.values.iter().map(|value| factor * value).collect())
+    }
+
+    /// Every second of them, from the first on.
+    ///
+    /// # Errors
+    /// [`BadSamples::Few`].
+    pub fn every_second(&self) -> Result<Self, BadSamples> {
+        let values = self.values.iter().copied().step_by(2).collect();
+        let times = match &self.times {
+            Times::Every(first, step) => Times::Every(*first, 2.0 * step),
+            Times::At(times) => Times::At(times.iter().copied().step_by(2).collect()),
+        };
+        Self::new(times, values)
     }
 
     /// How many there are, at least two.

@@ -1,6 +1,6 @@
 //! What takes seconds to hours: searches, certificates, verification. The files are those of the command line, to the last byte.
 
-use crate::errors::Fault;
+use crate::errors::{Fault, Given};
 use crate::monitor::{caught, monitored, on_pool};
 use crate::pool::{check, pool};
 use crate::problem::{Core, json};
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use retune_jobs::design::Wishes;
 use retune_jobs::job::Done;
 use retune_jobs::{Request, tune, verify as verification};
-use retune_model::{Parameter, Positive, Surfaces};
+use retune_model::{Of, Parameter, Positive, Surfaces, unit};
 use retune_store::Begin;
 use retune_study::Setting;
 use std::path::PathBuf;
@@ -201,6 +201,22 @@ pub fn typed(name: &str, text: &str) -> PyResult<f64> {
 #[pyfunction]
 pub fn parameters() -> Vec<(&'static str, &'static str, &'static str)> {
     Parameter::ALL.map(|one| (one.symbol(), one.unit(), one.words())).to_vec()
+}
+
+/// How many SI units a unit of what is given in time is; the SI unit if none is named.
+#[pyfunction]
+#[pyo3(signature = (of, unit = None))]
+pub fn history_unit(of: &str, unit: Option<&str>) -> Result<f64, Fault> {
+    let known: Of = serde_json::from_value(of.into())
+        .map_err(|error| Fault::study(format!("of: {error}"), Given::Json(of.into())))?;
+    let units = known.units();
+    let Some(given) = unit else { return Ok(units[0].1) };
+    let refused = || {
+        let all: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+        let message = format!("unit: \"{given}\" is not allowed here: give one of {}", all.join(", "));
+        Fault::study(message, Given::Json(given.into()))
+    };
+    Ok(unit::named(given, units).ok_or_else(refused)?.1)
 }
 
 /// The walls of a damper of so many kg for which none are given, as JSON.

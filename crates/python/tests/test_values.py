@@ -148,3 +148,34 @@ def test_contract_a_sweep_is_that_of_the_command_line(program: Path, tmp_path: P
         np.testing.assert_array_equal(said, sweep[name], name)
     assert rt.Problem.from_study(study).sweep(omega=6.5).rows == 1
     assert rt.Problem.from_study(study).sweep(k1=[3e4, 4e4], objective=True).E1max[0] > 0
+
+
+def test_contract_a_record_of_numpy_is_that_of_its_study(tmp_path: Path) -> None:
+    structure, damper = rt.Structure(m1=1000, c1=452, k1=3.95e4), rt.SSVI(60, k2=215, c2=232, D=0.02, C=0.1)
+    t = 0.01 * np.arange(1500)
+    a = 3 * np.exp(-0.1 * t) * np.sin(6 * t)
+    of = "base acceleration"
+    built = rt.Problem(structure, damper, record=rt.Record(t, a, of=of), window=(0, 30))
+    (tmp_path / "a.csv").write_text("t,a\n" + "".join(f"{time!r},{value!r}\n" for time, value in zip(t.tolist(), a.tolist())))
+    (tmp_path / "study.json").write_text(json.dumps({**built.study, "scene": {**built.study["scene"], "forcing": {"record": "a.csv", "of": of}}}))
+    motion = [problem.simulate() for problem in (built, rt.Problem.from_study(tmp_path / "study.json"), pickle.loads(pickle.dumps(built)))]
+    assert motion[0].contacts.rows > 5
+    assert all((run.x1 == motion[0].x1).all() for run in motion)
+    assert len({run.maxima["E1max"] for run in motion}) == 1
+    # The distance of the samples in place of their times, another unit, a file.
+    same = [
+        rt.Record(0.01, a / 9.80665, of=of, unit="g"),
+        rt.Record(np.float32(t).astype(float).round(6), -a, of=of, scale=-1),
+        rt.Record.read(tmp_path / "a.csv", of=of, column="a"),
+    ]
+    for record in same:
+        run = rt.Problem(structure, damper, record=record, window=(0, 30)).simulate()
+        assert np.abs(run.x1 - motion[0].x1).max() < 1e-6 * np.abs(run.x1).max()
+    assert "1500 samples" in repr(built)
+
+
+def test_exact_a_pulse_moves_a_free_mass_by_its_impulse() -> None:
+    free = rt.Structure(m1=10, c1=0, k1=0)
+    pulse = rt.Pulse("half sine", 2, 0.5, of="force", unit="kN")
+    run = rt.Problem(free, record=pulse, window=(0, 2)).simulate()
+    assert run.maxima["v1max"] == pytest.approx(2000 * 0.5 * 2 / np.pi / 10, rel=1e-13)

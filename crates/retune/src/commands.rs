@@ -3,7 +3,7 @@
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
-use retune_jobs::design::Wishes;
+use retune_jobs::design::{self, Wishes};
 use retune_jobs::designs::Designs;
 use retune_jobs::evaluate::Streams;
 use retune_jobs::prove::Guess;
@@ -93,14 +93,23 @@ fn design(arguments: &cli::Design) -> Result<(), Error> {
         Some(file) => Wishes::read(file)?.with(given),
         None => given,
     };
+    let of_mode =
+        arguments.modes.as_deref().map(|table| design::structure(table, arguments.mode)).transpose()?;
+    let (wishes, said) = match of_mode {
+        Some((structure, said)) => (wishes.with(structure), Some(said)),
+        None => (wishes, None),
+    };
     let requirements = wishes.requirements()?;
     let stem = file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
     let name = stem.map_or("design".to_owned(), |stem| format!("design-{stem}"));
-    let out = || retune_jobs::design::place(&requirements, &name, running.resume);
+    let out = || design::place(&requirements, &name, running.resume);
     let out = running.out.clone().unwrap_or_else(out);
     let (mut request, screen) = running.request(&out);
     request.out = Some(out);
-    let designed = retune_jobs::design::design(&requirements, &request, &screen)?;
+    if let Some(said) = said {
+        screen.result(&said)?;
+    }
+    let designed = design::design(&requirements, &request, &screen)?;
     made(designed, |compared| compared.check_limits())
 }
 

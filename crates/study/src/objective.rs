@@ -2,7 +2,7 @@
 
 use super::format::{Coarse, Study};
 use super::rule::Rule;
-use retune_model::{Measure, Parameter, Scene};
+use retune_model::{Forcing, Measure, Parameter, Scene};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
 };
@@ -49,6 +49,9 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
     if let Some(starts) = objective.starts.filter(|starts| !(1..=MOST_STARTS).contains(starts)) {
         let allowed = "a whole number from 1 to 1000";
         return bad(field("starts"), starts.to_string(), allowed);
+    }
+    if !objective.records.is_empty() || objective.records_by.is_some() {
+        check_records(objective, path, forcing)?;
     }
     if passes && (objective.omega.is_some() || objective.response != Response::Window) {
         let name = if objective.omega.is_some() { "omega" } else { "response" };
@@ -114,6 +117,34 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
     match statistic {
         Statistic::Quantile(share) if !(share > 0.0 && share <= 1.0) => {
             bad(field("ensemble.statistic.quantile"), share.to_string(), "a number above 0 and at most 1")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Records stand in the place of one.
+fn check_records(objective: &Objective, path: &str, own: &Forcing) -> Result<(), Rule> {
+    let bad = |field: String, value: String, allowed| Err(Rule::NotAllowed { field, value, allowed });
+    if objective.records.is_empty() {
+        let allowed = "nothing without `records`, or `records` beside it";
+        return bad(format!("{path}.records_by"), "a statistic".to_owned(), allowed);
+    }
+    if own.history().is_none() {
+        let allowed = "nothing: `scene.forcing` is neither a record nor a pulse, whose place they could take";
+        return bad(format!("{path}.records"), "a list".to_owned(), allowed);
+    }
+    if let Some(i) = objective.records.iter().position(|one| one.history().is_none()) {
+        let allowed = "one of `pulse`, `record`, `harmonics`, `sweep` and `spectrum`";
+        return bad(
+            format!("{path}.records[{i}]"),
+            format!("`{}`", objective.records[i].given_by()),
+            allowed,
+        );
+    }
+    match objective.records_by {
+        Some(Statistic::Quantile(share)) if !(share > 0.0 && share <= 1.0) => {
+            let allowed = "a number above 0 and at most 1";
+            bad(format!("{path}.records_by.quantile"), share.to_string(), allowed)
         }
         _ => Ok(()),
     }

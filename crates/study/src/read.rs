@@ -110,7 +110,7 @@ pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     let mut study: Study = parse(settled.as_deref().unwrap_or(text), file)?;
     let stem = Path::new(file).file_stem().map(|stem| name_from(&stem.to_string_lossy()));
     study.name = study.name.or(stem);
-    records::read(&mut study.scene, base).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
+    records::read_all(&mut study, base).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     Ok(study)
 }

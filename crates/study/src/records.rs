@@ -1,7 +1,8 @@
 //! Records that a study names: read from their files, line by line.
 
+use super::format::Study;
 use super::rule::Rule;
-use retune_model::{Column, Of, Record, RecordFile, Samples, Scene, Unit, unit};
+use retune_model::{Column, Forcing, Of, Record, RecordFile, Samples, Scene, Unit, unit};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -10,10 +11,43 @@ use std::path::Path;
 /// # Errors
 /// [`Rule::Record`]: the file and what is wrong with it.
 pub(super) fn read(scene: &mut Scene, base: &Path) -> Result<(), Rule> {
-    let Some((of, record)) = scene.forcing.record_mut() else { return Ok(()) };
+    read_forcing(&mut scene.forcing, false, base)
+}
+
+/// Reads all records of a study, as [`read`] does.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn read_all(study: &mut Study, base: &Path) -> Result<(), Rule> {
+    read(&mut study.scene, base)?;
+    each(study, &mut |forcing| read_forcing(forcing, true, base))
+}
+
+/// The same for each record of the objective of a study, until one fails.
+pub(super) fn each<E>(
+    study: &mut Study,
+    change: &mut impl FnMut(&mut Forcing) -> Result<(), E>,
+) -> Result<(), E> {
+    let Some(optimize) = &mut study.optimize else { return Ok(()) };
+    let mut done = Ok(());
+    optimize.objective.for_each_term(&mut |term| {
+        for forcing in &mut term.records {
+            if done.is_ok() {
+                done = change(forcing);
+            }
+        }
+    });
+    done
+}
+
+fn read_forcing(forcing: &mut Forcing, listed: bool, base: &Path) -> Result<(), Rule> {
+    let Some((of, record)) = forcing.record_mut() else { return Ok(()) };
     if record.samples().is_none() {
-        *record = whole(of, record, base)
-            .map_err(|problem| Rule::Record { file: record.source().file.clone(), problem })?;
+        *record = whole(of, record, base).map_err(|problem| Rule::Record {
+            listed,
+            file: record.source().file.clone(),
+            problem,
+        })?;
     }
     Ok(())
 }

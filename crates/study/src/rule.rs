@@ -163,8 +163,10 @@ pub enum Rule {
         allowed: &'static str,
     },
     /// A record that cannot be read.
-    #[error("scene.forcing.record: {file}: {problem}")]
+    #[error("{}: {file}: {problem}", if *listed { "optimize.objective.records" } else { "scene.forcing.record" })]
     Record {
+        /// Whether it stands in the list of the objective.
+        listed: bool,
         /// The file as given.
         file: String,
         /// What is wrong with it.

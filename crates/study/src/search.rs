@@ -3,9 +3,11 @@
 use super::format::{GridAxis, Margins, Optimize, Solver, Study};
 use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
+use super::records;
 use super::rule::Rule;
-use retune_model::{Damper, Design, PerVariable};
+use retune_model::{Damper, Design, Forcing, PerVariable};
 use retune_optim::{Axis, Bounds, Global, Grid, Options, Parameter, Scaling, Space};
+use std::convert::Infallible;
 
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
 pub const MOST_GRID_POINTS: usize = 10_000_000;
@@ -155,9 +157,14 @@ impl Study {
     #[must_use]
     pub fn whole(&self) -> Self {
         let mut study = self.clone();
-        if let Some((_, record)) = study.scene.forcing.record_mut() {
-            *record = record.whole();
-        }
+        let mut whole = |forcing: &mut Forcing| {
+            if let Some((_, record)) = forcing.record_mut() {
+                *record = record.whole();
+            }
+            Ok::<(), Infallible>(())
+        };
+        let (Ok(()) | Err(_)) = whole(&mut study.scene.forcing);
+        let (Ok(()) | Err(_)) = records::each(&mut study, &mut whole);
         study
     }
 

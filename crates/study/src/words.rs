@@ -25,7 +25,8 @@ pub fn over(objective: &Objective, omega: f64) -> String {
     let single = objective.omega.is_none() && omega > 0.0;
     let own = if single { format!("omega = {omega} rad/s") } else { String::new() };
     let worst = if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
-    let mut parts: Vec<String> = objective.ensemble.iter().map(ensemble).collect();
+    let mut parts: Vec<String> = records(objective).into_iter().collect();
+    parts.extend(objective.ensemble.iter().map(ensemble));
     parts.extend([own, worst].into_iter().filter(|part| !part.is_empty()));
     parts.join(", ")
 }
@@ -47,13 +48,22 @@ fn stiffnesses(of: &Stiffnesses) -> String {
     }
 }
 
-fn ensemble(of: &Ensemble) -> String {
-    let Ensemble { members, phases, errors, statistic, .. } = of;
-    let of = match statistic {
+fn statistic(of: Statistic) -> String {
+    match of {
         Statistic::Mean => "mean".to_owned(),
         Statistic::Worst => "worst".to_owned(),
         Statistic::Quantile(share) => format!("{share} quantile"),
-    };
+    }
+}
+
+fn records(objective: &Objective) -> Option<String> {
+    let count = objective.records.len() as u64;
+    (count > 0).then(|| format!("{} of {}", statistic(objective.over_records()), counted(count, "record")))
+}
+
+fn ensemble(of: &Ensemble) -> String {
+    let Ensemble { members, phases, errors, .. } = of;
+    let of = statistic(of.statistic);
     let phases = if *phases { "all phases, " } else { "" };
     format!("{of} of {} ({phases}errors to {} %)", counted((*members).into(), "member"), 100.0 * errors)
 }

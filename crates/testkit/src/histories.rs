@@ -2,8 +2,8 @@
 
 use crate::scenes::{Numbers, Spread};
 use retune_model::{
-    Course, Finite, Forcing, History, NonNegative, Of, Positive, Pulse, Record, RecordFile, Samples, Scene,
-    Shape, Source,
+    Course, Finite, Forcing, Form, History, Made, NonNegative, Of, Positive, Pulse, Recipe, Record,
+    RecordFile, Samples, Scene, Shape, Source,
 };
 
 /// A pulse in SI units.
@@ -15,6 +15,13 @@ pub fn pulse(of: Of, shape: Shape, peak: f64, duration: f64) -> History {
         duration: Positive::new(duration).expect("above 0"),
     };
     History { of, course: Course::Pulse(pulse) }
+}
+
+/// A force of a recipe in SI units, with samples so many times as dense as by default.
+pub fn made(of: Of, form: Form, duration: f64, denser: f64) -> History {
+    let duration = Positive::new(duration).expect("above 0");
+    let made = Made::new(Recipe { form, unit: of.units()[0], duration, step: None });
+    History { of, course: Course::Made(made.and_then(|made| made.denser(denser)).expect("samples")) }
 }
 
 /// A record of these samples.

@@ -4,6 +4,7 @@ mod limits;
 mod margin;
 mod measured;
 mod motions;
+mod records;
 mod text;
 mod verdict;
 mod walls;
@@ -12,6 +13,7 @@ pub use limits::{Kept, Near};
 pub use margin::{Error as ParameterError, Margin, Other};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
 pub use motions::{Another, Irregular, MISSED, Motions, SHARE, periodic};
+pub use records::{Records, UnderRecord};
 pub use verdict::{Judged, Verdict};
 pub use walls::{AtRestitution, AtStiffness, Found, Walls};
 
@@ -47,6 +49,9 @@ pub struct Certificate {
     /// The value between other walls, where the damper touches its own; beside the verdict, which does not depend on it.
     #[serde(flatten)]
     pub(crate) walls: Option<Walls>,
+    /// The value under other records, where the study has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) records: Option<Records>,
     /// The limits at the design and near it, where the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limits: Option<Kept>,
@@ -154,6 +159,7 @@ impl Certificate {
             words,
             rule: verdict::rule(value.quantity, limits.is_some(), study.certificate),
             walls: None,
+            records: None,
             limits,
             worst_run,
             convergence,
@@ -169,6 +175,11 @@ impl Certificate {
     /// With the value between other walls.
     pub(super) fn with_walls(self, walls: Option<Walls>) -> Self {
         Self { walls, ..self }
+    }
+
+    /// With the value under other records.
+    pub(super) fn with_records(self, records: Option<Records>) -> Self {
+        Self { records, ..self }
     }
 
     /// Whether the motion with the largest value that was found strikes a wall.

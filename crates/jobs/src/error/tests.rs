@@ -63,7 +63,11 @@ fn rules() -> Vec<Rule> {
             value: "0".into(),
             allowed: "a whole number above 0",
         },
-        Rule::Record { file: "quake.csv".into(), problem: "line 3: \"x\" is not a number".into() },
+        Rule::Record {
+            listed: false,
+            file: "quake.csv".into(),
+            problem: "line 3: \"x\" is not a number".into(),
+        },
         Rule::SumAndMore { path: "optimize.objective".into() },
         Rule::NoEnd { variable },
     ]

@@ -16,6 +16,7 @@ mod motions;
 mod paper;
 mod prove;
 mod quantity;
+mod records;
 mod replaced;
 mod report;
 mod retention;

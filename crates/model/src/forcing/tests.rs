@@ -22,6 +22,10 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
         r#"{"record":"push.csv","of":"force","column":3}"#,
         r#"{"record":{"step":0.1,"values":[1.0,-2.0]},"of":"force"}"#,
         r#"{"record":{"times":[0.0,0.1,0.3],"values":[1.0,-2.0,0.5]},"of":"base acceleration"}"#,
+        r#"{"pulse":"versed sine","of":"force","peak":-3.0,"duration":0.1,"unit":"kN"}"#,
+        r#"{"harmonics":[{"amplitude":2.0,"omega":6.0,"phase":0.5}],"of":"force","duration":2.0}"#,
+        r#"{"sweep":{"amplitude":2.0,"from":6.0,"rate":-0.5},"of":"force","duration":2.0,"step":0.01}"#,
+        r#"{"spectrum":{"omega":[1.0,2.0],"density":[0.5,1.0],"seed":7},"of":"base acceleration","duration":20.0,"unit":"g"}"#,
     ] {
         let forcing = read(text).expect(text);
         assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
@@ -38,7 +42,7 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
     for (text, said) in [
         (
             r#"{"omega":6.28}"#,
-            "give one of `P`, `imbalance`, `base`, `base_acceleration`, `pulse` and `record`, or `start` alone, not 0",
+            "give one of `P`, `imbalance`, `base`, `base_acceleration`, `pulse`, `record`, `harmonics`, `sweep` and `spectrum`, or `start` alone, not 0",
         ),
         (
             r#"{"pulse":"half sine","of":"force","peak":1,"duration":1,"omega":1}"#,
@@ -68,6 +72,27 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
         (
             r#"{"P":1,"omega":1,"pulse":"rectangle","of":"force","peak":1,"duration":1}"#,
             "`omega` has no meaning beside `pulse`",
+        ),
+        (
+            r#"{"sweep":{"amplitude":2,"from":6,"rate":0},"of":"force"}"#,
+            "missing field `duration` beside `sweep`",
+        ),
+        (r#"{"harmonics":[],"of":"force","duration":2}"#, "`harmonics`: empty"),
+        (
+            r#"{"harmonics":[],"sweep":{"amplitude":2,"from":6,"rate":0},"of":"force","duration":2}"#,
+            "`harmonics`",
+        ),
+        (
+            r#"{"spectrum":{"omega":[1,2],"density":[1,-1]},"of":"force","duration":2}"#,
+            "-1 is not allowed here",
+        ),
+        (
+            r#"{"spectrum":{"omega":[2,1],"density":[1,1]},"of":"force","duration":2}"#,
+            "2 frequencies with 2 densities are not allowed",
+        ),
+        (
+            r#"{"pulse":"rectangle","of":"force","peak":1,"duration":1,"step":1}"#,
+            "`step` has no meaning beside `pulse`",
         ),
         (r#"{"start":{},"scale":1}"#, "`scale` has no meaning beside `start`"),
         (r#"{"P":1,"base":1,"omega":6.28}"#, "not 2 of them"),

@@ -2,8 +2,8 @@
 
 use super::Parameter;
 use crate::{
-    Bounce, Contact, Course, Damper, Forcing, History, Loss, NonNegative, OutOfRange, PoissonRatio, Positive,
-    Restitution, Scene, Source,
+    Bounce, Contact, Damper, Forcing, Loss, NonNegative, OutOfRange, PoissonRatio, Positive, Restitution,
+    Scene, Source,
 };
 use schemars::{Schema, json_schema};
 
@@ -241,8 +241,7 @@ impl Forcing {
     pub fn given_by(&self) -> &'static str {
         match (self.amplitude(), self.source) {
             (Some((own, _)), _) => own.symbol(),
-            (None, Source::History(History { course: Course::Pulse(_), .. })) => "pulse",
-            (None, Source::History(History { course: Course::Record(_), .. })) => "record",
+            (None, Source::History(history)) => history.course.given_by(),
             _ => "start",
         }
     }

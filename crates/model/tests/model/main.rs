@@ -7,5 +7,6 @@ mod catalogue;
 mod derivatives;
 mod energies;
 mod histories;
+mod mode;
 mod regularised;
 mod steady;

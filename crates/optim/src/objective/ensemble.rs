@@ -96,36 +96,53 @@ impl Ensemble {
         value: impl Fn(u32, f64) -> Result<f64, E> + Sync,
         cutoff: f64,
     ) -> Result<f64, E> {
-        let count = self.members.max(1) as usize;
-        let known = |results: &[Result<f64, E>]| -> Vec<f64> { results.iter().flatten().copied().collect() };
-        let failed = |results: &[Result<f64, E>]| results.iter().any(Result::is_err);
-        // A mean is above the cutoff once a part of its sum is, by more than the rounding of either.
-        let most = count as f64 * cutoff * SLACK;
-        let rank = rank(self.statistic, count);
-        let results = in_groups(
-            count,
-            TOGETHER,
-            |i, before| match self.statistic {
-                Statistic::Mean => value(i as u32, most - known(before).iter().sum::<f64>()),
-                _ => value(i as u32, cutoff),
-            },
-            |results| {
-                failed(results)
-                    || match self.statistic {
-                        Statistic::Mean => known(results).iter().sum::<f64>() > most,
-                        _ => known(results).iter().filter(|value| **value > cutoff).count() > count - rank,
-                    }
-            },
-        );
-        let mut values = results.into_iter().collect::<Result<Vec<f64>, E>>()?;
-        if self.statistic == Statistic::Mean {
-            return Ok(values.iter().sum::<f64>() / count as f64);
-        }
-        values.sort_by(f64::total_cmp);
-        // Of a group that ended early the largest is above the cutoff.
-        let place = if values.len() < count { values.len() } else { rank };
-        Ok(values[place - 1])
+        statistic_over(
+            self.statistic,
+            self.members.max(1) as usize,
+            |i, cutoff| value(i as u32, cutoff),
+            cutoff,
+        )
     }
+}
+
+/// A statistic of `value(i, cutoff)` over `count` cases, see [`Ensemble::over`].
+///
+/// # Errors
+/// The first of a case.
+pub(super) fn statistic_over<E: Send + Sync + Clone>(
+    statistic: Statistic,
+    count: usize,
+    value: impl Fn(usize, f64) -> Result<f64, E> + Sync,
+    cutoff: f64,
+) -> Result<f64, E> {
+    let known = |results: &[Result<f64, E>]| -> Vec<f64> { results.iter().flatten().copied().collect() };
+    let failed = |results: &[Result<f64, E>]| results.iter().any(Result::is_err);
+    // A mean is above the cutoff once a part of its sum is, by more than the rounding of either.
+    let most = count as f64 * cutoff * SLACK;
+    let rank = rank(statistic, count);
+    let results = in_groups(
+        count,
+        TOGETHER,
+        |i, before| match statistic {
+            Statistic::Mean => value(i, most - known(before).iter().sum::<f64>()),
+            _ => value(i, cutoff),
+        },
+        |results| {
+            failed(results)
+                || match statistic {
+                    Statistic::Mean => known(results).iter().sum::<f64>() > most,
+                    _ => known(results).iter().filter(|value| **value > cutoff).count() > count - rank,
+                }
+        },
+    );
+    let mut values = results.into_iter().collect::<Result<Vec<f64>, E>>()?;
+    if statistic == Statistic::Mean {
+        return Ok(values.iter().sum::<f64>() / count as f64);
+    }
+    values.sort_by(f64::total_cmp);
+    // Of a group that ended early the largest is above the cutoff.
+    let place = if values.len() < count { values.len() } else { rank };
+    Ok(values[place - 1])
 }
 
 impl Ensemble {

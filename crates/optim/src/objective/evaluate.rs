@@ -1,11 +1,11 @@
 //! The value that a search minimises: a quantity composed over frequencies, stiffnesses, an ensemble and several terms, under limits.
 //!
-//! `value = Σ weight · statistic over the ensemble of (largest over k1 of (largest over ω of the quantity))`. Each level is one
+//! `value = Σ weight · statistic over records of statistic over the ensemble of (largest over k1 of (largest over ω of the quantity))`. Each level is one
 //! function of a cutoff, above which it may stop; every stopping rule is exact: a value not above the cutoff is computed in
 //! full.
 
 use super::band::{Band, all_worst_over};
-use super::ensemble::SLACK;
+use super::ensemble::{SLACK, statistic_over};
 use super::evaluation::{Evaluation, Place, Run};
 use super::limits::{INFEASIBLE, Limits, PerLimit, ranked};
 use super::motions::{Known, Sought};
@@ -148,6 +148,16 @@ impl Goal {
 
 impl Runs<'_> {
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+        let records = &term.1.records;
+        if records.is_empty() {
+            return self.under(scene, term, cutoff);
+        }
+        let each = |i: usize, cutoff: f64| self.under(&Scene { forcing: records[i], ..*scene }, term, cutoff);
+        statistic_over(term.1.over_records(), records.len(), each, cutoff)
+    }
+
+    /// The value under the forcing of the scene.
+    fn under(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
         let Some(ensemble) = &term.1.ensemble else {
             return Ok(self.over_losses(scene, 0.0, term, cutoff)?[0]);
         };

@@ -52,10 +52,13 @@ fn with_loss_of(scene: Scene, other: &Scene) -> Scene {
 }
 
 impl Evaluation {
-    /// The scene of the worst run: `scene` at its ω, k1 and restitution, without the parameter errors of an ensemble member and
+    /// The scene of the worst run: `scene` at its record, ω, k1 and restitution, without the parameter errors of an ensemble member and
     /// with the force starting at a crest.
     pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {
         scene.forcing.frequency = self.worst.scene.forcing.frequency;
+        if goal.term(self.worst.term).is_some_and(|term| !term.records.is_empty()) {
+            scene.forcing = self.worst.scene.forcing;
+        }
         if goal.term(self.worst.term).is_some_and(|term| term.k1.is_some()) {
             scene.primary.stiffness = self.worst.scene.primary.stiffness;
         }

@@ -24,8 +24,11 @@ impl Goal {
     /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, and of no motion
     /// but those from rest and the steady one.
     pub fn has_pieces(&self) -> bool {
-        let Objective { sum, ensemble, response, .. } = &self.objective;
-        sum.is_empty() && ensemble.is_none() && matches!(response, Response::Window | Response::Steady)
+        let Objective { sum, ensemble, response, records, .. } = &self.objective;
+        sum.is_empty()
+            && records.is_empty()
+            && ensemble.is_none()
+            && matches!(response, Response::Window | Response::Steady)
     }
 
     /// The highest peaks of `runs`, which were made to evaluate `scene`, with their derivatives by `variables`; those that have none, since

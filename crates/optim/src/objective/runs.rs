@@ -206,9 +206,14 @@ impl<'a> Runs<'a> {
             let Scene { primary, forcing, .. } = place.scene;
             let e = Parameter::Restitution.of(&place.scene).unwrap_or(1.0);
             let (omega, k1) = (forcing.frequency.get(), primary.stiffness.get());
-            [-place.largest, place.term as f64, omega, k1, e, place.phase]
+            let history = forcing.history().map_or([0.0; 3], |history| {
+                let [most, slope] = history.course.bounds();
+                [history.course.end(), most, slope]
+            });
+            let [a, b, c] = history;
+            [-place.largest, place.term as f64, omega, k1, e, place.phase, a, b, c]
         };
-        // Of equal ones the first by term, ω, k1, restitution and phase.
+        // Of equal ones the first by term, ω, k1, restitution, phase and record.
         let order =
             key(&place).iter().zip(&key(&seen.worst)).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne());
         if order.is_some_and(|order| order.is_lt()) {

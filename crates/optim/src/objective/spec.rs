@@ -1,10 +1,10 @@
 //! An objective: what is made small, and over what. A study file is read into this, and this is what a search evaluates.
 
 use super::band::Band;
-use super::ensemble::Ensemble;
+use super::ensemble::{Ensemble, Statistic};
 use super::limits::Limits;
 use super::unusable::Unusable;
-use retune_model::{Measure, Parameter, Positive, Primary, Restitution, Scene};
+use retune_model::{Forcing, Measure, Parameter, Positive, Primary, Restitution, Scene};
 use retune_solver::{Settle, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,7 @@ impl Goal {
     }
 }
 
-/// The objective to minimise: a statistic over `ensemble` of the maximum over `restitution`, over `k1` and over `omega` of `quantity`, evaluated
+/// The objective to minimise: a statistic over `records` of a statistic over `ensemble` of the maximum over `restitution`, over `k1` and over `omega` of `quantity`, evaluated
 /// in each run as `response` specifies. Fields left out keep their nominal value, that of `scene`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -53,6 +53,12 @@ pub struct Objective {
     /// the loss of `scene` alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restitution: Option<Vec<Restitution>>,
+    /// Records and pulses, each in the place of `scene.forcing`, which is one, too; the fields are those of `scene.forcing`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<Forcing>,
+    /// The statistic over `records`: the largest if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub records_by: Option<Statistic>,
     /// The part of the response in which the quantity is evaluated: in `window`, steady, or settled.
     pub response: Response,
     /// Starts at each frequency beside that from rest, for the response "motions".
@@ -180,6 +186,11 @@ impl StiffnessRange {
 }
 
 impl Objective {
+    /// The statistic over its records.
+    pub fn over_records(&self) -> Statistic {
+        self.records_by.unwrap_or(Statistic::Worst)
+    }
+
     /// A scene with each of the restitutions; as it is where none are given.
     ///
     /// # Errors

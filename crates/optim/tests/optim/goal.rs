@@ -1,12 +1,12 @@
 //! Composed objectives: stiffnesses, ensembles and sums agree with their single runs, and a cutoff changes no value below it.
 
-use retune_model::Positive;
-use retune_model::Scene;
+use retune_model::{Forcing, Of, Positive, Scene, Shape};
 use retune_optim::{
     Ensemble, Evaluation, FrequencyBand, Goal, Objective, Part, Response, Statistic, StiffnessRange,
     Stiffnesses,
 };
 use retune_solver::{Ask, Settings, Settle, Window, extremes};
+use retune_testkit::histories::pulse;
 use retune_testkit::scenes::{Numbers, SSVI, TMD};
 
 const WINDOW: Window = Window { from: 2.0, to: 8.0 };
@@ -37,6 +37,29 @@ fn value(objective: &Objective, scene: &Scene) -> f64 {
 
 fn ensemble(statistic: Statistic) -> Ensemble {
     Ensemble { members: 12, phases: true, errors: 0.01, seed: 3, statistic }
+}
+
+/// The worst, the mean and a quantile over records are those of the single runs; the worst run has its record; a cutoff changes nothing below.
+#[test]
+fn exact_a_statistic_over_records_is_that_of_single_runs() {
+    let under = |peak, duration| SSVI.under(pulse(Of::Force, Shape::HalfSine, peak, duration));
+    let scenes = [under(4000.0, 0.3), under(9000.0, 0.2), under(2000.0, 0.7), under(-6000.0, 0.2)];
+    let records: Vec<Forcing> = scenes.iter().map(|scene| scene.forcing).collect();
+    let each = scenes.map(|scene| value(&Objective::default(), &scene));
+    let (worst, mean) = (each.iter().copied().fold(0.0, f64::max), each.iter().sum::<f64>() / 4.0);
+    assert!(worst == each[1] && mean < 0.9 * worst, "{each:?}");
+    let of = |records_by| Objective { records: records.clone(), records_by, ..Objective::default() };
+    let found = evaluate(of(None), &scenes[0], f64::INFINITY);
+    assert_eq!((found.value, found.runs), (worst, 4));
+    assert_eq!(found.worst_run(scenes[0], &goal(of(None), WINDOW)), scenes[1]);
+    assert_eq!(value(&of(Some(Statistic::Mean)), &scenes[0]), mean);
+    let mut sorted = each;
+    sorted.sort_by(f64::total_cmp);
+    assert_eq!(value(&of(Some(Statistic::Quantile(0.5))), &scenes[0]), sorted[1]);
+    for (objective, value) in [(of(None), worst), (of(Some(Statistic::Mean)), mean)] {
+        assert_eq!(evaluate(objective.clone(), &scenes[0], 1.01 * value).value, value);
+        assert!(evaluate(objective, &scenes[0], 0.5 * value).value > 0.5 * value);
+    }
 }
 
 #[test]

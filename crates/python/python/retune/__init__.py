@@ -15,6 +15,7 @@ from retune._compare import Comparison, compare
 from retune._core import __version__
 from retune._errors import Error, SolverError, StudyError
 from retune._files import Design, certify_file, design, fronts, losses, merge, reproduce, retention, share, sweep, table2
+from retune._forcing import Pulse, Record
 from retune._jobs import Certificate, Result, branches, certify, optimize, prove, verify
 from retune._problem import Evaluation, Problem
 from retune._run import Run
@@ -31,6 +32,8 @@ __all__ = [
     "Error",
     "Evaluation",
     "Problem",
+    "Pulse",
+    "Record",
     "Result",
     "Run",
     "SolverError",

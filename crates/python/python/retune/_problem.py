@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from retune import _core, _show
 from retune._arrays import floats, pair, plain, scalar
 from retune._errors import StudyError
+from retune._forcing import Pulse, Record
 from retune._run import Run, simulate
 from retune._scene import SSVI, TMD, Structure
 from retune._table import Table
@@ -80,7 +81,8 @@ class Problem(_core.Core):
 
     - ``P`` (N), ``imbalance`` (kg m), ``base`` (m) or ``base_acceleration`` (m/s²) is the size of the forcing, and ``omega`` (rad/s) its angular frequency, by default
       the natural frequency of the structure, or the end of the band that is nearest to it. ``start`` is a state (``x1``, ``v1``, ``x2``,
-      ``v2``) for a free decay instead.
+      ``v2``) for a free decay instead. ``record`` is a ``retune.Record`` or a ``retune.Pulse``: a force, or an acceleration of the base, that is
+      given in time.
     - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0. "settled": from when the slowest transient
       with the walls open has 0.1 % of its start, for 50 periods of the force.
     - ``vary`` names the tuned parameters, of k2, c2, D, C and m2; ``bounds`` gives each its smallest and largest value.
@@ -105,6 +107,7 @@ class Problem(_core.Core):
         base: float | str | None = None,
         base_acceleration: float | str | None = None,
         start: Mapping[str, float | str] | None = None,
+        record: Record | Pulse | None = None,
         omega: float | str | None = None,
         window: tuple[float | str, float | str] | Literal["settled"] = "settled",
         vary: Sequence[Literal["k2", "c2", "D", "C", "m2", "R"]] | Sequence[str] | None = None,
@@ -128,7 +131,9 @@ class Problem(_core.Core):
         if damper is not None and not isinstance(damper, (TMD, SSVI)):
             raise TypeError(f"damper: {type(damper).__name__} is not allowed here: give a retune.TMD, a retune.SSVI or None")
         ends = None if band is None else _band(band)
-        if omega is None and start is None:
+        if record is not None and not isinstance(record, (Record, Pulse)):
+            raise TypeError(f"record: {type(record).__name__} is not allowed here: give a retune.Record or a retune.Pulse")
+        if omega is None and start is None and record is None:
             natural = math.sqrt(structure.k1 / structure.m1)
             omega = min(max(natural, ends[0]), ends[1]) if ends is not None else natural
         frequencies = given({"from": ends and ends[0], "to": ends and ends[1], "samples": samples}) or None
@@ -146,7 +151,10 @@ class Problem(_core.Core):
             "name": name,
             "scene": {
                 "primary": asdict(structure),
-                "forcing": given({"P": P, "imbalance": imbalance, "base": base, "base_acceleration": base_acceleration, "start": start, "omega": omega}),
+                "forcing": {
+                    **given({"P": P, "imbalance": imbalance, "base": base, "base_acceleration": base_acceleration, "start": start, "omega": omega}),
+                    **({} if record is None else record._study()),
+                },
                 "damper": None if damper is None else damper._study(),
             },
             "window": span,
@@ -251,7 +259,7 @@ class Problem(_core.Core):
         goal = (study["optimize"] or {}).get("objective", {})
         band = goal.get("omega")
         where = f"worst over {band['from']:g} to {band['to']:g}{'' if band.get('relative') else ' rad/s'}" if band else ""
-        parts = [f"{key} = {_show.number(value)}" for key, value in {**scene["primary"], **scene["forcing"]}.items()]
+        parts = [f"{key} = {_in_short(value)}" for key, value in {**scene["primary"], **scene["forcing"]}.items()]
         sought = f"{self.quantity[0]} ({self.quantity[1]}) {where}".strip()
         name = "" if study["name"] == "problem" else f" {study['name']}"
         return f"problem{name}: {sought or 'one run'}, {', '.join(parts)}"
@@ -261,6 +269,13 @@ class Problem(_core.Core):
 
     def _repr_html_(self) -> str:
         return _show.page(["tuned", "value", "from", "to", "unit"], self._rows(), self._title())
+
+
+def _in_short(value: Any) -> str:
+    """A number, a word, or of a record how many samples it has."""
+    if isinstance(value, Mapping) and "values" in value:
+        return f"{len(value['values'])} samples"
+    return _show.number(value) if isinstance(value, (int, float)) else str(value)
 
 
 def rebuilt(cls: type[Sort], text: str, file: str | None) -> Sort:

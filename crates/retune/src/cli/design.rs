@@ -11,6 +11,13 @@ use std::path::PathBuf;
 pub struct Design {
     /// A file of requirements, whose fields are the options below; options replace its fields
     pub file: Option<PathBuf>,
+    /// A table of the modes of a structure of many degrees of freedom, one of which takes the place of m1, f1 and zeta: CSV with the columns
+    /// f (Hz), zeta (a share), M (modal mass, kg) and phi (mode shape at the damper)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["m1", "f1", "k1", "zeta", "c1"])]
+    pub modes: Option<PathBuf>,
+    /// The mode of the table, from 1 [default: the one that a force at the damper moves most]
+    #[arg(long, value_name = "NUMBER", requires = "modes")]
+    pub mode: Option<usize>,
     /// Mass of the structure, e.g. 40t
     #[arg(long, value_name = "MASS")]
     pub m1: Option<Typed>,
@@ -74,6 +81,7 @@ const EXAMPLES: &str = "\
 Examples:
   retune design --m1 40t --f1 2Hz --zeta 0.5% --force 280N --mass 2%
   retune design --m1 2t --f1 24.5Hz --zeta 1% --imbalance 0.02kg·m --band 1350rpm..1650rpm --mass 60kg --limit stroke=0.5mm
+  retune design --modes studies/modes/building.csv --force 2kN --mass 1%
   retune design studies/examples/building.json --limit stroke=250mm";
 
 impl Design {

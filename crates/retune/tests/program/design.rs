@@ -56,6 +56,41 @@ fn contract_another_question_leaves_earlier_results_as_they_are() {
     assert_eq!(json["candidates"][1]["binding"], serde_json::json!(["stroke"]));
 }
 
+/// A table of modes takes the place of m1, f1 and zeta; the mode that the damper works on is that of the largest response, or the one named.
+#[test]
+fn contract_a_mode_of_a_table_is_the_structure() {
+    let desk = Desk::new();
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/modes/building.csv");
+    let table = table.to_string_lossy().into_owned();
+    let rest = ["--force", "2kN", "--mass", "1%", "--damper", "tmd"];
+    let run = |more: &[&str]| desk.run(&[&["design", "--modes", &table], more, &rest].concat());
+    let first = run(&["--out", "first"]);
+    let said = "mode 1 of 5, 3.141 rad/s (0.4999 Hz), is at the damper a structure of m1 = 127317 kg";
+    assert!(flat(&first.stdout).contains(said), "{} {}", first.stdout, first.stderr);
+    assert!(flat(&first.stdout).contains("left out add 1.5 % to"), "{}", first.stdout);
+    assert!(flat(&run(&["--mode", "2", "--out", "second"]).stdout).contains("mode 2 of 5, 9.168 rad/s"));
+    for (more, words) in [
+        (&["--mode", "6"][..], "error: --mode: 6 is not allowed here: give a number from 1 to 5"),
+        (&["--mode", "0"], "error: --mode: 0 is not allowed here"),
+        (&["--m1", "2t"], "cannot be used with"),
+    ] {
+        let answer = run(more);
+        assert!(answer.code == Some(2) && answer.stderr.contains(words), "{}", answer.stderr);
+    }
+    for (text, words) in [
+        ("", "modes.csv: is empty: give a table"),
+        ("f,zeta,M\n1,0.01,5\n", "modes.csv: has no column phi"),
+        ("f,zeta,M,phi\n", "modes.csv: has no mode"),
+        ("f,zeta,M,phi\n1,0.01,5,x\n", "modes.csv: line 2: phi: \"x\" is not a number"),
+        ("f,zeta,M,phi\n1,0.01,-5,1\n", "modes.csv: line 2: M: -5 is not allowed here"),
+        ("f,zeta,M,phi\n1,0.01,5,0\n", "modes.csv: mode 1: phi = 0: it does not move the damper"),
+    ] {
+        desk.write("modes.csv", text);
+        let answer = desk.run(&[&["design", "--modes", "modes.csv"], &rest[..]].concat());
+        assert!(answer.code == Some(2) && answer.stderr.contains(words), "{}", answer.stderr);
+    }
+}
+
 #[test]
 fn contract_slips_name_the_option_or_the_field_and_limits_that_fail_exit_with_3() {
     let desk = Desk::new();

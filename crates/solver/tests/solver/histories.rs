@@ -1,8 +1,8 @@
 //! Runs under pulses and records.
 
-use retune_model::{History, Of, Samples, Scene, Shape};
+use retune_model::{Finite, Form, History, Of, Samples, Scene, Shape};
 use retune_solver::{Method, Response, Rows, Settings, Window, simulate, trajectory};
-use retune_testkit::histories::{noise, pulse, record};
+use retune_testkit::histories::{made, noise, pulse, record};
 use retune_testkit::scenes::{LOSSY, Numbers, SSVI, Spread, TMD, TWO_SIDED};
 
 fn run(scene: &Scene, to: f64) -> Response {
@@ -57,6 +57,27 @@ fn exact_pulses_on_an_undamped_structure() {
         assert_close(found[0], x, size.abs(), 1e-12, "x1 after a half sine");
         assert_close(found[1], v, omega * size.abs(), 1e-12, "v1 after a half sine");
     }
+}
+
+/// A versed sine against its closed form, `x = p/2k (1 - cos ωt) - p/2 (cos Ωt - cos ωt) / (k - m Ω²)`: its samples leave an error of the
+/// fourth order of their distance.
+#[test]
+fn order_the_motion_under_a_force_of_samples_is_of_fourth_order() {
+    let numbers = Numbers { c1: 0.0, ..SSVI };
+    let (omega, duration, peak) = ((numbers.k1 / numbers.m1).sqrt(), 1.7, 900.0);
+    let turn = std::f64::consts::TAU / duration;
+    let (ahead, round) = ((omega * duration).cos(), (turn * duration).cos());
+    let own = 0.5 * peak / (numbers.k1 - numbers.m1 * turn * turn);
+    let exact = 0.5 * peak / numbers.k1 * (1.0 - ahead) - own * (round - ahead);
+    let size = peak / numbers.k1;
+    let error = |denser| {
+        let form = Form::VersedSine(Finite::new(peak).expect("finite"));
+        let scene = bare(numbers, made(Of::Force, form, duration, denser));
+        (run(&scene, duration).final_state[0] - exact).abs() / size
+    };
+    assert!(error(1.0) < 1e-10, "{:e}", error(1.0));
+    let [coarse, fine] = [error(0.02), error(0.04)];
+    assert!((13.0..19.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
 }
 
 /// A record of noise, equidistant or not, against the closed form of every piece; the run goes on after the last sample.

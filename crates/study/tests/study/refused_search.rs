@@ -76,11 +76,50 @@ fn contract_invalid_bands_are_refused() {
     );
     refused(
         json!({ "omga": { "from": 5, "to": 8 } }),
-        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, restitution, response, starts, settle, ensemble, sum",
+        "optimize.objective: unknown field `omga`; did you mean `omega`? allowed: quantity, omega, k1, restitution, records, records_by, response, starts, settle, ensemble, sum",
     );
     refused(
         json!({ "response": "stead" }),
         "optimize.objective.response: \"stead\" is not allowed here; did you mean `steady`? allowed: window, steady, settled, motions",
+    );
+}
+
+/// A list of records stands in the place of a record, and has nothing but such.
+#[test]
+fn contract_records_stand_in_the_place_of_one() {
+    let pulse = json!({ "pulse": "half sine", "of": "force", "peak": 1, "duration": 1 });
+    let refused = |forcing: Option<&Value>, objective: Value, message: &str| {
+        let mut study = tiny();
+        if let Some(forcing) = forcing {
+            study["scene"]["forcing"] = forcing.clone();
+        }
+        study["optimize"]["objective"] = objective;
+        refused_text(&study.to_string(), message);
+    };
+    refused(
+        None,
+        json!({ "records": [pulse] }),
+        "optimize.objective.records: a list is not allowed here: give nothing: `scene.forcing` is neither a record nor a pulse, whose place they could take",
+    );
+    refused(
+        Some(&pulse),
+        json!({ "records": [pulse, { "P": 1, "omega": 2 }] }),
+        "optimize.objective.records[1]: `P` is not allowed here: give one of `pulse`, `record`, `harmonics`, `sweep` and `spectrum`",
+    );
+    refused(
+        Some(&pulse),
+        json!({ "records_by": "mean" }),
+        "optimize.objective.records_by: a statistic is not allowed here: give nothing without `records`, or `records` beside it",
+    );
+    refused(
+        Some(&pulse),
+        json!({ "records": [pulse], "records_by": { "quantile": 2 } }),
+        "optimize.objective.records_by.quantile: 2 is not allowed here: give a number above 0 and at most 1",
+    );
+    refused(
+        Some(&pulse),
+        json!({ "records": [{ "record": "none.csv", "of": "force" }] }),
+        "optimize.objective.records: none.csv: cannot be read: No such file or directory (os error 2)",
     );
 }
 

@@ -79,6 +79,9 @@ impl std::fmt::Display for Certificate {
             writeln!(f, "limits        {own}; broken by {} of {members} neighbours", limits.neighbours())?;
         }
         writeln!(f, "verdict       {}", self.words)?;
+        if let Some(records) = &self.records {
+            writeln!(f, "              Records: {}", records.words())?;
+        }
         if let Some(walls) = &self.walls {
             writeln!(f, "              Contacts: {}", walls.words())?;
         }

@@ -121,6 +121,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             (fact("Against no damper", &none.0, &none.1))
             (fact(&format!("Against {}", baseline(&findings.study.scene)), &study.0, &study.1))
             (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
+            @if let Some(records) = &certificate.records { (fact("Other records", records.words(), "Values, not bounds")) }
             @if let Some(walls) = &certificate.walls { (fact("Contacts", &contacts(walls, energy, quantity), walls.words())) }
             @if let Some(needs) = &findings.optimum.needs {
                 @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(

@@ -1,0 +1,88 @@
+//! A table of modes, of which one becomes the structure of a design.
+
+use super::typed::Wishes;
+use crate::Error;
+use retune_model::{Mode, NonNegative, Positive, left_out, most_felt};
+use retune_study::{frequency, rounded};
+use std::path::Path;
+
+/// The columns of a table, in any order: frequency, Hz, share of critical damping, modal mass, kg, and shape at the damper.
+const COLUMNS: [&str; 4] = ["f", "zeta", "M", "phi"];
+
+/// The structure that mode `which` (from 1) of a table is at the damper, and words on it and on the modes that are left out. Without a
+/// number it is the mode that a force at the damper moves most.
+///
+/// # Errors
+/// The table cannot be read, or has no such mode.
+pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), Error> {
+    let file = path.display().to_string();
+    let refused = |problem: String| Error::Requirement { place: file.clone(), problem };
+    let text = retune_store::plain::text(path)
+        .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
+    let modes = modes(&text).map_err(&refused)?;
+    let given = which.map_or_else(|| most_felt(&modes), |number| number.checked_sub(1));
+    let chosen = given.filter(|i| *i < modes.len()).ok_or_else(|| Error::Requirement {
+        place: "--mode".to_owned(),
+        problem: format!(
+            "{} is not allowed here: give a number from 1 to {}",
+            which.unwrap_or(0),
+            modes.len()
+        ),
+    })?;
+    let mode = modes[chosen];
+    let primary = mode.primary().map_err(|error| {
+        refused(format!("mode {}: phi = {}: it does not move the damper: {error}", chosen + 1, mode.shape))
+    })?;
+    let [m1, k1, c1] = [primary.mass.get(), primary.stiffness.get(), primary.damping.get()];
+    let typed = |value: f64| Some(value.to_string().into());
+    let wishes = Wishes { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Wishes::default() };
+    let words = format!(
+        "mode {} of {}, {}, is at the damper a structure of m1 = {} kg, k1 = {} N/m and c1 = {} N·s/m; at its frequency the modes that \
+         are left out add {} % to its displacement by a force there",
+        chosen + 1,
+        modes.len(),
+        frequency(mode.omega.get()),
+        rounded(m1, 6),
+        rounded(k1, 6),
+        rounded(c1, 6),
+        rounded(100.0 * left_out(&modes, chosen), 2)
+    );
+    Ok((wishes.within(&file), words))
+}
+
+/// The modes of a table, CSV with a header.
+fn modes(text: &str) -> Result<Vec<Mode>, String> {
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let (_, head) = lines.next().ok_or("is empty: give a table with the columns f, zeta, M and phi")?;
+    let names: Vec<&str> = head.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
+    let mut places = [0; COLUMNS.len()];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        let found = names.iter().position(|name| *name == column);
+        *place = found.ok_or_else(|| {
+            format!(
+                "has no column {column}: give f (Hz), zeta (a share), M (kg) and phi, the mode shape at the damper; it has {}",
+                names.join(", ")
+            )
+        })?;
+    }
+    let row = |(i, line): (usize, &str)| {
+        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+        let at = |column: usize| {
+            let field = fields.get(places[column]).copied().unwrap_or("");
+            let number = field.parse::<f64>().ok().filter(|number| number.is_finite());
+            let name = COLUMNS[column];
+            number.ok_or_else(|| format!("line {}: {name}: \"{field}\" is not a number", i + 1))
+        };
+        let refused = |column: usize, error: retune_model::OutOfRange| {
+            format!("line {}: {}: {error}", i + 1, COLUMNS[column])
+        };
+        Ok(Mode {
+            omega: Positive::new(std::f64::consts::TAU * at(0)?).map_err(|error| refused(0, error))?,
+            zeta: NonNegative::new(at(1)?).map_err(|error| refused(1, error))?,
+            mass: Positive::new(at(2)?).map_err(|error| refused(2, error))?,
+            shape: at(3)?,
+        })
+    };
+    let modes = lines.map(row).collect::<Result<Vec<Mode>, String>>()?;
+    if modes.is_empty() { Err("has no mode: give at least one line".to_owned()) } else { Ok(modes) }
+}
