@@ -18,9 +18,12 @@ fn time(seconds: f64) -> String {
     }
 }
 
-/// A factor, to two digits.
+/// A factor, to two digits; below 0.1 to one.
 fn factor(f: f64) -> String {
     match f {
+        f if f < 0.001 => format!("{f:.0e}"),
+        f if f < 0.01 => format!("{f:.3}"),
+        f if f < 1.0 => format!("{f:.2}"),
         f if f < 10.0 => format!("{f:.1}"),
         f if f < 100.0 => format!("{f:.0}"),
         f => {
