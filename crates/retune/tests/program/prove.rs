@@ -59,3 +59,27 @@ fn contract_what_is_not_proven_ends_with_code_1() {
         assert!(refused.contains(said), "{refused}");
     }
 }
+
+/// The theorem that `docs/proof.md` shows, but for its last digits, which depend on the processor's rounding of the guess.
+#[test]
+fn contract_the_document_shows_what_is_proven() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let page = std::fs::read_to_string(root.join("docs/proof.md")).expect("the document");
+    let results = root.join("results/ssvi");
+    let proven = Desk::new().good(&["prove", results.to_str().expect("a path")]);
+    let first = proven.lines().next().expect("a line").split(" = ").next().expect("its beginning");
+    let shown = page.lines().skip_while(|line| !line.starts_with(first));
+    assert_eq!(shown.clone().take_while(|line| *line != "```").count(), proven.lines().count());
+    for (shown, proven) in shown.zip(proven.lines()) {
+        let words: [Vec<&str>; 2] = [shown, proven].map(|line| line.split(' ').collect());
+        assert_eq!(words[0].len(), words[1].len(), "{shown}\n{proven}");
+        for (a, b) in words[0].iter().zip(&words[1]) {
+            let close = match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(a), Ok(b)) if a.abs() < 1e-6 => a < 10.0 * b && b < 10.0 * a,
+                (Ok(a), Ok(b)) => (a - b).abs() < 1e-8 * a.abs(),
+                _ => a == b,
+            };
+            assert!(close, "{shown}\n{proven}");
+        }
+    }
+}
