@@ -4,6 +4,7 @@ python3 tests/proof.py [--write]
 """
 
 import json
+import math
 import pathlib
 import sys
 
@@ -48,7 +49,9 @@ def row(name, proof):
     some = "; ".join(left) if len(left) < 9 else f"{len(left)} parts from {left[0].split()[0]} to {left[-1].split()[-1]}"
     rest = f"{some} ({share:.4f} in all)" if left else "none"
     a, b = proof["omega"]
-    return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {proof['E1max'][1]:.5f} | {shown} | {rest} |\n"
+    # What it is at most may not be rounded down.
+    most = math.ceil(proof["E1max"][1] * 1e5) / 1e5
+    return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {most:.5f} | {shown} | {rest} |\n"
 
 
 def main():

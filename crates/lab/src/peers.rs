@@ -42,9 +42,6 @@ pub const PEERS: [Peer; 9] = {
     ]
 };
 
-/// The one that is beside the hybrid between rigid walls.
-pub const DOP853: &Peer = &PEERS[3];
-
 /// Most events of a run.
 const MOST_EVENTS: usize = 10_000;
 

@@ -32,8 +32,10 @@ fn independent(case: &Case) -> Any<Option<Found>> {
 
 #[cfg(feature = "integrators")]
 fn of_a_peer(case: &Case) -> Any<Option<Found>> {
-    use crate::peers::{DOP853, run};
-    Ok(Some(run(DOP853, case, true, DOP853.tightest)?))
+    use crate::peers::{PEERS, run};
+    let dop853 = PEERS.iter().find(|peer| peer.program.starts_with("ivp") && peer.method == "DOP853");
+    let dop853 = dop853.ok_or("the crate ivp has no DOP853")?;
+    Ok(Some(run(dop853, case, true, dop853.tightest)?))
 }
 
 #[cfg(not(feature = "integrators"))]

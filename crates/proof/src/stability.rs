@@ -22,7 +22,7 @@ type Section = [[Taylor; FREE]; FREE];
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stability {
-    /// All are smaller than this, which is below 1.
+    /// All are smaller than this, which is at most 1.
     Stable(f64),
     /// One is larger than 1.
     Unstable,

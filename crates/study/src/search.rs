@@ -163,8 +163,8 @@ impl Study {
             }
             Ok::<(), Infallible>(())
         };
-        let (Ok(()) | Err(_)) = whole(&mut study.scene.forcing);
-        let (Ok(()) | Err(_)) = records::each(&mut study, &mut whole);
+        let Ok(()) = whole(&mut study.scene.forcing);
+        let Ok(()) = records::each(&mut study, &mut whole);
         study
     }
 

@@ -23,7 +23,7 @@ pub struct OverContact {
     pub impulse: f64,
     /// `q`, √m.
     depth: f64,
-    /// The least v of a restitution that is the same at every speed, m/s.
+    /// A bound on the least v of a restitution that is the same at every speed, m/s; it says nothing unless it is positive.
     slowest: f64,
     /// How long it takes, s.
     pub duration: f64,

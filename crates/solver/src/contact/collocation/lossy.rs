@@ -10,7 +10,7 @@
 //! and the residuals are `f - ζ^(3/2) φ(ζ^(5/2)/2, ż/w)` and the depth at the end. The iteration is that of contacts without loss.
 
 use super::lossy_rule::LossyRule;
-use super::newton::Extended;
+use super::newton::{Extended, UNDISTURBED};
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
@@ -122,7 +122,7 @@ impl Collisions {
         }
         let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace };
         let mut unknowns: Extended<M> = (of.forces, 1.0);
-        let mut amounts = [0.0; 3];
+        let mut amounts = UNDISTURBED;
         let mut before = 1.0_f64;
         for iterations in 1..=MAX_ITERATIONS {
             let Motion { depths, speeds, end } = contact.motion(unknowns.1, moments, last);

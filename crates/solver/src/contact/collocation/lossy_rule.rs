@@ -111,7 +111,7 @@ impl<const N: usize, const M: usize> LossyRule<N, M> {
             forces: packed(forces),
             speeds: packed(&speeds),
             slopes: [0, 1].map(|by| packed::<N, M>(&slopes.map(|slopes| slopes[by]))),
-            law: matches!(law, UnitLaw::Restoring(_)).then(|| NodeLaw::new(law, depths, &speeds)),
+            law: matches!(law, UnitLaw::Restoring(_)).then(|| NodeLaw::new(law, depths, &speeds)).flatten(),
             // Of one restitution every contact has the same χ.
             newton: Newton::new(&start, if matches!(law, UnitLaw::Damping(_)) { 3 } else { 2 }, |amounts| {
                 equations.solve(amounts, &start, &speeds, &slopes)

@@ -51,9 +51,10 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
     }
 }
 
-/// Most perturbations, and the amount of each.
+/// Most perturbations, the amount of each, and none of any.
 const MOST: usize = 3;
 pub type Amounts = [f64; MOST];
+pub const UNDISTURBED: Amounts = [0.0; MOST];
 
 /// Inverse Jacobian at the undisturbed collision, and how disturbances move it.
 pub struct Newton<const N: usize, const M: usize> {
@@ -172,7 +173,7 @@ pub fn lossless<const N: usize>(integrals: &Integrals<N>) -> (DVector<f64>, impl
         }
         (residual, jacobian)
     };
-    let undisturbed = |unknowns: &DVector<f64>| equations([0.0; MOST], unknowns);
+    let undisturbed = |unknowns: &DVector<f64>| equations(UNDISTURBED, unknowns);
     let start = Disturbed::solved(DVector::zeros(0), depths.clone(), undisturbed).unknowns;
     let begin = start.clone();
     let solve = move |amounts: Amounts| {
@@ -202,10 +203,10 @@ impl Disturbed {
 impl<const N: usize, const M: usize> Newton<N, M> {
     /// Prepares the iteration from the unknowns of the undisturbed collision and the solutions under so many of the perturbations.
     pub fn new(start: &DVector<f64>, count: usize, solve: impl Fn(Amounts) -> Disturbed) -> Self {
-        let undisturbed = solve([0.0; MOST]).inverse;
+        let undisturbed = solve(UNDISTURBED).inverse;
         // The change left after the first iteration, the change in it, and the converged inverse Jacobian.
         let with = |units: &[(usize, f64)]| {
-            let mut amounts = [0.0; MOST];
+            let mut amounts = UNDISTURBED;
             units.iter().for_each(|&(of, unit)| amounts[of] = unit * UNITS[of]);
             let Disturbed { first, unknowns, inverse } = solve(amounts);
             let change = -&undisturbed * first;
@@ -252,7 +253,7 @@ impl<const N: usize, const M: usize> Newton<N, M> {
     /// The amount of each perturbation, from the first change.
     #[inline(always)]
     pub fn amounts(&self, change: &Nodes<M>, lengthening: f64) -> Amounts {
-        let mut amounts = [0.0; MOST];
+        let mut amounts = UNDISTURBED;
         for (amount, Perturbation { row: (row, last), .. }) in amounts.iter_mut().zip(&self.perturbations) {
             *amount = dot(row, change) + last * lengthening;
         }
@@ -263,7 +264,7 @@ impl<const N: usize, const M: usize> Newton<N, M> {
     #[inline(always)]
     pub fn change(&self, amounts: Amounts, residual: &Nodes<M>, last: f64) -> Extended<M> {
         let (mut change, mut lengthening) = self.undisturbed.times((residual, last));
-        if amounts != [0.0; MOST] {
+        if amounts != UNDISTURBED {
             for (perturbation, amount) in self.perturbations.iter().zip(amounts) {
                 let (correction, end) = perturbation.correction.times((residual, last));
                 for i in 0..M {

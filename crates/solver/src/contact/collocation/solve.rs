@@ -2,7 +2,7 @@
 
 use super::lossy_rule::{Loss, LossyRule, LossyRules};
 use super::motion::Collision;
-use super::newton::{self, Newton};
+use super::newton::{self, Newton, UNDISTURBED};
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
@@ -178,7 +178,7 @@ impl Collisions {
         let to_depth = self.side.sign() / depth;
         let approach = Polynomial::<FREE>(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * to_depth)).over_s();
         let (mut depths, mut stretch) = (rule.depths, 1.0);
-        let mut amounts = [0.0; 3];
+        let mut amounts = UNDISTURBED;
         let (mut before, mut iterations): (f64, u32) = (1.0, 0);
         let force = loop {
             let duration = stretch * undisturbed;

@@ -14,7 +14,7 @@ pub enum UnitLaw {
 }
 
 impl UnitLaw {
-    /// The law of another χ, if it has one of its own.
+    /// The law with a χ that is larger by `more`; that of a restitution as it is.
     pub fn beside(&self, more: f64) -> Self {
         match self {
             Self::Restoring(law) => Self::Restoring(Arc::clone(law)),
