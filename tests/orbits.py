@@ -15,7 +15,7 @@ LONGEST = 4
 METHODS = ["hybrid", "dop853"]
 HEAD = """# Proven motions beside computed ones
 
-`python3 tests/orbits.py target/release/retune {number} results/proof/orbits.md` made this page: {number} stable motions of at most 4 periods of [branches](../branches), evenly among all such of the
+`just lab proven-orbits {number}` made this page: {number} stable motions of at most 4 periods of [branches](../branches), evenly among all such of the
 designs `tuned`, `isola` and `global`, each [proven](../../docs/proof.md), and what other numbers of E1max are off the proven interval: that of the branch,
 and the largest over the window of a run from there with the default tolerances, by the default method (hybrid) and by DOP853. A value in the interval is off by 0.
 

@@ -4,6 +4,7 @@ use super::typed::Wishes;
 use crate::Error;
 use retune_model::{Mode, NonNegative, Positive, left_out, most_felt};
 use retune_study::{frequency, rounded};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The columns of a table, in any order: frequency, Hz, share of critical damping, modal mass, kg, and shape at the damper.
@@ -52,37 +53,40 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), 
 
 /// The modes of a table, CSV with a header.
 fn modes(text: &str) -> Result<Vec<Mode>, String> {
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let (_, head) = lines.next().ok_or("is empty: give a table with the columns f, zeta, M and phi")?;
-    let names: Vec<&str> = head.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
+    let text = text.trim_start_matches('\u{feff}');
+    let mut table =
+        csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let names = table.headers().map_err(|error| error.to_string())?.clone();
+    if names.iter().all(str::is_empty) {
+        return Err("is empty: give a table with the columns f, zeta, M and phi".to_owned());
+    }
     let mut places = [0; COLUMNS.len()];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
-        let found = names.iter().position(|name| *name == column);
+        let found = names.iter().position(|name| name == column);
         *place = found.ok_or_else(|| {
+            let have: Vec<&str> = names.iter().collect();
             format!(
                 "has no column {column}: give f (Hz), zeta (a share), M (kg) and phi, the mode shape at the damper; it has {}",
-                names.join(", ")
+                have.join(", ")
             )
         })?;
     }
-    let row = |(i, line): (usize, &str)| {
-        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+    let mode = |row: csv::Result<csv::StringRecord>| {
+        let row = row.map_err(|error| error.to_string())?;
+        let line = row.position().map_or(0, csv::Position::line);
+        let wrong = |column: usize, problem: String| format!("line {line}: {}: {problem}", COLUMNS[column]);
         let at = |column: usize| {
-            let field = fields.get(places[column]).copied().unwrap_or("");
+            let field = row.get(places[column]).unwrap_or("");
             let number = field.parse::<f64>().ok().filter(|number| number.is_finite());
-            let name = COLUMNS[column];
-            number.ok_or_else(|| format!("line {}: {name}: \"{field}\" is not a number", i + 1))
-        };
-        let refused = |column: usize, error: retune_model::OutOfRange| {
-            format!("line {}: {}: {error}", i + 1, COLUMNS[column])
+            number.ok_or_else(|| wrong(column, format!("\"{field}\" is not a number")))
         };
         Ok(Mode {
-            omega: Positive::new(std::f64::consts::TAU * at(0)?).map_err(|error| refused(0, error))?,
-            zeta: NonNegative::new(at(1)?).map_err(|error| refused(1, error))?,
-            mass: Positive::new(at(2)?).map_err(|error| refused(2, error))?,
+            omega: Positive::new(TAU * at(0)?).map_err(|error| wrong(0, error.to_string()))?,
+            zeta: NonNegative::new(at(1)?).map_err(|error| wrong(1, error.to_string()))?,
+            mass: Positive::new(at(2)?).map_err(|error| wrong(2, error.to_string()))?,
             shape: at(3)?,
         })
     };
-    let modes = lines.map(row).collect::<Result<Vec<Mode>, String>>()?;
+    let modes = table.records().map(mode).collect::<Result<Vec<Mode>, String>>()?;
     if modes.is_empty() { Err("has no mode: give at least one line".to_owned()) } else { Ok(modes) }
 }

@@ -9,8 +9,9 @@
 //!
 //! and the residuals are `f - ζ^(3/2) φ(ζ^(5/2)/2, ż/w)` and the depth at the end. The iteration is that of contacts without loss.
 
+use super::disturbed::UNDISTURBED;
 use super::lossy_rule::LossyRule;
-use super::newton::{Extended, UNDISTURBED};
+use super::newton::Extended;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;

@@ -1,6 +1,7 @@
 //! The undisturbed collision of a loss at the nodes of its rule, and the iteration from there: computed once for a loss.
 
-use super::newton::{Amounts, Disturbed, DisturbedMotion, Linear, Newton};
+use super::disturbed::{Amounts, Disturbed, DisturbedMotion, Linear};
+use super::newton::Newton;
 use super::node_law::NodeLaw;
 use super::nodes::{Nodes, packed};
 use super::rule::{Integrals, Rule};

@@ -10,18 +10,19 @@
 //!
 //! The second line is a Volterra equation for `z` alone. A contact is short beside the linear motion, so a few terms are
 //! exact to rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that
-//! are computed once a program (see `newton`). One that loses energy is close to the undisturbed collision of its law
-//! (see `lossy`, `lossy_rule` and `unit_law`). A contact that is not of this kind is declined, and integrated step by step (see
+//! are computed once a program (see `disturbed` and `newton`). One that loses energy is close to the undisturbed collision of its law
+//! (see `lossy`, `lossy_rule`, `unit_law` and `node_law`). A contact that is not of this kind is declined, and integrated step by step (see
 //! `regularised`).
 //!
 //! Read `undisturbed` (the collision that all are close to), `nodes` and `rule` (integrals of its force on few nodes), `response`
-//! (`A^k b` and `g_k`), `newton` and `solve` (the iteration), then `motion` (the motion that observers see).
+//! (`A^k b` and `g_k`), `disturbed`, `newton` and `solve` (the iteration), then `motion` (the motion that observers see).
 
+pub mod disturbed;
 pub mod lossy;
 pub mod lossy_rule;
 pub mod motion;
 pub mod newton;
-mod node_law;
+pub mod node_law;
 pub mod nodes;
 pub mod quadrature;
 pub mod response;

@@ -1,8 +1,9 @@
 //! One contact by collocation: Newton's iteration for the depths at the nodes and the duration, and the error estimate.
 
+use super::disturbed::{UNDISTURBED, without_loss};
 use super::lossy_rule::{Loss, LossyRule, LossyRules};
 use super::motion::Collision;
-use super::newton::{self, Newton, UNDISTURBED};
+use super::newton::Newton;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
@@ -26,7 +27,7 @@ type Lossless<const N: usize, const M: usize> = (Rule<N, M>, Newton<N, M>);
 fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
     let force = undisturbed_force();
     let (rule, integrals) = Rule::new(clock, &force, |u| force(u).powf(2.0 / 3.0));
-    let (start, solve) = newton::lossless(&integrals);
+    let (start, solve) = without_loss(&integrals);
     (rule, Newton::new(&start, 2, solve))
 }
 
