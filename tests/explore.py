@@ -236,6 +236,13 @@ def try_it(program, shots):
         page.js(f"document.querySelector('[data-write={what}]').click()")
         return page.until("document.querySelector('dialog textarea').value")
 
+    def saved_text(file):
+        """The text of a file that the page saves; a browser makes the file first and fills it then."""
+        end = time.monotonic() + PATIENCE
+        while not ((downloads / file).is_file() and (downloads / file).stat().st_size) and time.monotonic() < end:
+            browser.message(time.monotonic() + 0.1)
+        return (downloads / file).read_text() if (downloads / file).is_file() else ""
+
     def same(name):
         page.known()
         words = written("command")
@@ -258,7 +265,7 @@ def try_it(program, shots):
     page.type("#number-c2", "120.5")
     checks.that("a typed number is taken", page.value("c2") == 120.5)
     same("typed")
-    address = page.js("(async () => { await new Promise((r) => setTimeout(r, 300)); return location.href; })()")
+    address = page.until("location.hash.includes('c2=120.5') && location.href")
     state = page.text("#text")
     page.type("#number-D", "-1")
     problem = page.until("!document.getElementById('problem').hidden && document.getElementById('problem').textContent")
@@ -266,7 +273,7 @@ def try_it(program, shots):
     marked = page.js("document.getElementById('number-D').getAttribute('aria-invalid')")
     checks.that("and marked", marked == "true", marked)
     page.click("#slider-D", clicks=2)
-    page.until("document.getElementById('problem').hidden")
+    page.until("document.getElementById('problem').hidden && document.getElementById('number-D').value < 0.1")
     checks.that("a double click brings the study's value back", abs(page.value("D") - 0.02885) < 1e-4, page.value("D"))
 
     page.open(address)
@@ -292,10 +299,7 @@ def try_it(program, shots):
 
     for file, text in [("ssvi-explored.json", "study"), ("ssvi-response.csv", "curves"), ("ssvi-motion.csv", "motion")]:
         page.js(f"document.querySelector('[data-write={text}]').click()")
-        end = time.monotonic() + PATIENCE
-        while not (downloads / file).is_file() and time.monotonic() < end:
-            browser.message(time.monotonic() + 0.1)
-        checks.that(f"{file} is saved", (downloads / file).is_file())
+        checks.that(f"{file} is saved", saved_text(file))
     saved = subprocess.run([program, "simulate", downloads / "ssvi-explored.json"], capture_output=True, text=True, check=True).stdout
     numbers = lambda text: text.strip().split("\n")[1:]  # the first line names the study
     checks.that("the saved study gives the page's figures", numbers(saved) == numbers(page.text("#text")), saved)
@@ -304,10 +308,7 @@ def try_it(program, shots):
     checks.that("the saved motion is that of `--trajectory`", trajectory.read_bytes() == (downloads / "ssvi-motion.csv").read_bytes())
     for what, begin in [("picture", "ssvi-motion.svg"), ("response", "ssvi-response.svg")]:
         page.js(f"document.querySelector('[data-write={what}]').click()")
-        end = time.monotonic() + PATIENCE
-        while not (downloads / begin).is_file() and time.monotonic() < end:
-            browser.message(time.monotonic() + 0.1)
-        checks.that(f"{begin} is a figure", (downloads / begin).is_file() and (downloads / begin).read_text().startswith("<svg"))
+        checks.that(f"{begin} is a figure", saved_text(begin).startswith("<svg"))
     checks.that("that of the response has the pinned design", ">A<" in (downloads / "ssvi-response.svg").read_text())
     lines = written("python")
     ours, theirs = page.text("#text").strip(), simulated(program, python_command(lines)).strip()
@@ -388,8 +389,8 @@ def own_structure(program, browser, checks, shots):
     checks.that("another unit is refused with those that are there", words.startswith('k2: "130 kN" is not a number, alone or in N/m, kN/m'), words)
     before = page.text("#text")
     page.type("#number-k2", "130000")
-    page.until("location.hash.includes('own=')")
-    page.open(page.js("location.href"))
+    # The address follows a moment after what it tells of.
+    page.open(page.until("location.hash.includes('k2=130000&') && location.hash.includes('own=') && location.href"))
     checks.that("a reload from the address has the structure", page.text("#text") == before and page.text("#study") == "own", page.text("#study"))
     page.js("document.querySelector('[name=damper][value=ssvi]').click()")
     page.known()
@@ -441,7 +442,7 @@ def follow_motions(program, browser, checks, shots):
     checks.that("the cursor stands at the frequency", abs(line - place) < 2, f"{line} {place}")
     if shots:
         page.shot(shots / "explore-branches.png")
-    address = page.js("(async () => { await new Promise((r) => setTimeout(r, 300)); return location.href; })()")
+    address = page.until("location.hash.includes('omega=5.9&') && location.href")
     page.click("#follow")
     checks.that("they are hidden", page.js(f"{heroes}.length") == 3 and page.js(purple) == 0, page.js(purple))
     page.open(address)
