@@ -58,6 +58,10 @@ pub struct Linear<const N: usize> {
     pub columns: [[f64; N]; N],
     /// `b`.
     pub input: [f64; N],
+    /// What the partner of the force does: nothing, but where a fast part of the motion follows the force without delay.
+    pub partner: [f64; N],
+    /// Whether they leave out a fast part of the motion, which has decayed.
+    pub reduced: bool,
     /// The state of rest.
     pub origin: [f64; N],
     /// ω, rad/s, of `df/dt = -ω s`, with the force `f` and its partner `s`.
@@ -76,6 +80,8 @@ pub(crate) fn held(system: &Coupled) -> Linear<4> {
     Linear {
         columns: columns(&a),
         input,
+        partner: [0.0; 4],
+        reduced: false,
         origin: [0.0; 4],
         frequency,
         returns,
@@ -133,6 +139,8 @@ impl LinearSystem<2> for Bare {
         Linear {
             columns: columns(&a),
             input,
+            partner: [0.0; 2],
+            reduced: false,
             origin: self.rest(),
             frequency,
             returns,
@@ -173,6 +181,8 @@ impl LinearSystem<4> for Coupled {
         Linear {
             columns: columns(&a),
             input,
+            partner: [0.0; 4],
+            reduced: false,
             origin: self.rest(),
             frequency,
             returns,

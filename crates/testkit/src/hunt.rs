@@ -7,6 +7,8 @@ pub mod branches;
 #[cfg(feature = "dynamics")]
 pub mod dampers;
 #[cfg(feature = "anything")]
+pub mod dashpots;
+#[cfg(feature = "anything")]
 mod histories;
 #[cfg(feature = "desk")]
 pub mod kills;

@@ -7,12 +7,12 @@ use retune_lab::hunts::{robust, scenes, walk};
 use retune_testkit::hunt as hunts;
 use retune_testkit::hunt::largest::Scenes;
 use retune_testkit::hunt::{
-    Hunt, bands, branches, dampers, kills, largest, needs, peaks, repeats, rigid, settled,
+    Hunt, bands, branches, dampers, dashpots, kills, largest, needs, peaks, repeats, rigid, settled,
 };
 use std::path::Path;
 use std::process::ExitCode;
 
-const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, walk (a share of its \
+const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, dashpots, walk (a share of its \
                      steps), scenes, settled, bands, kills";
 
 fn main() -> Any<ExitCode> {
@@ -50,6 +50,7 @@ fn main() -> Any<ExitCode> {
             show(HISTORIES, largest::beside_everywhere(Scenes::Histories, count));
             show("", largest::beside_dop853(Scenes::Histories, count));
         }
+        "dashpots" => show(DASHPOTS, dashpots::dashpots(number(20_000)?.into())),
         "rigid" => show(include_str!("../hunts/rigid.md"), rigid::rigid(number(40_000)?.into())),
         "repeats" => show(include_str!("../hunts/repeats.md"), repeats::repeats(number(42_000)?.into())),
         "peaks" => show(include_str!("../hunts/peaks.md"), peaks::peaks(number(3000)?)),
@@ -87,6 +88,19 @@ rest; one scene in five has contacts that lose energy (`crates/testkit/src/hunt/
 
 | what | scenes | with contacts | seen | allowed | faults |
 | --- | ---: | ---: | --- | ---: | ---: |
+";
+
+const DASHPOTS: &str = "# Long steps of flight beside short ones
+
+Written by `just lab hunt-dashpots`. The relative motion of the damper decays at 30 to 10,000 times the frequency of the force; m2 1 to 3000 kg,
+k1 1e4 to 1e5 N/m, k2 0 to 30 c2 per second, D 0 to 0.05 m, C 0 to 0.2 m, one in four without a wall in reach, one in ten without c1 and one with so
+much that the structure creeps, too; 20 s from rest at rtol 1e-10 (`crates/testkit/src/hunt/dashpots.rs`). Once the fast part of the motion has
+decayed, the solver leaves it out and takes longer steps (`crates/solver/src/linear/reduced.rs`); the other run takes all its short ones.
+Where both come to the same end to 1e-9, E1max, E2max, both ends of the relative displacement, x1max, v1max, a1max and the force on the
+ground must agree; without a wall, E1max of the damper in closed form, too.
+
+| what | scenes | long steps | short steps | allowed | faults |
+| --- | ---: | ---: | ---: | ---: | ---: |
 ";
 
 const PERIODS: &str = "

@@ -7,6 +7,7 @@ use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::linear::flow::Flow;
 use crate::linear::pieces::{clock, forces, in_steps};
+use crate::linear::reduced::Reduced;
 use crate::linear::steps::{Step, StepClock, Steps};
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
@@ -24,6 +25,8 @@ use retune_model::{Coupled, EvenForce, Side};
 pub struct ContactFree<'a, S, const N: usize> {
     system: &'a S,
     flow: Flow<N>,
+    /// The flow in longer steps, where a part of the motion decays so fast that it can be left out.
+    reduced: Option<Box<Reduced<N>>>,
     /// The record, if the flow takes a step for each of its pieces.
     samples: Option<EvenForce>,
     now: Knot<N>,
@@ -40,7 +43,8 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: system.start(), clock: [1.0, 0.0] };
         let flow = Flow::new(linear, longest);
         let samples = in_steps(force, flow.step());
-        Self { system, flow, samples, now, max_steps, work: Work::default() }
+        let reduced = Reduced::of(&flow, longest).map(Box::new);
+        Self { system, flow, reduced, samples, now, max_steps, work: Work::default() }
     }
 
     /// The same in another state at another time, s.
@@ -113,21 +117,33 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
 
     fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
-        let whole = self.flow.step();
-        let mut clock = StepClock::new(self.now.t, whole);
+        let mut flow = &self.flow;
+        let mut clock = StepClock::new(self.now.t, flow.step());
         while self.now.t < to && !observer.satisfied() {
+            if let Some(reduced) = self.reduced.as_deref().filter(|_| !flow.is_reduced())
+                && let Some(y) = reduced.settled(&self.now)
+            {
+                self.now.y = y;
+                flow = &reduced.flow;
+                clock = StepClock::new(self.now.t, flow.step());
+            }
+            let whole = flow.step();
             let (now, remaining) = (self.now, to - self.now.t);
             let energy =
                 self.system.energy_norm(&now.y) + LANES as f64 * whole * self.system.energy_norm_growth();
-            let mut steps = Steps::new(&self.flow, now, clock, energy);
+            let mut steps = Steps::new(flow, now, clock, energy);
             steps.keep((remaining / whole) as usize);
             if steps.count() > 0 {
-                observer.steps(&steps);
+                if flow.is_reduced() {
+                    (0..steps.count()).for_each(|number| observer.segment(&steps.step(number)));
+                } else {
+                    observer.steps(&steps);
+                }
                 self.now = steps.knot(steps.count());
                 clock.count(steps.count());
             } else {
-                let motion = self.flow.expand(now.excitation, &now.y);
-                let mut step = Step::part(&self.flow, now, &motion, remaining, energy);
+                let motion = flow.expand(now.excitation, &now.y);
+                let mut step = Step::part(flow, now, &motion, remaining, energy);
                 step.end().t = to;
                 observer.segment(&step);
                 self.now = *step.ends()[1];
@@ -184,7 +200,8 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         self.jump(window.from)?;
         let budget = self.budget(window.to);
         while self.now.t < window.to && !Observer::<N>::satisfied(&maximum) {
-            let to = window.to.min(self.now.t + STRIDE * self.flow.step());
+            let step = self.reduced.as_deref().map_or(self.flow.step(), |reduced| reduced.flow.step());
+            let to = window.to.min(self.now.t + STRIDE * step);
             if to <= self.now.t {
                 // Late in a run a step may be less than the spacing of the numbers there.
                 return Err(self.flow.too_fast(self.now.t));

@@ -1,6 +1,6 @@
 //! Flight between contacts: whole steps where both gaps are certified open, an exact search for the touch-down in any other.
 
-use super::propagator::{Hybrid, Phase, relative_position};
+use super::propagator::{Hybrid, Phase, ReducedFlight, relative_position};
 use crate::error::SolverError;
 use crate::linear::flow::Expansion;
 use crate::linear::gap::{CUBIC, Lost, ceiling, cubic, first_contact, floor, opening_floor};
@@ -44,6 +44,11 @@ impl Hybrid<'_> {
             if !energy.is_finite() {
                 return Err(SolverError::NonFinite { t: now.t });
             }
+            if let Some(reduced) = self.reduced.as_deref().filter(|_| leaving.is_none())
+                && let Some(y) = reduced.flow.settled(&now)
+            {
+                return self.reduced_flight(Knot { y, ..now }, to, observer);
+            }
             let growth = LANES as f64 * whole * self.system.energy_norm_growth();
             let mut steps = Steps::new(&self.flow, now, clock, energy + growth);
             let (open, near) = self.open_steps(&steps, leaving);
@@ -68,7 +73,8 @@ impl Hybrid<'_> {
                 }
                 let walls = Side::BOTH.into_iter().filter(|&side| seen == open && near[side as usize]);
                 let motion = self.flow.expand(now.excitation, &now.y);
-                let (length, touched) = self.first_touch(&now, &motion, walls, leaving, remaining)?;
+                let longest = whole.min(remaining);
+                let (length, touched) = self.first_touch(&now, &motion, walls, leaving, longest)?;
                 let energy = steps.energy();
                 let mut step = if length == whole {
                     Step::whole(&self.flow, [now, steps.knot(seen + 1)], energy)
@@ -96,11 +102,88 @@ impl Hybrid<'_> {
         }
     }
 
+    /// The same in longer steps, from a moment at which the fast part of the motion has decayed.
+    #[cold]
+    fn reduced_flight(
+        &mut self,
+        mut now: Knot<4>,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<FlightEnd, SolverError> {
+        let Some(reduced) = self.reduced.take() else { return Ok(FlightEnd::Stopped(now)) };
+        let end = self.reduced_steps(&reduced, &mut now, to, observer);
+        self.reduced = Some(reduced);
+        end
+    }
+
+    fn reduced_steps(
+        &mut self,
+        reduced: &ReducedFlight,
+        now: &mut Knot<4>,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<FlightEnd, SolverError> {
+        let (flow, whole) = (&reduced.flow.flow, reduced.flow.flow.step());
+        let growth = LANES as f64 * whole * self.system.energy_norm_growth();
+        let mut clock = StepClock::new(now.t, whole);
+        loop {
+            let energy = self.system.energy_norm(&now.y) + growth;
+            if !energy.is_finite() {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+            let steps = Steps::new(flow, *now, clock, energy);
+            let (open, near) = self.open(&steps, reduced.fourth, None);
+            for number in 0..LANES {
+                let remaining = to - now.t;
+                if remaining <= 0.0 || observer.satisfied() {
+                    return Ok(FlightEnd::Stopped(*now));
+                }
+                self.work.steps += 1;
+                self.budget.check(&self.work, now.t)?;
+                let mut step = steps.step(number);
+                let mut touched = None;
+                if number >= open || remaining < whole {
+                    let walls = Side::BOTH.into_iter().filter(|&side| number >= open && near[side as usize]);
+                    let motion = flow.expand(now.excitation, &now.y);
+                    let (length, side) = self.first_touch(now, &motion, walls, None, whole.min(remaining))?;
+                    touched = side;
+                    if length < whole {
+                        step = Step::part(flow, *now, &motion, length, energy);
+                        match touched {
+                            Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
+                            None => step.end().t = now.t + remaining,
+                        }
+                    }
+                }
+                if step.length() > 0.0 {
+                    observer.segment(&step);
+                }
+                *now = *step.ends()[1];
+                if let Some(side) = touched {
+                    return Ok(FlightEnd::TouchDown(side, *now));
+                }
+                if now.t >= to {
+                    return Ok(FlightEnd::Stopped(*now));
+                }
+                clock.count(1);
+                if number >= open {
+                    break;
+                }
+            }
+        }
+    }
+
     /// The number of steps that are certified to touch no wall, and the walls that the next one may touch.
     #[inline(always)]
     pub(super) fn open_steps(&self, steps: &Steps<'_, 4>, leaving: Option<Side>) -> (usize, [bool; 2]) {
-        let (from, to, whole) = (steps.from(), steps.ends(), self.flow.step());
-        let margin = CUBIC * whole.powi(4) * (self.fourth[0] * steps.energy() + self.fourth[1]);
+        self.open(steps, self.fourth, leaving)
+    }
+
+    /// The same with bounds on the fourth derivative of the relative displacement, see [`Hybrid::fourth`].
+    #[inline(always)]
+    fn open(&self, steps: &Steps<'_, 4>, fourth: [f64; 2], leaving: Option<Side>) -> (usize, [bool; 2]) {
+        let (from, to, whole) = (steps.from(), steps.ends(), steps.length());
+        let margin = CUBIC * whole.powi(4) * (fourth[0] * steps.energy() + fourth[1]);
         let [x1, v1, x2, v2] = to.y;
         let ends = [x2 - x1, v2 - v1];
         let starts = [shifted(from.y[2] - from.y[0], ends[0]), shifted(from.y[3] - from.y[1], ends[1])];
@@ -119,17 +202,16 @@ impl Hybrid<'_> {
         (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
     }
 
-    /// How long a step from `now` is that may touch one of `walls` or pass the end of the run, `remaining` seconds ahead: up to that
-    /// point, s; and the wall.
+    /// How long a step of at most `longest` seconds from `now` is that may touch one of `walls`: up to that point, s; and the wall.
     fn first_touch(
         &self,
         now: &Knot<4>,
         motion: &Expansion<4>,
         walls: impl Iterator<Item = Side>,
         leaving: Option<Side>,
-        remaining: f64,
+        longest: f64,
     ) -> Result<(f64, Option<Side>), SolverError> {
-        let mut first = (self.flow.step().min(remaining), None);
+        let mut first = (longest, None);
         for side in walls {
             let found = first_contact(self.gap_polynomial(motion, side, leaving), first.0);
             if let Some(s) = found.map_err(|Lost| SolverError::NonFinite { t: now.t })? {

@@ -5,6 +5,7 @@ use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};
 use crate::linear::pieces::in_steps;
+use crate::linear::reduced::Reduced;
 use crate::motion::form::derivative_bounds;
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
@@ -60,6 +61,8 @@ pub struct Hybrid<'a> {
     pub(super) system: &'a Coupled,
     pub(super) flow: Flow<4>,
     pub(super) contacts: [RegularisedContact; 2],
+    /// The flow in longer steps, where a part of the motion decays so fast that it can be left out.
+    pub(super) reduced: Option<Box<ReducedFlight>>,
     pub(super) collisions: [Collisions; 2],
     pub(super) rigid: Option<Box<RigidWalls>>,
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
@@ -73,6 +76,20 @@ pub struct Hybrid<'a> {
     pub(super) budget: Budget,
     /// Work done so far.
     pub work: Work,
+}
+
+/// The flow without its fast part, with the same bounds as [`Hybrid::fourth`].
+pub(super) struct ReducedFlight {
+    pub flow: Reduced<4>,
+    pub fourth: [f64; 2],
+}
+
+impl ReducedFlight {
+    fn of(system: &Coupled, whole: &Flow<4>, longest: f64) -> Option<Self> {
+        let flow = Reduced::of(whole, longest)?;
+        let fourth = flow.derivative_bounds::<_, 5>(system, STROKE)[4];
+        Some(Self { flow, fourth })
+    }
 }
 
 /// The row that picks `r = x2 - x1` from a state.
@@ -90,6 +107,7 @@ impl<'a> Hybrid<'a> {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
             budget: Budget::new(flow.pace(), max_steps, Work::default(), [0.0; 2]),
+            reduced: ReducedFlight::of(system, &flow, longest).map(Box::new),
             rigid: RigidWalls::of(system, longest).map(Box::new),
             flow,
             contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
@@ -100,6 +118,12 @@ impl<'a> Hybrid<'a> {
             stretch: None,
             work: Work::default(),
         }
+    }
+
+    /// The same without the longer steps of a flight whose fast part has decayed.
+    #[must_use]
+    pub fn in_short_steps(self) -> Self {
+        Self { reduced: None, ..self }
     }
 
     /// The moment of flight with this state.

@@ -8,6 +8,7 @@
 
 use crate::budget::Pace;
 use crate::error::SolverError;
+use crate::motion::knot::Jet;
 use crate::motion::lanes::{LANES, each};
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::system::Linear;
@@ -198,9 +199,50 @@ impl<const N: usize> Flow<N> {
         SolverError::TooFast { t, h: self.step, remedy: self.pace().remedy(t, self.step) }
     }
 
+    /// How the motion changes at a moment, by its own equations.
+    pub fn jet(&self, excitation: Excitation, y: &[f64; N]) -> Jet<N> {
+        let Linear { columns, input, partner, origin, frequency, returns, .. } = &self.linear;
+        let mut states = [each(|i| y[i] - origin[i]); 4];
+        let mut force = [excitation[0]; 3];
+        let mut now = excitation;
+        for order in 1..4 {
+            let previous = states[order - 1];
+            states[order] = each(|i| {
+                let free: f64 = columns.iter().zip(previous).map(|(column, d)| column[i] * d).sum();
+                free + input[i] * now[0] + partner[i] * now[1]
+            });
+            now = [-frequency * now[1], returns * now[0]];
+            if order < 3 {
+                force[order] = now[0];
+            }
+        }
+        Jet { states, force }
+    }
+
+    /// The largest share by which the last term of the series over a step counts in any component of the motion.
+    pub fn last_term(&self) -> f64 {
+        let share = |series: &Polynomial<BLOCKS>| {
+            let mut power = 1.0;
+            let terms: [f64; 4 * BLOCKS] = std::array::from_fn(|k| {
+                let term = (series.coefficient(k) * power).abs();
+                power *= self.step;
+                term
+            });
+            let largest = terms.iter().copied().fold(0.0, f64::max);
+            if largest > 0.0 { terms[4 * BLOCKS - 1] / largest } else { 0.0 }
+        };
+        let series = self.free.iter().chain(&self.forced);
+        series.flat_map(|expansion| expansion.0.iter().map(share)).fold(0.0, f64::max)
+    }
+
     /// How the flow chooses its steps.
     pub fn pace(&self) -> Pace {
         Pace::Flight { step: self.step, fastest: self.linear.fastest }
+    }
+
+    /// Whether it leaves out a fast part of the motion, which has decayed.
+    pub fn is_reduced(&self) -> bool {
+        self.linear.reduced
     }
 
     /// The flow's numbers.
@@ -270,13 +312,13 @@ fn series<const N: usize>(
     mut excitation: Excitation,
     deviation: [f64; N],
 ) -> Expansion<N> {
-    let Linear { columns, input, frequency, returns, .. } = linear;
+    let Linear { columns, input, partner, frequency, returns, .. } = linear;
     let mut coefficients = [deviation; 4 * BLOCKS];
     for k in 1..coefficients.len() {
         let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
         let mut next = [0.0; N];
         for i in 0..N {
-            next[i] = input[i] * excitation[0];
+            next[i] = input[i] * excitation[0] + partner[i] * excitation[1];
         }
         for (column, c) in columns.iter().zip(previous) {
             for i in 0..N {

@@ -1,9 +1,11 @@
 //! The exact flow of a forced linear system, between contacts.
 //!
 //! A flight step is exact whatever its length, so it is only kept short enough to see a contact. Four steps are computed side by
-//! side. Read `flow` (one step), then `steps` (steps as they are handed to observers), then `gap` (the first contact in a step).
+//! side. Read `flow` (one step), then `steps` (steps as they are handed to observers), then `gap` (the first contact in a step), then
+//! `reduced` (longer steps once a fast part of the motion has decayed).
 
 pub mod flow;
 pub mod gap;
 pub mod pieces;
+pub mod reduced;
 pub mod steps;

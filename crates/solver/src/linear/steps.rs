@@ -2,7 +2,7 @@
 
 use super::flow::{BentStride, Expansion, Flow, Stride};
 use crate::motion::form::{Form, QUINTIC};
-use crate::motion::knot::Knot;
+use crate::motion::knot::{Jet, Knot};
 use crate::motion::lanes::LANES;
 use crate::motion::segment::Segment;
 use std::cell::OnceCell;
@@ -57,9 +57,13 @@ impl<const N: usize> Segment<N> for Step<'_, N> {
     fn in_flight(&self) -> bool {
         true
     }
-    /// From the energy of the motion; the sharp bound is from its Taylor polynomial over the step.
+    fn jet(&self, at: &Knot<N>) -> Option<Jet<N>> {
+        self.flow.is_reduced().then(|| self.flow.jet(at.excitation, &at.y))
+    }
+    /// From the energy of the motion; the sharp bound is from its Taylor polynomial over the step. That of the energy takes account of all
+    /// rates, also of those of a part that has decayed.
     fn quintic_error(&self, form: &Form<N>, _ends: [&Knot<N>; 2], h: f64, sharp: bool) -> Option<f64> {
-        Some(if sharp {
+        Some(if sharp || self.flow.is_reduced() {
             form.quintic_error(&self.expansion().0, self.length) * (h / self.length).powi(6)
         } else {
             QUINTIC * h.powi(6) * form.sixth_in_flight(self.energy)

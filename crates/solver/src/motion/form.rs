@@ -3,8 +3,9 @@
 mod contact;
 mod slope;
 
+use super::knot::Jet;
 use super::polynomial::{BLOCKS, Polynomial};
-use crate::system::LinearSystem;
+use crate::system::{Linear, LinearSystem};
 use slope::SlopeInFlight;
 use wide::f64x4;
 
@@ -33,8 +34,8 @@ struct Rated<const N: usize> {
     /// Its size in flight: a weight for the size of each component of the state, and what the force adds.
     size: [f64; N],
     force: f64,
-    /// The row of the state that it is in flight less what the force adds, if that is what is meant.
-    unforced: Option<[f64; N]>,
+    /// The row of the state that it is in flight less what the force adds, if that is what is meant, and what the force adds.
+    unforced: Option<([f64; N], f64)>,
 }
 
 /// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
@@ -45,13 +46,22 @@ pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
     system: &S,
     row: [f64; N],
 ) -> [[f64; 2]; K] {
-    let (linear, amplitude) = (system.linear(), system.amplitude());
+    derivative_bounds_of(system, &system.linear(), row)
+}
+
+/// The same of a motion that these equations describe.
+pub fn derivative_bounds_of<S: LinearSystem<N>, const N: usize, const K: usize>(
+    system: &S,
+    linear: &Linear<N>,
+    row: [f64; N],
+) -> [[f64; 2]; K] {
+    let amplitude = system.amplitude();
     let dot = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let slope = system.structure().force_bounds()[1];
     let (mut row, mut forced, mut latest) = (row, 0.0, 0.0);
     std::array::from_fn(|_| {
         let bound = [system.dual_energy_norm(&row), amplitude * forced];
-        let felt = dot(&row, &linear.input).abs();
+        let felt = dot(&row, &linear.input).hypot(dot(&row, &linear.partner));
         forced = if linear.returns == 0.0 {
             felt + if slope > 0.0 { slope / amplitude * latest } else { 0.0 }
         } else {
@@ -121,7 +131,9 @@ impl<const N: usize> Form<N> {
     pub fn unforced<S: LinearSystem<N>>(self, system: &S) -> Self {
         let linear = system.linear();
         let row = |of: [f64; N]| linear.columns.map(|column| of.iter().zip(column).map(|(w, a)| w * a).sum());
-        let rated = self.rated.map(|rated| Rated { unforced: Some(row(rated.row)), ..rated });
+        let added = |of: [f64; N]| of.iter().zip(linear.input).map(|(w, b)| w * b).sum();
+        let rated =
+            self.rated.map(|rated| Rated { unforced: Some((row(rated.row), added(rated.row))), ..rated });
         Self { rated, ..self }
     }
 
@@ -172,6 +184,27 @@ impl<const N: usize> Form<N> {
         Self { linear: none, rated: None, squares, rest: linear.origin, sixth, most, slope }
     }
 
+    /// The quantity and its first two time derivatives where a motion in flight changes like this.
+    pub fn rates(&self, jet: &Jet<N>) -> [f64; 3] {
+        let dot =
+            |row: &[f64; N], d: &[f64; N]| row.iter().zip(d).map(|(row, d)| times(*row, *d)).sum::<f64>();
+        let linear = |order: usize| {
+            let rated = self.rated.map_or(0.0, |rated| {
+                let added = rated.unforced.map_or(0.0, |(_, added)| added * jet.force[order]);
+                dot(&rated.row, &jet.states[order + 1]) - added
+            });
+            dot(&self.linear, &jet.states[order]) + rated
+        };
+        let mut rates = [dot(&self.linear, &self.rest) + linear(0), linear(1), linear(2)];
+        for (weight, row) in self.squares.iter().filter(|(weight, _)| *weight != 0.0) {
+            let [value, slope, curvature] = [0, 1, 2].map(|order| dot(row, &jet.states[order]));
+            rates[0] += 0.5 * weight * value * value;
+            rates[1] += weight * value * slope;
+            rates[2] += weight * (slope * slope + value * curvature);
+        }
+        rates
+    }
+
     /// A bound on the quantity wherever the energy norm of the state is at most `energy` (√J); NaN or infinite where there is none.
     #[inline(always)]
     pub fn most(&self, energy: f64) -> f64 {
@@ -217,7 +250,7 @@ impl<const N: usize> Form<N> {
         self.combined(&self.linear, motion, length).into_iter().zip(&mut q).for_each(|(term, q)| *q += term);
         if let Some(rated) = &self.rated {
             let rated = match &rated.unforced {
-                Some(row) => self.combined(row, motion, length),
+                Some((row, _)) => self.combined(row, motion, length),
                 None => {
                     let rates = motion.each_ref().map(Polynomial::derivative);
                     Self { rest: [0.0; N], ..*self }.combined(&rated.row, &rates, length)

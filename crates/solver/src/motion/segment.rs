@@ -1,7 +1,7 @@
 //! A smooth segment of the motion.
 
 use super::form::Form;
-use super::knot::Knot;
+use super::knot::{Jet, Knot};
 
 /// A segment of the motion, smooth in its own coordinate `θ`, which runs from 0 to `length`.
 pub trait Segment<const N: usize> {
@@ -16,6 +16,11 @@ pub trait Segment<const N: usize> {
     /// Whether it is free of contact forces, even where rounding has left one of its ends inside a wall.
     fn in_flight(&self) -> bool {
         false
+    }
+    /// How the motion changes at a moment of it, where that is known better than by the equations of the whole system: a fast part that
+    /// has decayed has left its rounding error, which these would take for motion.
+    fn jet(&self, _at: &Knot<N>) -> Option<Jet<N>> {
+        None
     }
     /// A bound on the energy norm of the motion in it (√J), where one is known.
     fn energy(&self) -> f64 {

@@ -3,6 +3,7 @@
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
+use crate::motion::segment::Segment;
 use retune_model::{Bare, Coupled, Excitation};
 use wide::f64x4;
 
@@ -42,6 +43,19 @@ pub trait Quantity<const N: usize> {
     /// The sum of the sizes of its terms, which sets its rounding error.
     fn size(&self, y: &[f64; N]) -> f64 {
         self.form().size(y)
+    }
+}
+
+/// A quantity with its first two time derivatives at a moment of a segment.
+#[inline(always)]
+pub fn rates_in<const N: usize>(
+    segment: &impl Segment<N>,
+    at: &Knot<N>,
+    quantity: &impl Quantity<N>,
+) -> [f64; 3] {
+    match segment.jet(at) {
+        None => at.rates(quantity, segment.in_flight()),
+        Some(jet) => quantity.form().rates(&jet),
     }
 }
 

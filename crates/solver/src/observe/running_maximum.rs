@@ -1,7 +1,7 @@
 //! The running maximum of a quantity: the observer that most runs are made for.
 
 use super::observer::{Impact, MOST_KNOTS, Observer, Path};
-use super::quantity::Quantity;
+use super::quantity::{Quantity, rates_in};
 use super::quintic::{highest, quintic};
 use super::search::{Search, in_theta};
 use crate::linear::steps::Steps;
@@ -75,12 +75,12 @@ where
         let rates_a = match self.last {
             Some((t, flown, rates)) if t == a.t && flown == in_flight => rates,
             _ => {
-                let rates = a.rates(&self.search.quantity, in_flight);
+                let rates = rates_in(segment, a, &self.search.quantity);
                 self.search.note(rates[0], a.t);
                 rates
             }
         };
-        let rates_b = b.rates(&self.search.quantity, in_flight);
+        let rates_b = rates_in(segment, b, &self.search.quantity);
         self.last = Some((b.t, in_flight, rates_b));
         self.search.note(rates_b[0], b.t);
         let from = (0.0, *a, in_theta(rates_a, a.clock));

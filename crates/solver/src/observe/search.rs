@@ -3,7 +3,7 @@
 //! A stretch of the motion is dropped only where a bound proves that it holds no larger value: see `quintic`, `form` and
 //! `docs/bounds.md`.
 
-use super::quantity::Quantity;
+use super::quantity::{Quantity, rates_in};
 use super::quintic::{Shape, highest, quintic, shape, slope_root};
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
@@ -165,7 +165,7 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         let knot = segment.at(theta);
-        (theta, knot, in_theta(knot.rates(&self.quantity, segment.in_flight()), knot.clock))
+        (theta, knot, in_theta(rates_in(segment, &knot, &self.quantity), knot.clock))
     }
 
     /// A bound on how far the quantity leaves its quintic between two places.

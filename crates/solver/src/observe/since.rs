@@ -3,7 +3,7 @@
 use super::observer::{Impact, Observer, Path};
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
-use crate::motion::knot::Knot;
+use crate::motion::knot::{Jet, Knot};
 use crate::motion::segment::Segment;
 use retune_model::Side;
 
@@ -97,6 +97,9 @@ impl<S: Segment<4>> Segment<4> for Tail<'_, S> {
     }
     fn in_flight(&self) -> bool {
         self.whole.in_flight()
+    }
+    fn jet(&self, at: &Knot<4>) -> Option<Jet<4>> {
+        self.whole.jet(at)
     }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, sharp: bool) -> Option<f64> {
         self.whole.quintic_error(form, ends, h, sharp)

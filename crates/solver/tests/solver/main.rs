@@ -4,6 +4,7 @@ mod any_scene;
 mod bounds;
 mod bounds_in_flight;
 mod collisions;
+mod dashpots;
 mod derivatives;
 mod edge;
 mod exact;

@@ -1,0 +1,154 @@
+//! Longer steps where one part of the motion is much faster than all others and decays: that of a strong dashpot.
+//!
+//! With `v` and `w` the right and left eigenvectors of the fast rate `λ < 0`, scaled to `w · v = 1`, a deviation is `d = s + a v` with
+//! `a = w · d`, and `a' = λ a + β f` with `β = w · b`. Once its own transient is below rounding, `a` follows the force,
+//!
+//! `a = α₁ f + α₂ g`, `α₁ = -β λ / (λ² + ω²)`, `α₂ = β ω / (λ² + ω²)`, with the partner `g` of the force (`f' = -ω g`, `g' = ω f`).
+//!
+//! From then on `d' = A (1 - v wᵀ) d + (b - β v + ω α₂ v) f - ω α₁ v g`: the exact motion, by equations that know the slow rates alone.
+//! So the cost of a flight follows its motion, not the fastest rate of the system.
+
+use super::flow::Flow;
+use crate::motion::form::derivative_bounds_of;
+use crate::motion::knot::Knot;
+use crate::system::{Linear, LinearSystem};
+
+/// Steps of the whole flow that a step of the reduced one must replace to be worth while.
+const WORTH: f64 = 16.0;
+
+/// Iterations of the power method: each adds the digits of the ratio of the rates, which is [`WORTH`] or more.
+const ITERATIONS: usize = 20;
+
+/// What the last term of a step's series may be beside the largest.
+const CONVERGED: f64 = 1e-15;
+
+/// What of the fast part may be left, relative to the rounding of the state.
+const GONE: f64 = 8.0 * f64::EPSILON;
+
+/// Most that rounding in the fast rate may add to the slow ones over a run. What is left of the first in the equations of the others is its
+/// rounding error: at 4e-9 of this measure E1max is off by 6e-12 (`exact_a_strong_dashpot_in_long_steps`).
+const ROUNDING: f64 = 1e-8;
+
+/// The flow without a fast part.
+pub struct Reduced<const N: usize> {
+    /// The flow.
+    pub flow: Flow<N>,
+    /// `v`.
+    fast: [f64; N],
+    /// `w`.
+    row: [f64; N],
+    /// `α₁` and `α₂`.
+    follows: [f64; 2],
+}
+
+impl<const N: usize> Reduced<N> {
+    /// That of a whole flow, in steps of at most `longest` seconds; none where no part is fast enough, or where the
+    /// force does not turn.
+    pub fn of(whole: &Flow<N>, longest: f64) -> Option<Self> {
+        let linear = *whole.linear();
+        // Its steps are at most those of ω.
+        if linear.returns == 0.0 || linear.rate < WORTH * linear.frequency || longest < WORTH * whole.step() {
+            return None;
+        }
+        let transposed = std::array::from_fn(|i| std::array::from_fn(|j| linear.columns[j][i]));
+        let fast = dominant(&linear.columns)?;
+        let row = dominant(&transposed)?;
+        let scale = dot(&row, &fast);
+        let row = row.map(|w| w / scale);
+        let moved = applied(&linear.columns, &fast);
+        let rate = dot(&row, &moved);
+        let omega = linear.frequency;
+        let exact = -rate * longest * f64::EPSILON <= ROUNDING;
+        if rate.is_nan() || rate >= 0.0 || !exact || row.iter().any(|w| !w.is_finite()) {
+            return None;
+        }
+        let beta = dot(&row, &linear.input);
+        let turned = beta / (rate * rate + omega * omega);
+        let follows = [-turned * rate, turned * omega];
+        let mut slow = Linear { reduced: true, ..linear };
+        for (column, w) in slow.columns.iter_mut().zip(row) {
+            for i in 0..N {
+                column[i] -= moved[i] * w;
+            }
+        }
+        for i in 0..N {
+            slow.input[i] += fast[i] * (omega * follows[1] - beta);
+            slow.partner[i] -= fast[i] * omega * follows[0];
+        }
+        slow.rate = omega.max(growth(&slow.columns));
+        // A norm of the sixteenth power is a bound on rates, but not on how terms of different units grow at first.
+        for _ in 0..4 {
+            let flow = Flow::new(slow, longest);
+            if flow.step() < WORTH * whole.step() {
+                return None;
+            }
+            if flow.last_term() <= CONVERGED {
+                return Some(Self { flow, fast, row, follows });
+            }
+            slow.rate *= 1.5;
+        }
+        None
+    }
+
+    /// The state at a moment without the fast part's transient, if that is below the rounding of the state.
+    pub fn settled(&self, now: &Knot<N>) -> Option<[f64; N]> {
+        let [f, g] = now.excitation;
+        let origin = self.flow.linear().origin;
+        let deviation: [f64; N] = std::array::from_fn(|i| now.y[i] - origin[i]);
+        let follows = self.follows[0] * f + self.follows[1] * g;
+        let transient = dot(&self.row, &deviation) - follows;
+        let size: f64 =
+            self.row.iter().zip(&now.y).zip(&origin).map(|((w, y), y0)| w.abs() * (y.abs() + y0.abs())).sum();
+        (transient.abs() <= GONE * (size + follows.abs()))
+            .then(|| std::array::from_fn(|i| now.y[i] - transient * self.fast[i]))
+    }
+
+    /// Bounds on the derivatives of `row · d`, see [`derivative_bounds_of`].
+    pub fn derivative_bounds<S: LinearSystem<N>, const K: usize>(
+        &self,
+        system: &S,
+        row: [f64; N],
+    ) -> [[f64; 2]; K] {
+        derivative_bounds_of(system, self.flow.linear(), row)
+    }
+}
+
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn applied<const N: usize>(columns: &[[f64; N]; N], y: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| columns.iter().zip(y).map(|(column, y)| column[i] * y).sum())
+}
+
+/// The eigenvector of the largest rate, by the power method: its largest component is 1. None where one rate does not stand out.
+fn dominant<const N: usize>(columns: &[[f64; N]; N]) -> Option<[f64; N]> {
+    let mut vector: [f64; N] = std::array::from_fn(|i| 1.0 + i as f64 / 7.0);
+    let mut moved = f64::INFINITY;
+    for _ in 0..ITERATIONS {
+        let next = applied(columns, &vector);
+        let largest = next.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        let next = next.map(|component| component / largest);
+        moved = next.iter().zip(vector).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        vector = next;
+    }
+    (moved <= 1e-14).then_some(vector)
+}
+
+/// A bound on the rates of a matrix, `‖A¹⁶‖^(1/16)`, 1/s.
+fn growth<const N: usize>(columns: &[[f64; N]; N]) -> f64 {
+    let (mut power, mut logarithm) = (*columns, 0.0);
+    for doubling in 0..=4 {
+        if doubling > 0 {
+            power = power.map(|column| applied(&power, &column));
+            logarithm *= 2.0;
+        }
+        let size = power.iter().flatten().map(|a| a.abs()).fold(0.0, f64::max);
+        if size == 0.0 {
+            return 0.0;
+        }
+        power = power.map(|column| column.map(|a| a / size));
+        logarithm += size.ln();
+    }
+    (logarithm / 16.0).exp()
+}

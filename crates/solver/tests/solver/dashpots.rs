@@ -1,0 +1,25 @@
+//! Strong dashpots: the fast part of the motion is left out once it has decayed.
+
+use retune_model::Coupled;
+use retune_solver::{Settings, Window, simulate};
+use retune_testkit::scenes::{Numbers, SSVI};
+
+/// E1max by the eigenvectors of the linear system in 40 digits: `tests/reference/dashpots.py`.
+const EXACT: [(f64, f64); 3] =
+    [(1e4, 911.441197593448218), (1e5, 941.939579210149074), (1e7, 945.466948218196225)];
+
+#[test]
+fn exact_a_strong_dashpot_in_long_steps() {
+    for (c2, exact) in EXACT {
+        let scene = Numbers { c2, ..SSVI }.scene();
+        let run = simulate(&scene, Window { from: 50.0, to: 100.0 }, &Settings::default()).expect("a run");
+        let error = (run.e1_max.value / exact - 1.0).abs();
+        assert!(error < 1e-11, "c2 {c2}: {} is off by {error:e}", run.e1_max.value);
+        assert!(run.work.steps < 2000, "c2 {c2}: {} steps", run.work.steps);
+    }
+}
+
+#[test]
+fn invariant_long_steps_see_what_short_steps_see() {
+    retune_testkit::hunt::dashpots::dashpots(60).passes();
+}
