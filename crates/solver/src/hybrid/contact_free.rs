@@ -117,38 +117,65 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
 
     fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
-        let mut flow = &self.flow;
-        let mut clock = StepClock::new(self.now.t, flow.step());
+        let whole = self.flow.step();
+        let mut clock = StepClock::new(self.now.t, whole);
         while self.now.t < to && !observer.satisfied() {
-            if let Some(reduced) = self.reduced.as_deref().filter(|_| !flow.is_reduced())
-                && let Some(y) = reduced.settled(&self.now)
-            {
-                self.now.y = y;
-                flow = &reduced.flow;
-                clock = StepClock::new(self.now.t, flow.step());
+            if self.reduced.is_some() && self.settles() {
+                return self.go_reduced(to, observer, budget);
             }
-            let whole = flow.step();
             let (now, remaining) = (self.now, to - self.now.t);
             let energy =
                 self.system.energy_norm(&now.y) + LANES as f64 * whole * self.system.energy_norm_growth();
-            let mut steps = Steps::new(flow, now, clock, energy);
+            let mut steps = Steps::new(&self.flow, now, clock, energy);
             steps.keep((remaining / whole) as usize);
             if steps.count() > 0 {
-                if flow.is_reduced() {
-                    (0..steps.count()).for_each(|number| observer.segment(&steps.step(number)));
-                } else {
-                    observer.steps(&steps);
-                }
+                observer.steps(&steps);
                 self.now = steps.knot(steps.count());
                 clock.count(steps.count());
             } else {
-                let motion = flow.expand(now.excitation, &now.y);
-                let mut step = Step::part(flow, now, &motion, remaining, energy);
+                let motion = self.flow.expand(now.excitation, &now.y);
+                let mut step = Step::part(&self.flow, now, &motion, remaining, energy);
                 step.end().t = to;
                 observer.segment(&step);
                 self.now = *step.ends()[1];
             }
             self.work.steps += steps.count().max(1) as u64;
+            budget.check(&self.work, now.t)?;
+            if !self.now.y.iter().all(|v| v.is_finite()) {
+                return Err(SolverError::NonFinite { t: now.t });
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves out the fast part of the motion, if it has decayed.
+    #[cold]
+    fn settles(&mut self) -> bool {
+        let y = self.reduced.as_deref().and_then(|reduced| reduced.settled(&self.now));
+        self.now.y = y.unwrap_or(self.now.y);
+        y.is_some()
+    }
+
+    /// The same in longer steps, from a moment at which the fast part of the motion has decayed.
+    #[cold]
+    fn go_reduced(
+        &mut self,
+        to: f64,
+        observer: &mut impl Observer<N>,
+        budget: Budget,
+    ) -> Result<(), SolverError> {
+        let Some(Reduced { flow, .. }) = self.reduced.as_deref() else { return Ok(()) };
+        let growth = flow.step() * self.system.energy_norm_growth();
+        let mut clock = StepClock::new(self.now.t, flow.step());
+        while self.now.t < to && !observer.satisfied() {
+            let (now, length) = (self.now, flow.step().min(to - self.now.t));
+            let motion = flow.expand(now.excitation, &now.y);
+            let mut step = Step::part(flow, now, &motion, length, self.system.energy_norm(&now.y) + growth);
+            step.end().t = if length < flow.step() { to } else { clock.after(1) };
+            observer.segment(&step);
+            self.now = *step.ends()[1];
+            clock.count(1);
+            self.work.steps += 1;
             budget.check(&self.work, now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });

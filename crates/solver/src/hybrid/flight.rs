@@ -44,10 +44,10 @@ impl Hybrid<'_> {
             if !energy.is_finite() {
                 return Err(SolverError::NonFinite { t: now.t });
             }
-            if let Some(reduced) = self.reduced.as_deref().filter(|_| leaving.is_none())
-                && let Some(y) = reduced.flow.settled(&now)
+            if self.reduced.is_some()
+                && let Some(settled) = self.settled(&now, leaving)
             {
-                return self.reduced_flight(Knot { y, ..now }, to, observer);
+                return self.reduced_flight(settled, to, observer);
             }
             let growth = LANES as f64 * whole * self.system.energy_norm_growth();
             let mut steps = Steps::new(&self.flow, now, clock, energy + growth);
@@ -102,16 +102,24 @@ impl Hybrid<'_> {
         }
     }
 
-    /// The same in longer steps, from a moment at which the fast part of the motion has decayed.
+    /// The same moment without the fast part of the motion, if that has decayed.
     #[cold]
+    fn settled(&self, now: &Knot<4>, leaving: Option<Side>) -> Option<Knot<4>> {
+        let reduced = self.reduced.as_deref().filter(|_| leaving.is_none())?;
+        reduced.flow.settled(now).map(|y| Knot { y, ..*now })
+    }
+
+    /// Flies on in longer steps from a moment at which the fast part of the motion has decayed.
+    #[cold]
+    #[inline(never)]
     fn reduced_flight(
         &mut self,
-        mut now: Knot<4>,
+        now: Knot<4>,
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<FlightEnd, SolverError> {
         let Some(reduced) = self.reduced.take() else { return Ok(FlightEnd::Stopped(now)) };
-        let end = self.reduced_steps(&reduced, &mut now, to, observer);
+        let end = self.reduced_steps(&reduced, now, to, observer);
         self.reduced = Some(reduced);
         end
     }
@@ -119,7 +127,7 @@ impl Hybrid<'_> {
     fn reduced_steps(
         &mut self,
         reduced: &ReducedFlight,
-        now: &mut Knot<4>,
+        mut now: Knot<4>,
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<FlightEnd, SolverError> {
@@ -131,12 +139,12 @@ impl Hybrid<'_> {
             if !energy.is_finite() {
                 return Err(SolverError::NonFinite { t: now.t });
             }
-            let steps = Steps::new(flow, *now, clock, energy);
+            let steps = Steps::new(flow, now, clock, energy);
             let (open, near) = self.open(&steps, reduced.fourth, None);
             for number in 0..LANES {
                 let remaining = to - now.t;
                 if remaining <= 0.0 || observer.satisfied() {
-                    return Ok(FlightEnd::Stopped(*now));
+                    return Ok(FlightEnd::Stopped(now));
                 }
                 self.work.steps += 1;
                 self.budget.check(&self.work, now.t)?;
@@ -145,10 +153,11 @@ impl Hybrid<'_> {
                 if number >= open || remaining < whole {
                     let walls = Side::BOTH.into_iter().filter(|&side| number >= open && near[side as usize]);
                     let motion = flow.expand(now.excitation, &now.y);
-                    let (length, side) = self.first_touch(now, &motion, walls, None, whole.min(remaining))?;
+                    let (length, side) =
+                        self.first_touch(&now, &motion, walls, None, whole.min(remaining))?;
                     touched = side;
                     if length < whole {
-                        step = Step::part(flow, *now, &motion, length, energy);
+                        step = Step::part(flow, now, &motion, length, energy);
                         match touched {
                             Some(side) => step.end().y[2] = step.end().y[0] + self.system.wall(side),
                             None => step.end().t = now.t + remaining,
@@ -158,12 +167,12 @@ impl Hybrid<'_> {
                 if step.length() > 0.0 {
                     observer.segment(&step);
                 }
-                *now = *step.ends()[1];
+                now = *step.ends()[1];
                 if let Some(side) = touched {
-                    return Ok(FlightEnd::TouchDown(side, *now));
+                    return Ok(FlightEnd::TouchDown(side, now));
                 }
                 if now.t >= to {
-                    return Ok(FlightEnd::Stopped(*now));
+                    return Ok(FlightEnd::Stopped(now));
                 }
                 clock.count(1);
                 if number >= open {

@@ -200,6 +200,7 @@ impl<const N: usize> Flow<N> {
     }
 
     /// How the motion changes at a moment, by its own equations.
+    #[cold]
     pub fn jet(&self, excitation: Excitation, y: &[f64; N]) -> Jet<N> {
         let Linear { columns, input, partner, origin, frequency, returns, .. } = &self.linear;
         let mut states = [each(|i| y[i] - origin[i]); 4];
@@ -318,7 +319,12 @@ fn series<const N: usize>(
         let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
         let mut next = [0.0; N];
         for i in 0..N {
-            next[i] = input[i] * excitation[0] + partner[i] * excitation[1];
+            next[i] = input[i] * excitation[0];
+        }
+        if linear.reduced {
+            for i in 0..N {
+                next[i] += partner[i] * excitation[1];
+            }
         }
         for (column, c) in columns.iter().zip(previous) {
             for i in 0..N {

@@ -61,7 +61,8 @@ pub fn derivative_bounds_of<S: LinearSystem<N>, const N: usize, const K: usize>(
     let (mut row, mut forced, mut latest) = (row, 0.0, 0.0);
     std::array::from_fn(|_| {
         let bound = [system.dual_energy_norm(&row), amplitude * forced];
-        let felt = dot(&row, &linear.input).hypot(dot(&row, &linear.partner));
+        let felt = dot(&row, &linear.input);
+        let felt = if linear.reduced { felt.hypot(dot(&row, &linear.partner)) } else { felt.abs() };
         forced = if linear.returns == 0.0 {
             felt + if slope > 0.0 { slope / amplitude * latest } else { 0.0 }
         } else {
@@ -185,6 +186,7 @@ impl<const N: usize> Form<N> {
     }
 
     /// The quantity and its first two time derivatives where a motion in flight changes like this.
+    #[cold]
     pub fn rates(&self, jet: &Jet<N>) -> [f64; 3] {
         let dot =
             |row: &[f64; N], d: &[f64; N]| row.iter().zip(d).map(|(row, d)| times(*row, *d)).sum::<f64>();
