@@ -5,10 +5,10 @@ mod descents;
 mod designs;
 mod draw;
 mod page;
-mod refinement;
+mod places;
 mod search;
 
-pub use candidate::{Candidate, SAME};
+pub use candidate::{Candidate, SAME, Under};
 pub use designs::{Certified, Fronts, Row};
 
 use crate::artefact::{Content, Kind, artefact};
